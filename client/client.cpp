@@ -1,0 +1,157 @@
+#include "client/client.h"
+
+#include "proto/codec.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+const char* name_of(grpc::StatusCode code) {
+  static constexpr const char* names[] = {
+      "OK",        "CANCELLED",    "UNKNOWN",       "INVALID_ARGUMENT", "DEADLINE_EXCEEDED", "NOT_FOUND",
+      "ALREADY_EXISTS", "PERMISSION_DENIED", "RESOURCE_EXHAUSTED", "FAILED_PRECONDITION", "ABORTED", "OUT_OF_RANGE",
+      "UNIMPLEMENTED", "INTERNAL", "UNAVAILABLE", "DATA_LOSS", "UNAUTHENTICATED"};
+  const auto index = static_cast<std::size_t>(code);
+  return index < std::size(names) ? names[index] : "UNKNOWN";
+}
+
+std::string text_of(const grpc::Status& status) {
+  std::string text = status.error_message();
+  std::ranges::replace_if(text, [](unsigned char c) { return c < 0x20; }, ' ');
+  return std::string(name_of(status.error_code())) + (text.empty() ? "" : ": " + text);
+}
+
+void check(const grpc::Status& status) {
+  if (!status.ok()) throw RpcError(status);
+}
+
+[[noreturn]] void refuse(const Fault& fault) { throw RpcError({grpc::DATA_LOSS, fault.text()}); }
+
+// All pages of a list; `call` fills in a response, `append` takes its items.
+template <class Request, class Response, class Call, class Append>
+void read_pages(Request request, Call&& call, Append&& append) {
+  do {
+    grpc::ClientContext context;
+    Response response;
+    check(call(context, request, response));
+    append(response);
+    request.set_page_token(response.next_page_token());
+  } while (!request.page_token().empty());
+}
+
+}  // namespace
+
+RpcError::RpcError(const grpc::Status& status) : std::runtime_error(text_of(status)), code(status.error_code()) {}
+
+Client::Client(std::shared_ptr<grpc::Channel> channel)
+    : channel_(std::move(channel)), scenes_(v1::SceneService::NewStub(channel_)), solves_(v1::SolveService::NewStub(channel_)) {}
+
+bool Client::wait_until_connected(std::chrono::milliseconds patience) const {
+  return channel_->WaitForConnected(std::chrono::system_clock::now() + patience);
+}
+
+v1::Scene Client::create_scene(const Scene& scene, const std::string& display_name) {
+  grpc::ClientContext context;
+  v1::Scene stored;
+  const auto writer = scenes_->CreateScene(&context, &stored);
+  v1::CreateSceneRequest request;
+  request.mutable_scene()->set_display_name(as_utf8(display_name));
+  SceneSlicer slicer(scene);
+  // A write fails when the server has refused what came before: Finish then tells why.
+  while (writer->Write(request) && slicer.next(*request.mutable_chunk())) {
+  }
+  writer->WritesDone();
+  check(writer->Finish());
+  return stored;
+}
+
+v1::Scene Client::get_scene(const std::string& name) {
+  grpc::ClientContext context;
+  v1::GetSceneRequest request;
+  request.set_name(name);
+  v1::Scene scene;
+  check(scenes_->GetScene(&context, request, &scene));
+  return scene;
+}
+
+std::vector<v1::Scene> Client::list_scenes() {
+  std::vector<v1::Scene> all;
+  read_pages<v1::ListScenesRequest, v1::ListScenesResponse>(
+      {}, [&](auto& context, auto& request, auto& response) { return scenes_->ListScenes(&context, request, &response); },
+      [&](const auto& response) { all.insert(all.end(), response.scenes().begin(), response.scenes().end()); });
+  return all;
+}
+
+void Client::delete_scene(const std::string& name) {
+  grpc::ClientContext context;
+  v1::DeleteSceneRequest request;
+  request.set_name(name);
+  google::protobuf::Empty nothing;
+  check(scenes_->DeleteScene(&context, request, &nothing));
+}
+
+Scene Client::read_scene(const std::string& name) {
+  grpc::ClientContext context;
+  v1::ReadSceneRequest request;
+  request.set_name(name);
+  const auto reader = scenes_->ReadScene(&context, request);
+  SceneAssembler assembler;
+  std::optional<Fault> fault;
+  for (v1::ReadSceneResponse response; !fault && reader->Read(&response);) fault = assembler.add(response.chunk());
+  if (fault) {
+    context.TryCancel();
+    refuse(*fault);
+  }
+  check(reader->Finish());
+  return assembler.take();
+}
+
+v1::Solve Client::create_solve(const std::string& scene_name, const v1::SolveSpec& spec) {
+  grpc::ClientContext context;
+  v1::CreateSolveRequest request;
+  request.set_parent(scene_name);
+  *request.mutable_solve()->mutable_spec() = spec;
+  v1::Solve solve;
+  check(solves_->CreateSolve(&context, request, &solve));
+  return solve;
+}
+
+v1::Solve Client::get_solve(const std::string& name) {
+  grpc::ClientContext context;
+  v1::GetSolveRequest request;
+  request.set_name(name);
+  v1::Solve solve;
+  check(solves_->GetSolve(&context, request, &solve));
+  return solve;
+}
+
+std::vector<v1::Solve> Client::list_solves(const std::string& parent) {
+  v1::ListSolvesRequest first;
+  first.set_parent(parent);
+  std::vector<v1::Solve> all;
+  read_pages<v1::ListSolvesRequest, v1::ListSolvesResponse>(
+      first, [&](auto& context, auto& request, auto& response) { return solves_->ListSolves(&context, request, &response); },
+      [&](const auto& response) { all.insert(all.end(), response.solves().begin(), response.solves().end()); });
+  return all;
+}
+
+v1::Solve Client::cancel_solve(const std::string& name) {
+  grpc::ClientContext context;
+  v1::CancelSolveRequest request;
+  request.set_name(name);
+  v1::Solve solve;
+  check(solves_->CancelSolve(&context, request, &solve));
+  return solve;
+}
+
+void Client::delete_solve(const std::string& name) {
+  grpc::ClientContext context;
+  v1::DeleteSolveRequest request;
+  request.set_name(name);
+  google::protobuf::Empty nothing;
+  check(solves_->DeleteSolve(&context, request, &nothing));
+}
+
+}  // namespace alvor

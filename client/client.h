@@ -1,0 +1,65 @@
+#pragma once
+// Talks to an Alvor server over a channel, remote or in this process.
+
+#include "alvor/v1/scene_service.grpc.pb.h"
+#include "alvor/v1/solve_service.grpc.pb.h"
+#include "meshing/scene.h"
+#include "solution/solution_mirror.h"
+
+#include <grpcpp/grpcpp.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+/// A call that did not return OK.
+struct RpcError : std::runtime_error {
+  explicit RpcError(const grpc::Status& status);
+  grpc::StatusCode code;
+};
+
+/// Blocking calls; each throws RpcError. Safe to use from several threads.
+class Client {
+ public:
+  explicit Client(std::shared_ptr<grpc::Channel> channel);
+
+  /// False if no connection was made within `patience`.
+  bool wait_until_connected(std::chrono::milliseconds patience) const;
+
+  /// Sends `scene` in chunks well below the message limit.
+  v1::Scene create_scene(const Scene& scene, const std::string& display_name);
+  v1::Scene get_scene(const std::string& name);
+  std::vector<v1::Scene> list_scenes();  ///< all pages
+  void delete_scene(const std::string& name);
+  Scene read_scene(const std::string& name);
+
+  v1::Solve create_solve(const std::string& scene_name, const v1::SolveSpec& spec);
+  v1::Solve get_solve(const std::string& name);
+  std::vector<v1::Solve> list_solves(const std::string& parent);  ///< all pages
+  v1::Solve cancel_solve(const std::string& name);
+  void delete_solve(const std::string& name);
+
+  /// Where a watch stands; keep it to go on after a lost connection.
+  struct Watch {
+    std::string epoch;
+    SolutionMirror mirror;
+  };
+  /// Follows the solve into `watch.mirror` until it has ended, and returns it. Acknowledges each frame before `on_frame` is called,
+  /// so that a slow callback does not hold the stream. Starts afresh when the server's epoch changed. When `stop` is requested
+  /// the watch ends and the last known state is returned; the solve goes on.
+  v1::Solve watch_solve(const std::string& name, Watch& watch, const std::function<void(const Watch&)>& on_frame,
+                        std::stop_token stop = {});
+
+ private:
+  std::shared_ptr<grpc::Channel> channel_;
+  std::unique_ptr<v1::SceneService::Stub> scenes_;
+  std::unique_ptr<v1::SolveService::Stub> solves_;
+};
+
+}  // namespace alvor

@@ -1,0 +1,15 @@
+#pragma once
+// The subcommands of `alvor`. Each adds itself to the command line and runs from within the parse, if it was chosen.
+
+#include <CLI/CLI.hpp>
+
+namespace alvor {
+
+void add_solve_command(CLI::App& app);
+void add_watch_command(CLI::App& app);
+void add_probe_command(CLI::App& app);
+void add_render_command(CLI::App& app);
+void add_scenes_command(CLI::App& app);
+void add_solves_command(CLI::App& app);
+
+}  // namespace alvor

@@ -1,0 +1,29 @@
+#pragma once
+// The server that a command talks to.
+
+#include "client/client.h"
+#include "client/in_process.h"
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+namespace alvor {
+
+/// A client, and the server behind it where that runs in this process.
+class Connection {
+ public:
+  static constexpr std::chrono::seconds patience{5};
+
+  /// An empty `address` means a server in this process. Throws Failure if a remote one does not answer within `patience`.
+  explicit Connection(const std::string& address);
+
+  Client& client() { return client_; }
+  bool remote() const { return !local_; }
+
+ private:
+  std::optional<InProcessServer> local_;
+  Client client_;
+};
+
+}  // namespace alvor

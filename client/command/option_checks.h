@@ -1,0 +1,17 @@
+#pragma once
+// Checks of option values. Unlike CLI11's own they refuse NaN, and -1 where it would wrap around.
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+
+namespace alvor {
+
+/// Greater than `low` and at most `high`.
+CLI::Validator above_up_to(double low, double high);
+/// A whole number, `low` or more.
+CLI::Validator whole_from(std::uint64_t low);
+/// Three numbers with commas between them.
+CLI::Validator triple();
+
+}  // namespace alvor

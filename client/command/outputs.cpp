@@ -1,0 +1,87 @@
+#include "client/command/outputs.h"
+
+#include "client/command/display.h"
+#include "client/command/files.h"
+#include "client/command/frames.h"
+#include "client/command/report.h"
+#include "client/solution_file.h"
+#include "client/whole_file.h"
+
+#include <iostream>
+
+namespace alvor {
+
+namespace {
+
+void require_solution_path(const std::filesystem::path& path) {
+  if (path.extension() != ".glb" && path.extension() != ".ply")
+    throw Failure(ExitStatus::usage, "--output " + path.string() + ": a solution file ends in .glb or .ply");
+  require_writable(path, "--output");
+}
+
+void make_frames_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Failure(ExitStatus::usage, "--frames " + folder.string() + ": " + error.message());
+  require_writable(folder / "frame_0000.png", "--frames");
+}
+
+// Nothing was published if the solve failed at once: then there is nothing to draw either.
+void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
+  if (followed.mirror.steps().empty() || (options.solution.empty() && options.frames.empty())) return;
+  const BaseMesh mesh(scene);
+  if (!options.solution.empty())
+    write_solution_file(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
+  if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
+}
+
+void print_written(const std::filesystem::path& path) {
+  if (!path.empty()) std::cout << "wrote " << path.string() << '\n';
+}
+
+void print_for_people(const OutputOptions& options, const Followed& followed) {
+  std::cout << summary(followed);
+  for (const auto& path : {options.solution, options.report, options.frames}) print_written(path);
+}
+
+std::string unfinished(const v1::Solve& solve) {
+  switch (solve.state()) {
+    case v1::Solve::FAILED: return "the solve failed: " + solve.end_reason();
+    case v1::Solve::CANCELLED: return "the solve was cancelled";
+    default: return "stopped watching before the solve had ended";
+  }
+}
+
+}  // namespace
+
+void add_output_options(CLI::App& command, OutputOptions& options) {
+  command.add_option("-o,--output", options.solution, "Write the solution: .glb or .ply")->type_name("SOLUTION");
+  command.add_option("--report", options.report, "Write one CSV line per published step")->type_name("R.csv");
+  command.add_option("--frames", options.frames, "Draw the growing solution as frame_0000.png ... in this folder")
+      ->type_name("DIR");
+  command.add_flag("--no-ambient", options.no_ambient, "Draw frames without the ambient term");
+  command.add_flag("--json", options.json, "Print one JSON object instead of a summary");
+}
+
+void prepare_outputs(const OutputOptions& options) {
+  if (!options.solution.empty()) require_solution_path(options.solution);
+  if (!options.report.empty()) require_writable(options.report, "--report");
+  if (!options.frames.empty()) make_frames_folder(options.frames);
+}
+
+void warn(std::span<const std::string> warnings) {
+  for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
+}
+
+void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed,
+             std::span<const std::string> warnings) {
+  if (!options.report.empty()) write_whole_file(options.report, step_table(followed.mirror.steps()));
+  write_pictures(options, scene, followed);
+  if (options.json)
+    std::cout << outcome_json(followed, warnings);
+  else
+    print_for_people(options, followed);
+  if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));
+}
+
+}  // namespace alvor

@@ -1,0 +1,65 @@
+// alvor watch SOLVE: joins a solve that somebody started on a server. Ctrl-C ends the watch, not the solve.
+
+#include "client/command/commands.h"
+#include "client/command/connection.h"
+#include "client/command/failure.h"
+#include "client/command/interrupt.h"
+#include "client/command/outputs.h"
+
+#include <memory>
+
+namespace alvor {
+
+namespace {
+
+struct WatchCommand {
+  std::string solve;
+  std::string server;
+  OutputOptions outputs;
+};
+
+/// What was watched, and the scene it belongs to.
+struct Watched {
+  Scene scene;
+  std::vector<std::string> warnings;
+  Followed followed;
+};
+
+std::string scene_name_of(const std::string& solve) {
+  const std::size_t end = solve.find("/solves/");
+  if (!solve.starts_with("scenes/") || end == solve.npos)
+    throw Failure(ExitStatus::usage, solve + " is not the name of a solve, as scenes/SCENE/solves/SOLVE");
+  return solve.substr(0, end);
+}
+
+Watched join_and_follow(const WatchCommand& command, const std::string& scene_name) {
+  Interrupt interrupt;
+  Connection connection(command.server);
+  Client& client = connection.client();
+  const FollowOptions options{std::chrono::steady_clock::now(), !command.outputs.frames.empty()};
+  const v1::Scene scene = client.get_scene(scene_name);
+  Watched watched{client.read_scene(scene_name), {scene.warnings().begin(), scene.warnings().end()}, {}};
+  warn(watched.warnings);
+  watched.followed = follow(client, client.get_solve(command.solve), options, interrupt.token());
+  return watched;
+}
+
+void run_watch(const WatchCommand& command) {
+  const std::string scene_name = scene_name_of(command.solve);
+  prepare_outputs(command.outputs);
+  const Watched watched = join_and_follow(command, scene_name);
+  deliver(command.outputs, watched.scene, watched.followed, watched.warnings);
+}
+
+}  // namespace
+
+void add_watch_command(CLI::App& app) {
+  const auto options = std::make_shared<WatchCommand>();
+  CLI::App& command = *app.add_subcommand("watch", "Follow a solve on a server");
+  command.add_option("solve", options->solve, "scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
+  command.add_option("--server", options->server, "Where it runs")->required()->type_name("HOST:PORT");
+  add_output_options(command, options->outputs);
+  command.callback([options] { run_watch(*options); });
+}
+
+}  // namespace alvor

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "client/scene_file.h"
+
+namespace alvor {
+
+/// Reads the default scene of a glTF 2.0 file, text or binary, through tinygltf: triangles, strips and fans, node transforms
+/// applied. Points and lines are skipped; skins and morph targets stay at rest. The scene is not checked further. Throws
+/// ImportError.
+SceneFile import_gltf(const std::filesystem::path& path);
+
+}  // namespace alvor

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace alvor {
+
+/// Why an importer refuses a file. what() is "place: reason", without the file's name.
+struct ImportError : std::runtime_error {
+  ImportError(const std::string& place, const std::string& reason) : std::runtime_error(place + ": " + reason) {}
+};
+
+}  // namespace alvor

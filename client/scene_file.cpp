@@ -1,0 +1,127 @@
+#include "client/scene_file.h"
+
+#include "client/assimp_import.h"
+#include "client/gltf_import.h"
+#include "client/import_error.h"
+#include "client/obj_import.h"
+#include "client/quad_pairing.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <string_view>
+
+namespace alvor {
+
+namespace {
+
+constexpr double clamped_reflectance = 0.95;
+/// Twice a face's area over the square of its outline's length, below which it is a line or a point.
+constexpr double flat = 1e-14;
+constexpr std::size_t max_line = 400;
+
+void refuse_unreadable(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw ImportError("file", "does not exist");
+  if (std::filesystem::is_directory(path, error)) throw ImportError("file", "is a directory");
+  const auto size = std::filesystem::file_size(path, error);
+  if (!error && size == 0) throw ImportError("file", "is empty");
+}
+
+SceneFile import_by_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".obj") return import_obj(path);
+  if (extension == ".gltf" || extension == ".glb") return import_gltf(path);
+  return import_by_assimp(path);
+}
+
+/// A band brought into [0, 1). What is not a number stays: it is a fault.
+double clamped(double reflectance) {
+  if (reflectance < 0) return 0;
+  return reflectance >= 1 ? clamped_reflectance : reflectance;
+}
+
+std::string text_of(const Rgb& bands) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%g %g %g", bands.r, bands.g, bands.b);
+  return text;
+}
+
+void clamp_reflectance(SceneFile& file) {
+  for (Material& material : file.scene.materials) {
+    const Rgb given = material.reflectance;
+    if (!given.is_finite()) continue;
+    material.reflectance = {clamped(given.r), clamped(given.g), clamped(given.b)};
+    if (material.reflectance == given) continue;
+    file.warnings.push_back("material '" + material.name + "': reflectance " + text_of(given) + " is clamped to " +
+                            text_of(material.reflectance));
+  }
+}
+
+bool has_area(const Scene& scene, const Face& face) {
+  const auto corners = scene.corners_of(face);
+  const Vec3 start = scene.vertices[corners[0]];
+  Vec3 double_area;
+  double outline = 0;
+  for (std::size_t c = 1; c < corners.size(); ++c) {
+    const Vec3 from = scene.vertices[corners[c - 1]] - start, to = scene.vertices[corners[c]] - start;
+    double_area += cross(from, to);
+    outline += length(to - from);
+  }
+  return length(double_area) > flat * outline * outline;
+}
+
+void refuse_faulty(const Scene& scene) {
+  if (const auto fault = find_fault(scene)) throw ImportError(fault->place, fault->reason);
+  if (std::ranges::none_of(scene.faces, [&](const Face& face) { return has_area(scene, face); }))
+    throw ImportError("scene", "all " + std::to_string(scene.faces.size()) + " faces are degenerate");
+}
+
+bool is_all_triangles(const Scene& scene) {
+  return std::ranges::all_of(scene.faces, [](const Face& face) { return face.corner_count == 3; });
+}
+
+void warn_if_dark(SceneFile& file) {
+  const auto emits = [&](const Face& face) { return !file.scene.materials[face.material].emission.is_zero(); };
+  if (std::ranges::none_of(file.scene.faces, emits)) file.warnings.push_back("no material emits: the solution will be black");
+}
+
+/// Libraries report in several lines, and quote the file, which may hold anything.
+std::string one_line(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const bool blank = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
+    if (!blank) line += c;
+    else if (!line.empty() && line.back() != ' ') line += ' ';
+  }
+  if (line.size() > max_line) line.resize(max_line);
+  while (line.ends_with(' ') || line.ends_with('.')) line.pop_back();
+  return line;
+}
+
+SceneFile import_checked(const std::filesystem::path& path) {
+  refuse_unreadable(path);
+  SceneFile file = import_by_extension(path);
+  clamp_reflectance(file);
+  refuse_faulty(file.scene);
+  // A file of mixed polygons says what its triangles are; one of triangles only was cut by its exporter.
+  if (is_all_triangles(file.scene)) pair_triangles(file.scene);
+  warn_if_dark(file);
+  for (std::string& warning : file.warnings) warning = one_line(warning);
+  return file;
+}
+
+}  // namespace
+
+SceneFile read_scene_file(const std::filesystem::path& path) {
+  try {
+    return import_checked(path);
+  } catch (const ImportError& error) {
+    throw SceneFileError(path.string() + ": " + one_line(error.what()));
+  } catch (const std::exception& error) {  // of the libraries
+    throw SceneFileError(path.string() + ": file: " + one_line(error.what()));
+  }
+}
+
+}  // namespace alvor

@@ -1,0 +1,69 @@
+// Client::watch_solve: the receiving end of the streamed solution.
+
+#include "client/client.h"
+#include "proto/codec.h"
+
+namespace alvor {
+
+namespace {
+
+[[noreturn]] void lost(const std::string& reason) { throw RpcError({grpc::DATA_LOSS, "a frame does not fit: " + reason}); }
+
+v1::WatchSolveRequest request_for(const std::string& name, const Client::Watch& watch) {
+  v1::WatchSolveRequest request;
+  request.set_name(name);
+  request.set_epoch(watch.epoch);
+  request.set_base_revision(watch.mirror.revision());
+  return request;
+}
+
+// Revisions of another epoch say nothing: the server then begins at 0, and so does the mirror.
+void apply(const v1::WatchSolveResponse& frame, Client::Watch& watch) {
+  if (frame.epoch() != watch.epoch) watch = {frame.epoch(), {}};
+  Delta delta;
+  if (const auto fault = decode(frame, delta)) lost(fault->text());
+  if (const auto fault = watch.mirror.apply(delta)) lost(*fault);
+}
+
+// NOT_FOUND means that the watch has just ended, which is no harm.
+void acknowledge(v1::SolveService::Stub& solves, const v1::WatchSolveResponse& frame, std::uint64_t frame_count) {
+  grpc::ClientContext context;
+  v1::AcknowledgeFrameRequest request;
+  request.set_watch_id(frame.watch_id());
+  request.set_revision(frame.to_revision());
+  request.set_frame_count(frame_count);
+  v1::AcknowledgeFrameResponse nothing;
+  const grpc::Status status = solves.AcknowledgeFrame(&context, request, &nothing);
+  if (!status.ok() && status.error_code() != grpc::NOT_FOUND) throw RpcError(status);
+}
+
+// However it is left, the call must be over before its reader goes.
+struct CancelOnExit {
+  grpc::ClientContext& context;
+  ~CancelOnExit() { context.TryCancel(); }
+};
+
+}  // namespace
+
+v1::Solve Client::watch_solve(const std::string& name, Watch& watch, const std::function<void(const Watch&)>& on_frame,
+                              std::stop_token stop) {
+  grpc::ClientContext context;
+  const auto reader = solves_->WatchSolve(&context, request_for(name, watch));
+  const CancelOnExit cancel{context};
+  const std::stop_callback cancel_on_stop(stop, [&] { context.TryCancel(); });
+  std::uint64_t frames = 0;
+  for (v1::WatchSolveResponse frame; !stop.stop_requested() && reader->Read(&frame);) {
+    apply(frame, watch);
+    ++frames;
+    if (!frame.ended()) acknowledge(*solves_, frame, frames);
+    on_frame(watch);
+    if (!frame.ended()) continue;
+    (void)reader->Finish();  // everything has arrived: how the call ends does not matter any more
+    return frame.solve();
+  }
+  if (stop.stop_requested()) return get_solve(name);
+  const grpc::Status status = reader->Finish();
+  throw RpcError(status.ok() ? grpc::Status(grpc::DATA_LOSS, "the stream ended before the solve did") : status);
+}
+
+}  // namespace alvor

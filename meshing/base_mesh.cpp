@@ -1,0 +1,195 @@
+#include "meshing/base_mesh.h"
+
+#include "meshing/polygon.h"
+#include "meshing/weld.h"
+
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
+
+constexpr double weld_tolerance = 1e-9;      // of the extent
+constexpr double degenerate_area = 1e-14;    // of the longest diagonal squared
+const double smooth_cosine = std::cos(25 * std::numbers::pi / 180);
+
+struct Box {
+  Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+           std::numeric_limits<double>::infinity()};
+  Vec3 high = -low;
+
+  void add(Vec3 p) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
+};
+
+/// A face's corners after welding, without repetitions.
+std::vector<std::uint32_t> welded_ring(const Scene& scene, const Face& face, std::span<const std::uint32_t> first) {
+  std::vector<std::uint32_t> ring;
+  for (const std::uint32_t vertex : scene.corners_of(face))
+    if (ring.empty() || ring.back() != first[vertex]) ring.push_back(first[vertex]);
+  while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
+  return ring;
+}
+
+bool is_degenerate(std::span<const Vec3> polygon) {
+  double longest = 0;
+  for (const Vec3& p : polygon) longest = std::max(longest, length(p - polygon[0]));
+  return !(0.5 * length(double_area_vector(polygon)) > degenerate_area * longest * longest);
+}
+
+std::vector<Vec3> positions_of(const Scene& scene, std::span<const std::uint32_t> ring) {
+  std::vector<Vec3> at;
+  for (const std::uint32_t vertex : ring) at.push_back(scene.vertices[vertex]);
+  return at;
+}
+
+RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, const Piece& piece) {
+  RootPatch root;
+  root.corner_count = piece[3] == no_corner ? 3 : 4;
+  for (int c = 0; c < root.corner_count; ++c) {
+    root.vertex[c] = ring[piece[c]];
+    root.corners[c] = scene.vertices[root.vertex[c]];
+  }
+  const Vec3 area = double_area_vector(std::span(root.corners).first(root.corner_count));
+  root.area = 0.5 * length(area);
+  if (root.area > 0) root.normal = normalized(area);
+  return root;
+}
+
+/// Joins roots into a half-edge mesh. A face that OpenMesh cannot attach, for an edge already has two faces or one of the other
+/// orientation, gets vertices of its own, and so no neighbours.
+class NeighbourFinder {
+ public:
+  explicit NeighbourFinder(std::span<const RootPatch> roots) : roots_(roots) { omerr().disable(); }
+
+  std::size_t add_all() {
+    std::uint32_t vertex_count = 0;
+    for (const RootPatch& root : roots_)
+      for (int c = 0; c < root.corner_count; ++c) vertex_count = std::max(vertex_count, root.vertex[c] + 1);
+    for (std::uint32_t v = 0; v < vertex_count; ++v) mesh_.add_vertex({});
+    return static_cast<std::size_t>(std::ranges::count_if(roots_, [this](const RootPatch& root) { return !add(root); }));
+  }
+
+  std::optional<Neighbour> across(std::uint32_t root, int edge) const {
+    const auto mine = halfedge(root, edge);
+    const auto other = mesh_.opposite_halfedge_handle(mine);
+    if (mesh_.is_boundary(other)) return std::nullopt;
+    const auto there = static_cast<std::uint32_t>(mesh_.face_handle(other).idx());
+    return Neighbour{there, edge_of(there, other), dot(roots_[root].normal, roots_[there].normal) > smooth_cosine};
+  }
+
+ private:
+  bool add(const RootPatch& root) {
+    std::vector<HalfedgeMesh::VertexHandle> ring;
+    for (int c = 0; c < root.corner_count; ++c) ring.emplace_back(static_cast<int>(root.vertex[c]));
+    const bool joined = mesh_.add_face(ring).is_valid();
+    if (!joined) {
+      for (auto& vertex : ring) vertex = mesh_.add_vertex({});
+      mesh_.add_face(ring);
+    }
+    first_corner_.push_back(ring[0]);
+    return joined;
+  }
+  HalfedgeMesh::HalfedgeHandle halfedge(std::uint32_t root, int edge) const {
+    auto at = mesh_.halfedge_handle(HalfedgeMesh::FaceHandle(static_cast<int>(root)));
+    while (mesh_.from_vertex_handle(at) != first_corner_[root]) at = mesh_.next_halfedge_handle(at);
+    for (int e = 0; e < edge; ++e) at = mesh_.next_halfedge_handle(at);
+    return at;
+  }
+  int edge_of(std::uint32_t root, HalfedgeMesh::HalfedgeHandle wanted) const {
+    int edge = 0;
+    while (halfedge(root, edge) != wanted) ++edge;
+    return edge;
+  }
+
+  std::span<const RootPatch> roots_;
+  HalfedgeMesh mesh_;
+  std::vector<HalfedgeMesh::VertexHandle> first_corner_;
+};
+
+}  // namespace
+
+Vec3 RootPatch::at(double u, double v) const {
+  if (corner_count == 3) return corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]);
+  return lerp(lerp(corners[0], corners[1], u), lerp(corners[3], corners[2], u), v);
+}
+
+BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials) {
+  Box all;
+  for (const Vec3& vertex : scene.vertices) all.add(vertex);
+  const auto first = weld(scene.vertices, std::max(weld_tolerance * all.longest_side(), 1e-300));
+  for (std::uint32_t v = 0; v < first.size(); ++v) report_.welded_vertices += first[v] != v;
+
+  Box box;
+  for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
+    const auto ring = welded_ring(scene, scene.faces[f], first);
+    const auto polygon = positions_of(scene, ring);
+    const std::size_t before = roots_.size();
+    if (ring.size() >= 3 && !is_degenerate(polygon))
+      for (const Piece& piece : pieces_of(polygon)) {
+        RootPatch root = make_root(scene, ring, piece);
+        root.material = scene.faces[f].material;
+        root.scene_face = f;
+        if (!is_degenerate(std::span(root.corners).first(root.corner_count))) roots_.push_back(root);
+      }
+    report_.degenerate_faces += roots_.size() == before;
+    report_.split_faces += roots_.size() > before + 1;
+  }
+  for (const RootPatch& root : roots_)
+    for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[c]);
+  if (roots_.empty()) return;
+  centre_ = lerp(box.low, box.high, 0.5);
+  extent_ = box.longest_side();
+
+  find_neighbours();
+  add_backs();
+}
+
+void BaseMesh::find_neighbours() {
+  NeighbourFinder finder(roots_);
+  report_.non_manifold_faces = finder.add_all();
+  neighbours_.resize(roots_.size());
+  for (std::uint32_t root = 0; root < roots_.size(); ++root)
+    for (int e = 0; e < roots_[root].corner_count; ++e) neighbours_[root][e] = finder.across(root, e);
+}
+
+// Backs are neighbours where their fronts are: edge e of a front is edge n - 1 - e of its back.
+void BaseMesh::add_backs() {
+  const auto fronts = static_cast<std::uint32_t>(roots_.size());
+  for (std::uint32_t front = 0; front < fronts; ++front) {
+    if (!material_of(front).two_sided) continue;
+    RootPatch back = roots_[front];
+    std::reverse(back.corners.begin() + 1, back.corners.begin() + back.corner_count);
+    std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
+    back.normal = -back.normal;
+    back.is_back = true;
+    back.twin = front;
+    roots_[front].twin = static_cast<std::uint32_t>(roots_.size());
+    roots_.push_back(back);
+  }
+  neighbours_.resize(roots_.size());
+  for (std::uint32_t back = fronts; back < roots_.size(); ++back) {
+    const std::uint32_t front = roots_[back].twin;
+    const int n = roots_[back].corner_count;
+    for (int e = 0; e < n; ++e) {
+      const auto other = neighbours_[front][n - 1 - e];
+      if (!other || roots_[other->root].twin == RootPatch::no_twin) continue;
+      neighbours_[back][e] =
+          Neighbour{roots_[other->root].twin, roots_[other->root].corner_count - 1 - other->edge, other->smooth};
+    }
+  }
+}
+
+std::optional<Neighbour> BaseMesh::across(std::uint32_t root, int edge) const { return neighbours_[root][edge]; }
+
+}  // namespace alvor

@@ -1,0 +1,76 @@
+#pragma once
+// The welded mesh of root patches that a scene becomes, with neighbours known across edges. OpenMesh lives behind it.
+
+#include "meshing/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// A triangle or a planar convex quad, one per base-mesh face: the root of a quadtree.
+struct RootPatch {
+  std::array<Vec3, 4> corners;          ///< counter-clockwise; metres; corners[3] unused for a triangle
+  std::array<std::uint32_t, 4> vertex;  ///< welded vertex of each corner
+  int corner_count = 3;                 ///< 3 or 4
+  std::uint32_t material = 0;
+  std::uint32_t scene_face = 0;  ///< the face of the scene it came from
+  Vec3 normal;                   ///< unit, to the front
+  double area = 0;               ///< m2
+
+  static constexpr std::uint32_t no_twin = ~0u;
+  std::uint32_t twin = no_twin;  ///< the other side of a two-sided face; its corners are ours in the order 0, n-1, ..., 1, so (u, v) is (v, u)
+  bool is_back = false;          ///< the twin that looks against the face's orientation
+
+  /// Position at (u, v): bilinear for a quad with (0,0), (1,0), (1,1), (0,1) at corners 0..3; for a triangle
+  /// corner0 + u (corner1 - corner0) + v (corner2 - corner0).
+  Vec3 at(double u, double v) const;
+};
+
+/// What lies across an edge of a root patch. Edge e runs from corner e to corner (e + 1) % corner_count.
+struct Neighbour {
+  std::uint32_t root = 0;
+  int edge = 0;         ///< runs the other way: its start is our end
+  bool smooth = false;  ///< same plane or gently curved (below 25 degrees); false is a crease
+};
+
+/// What welding changed, for warnings.
+struct WeldReport {
+  std::size_t welded_vertices = 0;
+  std::size_t degenerate_faces = 0;  ///< dropped: zero area or fewer than three distinct vertices
+  std::size_t split_faces = 0;       ///< polygons cut into several roots: more than four corners, concave or not planar
+  std::size_t non_manifold_faces = 0;  ///< joined without neighbours, because an edge already had two faces
+};
+
+/// Immutable once built; safe to read from any thread.
+class BaseMesh {
+ public:
+  /// Requires: !find_fault(scene). Vertices closer than 1e-9 of the scene's extent are welded. The mesh may have no roots, if
+  /// all faces are degenerate. Roots keep the order of the faces; a two-sided face becomes two roots, the backs after all fronts.
+  explicit BaseMesh(const Scene& scene);
+
+  std::span<const RootPatch> roots() const { return roots_; }
+  std::span<const Material> materials() const { return materials_; }
+  const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
+  std::optional<Neighbour> across(std::uint32_t root, int edge) const;
+  const WeldReport& weld_report() const { return report_; }
+
+  Vec3 centre() const { return centre_; }     ///< of the bounding box of the roots, metres
+  double extent() const { return extent_; }   ///< longest side of that box, metres; > 0 unless there are no roots
+
+ private:
+  void find_neighbours();
+  void add_backs();
+
+  std::vector<RootPatch> roots_;
+  std::vector<Material> materials_;
+  std::vector<std::array<std::optional<Neighbour>, 4>> neighbours_;
+  WeldReport report_;
+  Vec3 centre_;
+  double extent_ = 0;
+};
+
+}  // namespace alvor

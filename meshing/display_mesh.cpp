@@ -1,0 +1,162 @@
+#include "meshing/display_mesh.h"
+
+#include "meshing/leaf_gradient.h"
+#include "meshing/vertex_key.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace alvor {
+
+namespace {
+
+/// What the leaves around a smooth vertex say about it.
+struct CornerSum {
+  Rgb irradiance;
+  double weight = 0;
+  Vec3 normal;
+};
+
+/// A linear extrapolation may leave the neighbourhood's range by half of it, as it must at a crease, but never turns dark.
+double clamp_extrapolated(double x, double low, double high) {
+  const double margin = (high - low) / 2;
+  return std::clamp(x, std::max(low - margin, low / 4), high + margin);
+}
+
+Rgb clamp_extrapolated(const Rgb& x, const LeafSlope& slope) {
+  return {clamp_extrapolated(x.r, slope.low.r, slope.high.r), clamp_extrapolated(x.g, slope.low.g, slope.high.g),
+          clamp_extrapolated(x.b, slope.low.b, slope.high.b)};
+}
+
+RgbF radiosity_of(const Material& material, const Rgb& irradiance) {
+  return narrow(material.emission + material.reflectance * irradiance);
+}
+
+class Triangulation {
+ public:
+  Triangulation(const BaseMesh& mesh, std::span<const LeafValue> values) : mesh_(mesh), forest_(mesh), keys_(mesh) {
+    forest_.split_down_to(values);
+    leaves_.reserve(values.size());
+    value_.resize(forest_.node_count());
+    centre_.resize(forest_.node_count());
+    for (const LeafValue& value : values) {
+      const NodeIndex leaf = forest_.leaf_at(value.patch);
+      const PatchShape shape = forest_.shape(leaf);
+      leaves_.push_back(leaf);
+      value_[leaf] = widen(value.irradiance);
+      const Uv c = shape.centre();
+      centre_[leaf] = mesh.roots()[shape.root].at(c.u, c.v);
+      for (int k = 0; k < shape.corner_count; ++k) corners_.insert(keys_.position(shape.root, shape.corners()[k]));
+    }
+    slopes_ = leaf_slopes(forest_, leaves_, centre_, value_);
+  }
+
+  DisplayMesh build() {
+    for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);
+    for (std::size_t n = 0; n < leaves_.size(); ++n) emit(n);
+    return std::move(out_);
+  }
+
+ private:
+  /// Corners of the leaf and what hangs on its edges, in order.
+  std::vector<GridPoint> outline(const PatchShape& shape) const {
+    std::vector<GridPoint> points;
+    const auto corners = shape.corners();
+    for (int c = 0; c < shape.corner_count; ++c) {
+      points.push_back(corners[c]);
+      add_hanging(shape.root, corners[c], corners[(c + 1) % shape.corner_count], points);
+    }
+    return points;
+  }
+  void add_hanging(std::uint32_t root, GridPoint a, GridPoint b, std::vector<GridPoint>& points) const {
+    if (((a.i + b.i) | (a.j + b.j)) & 1) return;
+    const GridPoint middle{(a.i + b.i) / 2, (a.j + b.j) / 2};
+    if (!corners_.contains(keys_.position(root, middle))) return;
+    add_hanging(root, a, middle, points);
+    points.push_back(middle);
+    add_hanging(root, middle, b, points);
+  }
+
+  Vec3 position(std::uint32_t root, GridPoint p) {
+    const auto [found, added] = positions_.try_emplace(keys_.position(root, p));
+    if (added) found->second = mesh_.roots()[root].at(double(p.i) / grid_size, double(p.j) / grid_size);
+    return found->second;
+  }
+
+  void gather(std::size_t n) {
+    const NodeIndex leaf = leaves_[n];
+    const PatchShape shape = forest_.shape(leaf);
+    for (const GridPoint& p : outline(shape)) {
+      CornerSum& sum = sums_[keys_.smooth(shape.root, p)];
+      sum.normal += mesh_.roots()[shape.root].normal;
+      if (value_[leaf].is_zero()) continue;
+      const Vec3 offset = position(shape.root, p) - centre_[leaf];
+      const double weight = 1 / dot(offset, offset);
+      sum.irradiance += weight * clamp_extrapolated(value_[leaf] + slopes_[n].along(offset), slopes_[n]);
+      sum.weight += weight;
+    }
+  }
+
+  void emit(std::size_t n) {
+    const PatchShape shape = forest_.shape(leaves_[n]);
+    const auto points = outline(shape);
+    const std::uint32_t centre =
+        add_vertex(shape.root, centre_[leaves_[n]], mesh_.roots()[shape.root].normal, value_[leaves_[n]]);
+    std::vector<std::uint32_t> ring;
+    for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
+    for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
+  }
+
+  std::uint32_t corner_vertex(std::uint32_t root, GridPoint p) {
+    const VertexKey key = keys_.smooth(root, p);
+    const auto [found, added] = vertices_.try_emplace({key, mesh_.roots()[root].material});
+    if (added) {
+      const CornerSum& sum = sums_[key];
+      const Rgb irradiance = sum.weight > 0 ? sum.irradiance * (1 / sum.weight) : Rgb{};
+      found->second = add_vertex(root, position(root, p), normalized(sum.normal), irradiance);
+    }
+    return found->second;
+  }
+
+  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance) {
+    out_.positions.push_back(position);
+    out_.normals.push_back(normal);
+    out_.irradiance.push_back(narrow(irradiance));
+    out_.radiosity.push_back(radiosity_of(mesh_.material_of(root), irradiance));
+    return static_cast<std::uint32_t>(out_.positions.size() - 1);
+  }
+
+  struct VertexOfMaterial {
+    VertexKey key;
+    std::uint32_t material;
+    bool operator==(const VertexOfMaterial&) const = default;
+  };
+  struct Hash {
+    std::size_t operator()(const VertexOfMaterial& v) const { return mix_bits(v.key + v.material * 0x9e3779b97f4a7c15u); }
+  };
+  struct KeyHash {
+    std::size_t operator()(VertexKey key) const { return mix_bits(key); }
+  };
+
+  const BaseMesh& mesh_;
+  PatchForest forest_;
+  VertexKeys keys_;
+  std::vector<NodeIndex> leaves_;
+  std::vector<Rgb> value_;    // by node
+  std::vector<Vec3> centre_;  // by node
+  std::vector<LeafSlope> slopes_;
+  std::unordered_set<VertexKey, KeyHash> corners_;
+  std::unordered_map<VertexKey, Vec3, KeyHash> positions_;
+  std::unordered_map<VertexKey, CornerSum, KeyHash> sums_;
+  std::unordered_map<VertexOfMaterial, std::uint32_t, Hash> vertices_;
+  DisplayMesh out_;
+};
+
+}  // namespace
+
+DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
+  return Triangulation(mesh, leaves).build();
+}
+
+}  // namespace alvor

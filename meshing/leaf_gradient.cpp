@@ -1,0 +1,92 @@
+#include "meshing/leaf_gradient.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+struct TangentFrame {
+  Vec3 s, t;
+  explicit TangentFrame(Vec3 n) {
+    const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    s = normalized(cross(axis, n));
+    t = cross(n, s);
+  }
+};
+
+/// Accumulates sum w (d d^T) g = sum w d dv for each band.
+struct NormalEquations {
+  double ss = 0, st = 0, tt = 0;
+  Rgb s, t;
+
+  void add(double ds, double dt, const Rgb& difference) {
+    const double w = 1 / (ds * ds + dt * dt);
+    ss += w * ds * ds;
+    st += w * ds * dt;
+    tt += w * dt * dt;
+    s += (w * ds) * difference;
+    t += (w * dt) * difference;
+  }
+  /// The slope along each axis; none along a direction in which there are no neighbours.
+  std::pair<Rgb, Rgb> solve() const {
+    const double ridge = 1e-6 * (ss + tt);
+    if (!(ridge > 0)) return {};
+    const double a = ss + ridge, d = tt + ridge, inverse = 1 / (a * d - st * st);
+    return {inverse * (d * s - st * t), inverse * (a * t - st * s)};
+  }
+};
+
+Rgb lower(const Rgb& a, const Rgb& b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
+Rgb upper(const Rgb& a, const Rgb& b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
+
+}  // namespace
+
+bool smooth_neighbours(const PatchForest& forest, NodeIndex leaf, std::vector<NodeIndex>& neighbours) {
+  neighbours.clear();
+  bool has_crease = false;
+  const PatchShape shape = forest.shape(leaf);
+  for (int e = 0; e < shape.corner_count; ++e) {
+    if (const auto root_edge = root_edge_of(shape, e)) {
+      const auto across = forest.mesh().across(shape.root, *root_edge);
+      if (!across || !across->smooth) {
+        has_crease = true;
+        continue;
+      }
+    }
+    const NodeIndex near = forest.leaf_across(shape, e, 0.25), far = forest.leaf_across(shape, e, 0.75);
+    if (near != PatchForest::no_node) neighbours.push_back(near);
+    if (far != near && far != PatchForest::no_node) neighbours.push_back(far);
+  }
+  return has_crease;
+}
+
+std::vector<LeafSlope> leaf_slopes(const PatchForest& forest, std::span<const NodeIndex> leaves, std::span<const Vec3> centre,
+                                   std::span<const Rgb> value) {
+  std::vector<LeafSlope> slopes;
+  slopes.reserve(leaves.size());
+  std::vector<NodeIndex> neighbours;
+  for (const NodeIndex leaf : leaves) {
+    LeafSlope slope{{}, {}, {}, value[leaf], value[leaf]};
+    if (!value[leaf].is_zero()) {
+      const TangentFrame frame(forest.mesh().roots()[forest.id(leaf).root_face()].normal);
+      NormalEquations equations;
+      smooth_neighbours(forest, leaf, neighbours);
+      for (const NodeIndex other : neighbours) {
+        const Vec3 d = centre[other] - centre[leaf];
+        if (value[other].is_zero() || dot(d, d) == 0) continue;
+        equations.add(dot(d, frame.s), dot(d, frame.t), value[other] - value[leaf]);
+        slope.low = lower(slope.low, value[other]);
+        slope.high = upper(slope.high, value[other]);
+      }
+      const auto [s, t] = equations.solve();
+      slope.r = s.r * frame.s + t.r * frame.t;
+      slope.g = s.g * frame.s + t.g * frame.t;
+      slope.b = s.b * frame.s + t.b * frame.t;
+    }
+    slopes.push_back(slope);
+  }
+  return slopes;
+}
+
+}  // namespace alvor

@@ -1,0 +1,67 @@
+#include "meshing/patch_forest.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+PatchForest::PatchForest(const BaseMesh& mesh) : mesh_(&mesh), leaf_count_(mesh.roots().size()) {
+  nodes_.reserve(mesh.roots().size());
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) nodes_.push_back({PatchId::root(root), 0});
+}
+
+std::vector<NodeIndex> PatchForest::leaves() const {
+  std::vector<NodeIndex> all;
+  all.reserve(leaf_count_);
+  for (NodeIndex node = 0; node < nodes_.size(); ++node)
+    if (is_leaf(node)) all.push_back(node);
+  return all;
+}
+
+NodeIndex PatchForest::leaf_across(const PatchShape& shape, int edge, double fraction) const {
+  const auto place = place_across(*mesh_, shape, edge, fraction);
+  return place ? leaf_at(*place) : no_node;
+}
+
+bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits) const {
+  if (id(leaf).level() >= limits.max_level || leaf_count_ + 3 > limits.max_leaves) return false;
+  if (limits.min_edge <= 0) return true;
+  const PatchShape patch = shape(leaf);
+  const auto corners = corners_of(*mesh_, patch);
+  for (int e = 0; e < patch.corner_count; ++e)
+    if (length(corners[(e + 1) % patch.corner_count] - corners[e]) < 2 * limits.min_edge) return false;
+  return true;
+}
+
+bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches) {
+  if (!may_split(leaf, limits)) return false;
+  const PatchShape patch = shape(leaf);
+  for (int e = 0; e < patch.corner_count; ++e) {
+    const NodeIndex other = leaf_across(patch, e, 0.5);
+    if (other == no_node || id(other).level() >= id(leaf).level()) continue;
+    if (!split(other, limits, split_patches)) return false;
+  }
+  if (!may_split(leaf, limits)) return false;
+  split_one(leaf);
+  split_patches.push_back(leaf);
+  return true;
+}
+
+void PatchForest::split_down_to(std::span<const LeafValue> patches) {
+  for (const LeafValue& value : patches) {
+    NodeIndex node = leaf_at(value.patch);
+    while (id(node).level() < value.patch.level()) {
+      split_one(node);
+      node = child(node, value.patch.child_index(id(node).level() + 1));
+    }
+  }
+}
+
+void PatchForest::split_one(NodeIndex leaf) {
+  const auto first = static_cast<NodeIndex>(nodes_.size());
+  const PatchId parent = nodes_[leaf].id;
+  for (int k = 0; k < 4; ++k) nodes_.push_back({parent.child(k), 0});
+  nodes_[leaf].first_child = first;
+  leaf_count_ += 3;
+}
+
+}  // namespace alvor

@@ -1,0 +1,68 @@
+#pragma once
+// One quadtree per root patch.
+
+#include "meshing/base_mesh.h"
+#include "meshing/patch_place.h"
+#include "solution/leaf_value.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// Index of a patch within its forest. Roots come first, in the order of the mesh; the four children of a patch are neighbours.
+using NodeIndex = std::uint32_t;
+
+struct RefinementLimits {
+  int max_level = 10;
+  std::uint64_t max_leaves = 200'000;
+  double min_edge = 0;  ///< in the mesh's units: no split makes an edge shorter than this
+};
+
+/// Keeps the levels of leaves that share an edge within one of each other, across roots too. Borrows the mesh.
+class PatchForest {
+ public:
+  explicit PatchForest(const BaseMesh& mesh);
+
+  const BaseMesh& mesh() const { return *mesh_; }
+  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t leaf_count() const { return leaf_count_; }
+  bool is_leaf(NodeIndex node) const { return nodes_[node].first_child == 0; }
+  PatchId id(NodeIndex node) const { return nodes_[node].id; }
+  /// Requires: !is_leaf(node), 0 <= k < 4.
+  NodeIndex child(NodeIndex node, int k) const { return nodes_[node].first_child + k; }
+  PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, nodes_[node].id); }
+  std::vector<NodeIndex> leaves() const;
+
+  /// The leaf that contains `place`, or is it, or lies below it at its first corner. O(levels).
+  NodeIndex leaf_at(PatchId place) const {
+    NodeIndex node = place.root_face();
+    for (int level = 1; nodes_[node].first_child != 0; ++level)
+      node = nodes_[node].first_child + place.child_index(level);
+    return node;
+  }
+  /// The leaf across `edge` at `fraction` along it; `no_node` where the surface ends.
+  NodeIndex leaf_across(const PatchShape& shape, int edge, double fraction) const;
+  static constexpr NodeIndex no_node = ~NodeIndex{0};
+
+  bool may_split(NodeIndex leaf, const RefinementLimits& limits) const;
+  /// Splits `leaf`, first its coarser neighbours as the balance demands. Appends every patch split to `split`. Does nothing where
+  /// a limit forbids the split of the leaf or of a neighbour that must go first. Requires: is_leaf(leaf).
+  bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
+  /// Splits down until every one of `patches` is a node, without balancing. Requires: valid ids of this mesh.
+  void split_down_to(std::span<const LeafValue> patches);
+
+ private:
+  struct Node {
+    PatchId id;
+    NodeIndex first_child;  ///< 0: a leaf
+  };
+  void split_one(NodeIndex leaf);
+
+  const BaseMesh* mesh_;
+  std::vector<Node> nodes_;
+  std::size_t leaf_count_ = 0;
+};
+
+}  // namespace alvor

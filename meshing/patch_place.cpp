@@ -1,0 +1,154 @@
+#include "meshing/patch_place.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+/// Spreads the low 16 bits to the even positions (Morton order).
+constexpr std::uint32_t spread_bits(std::uint32_t x) {
+  x = (x | (x << 8)) & 0x00ff00ffu;
+  x = (x | (x << 4)) & 0x0f0f0f0fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
+
+std::uint32_t cell_of(double x) {
+  return static_cast<std::uint32_t>(std::clamp(x * grid_size, 0.0, grid_size - 1.0));
+}
+
+/// The point at `fraction` of root edge `edge`, moved `inwards` (grid units) into the root.
+Uv on_root_edge(int corner_count, int edge, double fraction, double inwards) {
+  const double d = inwards / grid_size;
+  if (corner_count == 4) {
+    switch (edge) {
+      case 0: return {fraction, d};
+      case 1: return {1 - d, fraction};
+      case 2: return {1 - fraction, 1 - d};
+      default: return {d, 1 - fraction};
+    }
+  }
+  switch (edge) {
+    case 0: return {fraction - d * fraction, d};
+    case 1: return {(1 - d) * (1 - fraction), (1 - d) * fraction};
+    default: return {d, (1 - fraction) - d * (1 - fraction)};
+  }
+}
+
+bool on_edge(int corner_count, int edge, GridPoint p) {
+  if (corner_count == 4) {
+    const std::array<bool, 4> on{p.j == 0, p.i == grid_size, p.j == grid_size, p.i == 0};
+    return on[edge];
+  }
+  const std::array<bool, 3> on{p.j == 0, p.i + p.j == grid_size, p.i == 0};
+  return on[edge];
+}
+
+/// How far along the root edge the point lies, from the edge's start.
+double along_root_edge(int corner_count, int edge, Uv p) {
+  if (corner_count == 4) return std::array<double, 4>{p.u, p.v, 1 - p.u, 1 - p.v}[edge];
+  return std::array<double, 3>{p.u, p.v, 1 - p.v}[edge];
+}
+
+}  // namespace
+
+std::array<GridPoint, 4> PatchShape::corners() const {
+  const auto [i, j] = first;
+  if (corner_count == 4) return {{{i, j}, {i + size, j}, {i + size, j + size}, {i, j + size}}};
+  return {{{i, j}, {i + size, j}, {i, j + size}, {}}};
+}
+
+Uv PatchShape::centre() const {
+  const double offset = size / (corner_count == 4 ? 2.0 : 3.0);
+  return {(first.i + offset) / grid_size, (first.j + offset) / grid_size};
+}
+
+PatchShape PatchShape::child(int k) const {
+  const std::int32_t h = size / 2;
+  PatchShape c = *this;
+  c.size = h;
+  if (corner_count == 4) {
+    c.first = {first.i + (k & 1) * h, first.j + (k >> 1) * h};
+  } else if (k == 3) {
+    c.first = {first.i + h, first.j + h};
+    c.size = -h;
+  } else {
+    c.first = {first.i + (k == 1 ? h : 0), first.j + (k == 2 ? h : 0)};
+  }
+  return c;
+}
+
+PatchShape shape_of(const BaseMesh& mesh, PatchId patch) {
+  PatchShape shape{patch.root_face(), mesh.roots()[patch.root_face()].corner_count, {0, 0}, grid_size};
+  for (int level = 1; level <= patch.level(); ++level) shape = shape.child(patch.child_index(level));
+  return shape;
+}
+
+std::array<Vec3, 4> corners_of(const BaseMesh& mesh, const PatchShape& shape) {
+  const RootPatch& root = mesh.roots()[shape.root];
+  const auto grid = shape.corners();
+  std::array<Vec3, 4> at;
+  for (int c = 0; c < shape.corner_count; ++c)
+    at[c] = root.at(double(grid[c].i) / grid_size, double(grid[c].j) / grid_size);
+  return at;
+}
+
+double area_of(const BaseMesh& mesh, const PatchShape& shape) {
+  const auto p = corners_of(mesh, shape);
+  if (shape.corner_count == 4) return 0.5 * length(cross(p[2] - p[0], p[3] - p[1]));
+  return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
+}
+
+PatchId finest_quad_patch(std::uint32_t root, double u, double v) {
+  return PatchId::finest(root, spread_bits(cell_of(u)) | (spread_bits(cell_of(v)) << 1));
+}
+
+PatchId finest_triangle_patch(std::uint32_t root, double u, double v) {
+  // Walks down in coordinates relative to the current triangle; entering the inner child turns both axes.
+  double a = std::max(u, 0.0), b = std::max(v, 0.0);
+  if (const double excess = a + b - 1; excess > 0) a -= excess / 2, b -= excess / 2;
+  std::uint32_t path = 0;
+  for (int level = 0; level < PatchId::max_level; ++level) {
+    a *= 2, b *= 2;
+    std::uint32_t k = 0;
+    if (a >= 1) k = 1, a -= 1;
+    else if (b >= 1) k = 2, b -= 1;
+    else if (a + b > 1) k = 3, a = 1 - a, b = 1 - b;
+    path = path << 2 | k;
+  }
+  return PatchId::finest(root, path);
+}
+
+PatchId finest_patch(const BaseMesh& mesh, std::uint32_t root, Uv at) {
+  return mesh.roots()[root].corner_count == 4 ? finest_quad_patch(root, at.u, at.v)
+                                              : finest_triangle_patch(root, at.u, at.v);
+}
+
+std::optional<int> root_edge_of(const PatchShape& shape, int edge) {
+  const auto corners = shape.corners();
+  const GridPoint a = corners[edge], b = corners[(edge + 1) % shape.corner_count];
+  for (int e = 0; e < shape.corner_count; ++e)
+    if (on_edge(shape.corner_count, e, a) && on_edge(shape.corner_count, e, b)) return e;
+  return std::nullopt;
+}
+
+std::optional<PatchId> place_across(const BaseMesh& mesh, const PatchShape& shape, int edge, double fraction) {
+  constexpr double just = 0.25;  // of a finest cell
+  const auto corners = shape.corners();
+  const GridPoint a = corners[edge], b = corners[(edge + 1) % shape.corner_count];
+  const double i = a.i + fraction * (b.i - a.i), j = a.j + fraction * (b.j - a.j);
+  if (const auto root_edge = root_edge_of(shape, edge)) {
+    const auto neighbour = mesh.across(shape.root, *root_edge);
+    if (!neighbour) return std::nullopt;
+    const double along = along_root_edge(shape.corner_count, *root_edge, {i / grid_size, j / grid_size});
+    const int there = mesh.roots()[neighbour->root].corner_count;
+    return finest_patch(mesh, neighbour->root, on_root_edge(there, neighbour->edge, 1 - along, just));
+  }
+  const Uv c = shape.centre();
+  const double di = i - c.u * grid_size, dj = j - c.v * grid_size;
+  const double step = just / std::max({std::abs(di), std::abs(dj), 1e-9});
+  return finest_patch(mesh, shape.root, {(i + step * di) / grid_size, (j + step * dj) / grid_size});
+}
+
+}  // namespace alvor

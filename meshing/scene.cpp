@@ -1,0 +1,69 @@
+#include "meshing/scene.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace alvor {
+
+namespace {
+
+constexpr double max_coordinate = 1e9;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+std::optional<std::string> fault_in(const Material& material) {
+  const double bands[2][3] = {{material.emission.r, material.emission.g, material.emission.b},
+                              {material.reflectance.r, material.reflectance.g, material.reflectance.b}};
+  for (const double emission : bands[0])
+    if (!std::isfinite(emission) || emission < 0) return "emission " + number(emission) + " is not a finite value >= 0";
+  for (const double reflectance : bands[1])
+    if (!(reflectance >= 0 && reflectance < 1)) return "reflectance " + number(reflectance) + " is outside [0, 1)";
+  return std::nullopt;
+}
+
+std::optional<std::string> fault_in(Vec3 vertex) {
+  for (const double x : {vertex.x, vertex.y, vertex.z}) {
+    if (!std::isfinite(x)) return "coordinate " + number(x) + " is not finite";
+    if (std::abs(x) > max_coordinate) return "coordinate " + number(x) + " is beyond 1e9 m";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> fault_in(const Face& face, const Scene& scene) {
+  if (face.corner_count < 3) return "has " + std::to_string(face.corner_count) + " corners, needs at least 3";
+  if (face.first_corner > scene.corners.size() || face.corner_count > scene.corners.size() - face.first_corner)
+    return "its corners end beyond the list of corners";
+  for (const std::uint32_t vertex : scene.corners_of(face))
+    if (vertex >= scene.vertices.size())
+      return "vertex index " + std::to_string(vertex) + " is out of range, there are " + std::to_string(scene.vertices.size()) +
+             " vertices";
+  if (face.material >= scene.materials.size())
+    return "material index " + std::to_string(face.material) + " is out of range, there are " +
+           std::to_string(scene.materials.size()) + " materials";
+  return std::nullopt;
+}
+
+}  // namespace
+
+void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t material) {
+  faces.push_back({static_cast<std::uint32_t>(corners.size()), static_cast<std::uint32_t>(polygon.size()), material});
+  corners.insert(corners.end(), polygon.begin(), polygon.end());
+}
+
+std::optional<Fault> find_fault(const Scene& scene) {
+  if (scene.faces.empty()) return Fault{"scene", "has no faces"};
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    if (auto reason = fault_in(scene.materials[i]))
+      return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+    if (auto reason = fault_in(scene.vertices[i])) return Fault{"vertex " + std::to_string(i), *reason};
+  for (std::size_t i = 0; i < scene.faces.size(); ++i)
+    if (auto reason = fault_in(scene.faces[i], scene)) return Fault{"face " + std::to_string(i), *reason};
+  return std::nullopt;
+}
+
+}  // namespace alvor

@@ -1,0 +1,64 @@
+#include "meshing/weld.h"
+
+#include "solution/patch_id.h"
+
+#include <array>
+#include <cmath>
+#include <unordered_map>
+
+namespace alvor {
+
+namespace {
+
+// Vertices are filed under a cell eight tolerances wide; a lookup visits the one cell, or the few, that its tolerance touches.
+class VertexGrid {
+ public:
+  VertexGrid(std::span<const Vec3> vertices, double tolerance) : vertices_(vertices), tolerance_(tolerance) {}
+
+  std::uint32_t find_or_add(std::uint32_t vertex) {
+    const Vec3 p = vertices_[vertex], d{tolerance_, tolerance_, tolerance_};
+    const auto low = cell(p - d), high = cell(p + d);
+    for (auto x = low[0]; x <= high[0]; ++x)
+      for (auto y = low[1]; y <= high[1]; ++y)
+        for (auto z = low[2]; z <= high[2]; ++z)
+          if (const auto found = find_in({x, y, z}, p); found != none) return found;
+    filed_.emplace(key(cell(p)), vertex);
+    return vertex;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  static constexpr std::uint32_t none = ~0u;
+
+  Cell cell(Vec3 p) const {
+    const double width = 8 * tolerance_;
+    return {std::llround(std::floor(p.x / width)), std::llround(std::floor(p.y / width)), std::llround(std::floor(p.z / width))};
+  }
+  static std::uint64_t key(const Cell& c) {
+    return mix_bits(mix_bits(mix_bits(static_cast<std::uint64_t>(c[0])) + static_cast<std::uint64_t>(c[1])) +
+                    static_cast<std::uint64_t>(c[2]));
+  }
+  std::uint32_t find_in(const Cell& c, Vec3 p) const {
+    const auto [begin, end] = filed_.equal_range(key(c));
+    for (auto it = begin; it != end; ++it) {
+      const Vec3 d = vertices_[it->second] - p;
+      if (std::abs(d.x) <= tolerance_ && std::abs(d.y) <= tolerance_ && std::abs(d.z) <= tolerance_) return it->second;
+    }
+    return none;
+  }
+
+  std::span<const Vec3> vertices_;
+  double tolerance_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> filed_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> weld(std::span<const Vec3> vertices, double tolerance) {
+  VertexGrid grid(vertices, tolerance);
+  std::vector<std::uint32_t> first(vertices.size());
+  for (std::uint32_t vertex = 0; vertex < vertices.size(); ++vertex) first[vertex] = grid.find_or_add(vertex);
+  return first;
+}
+
+}  // namespace alvor

@@ -1,0 +1,244 @@
+#include "proto/codec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace alvor {
+
+namespace {
+
+// The longest google.protobuf.Duration: 10 000 years.
+constexpr double longest_duration_s = 315'576'000'000;
+
+// Length of the UTF-8 sequence at the start of `text`, 0 if there is none. Overlong forms and surrogates are none.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xc0) == 0x80; };
+  const unsigned first = byte(0), second = byte(1);
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return follows(1) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f)) return 0;
+    return follows(1) && follows(2) ? 3 : 0;
+  }
+  if (first < 0xf0 || first > 0xf4 || (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) return 0;
+  return follows(1) && follows(2) && follows(3) ? 4 : 0;
+}
+
+std::string count_of(std::uint64_t count, const char* unit) { return std::to_string(count) + " " + unit; }
+
+}  // namespace
+
+std::string as_utf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) valid += '?';
+    else valid += text.substr(0, length);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return valid;
+}
+
+google::protobuf::Duration encode_seconds(double seconds) {
+  google::protobuf::Duration duration;
+  if (std::isnan(seconds)) return duration;
+  seconds = std::clamp(seconds, -longest_duration_s, longest_duration_s);
+  auto whole = static_cast<std::int64_t>(seconds);
+  auto nanos = static_cast<std::int32_t>(std::lround((seconds - static_cast<double>(whole)) * 1e9));
+  if (std::abs(nanos) == 1'000'000'000) {  // rounded up to a whole second
+    whole += nanos > 0 ? 1 : -1;
+    nanos = 0;
+  }
+  duration.set_seconds(whole);
+  duration.set_nanos(nanos);
+  return duration;
+}
+
+double decode_seconds(const google::protobuf::Duration& duration) {
+  return static_cast<double>(duration.seconds()) + duration.nanos() * 1e-9;
+}
+
+v1::Rgb encode(const Rgb& value) {
+  v1::Rgb message;
+  message.set_r(value.r);
+  message.set_g(value.g);
+  message.set_b(value.b);
+  return message;
+}
+
+Rgb decode(const v1::Rgb& message) { return {message.r(), message.g(), message.b()}; }
+
+v1::Step encode(const Step& step) {
+  v1::Step message;
+  message.set_revision(step.revision);
+  *message.mutable_elapsed() = encode_seconds(step.elapsed_s);
+  message.set_step(step.step);
+  message.set_shots(step.shots);
+  message.set_rays(step.rays);
+  message.set_leaves(step.leaves);
+  message.set_unshot_fraction(step.unshot_fraction);
+  message.set_estimated_error(step.estimated_error);
+  *message.mutable_ambient_irradiance() = encode(step.ambient_irradiance);
+  return message;
+}
+
+Step decode(const v1::Step& message) {
+  Step step;
+  step.revision = message.revision();
+  step.elapsed_s = decode_seconds(message.elapsed());
+  step.step = message.step();
+  step.shots = message.shots();
+  step.rays = message.rays();
+  step.leaves = message.leaves();
+  step.unshot_fraction = message.unshot_fraction();
+  step.estimated_error = message.estimated_error();
+  step.ambient_irradiance = decode(message.ambient_irradiance());
+  return step;
+}
+
+void encode(const Delta& delta, v1::WatchSolveResponse& message) {
+  message.set_from_revision(delta.from_revision);
+  message.set_to_revision(delta.to_revision);
+  message.set_head_revision(delta.head);
+  message.mutable_patches()->Reserve(static_cast<int>(delta.values.size()));
+  message.mutable_irradiance()->Reserve(static_cast<int>(3 * delta.values.size()));
+  for (const LeafValue& value : delta.values) {
+    message.add_patches(value.patch.bits());
+    for (const float band : {value.irradiance.r, value.irradiance.g, value.irradiance.b}) message.add_irradiance(band);
+  }
+  for (const Step& step : delta.steps) *message.add_steps() = encode(step);
+}
+
+std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta) {
+  const auto patches = static_cast<std::uint64_t>(message.patches_size());
+  const auto bands = static_cast<std::uint64_t>(message.irradiance_size());
+  if (bands != 3 * patches)
+    return Fault{"irradiance", "has " + count_of(bands, "numbers for ") + count_of(patches, "patches, needs three each")};
+  delta = {};
+  delta.from_revision = message.from_revision();
+  delta.to_revision = message.to_revision();
+  delta.head = message.head_revision();
+  delta.values.reserve(patches);
+  const float* band = message.irradiance().data();
+  for (const std::uint64_t bits : message.patches()) {
+    delta.values.push_back({PatchId::from_bits(bits), {band[0], band[1], band[2]}});
+    if (!delta.values.back().irradiance.is_finite()) return Fault{"patch " + std::to_string(bits), "irradiance is not finite"};
+    band += 3;
+  }
+  for (const v1::Step& step : message.steps()) delta.steps.push_back(decode(step));
+  return std::nullopt;
+}
+
+namespace {
+
+v1::Material encode_material(const Material& material) {
+  v1::Material message;
+  message.set_name(as_utf8(material.name));
+  *message.mutable_emission() = encode(material.emission);
+  *message.mutable_reflectance() = encode(material.reflectance);
+  message.set_two_sided(material.two_sided);
+  return message;
+}
+
+Material decode_material(const v1::Material& message) {
+  return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided()};
+}
+
+}  // namespace
+
+std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
+  if (auto fault = fault_in(chunk)) return fault;
+  for (const v1::Material& material : chunk.materials()) scene_.materials.push_back(decode_material(material));
+  for (int i = 0; i < chunk.vertex_coordinates_size(); i += 3)
+    scene_.vertices.push_back({chunk.vertex_coordinates(i), chunk.vertex_coordinates(i + 1), chunk.vertex_coordinates(i + 2)});
+  std::span<const std::uint32_t> corners(chunk.corner_vertices().data(), static_cast<std::size_t>(chunk.corner_vertices_size()));
+  for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
+    const std::uint32_t count = chunk.face_corner_counts(i);
+    scene_.add_face(corners.first(count), chunk.face_materials(i));
+    corners = corners.subspan(count);
+  }
+  ++chunks_;
+  return std::nullopt;
+}
+
+std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) const {
+  const auto coordinates = static_cast<std::uint64_t>(chunk.vertex_coordinates_size());
+  const auto faces = static_cast<std::uint64_t>(chunk.face_corner_counts_size());
+  const auto materials = static_cast<std::uint64_t>(chunk.face_materials_size());
+  const auto corners = static_cast<std::uint64_t>(chunk.corner_vertices_size());
+  if (coordinates % 3 != 0)
+    return Fault{place_in_chunk("vertex_coordinates"), "has " + count_of(coordinates, "numbers, needs three per vertex")};
+  if (materials != faces)
+    return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
+  std::uint64_t promised = 0;  // 2^31 counts of 32 bits cannot overflow it
+  for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
+    const std::uint32_t count = chunk.face_corner_counts(i);
+    if (count < 3)
+      return Fault{"face " + std::to_string(scene_.faces.size() + static_cast<std::size_t>(i)),
+                   "has " + count_of(count, "corners, needs at least 3")};
+    promised += count;
+  }
+  if (promised != corners)
+    return Fault{place_in_chunk("corner_vertices"),
+                 "has " + count_of(corners, "entries, but face_corner_counts add up to ") + std::to_string(promised)};
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  if (scene_.corners.size() + corners > most || scene_.vertices.size() + coordinates / 3 > most)
+    return Fault{place_in_chunk("corner_vertices"), "the scene has more vertices or corners than 32 bits can count"};
+  return std::nullopt;
+}
+
+std::string SceneAssembler::place_in_chunk(const char* field) const {
+  return "chunk " + std::to_string(chunks_) + ", " + field;
+}
+
+SceneSlicer::SceneSlicer(const Scene& scene, std::size_t max_bytes)
+    : scene_(scene), max_bytes_(static_cast<std::int64_t>(std::max<std::size_t>(max_bytes, 256))) {}
+
+bool SceneSlicer::next(v1::GeometryChunk& chunk) {
+  chunk.Clear();
+  std::int64_t budget = max_bytes_ - 64;  // the tags and lengths of the five fields, and of the message around them
+  take_materials(chunk, budget);
+  take_vertices(chunk, budget);
+  take_faces(chunk, budget);
+  return chunk.materials_size() > 0 || chunk.vertex_coordinates_size() > 0 || chunk.face_corner_counts_size() > 0;
+}
+
+// An item that does not fit waits for the next chunk, unless this one is still empty: the budget is then whole.
+
+void SceneSlicer::take_materials(v1::GeometryChunk& chunk, std::int64_t& budget) {
+  for (; material_ < scene_.materials.size(); ++material_) {
+    v1::Material message = encode_material(scene_.materials[material_]);
+    const auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 6;
+    if (bytes > budget && chunk.materials_size() > 0) break;
+    *chunk.add_materials() = std::move(message);
+    budget -= bytes;
+  }
+}
+
+void SceneSlicer::take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget) {
+  constexpr std::int64_t bytes = 24;
+  for (; vertex_ < scene_.vertices.size() && bytes <= budget; ++vertex_, budget -= bytes) {
+    const Vec3& place = scene_.vertices[vertex_];
+    for (const double x : {place.x, place.y, place.z}) chunk.add_vertex_coordinates(x);
+  }
+}
+
+void SceneSlicer::take_faces(v1::GeometryChunk& chunk, std::int64_t& budget) {
+  if (vertex_ < scene_.vertices.size()) return;
+  for (; face_ < scene_.faces.size(); ++face_) {
+    const Face& face = scene_.faces[face_];
+    const std::int64_t bytes = 5 * (std::int64_t{face.corner_count} + 2);  // varints of 32 bits at their longest
+    const bool is_empty = chunk.materials_size() + chunk.vertex_coordinates_size() + chunk.face_corner_counts_size() == 0;
+    if (bytes > budget && !is_empty) break;
+    chunk.add_face_corner_counts(face.corner_count);
+    chunk.add_face_materials(face.material);
+    for (const std::uint32_t vertex : scene_.corners_of(face)) chunk.add_corner_vertices(vertex);
+    budget -= bytes;
+  }
+}
+
+}  // namespace alvor

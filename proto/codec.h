@@ -1,0 +1,69 @@
+#pragma once
+// Between the messages of the API and the domain types. The only place that knows both.
+
+#include "alvor/v1/scene_service.pb.h"
+#include "alvor/v1/solve_service.pb.h"
+#include "meshing/scene.h"
+#include "solution/solution_log.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace alvor {
+
+/// Bytes that are not UTF-8 become '?': protobuf refuses to parse a string field with any.
+std::string as_utf8(std::string_view text);
+
+google::protobuf::Duration encode_seconds(double seconds);  ///< NaN becomes 0, infinities the longest that Duration holds
+double decode_seconds(const google::protobuf::Duration& duration);
+
+v1::Rgb encode(const Rgb& value);
+Rgb decode(const v1::Rgb& message);
+v1::Step encode(const Step& step);
+Step decode(const v1::Step& message);
+
+/// Fills in revisions, patches, irradiance and steps; leaves the other fields alone.
+void encode(const Delta& delta, v1::WatchSolveResponse& message);
+/// Sets `delta`, all but its `next`, which does not travel. A fault says what contradicts itself; `delta` is then unspecified.
+std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta);
+
+/// Puts a scene together from chunks in order of arrival, trusting nothing they say.
+class SceneAssembler {
+ public:
+  /// Appends the chunk whole, or not at all: the fault names the chunk (from 0) and the field, or the face.
+  std::optional<Fault> add(const v1::GeometryChunk& chunk);
+  const Scene& scene() const { return scene_; }
+  /// What was put together; indices are not yet checked, see find_fault.
+  Scene take() { return std::move(scene_); }
+
+ private:
+  std::optional<Fault> fault_in(const v1::GeometryChunk& chunk) const;
+  std::string place_in_chunk(const char* field) const;
+
+  Scene scene_;
+  std::uint64_t chunks_ = 0;
+};
+
+/// Cuts a scene into chunks: materials, then vertices, then faces. The scene must outlive it.
+class SceneSlicer {
+ public:
+  /// Chunks stay below `max_bytes` (256 or more), but hold at least one item each and never cut a face.
+  explicit SceneSlicer(const Scene& scene, std::size_t max_bytes = 1 << 20);
+  /// False when nothing is left.
+  bool next(v1::GeometryChunk& chunk);
+
+ private:
+  void take_materials(v1::GeometryChunk& chunk, std::int64_t& budget);
+  void take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget);
+  void take_faces(v1::GeometryChunk& chunk, std::int64_t& budget);
+
+  const Scene& scene_;
+  std::int64_t max_bytes_;
+  std::size_t material_ = 0, vertex_ = 0, face_ = 0;
+};
+
+}  // namespace alvor

@@ -1,0 +1,67 @@
+#include "radiosity/local_scene.h"
+
+namespace alvor {
+
+namespace {
+
+Float3 to_float(Vec3 p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
+
+LocalRoot make_local(const RootPatch& root, const std::array<Vec3, 4>& corners) {
+  LocalRoot local;
+  local.is_quad = root.corner_count == 4;
+  local.twin = root.twin;
+  const Vec3 edge_u = corners[1] - corners[0], edge_v = corners[local.is_quad ? 3 : 2] - corners[0];
+  local.origin = to_float(corners[0]);
+  local.edge_u = to_float(edge_u);
+  local.edge_v = to_float(edge_v);
+  const Vec3 twist = local.is_quad ? corners[2] - corners[1] - corners[3] + corners[0] : Vec3{};
+  local.twist = to_float(twist);
+  const double uu = dot(edge_u, edge_u), uv = dot(edge_u, edge_v), vv = dot(edge_v, edge_v);
+  const double tu = dot(twist, edge_u), tv = dot(twist, edge_v), determinant = uu * vv - uv * uv;
+  local.twist_u = static_cast<float>((tu * vv - tv * uv) / determinant);
+  local.twist_v = static_cast<float>((tv * uu - tu * uv) / determinant);
+  const Vec3 tangent = normalized(edge_u);
+  local.tangent = to_float(tangent);
+  local.bitangent = to_float(cross(root.normal, tangent));
+  local.normal = to_float(root.normal);
+  return local;
+}
+
+/// From Embree's coordinates, affine on each half of the quad, to bilinear ones: Newton on u + a u v, v + b u v.
+Uv bilinear(const LocalRoot& root, double u, double v) {
+  const double a = root.twist_u, b = root.twist_v;
+  double x = u, y = v;
+  if (u + v > 1) {
+    x = (1 + a) - (1 - u) * (1 + a) - (1 - v) * a;
+    y = (1 + b) - (1 - u) * b - (1 - v) * (1 + b);
+  }
+  for (int step = 0; step < 3; ++step) {
+    const double fu = u + a * u * v - x, fv = v + b * u * v - y;
+    const double uu = 1 + a * v, uv = a * u, vu = b * v, vv = 1 + b * u, inverse = 1 / (uu * vv - uv * vu);
+    u -= (fu * vv - fv * uv) * inverse;
+    v -= (fv * uu - fu * vu) * inverse;
+  }
+  return {u, v};
+}
+
+}  // namespace
+
+LocalScene::LocalScene(const BaseMesh& mesh)
+    : mesh_(&mesh), frame_{mesh.centre(), mesh.extent()}, visibility_(mesh.roots(), frame_) {
+  for (const RootPatch& root : mesh.roots()) {
+    std::array<Vec3, 4> corners;
+    for (int c = 0; c < root.corner_count; ++c) corners[c] = frame_.to_local(root.corners[c]);
+    corners_.push_back(corners);
+    roots_.push_back(make_local(root, corners));
+  }
+}
+
+PatchId LocalScene::place_of_hit(std::uint32_t r, float u, float v) const {
+  const LocalRoot& root = roots_[r];
+  if (!root.is_quad) return finest_triangle_patch(r, u, v);
+  if (root.twist_u == 0 && root.twist_v == 0) return finest_quad_patch(r, u, v);
+  const Uv at = bilinear(root, u, v);
+  return finest_quad_patch(r, at.u, at.v);
+}
+
+}  // namespace alvor

@@ -1,0 +1,53 @@
+#pragma once
+// Where rays start and go. Everything is a function of the seed.
+
+#include "meshing/patch_place.h"
+#include "solution/patch_id.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace alvor {
+
+/// Rays of one origin are one packet; the directions of an origin are stratified 4 x 4 over the hemisphere's disk, those of all the
+/// origins of a patch together 16 x 16 ((0,2)-sequence, Sobol 1967).
+inline constexpr int rays_per_origin = 16;
+inline constexpr int origins_per_patch = 16;
+inline constexpr int rays_per_row = rays_per_origin * origins_per_patch;
+
+/// Uniform numbers in [0, 1) from a patch's own stream.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, PatchId patch) : state_(mix_bits(seed ^ mix_bits(patch.bits()))) {}
+  double next() { return static_cast<double>(next_bits() >> 11) * 0x1p-53; }
+  std::uint32_t next_below(std::uint32_t n) { return static_cast<std::uint32_t>((next_bits() >> 32) * n >> 32); }
+
+ private:
+  std::uint64_t next_bits() { return mix_bits(state_ += 0x9e3779b97f4a7c15u); }
+  std::uint64_t state_;
+};
+
+/// Cosine-distributed directions by Nusselt's analogy: uniform points of the unit disk, lifted to the hemisphere. Several
+/// independently scrambled sets of rays_per_row each; origin o uses the directions [16 o, 16 o + 16).
+class DirectionSets {
+ public:
+  static constexpr int set_count = 32;
+  struct alignas(64) Set {
+    std::array<float, rays_per_row> x, y, z;  ///< z along the normal, > 0
+  };
+
+  explicit DirectionSets(std::uint64_t seed);
+  const Set& operator[](std::uint32_t n) const { return sets_[n]; }
+
+ private:
+  std::vector<Set> sets_;
+};
+
+/// A point of the patch in stratum `origin` of its 16 (its grandchildren), moved within the stratum by `jitter` in [0, 1)^2.
+Uv origin_in(const PatchShape& patch, int origin, Uv jitter);
+
+/// Point n of the (0,2)-sequence, digits scrambled by `scramble_u`, `scramble_v`.
+Uv sobol_point(std::uint32_t n, std::uint32_t scramble_u, std::uint32_t scramble_v);
+
+}  // namespace alvor

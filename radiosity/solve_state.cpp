@@ -1,0 +1,396 @@
+#include "radiosity/solve_state.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+constexpr double start_edge = 1.0 / 6;          // of the extent: no patch of the first mesh is longer
+constexpr double start_area = 1e-3;              // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+constexpr double most_area_emits = 0.5;         // beyond this share rows find the emitters as well as shadow rays do
+constexpr double marked_share = 0.9;            // of the squared error, per pass
+constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
+constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
+constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
+constexpr double contact_error = 0.1;            // of a patch's irradiance: how much it varies where a solid's outline crosses it
+constexpr double noise_in_display = 0.4;        // of the half difference: low-discrepancy halves err less (0.7), interpolation averages (0.6)
+constexpr double noise_in_indicator = 0.5;      // of a row's variance: what noise alone adds to a squared indicator
+
+bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
+
+double squared(double x) { return x * x; }
+
+double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
+  const auto corners = corners_of(mesh, shape);
+  double longest = 0;
+  for (int e = 0; e < shape.corner_count; ++e)
+    longest = std::max(longest, length(corners[(e + 1) % shape.corner_count] - corners[e]));
+  return longest;
+}
+
+Vec3 centre_of(const BaseMesh& mesh, const PatchShape& shape) {
+  const Uv c = shape.centre();
+  return mesh.roots()[shape.root].at(c.u, c.v);
+}
+
+}  // namespace
+
+SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget)
+    : mesh_(mesh), options_(options), budget_(budget), scene_(mesh), directions_(options.seed),
+      limits_{options.max_depth, options.max_leaves, options.min_edge_m}, row_forest_(mesh), leaf_forest_(mesh) {
+  choose_emitters();
+  split_to_start();
+  fit_to_nodes();
+}
+
+// Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
+void SolveState::choose_emitters() {
+  double area = 0, emitting = 0;
+  for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) {
+    const Rgb emission = mesh_.material_of(r).emission;
+    area += mesh_.roots()[r].area;
+    if (emission.is_zero()) continue;
+    emitters_.push_back({r, emission, emission.sum() * mesh_.roots()[r].area});
+    emitting += mesh_.roots()[r].area;
+    emitted_power_ += emitters_.back().power;
+  }
+  emission_by_rows_ = emitting > most_area_emits * area;
+  if (emission_by_rows_) emitters_.clear();
+  std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
+  waiting_power_ = emitted_power_;
+}
+
+Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? mesh_.material_of(root).emission : Rgb{}; }
+
+void SolveState::split_to_start() {
+  double area = 0;
+  for (const RootPatch& root : mesh_.roots()) area += root.area;
+  const auto is_coarse = [&](NodeIndex node) {
+    const PatchId id = row_forest_.id(node);
+    const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area;
+    return shows_no_curvature || longest_edge(mesh_, row_forest_.shape(node)) > start_edge * mesh_.extent();
+  };
+  std::vector<NodeIndex> split;
+  for (NodeIndex node = 0; node < row_forest_.node_count(); ++node)
+    if (row_forest_.is_leaf(node) && is_coarse(node)) row_forest_.split(node, limits_, split);
+  std::vector<NodeIndex> copies;
+  for (const NodeIndex row : split) leaf_forest_.split(leaf_node_of_row(row), limits_, copies);
+}
+
+void SolveState::fit_to_nodes() {
+  const std::size_t rows = row_forest_.node_count(), leaves = leaf_forest_.node_count();
+  rows_.resize(rows);
+  row_is_traced_.resize(rows);
+  row_irradiance_.resize(rows);
+  row_slope_.resize(rows);
+  direct_.resize(leaves);
+  direct_is_known_.resize(leaves);
+  shot_.resize(leaves);
+  for (NodeIndex row = static_cast<NodeIndex>(row_centre_.size()); row < rows; ++row)
+    row_centre_.push_back(centre_of(mesh_, row_forest_.shape(row)));
+  for (NodeIndex leaf = static_cast<NodeIndex>(leaf_centre_.size()); leaf < leaves; ++leaf) {
+    const PatchShape shape = leaf_forest_.shape(leaf);
+    leaf_centre_.push_back(centre_of(mesh_, shape));
+    leaf_area_.push_back(area_of(mesh_, shape));
+  }
+}
+
+void SolveState::trace_new_rows() {
+  for (auto traced = trace_untraced(); !traced.empty(); traced = trace_untraced())
+    for (const NodeIndex row : traced) heed_hidden_origins(row);
+}
+
+std::vector<NodeIndex> SolveState::trace_untraced() {
+  std::vector<NodeIndex> nodes;
+  std::vector<PatchShape> shapes;
+  std::vector<PatchId> patches;
+  for (const NodeIndex row : row_forest_.leaves()) {
+    if (row_is_traced_[row]) continue;
+    nodes.push_back(row);
+    shapes.push_back(row_forest_.shape(row));
+    patches.push_back(row_forest_.id(row));
+  }
+  auto rows = trace_rows(scene_, directions_, shapes, patches, options_.seed, budget_);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    rows_[nodes[n]] = std::move(rows[n]);
+    row_is_traced_[nodes[n]] = true;
+  }
+  return nodes;
+}
+
+// Which points are hidden under a solid is known from rows only: along contacts leaves must not be finer than rows, and direct light that
+// was found without that knowledge is found again.
+void SolveState::heed_hidden_origins(NodeIndex row) {
+  if (rows_[row].hidden_origins == 0) return;
+  std::vector<NodeIndex> leaves;
+  collect_leaves(leaf_node_of_row(row), leaves);
+  for (const NodeIndex leaf : leaves) direct_is_known_[leaf] = false;
+  if (rows_[row].crosses_contact() && leaves.size() > 1) split_row(row);
+}
+
+void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
+  std::vector<NodeIndex> nodes;
+  std::vector<Receiver> receivers;
+  for (const NodeIndex leaf : leaf_forest_.leaves()) {
+    if (direct_is_known_[leaf]) continue;
+    const NodeIndex row = row_of(leaf_forest_.id(leaf));
+    const bool same = row_forest_.id(row) == leaf_forest_.id(leaf);
+    const auto none = static_cast<std::uint16_t>(rows_[row].is_hidden() ? 0xffff : 0);
+    nodes.push_back(leaf);
+    receivers.push_back({leaf_forest_.id(leaf), leaf_forest_.shape(leaf), same ? rows_[row].hidden_origins : none});
+  }
+  std::vector<DirectLight> light(nodes.size());
+  for (const Emitter& emitter : emitters_) {
+    add_direct_light(scene_, emitter, receivers, options_.seed, budget_, light);
+    for (std::size_t n = 0; n < nodes.size(); ++n) direct_[nodes[n]] = light[n];
+    waiting_power_ = std::max(0.0, waiting_power_ - emitter.power);
+    after_each();
+  }
+  waiting_power_ = 0;
+  for (const NodeIndex leaf : nodes) direct_is_known_[leaf] = true;
+}
+
+NodeIndex SolveState::leaf_node_of_row(NodeIndex row) const {
+  const PatchId id = row_forest_.id(row);
+  NodeIndex node = id.root_face();
+  for (int level = 1; level <= id.level(); ++level) {
+    if (leaf_forest_.is_leaf(node)) return node;
+    node = leaf_forest_.child(node, id.child_index(level));
+  }
+  return node;
+}
+
+void SolveState::collect_leaves(NodeIndex node, std::vector<NodeIndex>& leaves) const {
+  if (leaf_forest_.is_leaf(node)) {
+    leaves.push_back(node);
+    return;
+  }
+  for (int k = 0; k < 4; ++k) collect_leaves(leaf_forest_.child(node, k), leaves);
+}
+
+void SolveState::begin_shooting() {
+  patches_.clear();
+  patch_leaves_.clear();
+  patch_row_ = row_forest_.leaves();
+  std::vector<std::uint32_t> place_of(leaf_forest_.node_count());
+  std::vector<std::size_t> first_hit{0};
+  for (const NodeIndex row : patch_row_) {
+    const auto first = static_cast<std::uint32_t>(patch_leaves_.size());
+    collect_leaves(leaf_node_of_row(row), patch_leaves_);
+    ShootingPatch patch{&rows_[row], first, static_cast<std::uint32_t>(patch_leaves_.size()) - first,
+                        mesh_.material_of(row_forest_.id(row).root_face()).reflectance, 0};
+    for (std::size_t n = first; n < patch_leaves_.size(); ++n) {
+      patch.area += leaf_area_[patch_leaves_[n]];
+      place_of[patch_leaves_[n]] = static_cast<std::uint32_t>(n);
+    }
+    patches_.push_back(patch);
+    first_hit.push_back(first_hit.back() + rows_[row].hits.size());
+  }
+  std::vector<std::uint32_t> hit_leaf(first_hit.back());
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    std::size_t at = first_hit[p];
+    for (const PatchId hit : patches_[p].row->hits) hit_leaf[at++] = place_of[leaf_forest_.leaf_at(hit)];
+  });
+  std::vector<ShootingLeaf> leaves;
+  leaves.reserve(patch_leaves_.size());
+  for (const NodeIndex leaf : patch_leaves_) {
+    const std::uint32_t root = leaf_forest_.id(leaf).root_face();
+    const Rgb radiosity = row_emission(root) + mesh_.material_of(root).reflectance * direct_[leaf].irradiance;
+    leaves.push_back({leaf_area_[leaf], radiosity - shot_[leaf], shot_[leaf]});
+  }
+  shooting_ = std::make_unique<Shooting>(patches_, std::move(leaves), std::move(hit_leaf));
+  shooting_->gather();
+  shooting_->reflect_gathered();
+}
+
+void SolveState::take_irradiance() {
+  const auto irradiance = shooting_->irradiance();
+  for (std::size_t p = 0; p < patch_row_.size(); ++p) {
+    row_irradiance_[patch_row_[p]] = irradiance[p];
+    row_slope_[patch_row_[p]] = {{}, {}, {}, irradiance[p], irradiance[p]};
+  }
+}
+
+double SolveState::unshot_power() const {
+  if (shooting_) return shooting_->unshot_power();
+  double power = waiting_power_;
+  for (const NodeIndex leaf : leaf_forest_.leaves()) {
+    const Rgb reflectance = mesh_.material_of(leaf_forest_.id(leaf).root_face()).reflectance;
+    power += leaf_area_[leaf] * (reflectance * direct_[leaf].irradiance).sum();
+  }
+  return power;
+}
+
+std::vector<LeafValue> SolveState::leaf_values() const {
+  std::vector<LeafValue> values;
+  values.reserve(leaf_forest_.leaf_count());
+  for (const NodeIndex leaf : leaf_forest_.leaves()) {
+    const PatchId id = leaf_forest_.id(leaf);
+    const NodeIndex row = row_of(id);
+    const LeafSlope& slope = row_slope_[row];
+    Rgb indirect = row_irradiance_[row] + slope.along(leaf_centre_[leaf] - row_centre_[row]);
+    indirect = {std::max(indirect.r, slope.low.r / 4), std::max(indirect.g, slope.low.g / 4),
+                std::max(indirect.b, slope.low.b / 4)};
+    values.push_back({id, narrow(direct_[leaf].irradiance + indirect)});
+  }
+  return values;
+}
+
+bool SolveState::may_split(Candidate::Kind kind, NodeIndex patch) const {
+  if (kind == Candidate::Kind::split_leaf) return leaf_forest_.may_split(patch, limits_);
+  const NodeIndex leaf = leaf_node_of_row(patch);
+  return row_forest_.may_split(patch, limits_) && (!leaf_forest_.is_leaf(leaf) || leaf_forest_.may_split(leaf, limits_));
+}
+
+void SolveState::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
+                                double rays) {
+  for (std::size_t n = 0; n < patches.size(); ++n)
+    if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
+}
+
+// The two halves of one row tell its variance with one degree of freedom: too rough to act on, so neighbours are averaged in.
+std::vector<double> SolveState::row_variances() const {
+  const auto differences = shooting_->half_differences();
+  std::vector<double> raw(row_forest_.node_count());
+  for (std::size_t p = 0; p < patch_row_.size(); ++p) raw[patch_row_[p]] = differences[p].mean() * differences[p].mean();
+  std::vector<double> variances;
+  std::vector<NodeIndex> neighbours;
+  for (const NodeIndex row : patch_row_) {
+    smooth_neighbours(row_forest_, row, neighbours);
+    double sum = raw[row];
+    for (const NodeIndex other : neighbours) sum += raw[other];
+    variances.push_back(sum / static_cast<double>(1 + neighbours.size()));
+  }
+  return variances;
+}
+
+/// Squared errors integrated over the area, W2/m2; returns the power that rows bring, W.
+double SolveState::estimate_rows(ErrorEstimate& error) {
+  const auto slopes = leaf_slopes(row_forest_, patch_row_, row_centre_, row_irradiance_);
+  for (std::size_t p = 0; p < patch_row_.size(); ++p) row_slope_[patch_row_[p]] = slopes[p];
+  const auto variances = row_variances();
+  auto errors = interpolation_errors(row_forest_, patch_row_, row_centre_, row_irradiance_, slopes);
+  double power = 0;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const double area = patches_[p].area;
+    errors[p] = area * std::max(0.0, errors[p] * errors[p] - noise_in_indicator * variances[p]);
+    if (patches_[p].row->crosses_contact()) errors[p] += area * squared(contact_error * (row_irradiance_[patch_row_[p]] + direct_[patch_leaves_[patches_[p].first_leaf]].irradiance).mean());
+    error.indirect_mesh += errors[p];
+    const double noise = area * squared(noise_in_display) * variances[p];
+    error.sampling += noise;
+    power += area * row_irradiance_[patch_row_[p]].mean();
+    if (noise > 0 && rows_[patch_row_[p]].ray_count() < most_rays_per_row)
+      candidates_.push_back({Candidate::Kind::add_rays, patch_row_[p], noise, double(rows_[patch_row_[p]].ray_count())});
+  }
+  add_candidates(Candidate::Kind::split_row, patch_row_, errors, rays_per_row_split);
+  return power;
+}
+
+double SolveState::estimate_leaves(ErrorEstimate& error) {
+  std::vector<Rgb> direct(leaf_forest_.node_count());
+  double power = 0;
+  for (const NodeIndex leaf : patch_leaves_) {
+    direct[leaf] = direct_[leaf].irradiance;
+    power += leaf_area_[leaf] * direct[leaf].mean();
+  }
+  const auto slopes = leaf_slopes(leaf_forest_, patch_leaves_, leaf_centre_, direct);
+  auto errors = interpolation_errors(leaf_forest_, patch_leaves_, leaf_centre_, direct, slopes);
+  for (std::size_t n = 0; n < patch_leaves_.size(); ++n) {
+    errors[n] *= errors[n] * leaf_area_[patch_leaves_[n]];
+    error.direct_mesh += errors[n];
+  }
+  add_candidates(Candidate::Kind::split_leaf, patch_leaves_, errors, rays_per_leaf_split);
+  return power;
+}
+
+ErrorEstimate SolveState::estimate() {
+  take_irradiance();
+  candidates_.clear();
+  ErrorEstimate error;
+  const double power = estimate_rows(error) + estimate_leaves(error);
+  if (power <= 0) return {};
+  double area = 0;
+  for (std::size_t p = 0; p < patches_.size(); ++p)
+    if (!patches_[p].row->is_hidden()) area += patches_[p].area;
+  const double mean = power / area;
+  for (double* part : {&error.direct_mesh, &error.indirect_mesh, &error.sampling}) *part = std::sqrt(*part / area) / mean;
+  error.unshot = unshot_power() / emitted_power_;
+  if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
+  return error;
+}
+
+void SolveState::inherit(std::span<const NodeIndex> split) {
+  fit_to_nodes();
+  for (const NodeIndex parent : split)
+    for (int k = 0; k < 4; ++k) {
+      shot_[leaf_forest_.child(parent, k)] = shot_[parent];
+      direct_[leaf_forest_.child(parent, k)] = direct_[parent];
+    }
+}
+
+bool SolveState::split_leaf(NodeIndex leaf) {
+  if (!leaf_forest_.is_leaf(leaf)) return true;
+  std::vector<NodeIndex> split;
+  const bool done = leaf_forest_.split(leaf, limits_, split);
+  inherit(split);
+  for (const NodeIndex parent : split) follow_contact(parent);
+  return done;
+}
+
+void SolveState::follow_contact(NodeIndex split_leaf) {
+  const NodeIndex row = row_of(leaf_forest_.id(split_leaf));
+  if (row_forest_.id(row) == leaf_forest_.id(split_leaf) && (!row_is_traced_[row] || rows_[row].crosses_contact())) split_row(row);
+}
+
+bool SolveState::split_row(NodeIndex row) {
+  if (!row_forest_.is_leaf(row)) return true;
+  if (!split_leaf(leaf_node_of_row(row))) return false;
+  std::vector<NodeIndex> split;
+  const bool done = row_forest_.split(row, limits_, split);
+  fit_to_nodes();
+  for (const NodeIndex parent : split) {
+    split_leaf(leaf_node_of_row(parent));
+    for (int k = 0; k < 4; ++k) {
+      const NodeIndex child = row_forest_.child(parent, k);
+      row_irradiance_[child] = row_irradiance_[parent];
+      row_slope_[child] = {{}, {}, {}, row_irradiance_[parent], row_irradiance_[parent]};
+    }
+  }
+  return done;
+}
+
+bool SolveState::add_rays(std::span<const NodeIndex> rows) {
+  std::vector<PatchShape> shapes;
+  std::vector<PatchId> patches;
+  for (const NodeIndex row : rows) {
+    shapes.push_back(row_forest_.shape(row));
+    patches.push_back(row_forest_.id(row));
+  }
+  const auto more = trace_rows(scene_, directions_, shapes, patches, options_.seed + ++rounds_of_rays_, budget_);
+  if (budget_.is_out()) return false;
+  for (std::size_t n = 0; n < rows.size(); ++n) rows_[rows[n]].append(more[n]);
+  return !rows.empty();
+}
+
+bool SolveState::refine() {
+  const std::size_t leaves_before = leaf_forest_.leaf_count(), rows_before = row_forest_.leaf_count();
+  const auto shot = shooting_->shot();
+  for (std::size_t n = 0; n < patch_leaves_.size(); ++n) shot_[patch_leaves_[n]] = shot[n];
+  shooting_.reset();
+  std::vector<NodeIndex> noisy;
+  for (const Candidate& candidate : mark(std::move(candidates_), marked_share)) {
+    if (candidate.kind == Candidate::Kind::add_rays) noisy.push_back(candidate.patch);
+    if (candidate.kind == Candidate::Kind::split_row) split_row(candidate.patch);
+    if (candidate.kind == Candidate::Kind::split_leaf) split_leaf(candidate.patch);
+  }
+  candidates_.clear();
+  std::erase_if(noisy, [this](NodeIndex row) { return !row_forest_.is_leaf(row); });
+  const bool has_split = leaf_forest_.leaf_count() != leaves_before || row_forest_.leaf_count() != rows_before;
+  return add_rays(noisy) || has_split;
+}
+
+}  // namespace alvor

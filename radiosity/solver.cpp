@@ -1,0 +1,187 @@
+#include "radiosity/solver.h"
+
+#include "radiosity/solve_state.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <ctime>
+#include <mutex>
+#include <thread>
+
+namespace alvor {
+
+namespace {
+
+constexpr double pass_unshot = 0.1;      // of the tolerance: a pass shoots down to this fraction of the emitted power
+constexpr double final_unshot = 1e-6;    // of the emitted power
+constexpr double publish_when = 0.75;    // of the unshot power at the last publication
+constexpr double publishing_share = 0.1; // of the time, at most, goes into steps that only show progress
+constexpr std::uint64_t always_published = 12;
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct CloseAtEnd {
+  SolutionLog& log;
+  ~CloseAtEnd() { log.close(); }
+};
+
+/// The pauses of a paced solve are not part of its time.
+class SolveClock {
+ public:
+  double elapsed_s() const { return seconds(Clock::now() - start_ - paused_); }
+  /// Returns early when a stop is requested.
+  void pause(double duration_s, const std::stop_token& stop) {
+    const auto before = Clock::now();
+    std::mutex lock;
+    std::unique_lock hold(lock);
+    std::condition_variable_any never;
+    never.wait_for(hold, stop, std::chrono::duration<double>(duration_s), [] { return false; });
+    paused_ += Clock::now() - before;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+  Clock::time_point start_ = Clock::now();
+  Clock::duration paused_{};
+};
+
+class Run {
+ public:
+  Run(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop)
+      : options_(options), log_(log), stop_(std::move(stop)), cpu_before_(cpu_seconds()),
+        budget_([this] { return must_stop(); }), state_(mesh, options, budget_) {}
+
+  SolveOutcome run() {
+    const bool is_lit = state_.emitted_power() > 0;
+    if (!is_lit) error_ = 0;
+    publish();
+    const StopReason reason = is_lit ? pass_until_done() : StopReason::dark;
+    const double cpu = cpu_seconds() - cpu_before_;
+    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0};
+  }
+
+ private:
+  StopReason pass_until_done() {
+    for (bool first = true;; first = false) {
+      if (!pass(first)) return stop_reason();
+      if (error_ <= options_.tolerance) return converge(StopReason::tolerance);
+      const bool is_better = state_.refine();
+      if (must_stop()) return stop_reason();
+      if (!is_better) {
+        state_.begin_shooting();
+        return converge(limit_reached());
+      }
+    }
+  }
+
+  /// False if it was stopped: then the last published step stands.
+  bool pass(bool first) {
+    state_.trace_new_rows();
+    if (must_stop()) return false;
+    state_.add_new_direct_light([&] {
+      ++shots_;
+      if (first && !must_stop()) publish_if_due();
+    });
+    if (must_stop()) return false;
+    state_.begin_shooting();
+    if (!shoot_down_to(pass_unshot * options_.tolerance)) return false;
+    error_ = state_.estimate().total();
+    publish();
+    return true;
+  }
+
+  /// The last pass goes on to where rounding begins: shots are cheap.
+  StopReason converge(StopReason reason) {
+    if (!shoot_down_to(final_unshot)) return stop_reason();
+    error_ = state_.estimate().total();
+    publish();
+    return reason;
+  }
+
+  bool shoot_down_to(double fraction) {
+    Shooting& shooting = state_.shooting();
+    double published = shooting.unshot_power();
+    for (double unshot = published; unshot > fraction * state_.emitted_power(); unshot = shooting.unshot_power()) {
+      if (must_stop()) return false;
+      if (unshot < publish_when * published) {
+        published = unshot;
+        state_.take_irradiance();
+        publish_if_due();
+      }
+      shots_ += shooting.sweep();
+    }
+    return true;
+  }
+
+  /// Steps that only show progress may cost a small share of the time; the first ones always appear.
+  void publish_if_due() {
+    const bool is_early = log_.head() < always_published;
+    if (is_early || clock_.elapsed_s() - published_at_ > publishing_s_ / publishing_share) publish();
+  }
+
+  void publish() {
+    const double before = clock_.elapsed_s();
+    Step step;
+    step.elapsed_s = before;
+    step.shots = shots_;
+    step.rays = budget_.rays();
+    step.leaves = state_.leaf_count();
+    step.unshot_fraction = state_.emitted_power() > 0 ? state_.unshot_power() / state_.emitted_power() : 0;
+    step.estimated_error = error_;
+    if (options_.strategy != Strategy::sorted) step.ambient_irradiance = state_.ambient_irradiance();
+    log_.publish(state_.leaf_values(), step);
+    published_at_ = clock_.elapsed_s();
+    publishing_s_ = published_at_ - before;
+    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, stop_);
+  }
+
+  bool must_stop() const { return stop_.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
+  StopReason stop_reason() const { return stop_.stop_requested() ? StopReason::cancelled : StopReason::time_limit; }
+  StopReason limit_reached() const {
+    return state_.leaf_count() + 3 > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
+  }
+
+  SolveOptions options_;
+  SolutionLog& log_;
+  std::stop_token stop_;
+  SolveClock clock_;
+  double cpu_before_;
+  RayBudget budget_;
+  SolveState state_;
+  std::uint64_t shots_ = 0;
+  double error_ = 1;
+  double published_at_ = 0, publishing_s_ = 0;
+};
+
+}  // namespace
+
+std::string_view text(StopReason reason) {
+  switch (reason) {
+    case StopReason::tolerance: return "tolerance reached";
+    case StopReason::max_leaves: return "leaf limit reached";
+    case StopReason::max_depth: return "depth limit reached";
+    case StopReason::time_limit: return "time limit reached";
+    case StopReason::cancelled: return "cancelled";
+    case StopReason::dark: return "no light";
+  }
+  return "unknown";
+}
+
+SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  tbb::task_arena arena(threads);
+  return arena.execute([&] {
+    const CloseAtEnd close{log};
+    return Run(mesh, options, log, std::move(stop)).run();
+  });
+}
+
+}  // namespace alvor

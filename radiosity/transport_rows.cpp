@@ -1,0 +1,184 @@
+#include "radiosity/transport_rows.h"
+
+#include "radiosity/ray_source.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t patches_per_batch = 8;
+constexpr float nudge = 1e-4f;  // turns a ray that slipped through a seam
+
+/// Tangent frame of the patch turned by a random angle: rotates the whole direction set at no cost per ray.
+struct TurnedFrame {
+  Float3 s, t, n;
+  TurnedFrame(const LocalRoot& root, double angle) : n(root.normal) {
+    const float c = static_cast<float>(std::cos(angle)), d = static_cast<float>(std::sin(angle));
+    const Float3 &a = root.tangent, &b = root.bitangent;
+    s = {c * a.x + d * b.x, c * a.y + d * b.y, c * a.z + d * b.z};
+    t = {c * b.x - d * a.x, c * b.y - d * a.y, c * b.z - d * a.z};
+  }
+};
+
+void aim(RayPacket& packet, const DirectionSets::Set& set, int origin, const TurnedFrame& frame) {
+  const float *x = &set.x[origin * rays_per_origin], *y = &set.y[origin * rays_per_origin],
+              *z = &set.z[origin * rays_per_origin];
+  for (int r = 0; r < rays_per_origin; ++r) {
+    packet.direction_x[r] = x[r] * frame.s.x + y[r] * frame.t.x + z[r] * frame.n.x;
+    packet.direction_y[r] = x[r] * frame.s.y + y[r] * frame.t.y + z[r] * frame.n.y;
+    packet.direction_z[r] = x[r] * frame.s.z + y[r] * frame.t.z + z[r] * frame.n.z;
+  }
+}
+
+void start_at(RayPacket& packet, float x, float y, float z) {
+  for (int r = 0; r < RayPacket::width; ++r) {
+    packet.origin_x[r] = x;
+    packet.origin_y[r] = y;
+    packet.origin_z[r] = z;
+    packet.t_min[r] = 0;
+    packet.t_max[r] = std::numeric_limits<float>::infinity();
+  }
+}
+
+enum class Outcome { stored, escaped, black_back };
+
+/// Rows of a few neighbouring patches, traced together.
+class RowBatch {
+ public:
+  RowBatch(const LocalScene& scene, std::span<const PatchShape> shapes) : scene_(scene), shapes_(shapes) {
+    packets_.resize(shapes.size() * origins_per_patch);
+    hits_.resize(packets_.size());
+  }
+
+  void trace(const DirectionSets& directions, std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
+    for (std::size_t p = 0; p < shapes_.size(); ++p) {
+      RandomStream random(seed, patches[p]);
+      const PatchPoints points = sample_points(scene_, shapes_[p], random);
+      const auto& set = directions[random.next_below(DirectionSets::set_count)];
+      const TurnedFrame frame(scene_.root(shapes_[p].root), 2 * std::numbers::pi * random.next());
+      for (int o = 0; o < origins_per_patch; ++o) {
+        RayPacket& packet = packets_[p * origins_per_patch + static_cast<std::size_t>(o)];
+        start_at(packet, points.x[o], points.y[o], points.z[o]);
+        aim(packet, set, o, frame);
+      }
+    }
+    budget.spend(packets_.size() * RayPacket::width, [&] { scene_.visibility().closest_hits(packets_, hits_); });
+    retrace_slipped_rays(budget);
+  }
+
+  void store(std::span<TransportRow> rows) const {
+    for (std::size_t p = 0; p < shapes_.size(); ++p) store_row(p, rows[p]);
+  }
+
+ private:
+  Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {
+    if (hit.root[lane] == HitPacket::nothing) return Outcome::escaped;
+    return meets_front(packet, hit, lane) || scene_.root(hit.root[lane]).twin != RootPatch::no_twin ? Outcome::stored
+                                                                                                  : Outcome::black_back;
+  }
+  bool meets_front(const RayPacket& packet, const HitPacket& hit, int lane) const {
+    const Float3& n = scene_.root(hit.root[lane]).normal;
+    return packet.direction_x[lane] * n.x + packet.direction_y[lane] * n.y + packet.direction_z[lane] * n.z < 0;
+  }
+
+  /// Where nearly no ray escapes, the few that do went through seams between faces: float32 traversal is not watertight.
+  void retrace_slipped_rays(RayBudget& budget) {
+    std::size_t escaped = 0;
+    for (const HitPacket& hit : hits_)
+      for (const std::uint32_t root : hit.root) escaped += root == HitPacket::nothing;
+    if (escaped == 0 || escaped * 64 > hits_.size() * RayPacket::width) return;
+    for (std::size_t p = 0; p < packets_.size(); ++p)
+      for (int lane = 0; lane < RayPacket::width; ++lane)
+        if (hits_[p].root[lane] == HitPacket::nothing) retrace(p, lane, budget);
+  }
+  void retrace(std::size_t p, int lane, RayBudget& budget) {
+    RayPacket again = packets_[p];
+    const Float3& n = scene_.root(shapes_[p / origins_per_patch].root).normal;
+    for (int r = 0; r < RayPacket::width; ++r) {
+      again.direction_x[r] = packets_[p].direction_x[lane] + nudge * static_cast<float>(r + 1) * n.x;
+      again.direction_y[r] = packets_[p].direction_y[lane] + nudge * static_cast<float>(r + 1) * n.y;
+      again.direction_z[r] = packets_[p].direction_z[lane] + nudge * static_cast<float>(r + 1) * n.z;
+    }
+    HitPacket hit;
+    budget.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&again, 1}, {&hit, 1}); });
+    for (int r = 0; r < RayPacket::width; ++r) {
+      if (outcome(again, hit, r) != Outcome::stored) continue;
+      hits_[p].root[lane] = hit.root[r];
+      hits_[p].u[lane] = hit.u[r];
+      hits_[p].v[lane] = hit.v[r];
+      return;
+    }
+  }
+
+  void store_row(std::size_t patch, TransportRow& row) const {
+    row.hits.reserve(rays_per_row);
+    for (int half = 0; half < 2; ++half) {
+      std::uint32_t& rays = half == 0 ? row.first_half_rays : row.second_half_rays;
+      for (int o = half; o < origins_per_patch; o += 2) {
+        const std::size_t p = patch * origins_per_patch + static_cast<std::size_t>(o);
+        if (store_origin(p, row.hits)) rays += rays_per_origin;
+        else row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+      }
+      if (half == 0) row.first_half_hits = static_cast<std::uint32_t>(row.hits.size());
+    }
+    row.hits.shrink_to_fit();
+  }
+
+  /// False, and nothing is stored, if the origin is hidden.
+  bool store_origin(std::size_t p, std::vector<PatchId>& to) const {
+    const std::size_t before = to.size();
+    int backs = 0;
+    for (int lane = 0; lane < RayPacket::width; ++lane) {
+      const Outcome what = outcome(packets_[p], hits_[p], lane);
+      backs += what == Outcome::black_back;
+      if (what == Outcome::stored) to.push_back(place(packets_[p], hits_[p], lane));
+    }
+    if (2 * backs <= RayPacket::width) return true;
+    to.resize(before);
+    return false;
+  }
+
+  PatchId place(const RayPacket& packet, const HitPacket& hit, int lane) const {
+    const std::uint32_t root = hit.root[lane];
+    if (meets_front(packet, hit, lane)) return scene_.place_of_hit(root, hit.u[lane], hit.v[lane]);
+    return scene_.place_of_hit(scene_.root(root).twin, hit.v[lane], hit.u[lane]);
+  }
+
+  const LocalScene& scene_;
+  std::span<const PatchShape> shapes_;
+  std::vector<RayPacket> packets_;
+  std::vector<HitPacket> hits_;
+};
+
+}  // namespace
+
+void TransportRow::append(const TransportRow& more) {
+  const auto second_half = more.hits.begin() + more.first_half_hits;
+  hits.insert(hits.begin() + first_half_hits, more.hits.begin(), second_half);
+  hits.insert(hits.end(), second_half, more.hits.end());
+  first_half_hits += more.first_half_hits;
+  first_half_rays += more.first_half_rays;
+  second_half_rays += more.second_half_rays;
+}
+
+std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
+                                     std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
+  std::vector<TransportRow> rows(patches.size());
+  const std::size_t batches = (patches.size() + patches_per_batch - 1) / patches_per_batch;
+  tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
+    if (budget.is_out()) return;
+    const std::size_t first = batch * patches_per_batch, count = std::min(patches_per_batch, patches.size() - first);
+    RowBatch rays(scene, shapes.subspan(first, count));
+    rays.trace(directions, patches.subspan(first, count), seed, budget);
+    rays.store(std::span(rows).subspan(first, count));
+  });
+  return rows;
+}
+
+}  // namespace alvor

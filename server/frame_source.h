@@ -1,0 +1,48 @@
+#pragma once
+// The frames of one solve, encoded once for all who watch it.
+
+#include "server/stored_solve.h"
+
+#include <grpcpp/support/slice.h>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace alvor {
+
+/// One WatchSolveResponse, all but its watch_id, as it goes over the wire.
+struct Frame {
+  grpc::Slice bytes;
+  Cursor from, next;
+  std::uint64_t to_revision = 0;
+  std::uint64_t head = 0;
+  bool last = false;  ///< `ended` is set in it
+};
+
+/// Thread-safe.
+class FrameSource {
+ public:
+  static constexpr std::size_t default_leaves = 50'000;  ///< of 20 bytes: about 1 MB, well below gRPC's 4 MB for a message
+
+  FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves = default_leaves);
+
+  StoredSolve& solve() const { return *solve_; }
+  /// Whether frame_after(cursor) would say anything that `cursor` does not know.
+  bool has_news(const Cursor& cursor) const;
+  /// The same frame to all who ask from the same place, for as long as any of them keeps it.
+  std::shared_ptr<const Frame> frame_after(const Cursor& cursor);
+
+ private:
+  std::shared_ptr<const Frame> encode_frame(const Cursor& cursor, bool ended) const;
+
+  const std::shared_ptr<StoredSolve> solve_;
+  const std::string epoch_;
+  const std::size_t max_leaves_;
+  std::mutex lock_;
+  std::array<std::weak_ptr<const Frame>, 4> recent_;  ///< watchers in step need one, pages and stragglers a few
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace alvor

@@ -1,0 +1,135 @@
+// alvord: the Alvor server.
+
+#include "server/service.h"
+
+#include <CLI/CLI.hpp>
+#include <grpc/support/log.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct Options {
+  std::string listen = "127.0.0.1:50051";
+  std::string directory;
+  int max_solves = alvor::SolveStoreOptions{}.max_running;
+  std::string log_level = "info";
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("--listen", options.listen, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
+  app.add_option("--data", options.directory, "Directory for what is kept between runs (not used by this version)");
+  app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--log-level", options.log_level, "How much to log")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+}
+
+std::shared_ptr<spdlog::logger> make_logger(const std::string& level) {
+  auto logger = spdlog::stderr_color_mt("alvord");
+  logger->set_level(spdlog::level::from_str(level));
+  logger->flush_on(spdlog::level::info);
+  return logger;
+}
+
+// gRPC's own messages are for those who debug it; what a user needs to know is said here.
+void quieten_grpc() {
+  gpr_set_log_function([](gpr_log_func_args* line) {
+    if (const auto logger = spdlog::get("alvord")) logger->debug("grpc: {}", line->message);
+  });
+}
+
+// Must be called before any thread is started: threads inherit the mask, and only wait_for_stop sees the signals.
+sigset_t block_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+std::string wait_for_stop(const sigset_t& signals) {
+  int number = 0;
+  while (sigwait(&signals, &number) != 0) {
+  }
+  return number == SIGINT ? "SIGINT" : "SIGTERM";
+}
+
+// Null if it cannot listen there. Two servers must not share a port unknowingly, and a peer that vanished without a word
+// must not keep its watches for ever.
+std::unique_ptr<grpc::Server> start(alvor::Service& service, const std::string& address, int& port) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 60'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20'000);
+  builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port);
+  service.register_with(builder);
+  auto server = builder.BuildAndStart();
+  return port > 0 ? std::move(server) : nullptr;
+}
+
+void set_serving(grpc::Server& server, bool serving) {
+  server.GetHealthCheckService()->SetServingStatus(serving);
+  for (const char* name : {"alvor.v1.SceneService", "alvor.v1.SolveService"})
+    server.GetHealthCheckService()->SetServingStatus(name, serving);
+}
+
+void stop(alvor::Service& service, grpc::Server& server) {
+  using namespace std::chrono_literals;
+  set_serving(server, false);
+  service.shut_down();
+  server.Shutdown(std::chrono::system_clock::now() + 3s);
+}
+
+int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
+  alvor::ServiceOptions service_options;
+  service_options.solves.max_running = options.max_solves;
+  service_options.solves.logger = logger;
+  alvor::Service service(service_options);
+  int port = 0;
+  const auto server = start(service, options.listen, port);
+  if (!server) {
+    std::cerr << "alvord: cannot listen on " << options.listen << ": the address is in use or not of this machine\n";
+    return 1;
+  }
+  set_serving(*server, true);
+  if (!options.directory.empty())
+    logger->warn("--data {}: this version keeps scenes and solves in memory only, they end with the server", options.directory);
+  logger->info("listening on {}:{}", options.listen.substr(0, options.listen.rfind(':')), port);
+  logger->info("stopping: {}", wait_for_stop(signals));
+  stop(service, *server);
+  logger->info("stopped");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const sigset_t signals = block_stop_signals();
+  CLI::App app("The Alvor server: holds scenes, solves their light exchange and streams the growing solution.", "alvord");
+  Options options;
+  declare(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  const auto logger = make_logger(options.log_level);
+  quieten_grpc();
+  return serve(options, signals, logger);
+}

@@ -1,0 +1,38 @@
+#pragma once
+// The RPCs of alvor.v1.SceneService: thin, over SceneStore.
+
+#include "alvor/v1/scene_service.grpc.pb.h"
+#include "server/scene_upload.h"
+#include "server/task_queue.h"
+
+namespace spdlog {
+class logger;
+}
+
+namespace alvor {
+
+/// Everything it is given must outlive the server's calls.
+class SceneService final : public v1::SceneService::CallbackService {
+ public:
+  /// Scenes are checked and their meshes built as tasks of `building`.
+  SceneService(SceneStore& scenes, const UploadLimits& limits, TaskQueue& building, spdlog::logger& logger)
+      : scenes_(scenes), limits_(limits), building_(building), logger_(logger) {}
+
+ private:
+  using Context = grpc::CallbackServerContext;
+  using Reactor = grpc::ServerUnaryReactor;
+
+  grpc::ServerReadReactor<v1::CreateSceneRequest>* CreateScene(Context*, v1::Scene* scene) override;
+  Reactor* GetScene(Context*, const v1::GetSceneRequest* request, v1::Scene* scene) override;
+  Reactor* ListScenes(Context*, const v1::ListScenesRequest* request, v1::ListScenesResponse* response) override;
+  Reactor* DeleteScene(Context*, const v1::DeleteSceneRequest* request, google::protobuf::Empty*) override;
+  grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
+
+  SceneStore& scenes_;
+  const UploadLimits limits_;
+  TaskQueue& building_;
+  spdlog::logger& logger_;
+  PageTokens tokens_;
+};
+
+}  // namespace alvor

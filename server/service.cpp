@@ -1,0 +1,60 @@
+#include "server/service.h"
+
+#include "server/random_id.h"
+#include "server/scene_service.h"
+#include "server/solve_service.h"
+
+#include <spdlog/sinks/null_sink.h>
+#include <spdlog/spdlog.h>
+
+namespace alvor {
+
+namespace {
+
+constexpr int largest_message = 64 << 20;
+
+SolveStoreOptions with_logger(SolveStoreOptions options) {
+  const auto nowhere = std::make_shared<spdlog::sinks::null_sink_mt>();
+  if (!options.logger) options.logger = std::make_shared<spdlog::logger>("silent", nowhere);
+  return options;
+}
+
+}  // namespace
+
+// In the order of use: each may refer to those above it.
+struct Service::Parts {
+  explicit Parts(const ServiceOptions& options)
+      : logger(options.solves.logger),
+        solves(options.solves),
+        watches(random_id('e')),
+        scene_service(scenes, options.upload, building, *logger),
+        solve_service(scenes, solves, watches, *logger) {}
+
+  std::shared_ptr<spdlog::logger> logger;
+  SceneStore scenes;
+  SolveStore solves;
+  Watches watches;
+  TaskQueue building;
+  SceneService scene_service;
+  SolveService solve_service;
+};
+
+Service::Service(ServiceOptions options) {
+  options.solves = with_logger(std::move(options.solves));
+  parts_ = std::make_unique<Parts>(options);
+}
+
+Service::~Service() { shut_down(); }
+
+void Service::register_with(grpc::ServerBuilder& builder) {
+  builder.SetMaxReceiveMessageSize(largest_message);
+  builder.RegisterService(&parts_->scene_service);
+  builder.RegisterService(&parts_->solve_service);
+}
+
+void Service::shut_down() {
+  parts_->watches.stop_all();
+  parts_->solves.shut_down();
+}
+
+}  // namespace alvor

@@ -1,0 +1,34 @@
+#pragma once
+// The whole service, for any gRPC server: alvord's or one inside another process.
+
+#include "server/scene_upload.h"
+#include "server/solve_store.h"
+
+#include <grpcpp/server_builder.h>
+
+#include <memory>
+
+namespace alvor {
+
+struct ServiceOptions {
+  UploadLimits upload;
+  /// Without a logger the service is silent.
+  SolveStoreOptions solves;
+};
+
+/// Calls in this order: register_with, start the server, shut_down, shut the server down, destroy. A server that uses it must be
+/// shut down before it is destroyed.
+class Service {
+ public:
+  explicit Service(ServiceOptions options = {});
+  ~Service();
+  void register_with(grpc::ServerBuilder& builder);
+  /// Ends all watches, cancels all solves and waits for them. Later CreateSolve and WatchSolve calls are UNAVAILABLE.
+  void shut_down();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace alvor

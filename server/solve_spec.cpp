@@ -1,0 +1,74 @@
+#include "server/solve_spec.h"
+
+#include "proto/codec.h"
+#include "server/status_error.h"
+
+#include <cmath>
+#include <sstream>
+#include <thread>
+
+namespace alvor {
+
+namespace {
+
+template <class Value>
+[[noreturn]] void refuse(const char* field, Value value, const std::string& reason) {
+  std::ostringstream text;
+  text << "solve.spec." << field << ": " << value << " " << reason;
+  throw invalid_argument(text.str());
+}
+
+int most_threads(const SolveLimits& limits) {
+  const auto machine = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return limits.threads > 0 ? std::min(limits.threads, machine) : machine;
+}
+
+double time_limit_of(const google::protobuf::Duration& limit) {
+  const bool is_duration = limit.nanos() > -1'000'000'000 && limit.nanos() < 1'000'000'000 && limit.seconds() <= 315'576'000'000;
+  const double seconds = decode_seconds(limit);
+  if (!is_duration || seconds < 0) refuse("time_limit", seconds, "s is not a duration >= 0");
+  return seconds > 0 ? seconds : SolveOptions{}.time_limit_s;
+}
+
+Strategy strategy_of(v1::Strategy strategy) {
+  switch (strategy) {
+    case v1::STRATEGY_UNSPECIFIED: return Strategy::automatic;
+    case v1::STRATEGY_SORTED: return Strategy::sorted;
+    case v1::STRATEGY_SORTED_AMBIENT: return Strategy::sorted_ambient;
+    default: refuse("strategy", static_cast<int>(strategy), "is not known to this server");
+  }
+}
+
+}  // namespace
+
+SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
+  SolveOptions options;
+  const double tolerance = spec.tolerance();
+  if (tolerance != 0 && !(tolerance > 0 && tolerance <= 1)) refuse("tolerance", tolerance, "is outside (0, 1]");
+  if (tolerance != 0) options.tolerance = tolerance;
+
+  if (spec.has_max_depth()) options.max_depth = spec.max_depth();
+  if (options.max_depth < 0 || options.max_depth > PatchId::max_level)
+    refuse("max_depth", options.max_depth, "is outside [0, " + std::to_string(PatchId::max_level) + "]");
+
+  if (spec.max_elements() != 0) options.max_leaves = spec.max_elements();
+  else options.max_leaves = std::min(options.max_leaves, limits.leaves);
+  if (options.max_leaves > limits.leaves)
+    refuse("max_elements", options.max_leaves, "is more than " + std::to_string(limits.leaves) + ", the limit of this server");
+
+  options.min_edge_m = spec.min_edge_meters();
+  if (!std::isfinite(options.min_edge_m) || options.min_edge_m < 0)
+    refuse("min_edge_meters", options.min_edge_m, "is not a finite length >= 0");
+
+  options.time_limit_s = time_limit_of(spec.time_limit());
+
+  options.threads = spec.threads() == 0 ? limits.threads : spec.threads();
+  if (options.threads < 0 || (spec.threads() != 0 && options.threads > most_threads(limits)))
+    refuse("threads", options.threads, "is outside [0, " + std::to_string(most_threads(limits)) + "]");
+
+  if (spec.has_seed()) options.seed = spec.seed();
+  options.strategy = strategy_of(spec.strategy());
+  return options;
+}
+
+}  // namespace alvor

@@ -1,0 +1,23 @@
+#pragma once
+// How the logic behind the calls refuses: an exception that knows its gRPC status.
+
+#include <grpcpp/support/status.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace alvor {
+
+/// The text is cut after 1000 bytes: it may quote what a client sent, and gRPC's trailers hold no more than 8 KB.
+struct StatusError : std::runtime_error {
+  StatusError(grpc::StatusCode status_code, const std::string& text)
+      : std::runtime_error(text.substr(0, 1000)), code(status_code) {}
+  grpc::StatusCode code;
+};
+
+inline StatusError not_found(const std::string& name) {
+  return {grpc::NOT_FOUND, name.empty() ? "the name is empty" : name + " does not exist"};
+}
+inline StatusError invalid_argument(const std::string& text) { return {grpc::INVALID_ARGUMENT, text}; }
+
+}  // namespace alvor

@@ -1,0 +1,76 @@
+#pragma once
+// One watcher of a solve: when it gets its next frame, without the network.
+
+#include "server/frame_source.h"
+
+#include <grpcpp/support/status.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace alvor {
+
+/// Where frames go. Called with the watch's lock held: must not call back into the watch.
+class FrameSink {
+ public:
+  /// Requires: written() was called for the frame before.
+  virtual void write(const Frame& frame) = 0;
+  /// Nothing follows it; the sink may be gone when it returns.
+  virtual void finish(const grpc::Status& status) = 0;
+
+ protected:
+  ~FrameSink() = default;
+};
+
+/// Thread-safe. Events only note what happened; take_turn alone decides, and writes under the lock it decided under, so that the
+/// sink is never written to after it was finished. Whoever causes an event has to see to it that a turn follows.
+class Watch {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::uint64_t window = 2;  ///< frames under way that were not acknowledged
+
+  /// The sink must live until finish() was called.
+  Watch(std::shared_ptr<FrameSource> frames, Cursor start, Clock::duration min_interval, FrameSink& sink);
+
+  /// False if a turn was asked for already and has not begun.
+  bool ask_for_turn() { return !turn_asked_.exchange(true); }
+  /// Writes the next frame if there is one to write, the window is open and the pace allows it. The first frame is written at
+  /// once, even if it is empty: it tells the watch's id. Returns when another turn is due for the sake of the pace.
+  std::optional<Clock::time_point> take_turn(Clock::time_point now);
+
+  /// The sink is ready for another frame, or will never be.
+  void written(bool ok);
+  /// Frames up to the `frame_count`th were applied. Throws StatusError INVALID_ARGUMENT for frames that were never sent.
+  void acknowledge(std::uint64_t frame_count, std::uint64_t revision);
+  /// Ends the watch at its next turn, if it has not ended otherwise.
+  void stop(const grpc::Status& reason);
+
+  std::uint64_t frames_sent() const;
+
+ private:
+  bool may_send() const;
+  std::optional<Clock::time_point> wait_until(Clock::time_point due);
+  void send(Clock::time_point now);
+  void finish(const grpc::Status& status);
+
+  const std::shared_ptr<FrameSource> frames_;
+  const Clock::duration min_interval_;
+  FrameSink& sink_;
+  std::atomic<bool> turn_asked_ = false;
+
+  mutable std::mutex lock_;
+  Cursor cursor_;
+  std::uint64_t sent_ = 0, acknowledged_ = 0;
+  std::uint64_t sent_revision_;  ///< to_revision of the newest frame
+  std::shared_ptr<const Frame> under_way_;  ///< set between write() and written()
+  std::optional<grpc::Status> end_;         ///< why to finish once nothing is under way
+  bool finished_ = false;
+  Clock::time_point next_frame_ = Clock::time_point::min();
+  std::optional<Clock::time_point> timer_;  ///< the turn that was last asked for by wait_until
+};
+
+}  // namespace alvor

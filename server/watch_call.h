@@ -1,0 +1,46 @@
+#pragma once
+// A WatchSolve call: a Watch whose frames go over the network.
+
+#include "server/watches.h"
+
+#include <grpcpp/grpcpp.h>
+
+#include <memory>
+#include <string>
+
+namespace spdlog {
+class logger;
+}
+
+namespace alvor {
+
+/// Deletes itself when gRPC is done with it, which is never before it was finished: by its watch once that was started, by its
+/// maker if starting failed. Raw bytes, because a frame is encoded once for all watchers; the watch's id is appended, as protobuf
+/// allows.
+class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public FrameSink {
+ public:
+  /// `watches` and `logger` must outlive the server's calls.
+  WatchCall(Watches& watches, spdlog::logger& logger);
+
+  /// Throws StatusError: the call must then be finished by the caller.
+  void start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request);
+
+ private:
+  void write(const Frame& frame) override;
+  void finish(const grpc::Status& status) override { Finish(status); }
+
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+  Watches& watches_;
+  spdlog::logger& logger_;
+  const std::string id_;
+  const grpc::Slice id_field_;
+  std::shared_ptr<StoredSolve> solve_;
+  std::shared_ptr<Watch> watch_;  ///< set once it was started
+  std::uint64_t listener_ = 0;
+  grpc::ByteBuffer bytes_;
+};
+
+}  // namespace alvor

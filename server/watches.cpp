@@ -1,0 +1,62 @@
+#include "server/watches.h"
+
+#include "server/status_error.h"
+
+#include <vector>
+
+namespace alvor {
+
+std::shared_ptr<FrameSource> Watches::frames_of(const std::shared_ptr<StoredSolve>& solve) {
+  std::scoped_lock hold(lock_);
+  std::erase_if(sources_, [](const auto& named) { return named.second.expired(); });
+  std::weak_ptr<FrameSource>& known = sources_[solve->name];
+  auto source = known.lock();
+  if (!source) known = source = std::make_shared<FrameSource>(solve, epoch_);
+  return source;
+}
+
+void Watches::add(const std::string& id, const std::shared_ptr<Watch>& watch) {
+  std::scoped_lock hold(lock_);
+  if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
+  watches_.emplace(id, watch);
+}
+
+void Watches::remove(const std::string& id) {
+  std::scoped_lock hold(lock_);
+  watches_.erase(id);
+}
+
+void Watches::acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision) {
+  std::shared_ptr<Watch> watch;
+  {
+    std::scoped_lock hold(lock_);
+    const auto found = watches_.find(id);
+    if (found == watches_.end()) throw not_found("watch '" + id + "'");
+    watch = found->second;
+  }
+  watch->acknowledge(frame_count, revision);
+  ask_for_turn(watch);
+}
+
+void Watches::stop_all() {
+  std::vector<std::shared_ptr<Watch>> all;
+  {
+    std::scoped_lock hold(lock_);
+    stopping_ = true;
+    for (const auto& [id, watch] : watches_) all.push_back(watch);
+  }
+  for (const auto& watch : all) {
+    watch->stop({grpc::UNAVAILABLE, "the server is stopping"});
+    ask_for_turn(watch);
+  }
+}
+
+void Watches::ask_for_turn(const std::shared_ptr<Watch>& watch) {
+  if (watch->ask_for_turn()) turns_.post([this, watch] { take_turn(watch); });
+}
+
+void Watches::take_turn(const std::shared_ptr<Watch>& watch) {
+  if (const auto due = watch->take_turn(Watch::Clock::now())) turns_.post_at(*due, [this, watch] { take_turn(watch); });
+}
+
+}  // namespace alvor

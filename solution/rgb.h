@@ -1,0 +1,46 @@
+#pragma once
+// A value per band. Bands are three independent channels (linear RGB); nothing here is a colour space.
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+
+namespace alvor {
+
+template <class T>
+struct RgbOf {
+  T r{}, g{}, b{};
+
+  friend constexpr bool operator==(const RgbOf&, const RgbOf&) = default;
+
+  constexpr RgbOf& operator+=(const RgbOf& o) { r += o.r; g += o.g; b += o.b; return *this; }
+  constexpr RgbOf& operator-=(const RgbOf& o) { r -= o.r; g -= o.g; b -= o.b; return *this; }
+  constexpr RgbOf& operator*=(T s) { r *= s; g *= s; b *= s; return *this; }
+
+  friend constexpr RgbOf operator+(RgbOf a, const RgbOf& c) { return a += c; }
+  friend constexpr RgbOf operator-(RgbOf a, const RgbOf& c) { return a -= c; }
+  friend constexpr RgbOf operator*(RgbOf a, T s) { return a *= s; }
+  friend constexpr RgbOf operator*(T s, RgbOf a) { return a *= s; }
+  /// Band by band, as reflectance times irradiance.
+  friend constexpr RgbOf operator*(const RgbOf& a, const RgbOf& c) { return {a.r * c.r, a.g * c.g, a.b * c.b}; }
+
+  constexpr T sum() const { return r + g + b; }
+  constexpr T mean() const { return sum() / T(3); }
+  constexpr T max() const { return std::max({r, g, b}); }
+  constexpr T min() const { return std::min({r, g, b}); }
+  constexpr bool is_zero() const { return r == 0 && g == 0 && b == 0; }
+  bool is_finite() const { return std::isfinite(r) && std::isfinite(g) && std::isfinite(b); }
+};
+
+using Rgb = RgbOf<double>;   ///< for arithmetic
+using RgbF = RgbOf<float>;   ///< for storage and the wire
+
+constexpr RgbF narrow(const Rgb& a) {
+  return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b)};
+}
+constexpr Rgb widen(const RgbF& a) { return {a.r, a.g, a.b}; }
+
+template <class T>
+RgbOf<T> absolute(const RgbOf<T>& a) { return {std::abs(a.r), std::abs(a.g), std::abs(a.b)}; }
+
+}  // namespace alvor

@@ -1,0 +1,179 @@
+// The command `alvor` as its users meet it: exit statuses, streams and files. Runs the built binary.
+
+#include "client/command/snapshots.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace alvor {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string cornell_box = ALVOR_SCENES "/cornell_box.obj";
+const std::string points = ALVOR_TEST_FILES "/truth/cornell_box.points.csv";
+const std::string own_number = std::to_string(getpid());
+const std::string quick = " --tolerance 0.3 --max-depth 2 --seed 7";
+
+std::string text_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
+
+std::string cell(std::uint64_t number) { return std::string(",").append(std::to_string(number)).append(","); }
+
+struct Ran {
+  int status = -1;
+  std::string out, err;
+};
+
+/// A folder of its own for each test, and the command run in it.
+class Command : public testing::Test {
+ protected:
+  Command() : folder_(fs::temp_directory_path() / ("alvor_command_test_" + own_number)) {
+    fs::create_directories(folder_);
+  }
+  ~Command() override { fs::remove_all(folder_); }
+
+  Ran run(const std::string& arguments) const {
+    const std::string line = "cd '" + folder_.string() + "' && '" ALVOR_BINARIES "/alvor' " + arguments + " >out 2>err";
+    const int ended = std::system(line.c_str());
+    return {WIFEXITED(ended) ? WEXITSTATUS(ended) : -1, text_of(folder_ / "out"), text_of(folder_ / "err")};
+  }
+  fs::path file(const std::string& name) const { return folder_ / name; }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(Command, WithoutArgumentsIsAUsageError) { EXPECT_EQ(run("").status, 2); }
+
+TEST_F(Command, HelpIsNoError) { EXPECT_EQ(run("solve --help").status, 0); }
+
+TEST_F(Command, UnknownFlagsAreUsageErrors) {
+  EXPECT_EQ(run("solve " + cornell_box + " --no-such-flag").status, 2);
+}
+
+TEST_F(Command, ImpossibleOptionValuesAreUsageErrors) {
+  for (const std::string option : {"--tolerance 2", "--tolerance nan", "--max-depth 16", "--time-limit -1", "--strategy magic",
+                                   "--seed -1"})
+    EXPECT_EQ(run("solve " + cornell_box + " " + option).status, 2) << option;
+}
+
+TEST_F(Command, OutputsThatCannotBeWrittenAreFoundBeforeTheSolve) {
+  for (const std::string option : {"-o room.obj", "-o nowhere/room.glb", "--report nowhere/r.csv"}) {
+    const Ran ran = run("solve missing.obj " + option);
+    EXPECT_EQ(ran.status, 2) << option;
+    EXPECT_EQ(line_count(ran.err), 1) << ran.err;
+  }
+}
+
+TEST_F(Command, MissingSceneIsNamedInOneLine) {
+  const Ran ran = run("solve missing.obj");
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_EQ(line_count(ran.err), 1) << ran.err;
+  EXPECT_NE(ran.err.find("missing.obj"), std::string::npos) << ran.err;
+}
+
+TEST_F(Command, SolutionThatIsNoneIsNamedInOneLine) {
+  write("room.ply", "not a solution\n");
+  const Ran ran = run("probe room.ply --points " + points);
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_EQ(line_count(ran.err), 1) << ran.err;
+  EXPECT_NE(ran.err.find("room.ply"), std::string::npos) << ran.err;
+}
+
+TEST_F(Command, UnreachableServerHasItsOwnStatus) {
+  const Ran ran = run("solve " + cornell_box + " --server 127.0.0.1:1");
+  EXPECT_EQ(ran.status, 4);
+  EXPECT_EQ(line_count(ran.err), 1) << ran.err;
+}
+
+TEST_F(Command, SceneWithoutEmittersIsSolvedWithAWarning) {
+  write("dark.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const Ran ran = run("solve dark.obj -o dark.ply");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.err.find("warning: "), std::string::npos) << ran.err;
+  EXPECT_TRUE(fs::exists(file("dark.ply")));
+}
+
+TEST_F(Command, JsonIsAllThatStdoutHolds) {
+  const Ran ran = run("solve " + cornell_box + quick + " --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto json = nlohmann::json::parse(ran.out);
+  for (const char* field : {"solve", "state", "end_reason", "elapsed_s", "cpu_s", "traversal_share", "shots", "rays", "leaves",
+                            "unshot_fraction", "estimated_error", "first_frame_s", "warnings"})
+    EXPECT_TRUE(json.contains(field)) << field;
+  EXPECT_EQ(json["state"], "SUCCEEDED");
+  EXPECT_GT(json["rays"], 0);
+}
+
+TEST_F(Command, ReportHasALinePerStepAndEndsWithTheOutcome) {
+  const Ran ran = run("solve " + cornell_box + quick + " --json --report r.csv");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  std::istringstream report(text_of(file("r.csv")));
+  std::string line, last;
+  std::getline(report, line);
+  EXPECT_EQ(line, "elapsed_s,step,shots,rays,leaves,unshot_fraction,estimated_error");
+  for (std::uint64_t step = 0; std::getline(report, line); ++step, last = line) {
+    EXPECT_EQ(std::ranges::count(line, ','), 6) << line;
+    EXPECT_NE(line.find(cell(step)), std::string::npos) << line;
+  }
+  const auto rays = nlohmann::json::parse(ran.out)["rays"].get<std::uint64_t>();
+  EXPECT_NE(last.find(cell(rays)), std::string::npos) << last;
+}
+
+TEST_F(Command, ProbeAnswersEveryPointInOrder) {
+  for (const std::string solution : {"room.glb", "room.ply"}) {
+    ASSERT_EQ(run("solve " + cornell_box + quick + " -o " + solution).status, 0);
+    const Ran ran = run("probe " + solution + " --points " + points);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(line_count(ran.out), 1 + line_count(text_of(points)));
+    EXPECT_TRUE(ran.out.starts_with("x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,")) << ran.out;
+  }
+}
+
+TEST_F(Command, FramesAndPicturesAreDrawn) {
+  ASSERT_EQ(run("solve " + cornell_box + quick + " -o room.glb --frames film").status, 0);
+  EXPECT_TRUE(fs::exists(file("film/frame_0000.png")));
+  EXPECT_EQ(run("render room.glb -o room.png --width 64 --height 48 --wireframe --eye 278,273,-700").status, 0);
+  EXPECT_TRUE(fs::exists(file("room.png")));
+}
+
+/// A mirror at `revision`, with one root patch.
+SolutionMirror mirror_at(std::uint64_t revision) {
+  SolutionMirror mirror;
+  Step step;
+  step.revision = revision;
+  EXPECT_FALSE(mirror.apply({0, revision, revision, {}, {{PatchId::root(0), {1, 1, 1}}}, {step}}));
+  return mirror;
+}
+
+TEST(Snapshots, AreThinnedEvenlyAndEndWithTheLastState) {
+  Snapshots snapshots;
+  for (std::uint64_t revision = 1; revision <= 1000; ++revision) snapshots.offer(mirror_at(revision));
+  const std::vector<Snapshot> kept = snapshots.take(mirror_at(1001));
+  EXPECT_GE(kept.size(), Snapshots::most / 2);
+  EXPECT_LE(kept.size(), Snapshots::most + 1);
+  EXPECT_EQ(kept.front().revision, 1u);
+  EXPECT_EQ(kept.back().revision, 1001u);
+  for (std::size_t i = 2; i + 1 < kept.size(); ++i)
+    EXPECT_EQ(kept[i].revision - kept[i - 1].revision, kept[1].revision - kept[0].revision);
+}
+
+}  // namespace
+}  // namespace alvor

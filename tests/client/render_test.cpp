@@ -1,0 +1,160 @@
+// Pictures: what a pixel shows, where the camera stands, how bright it all is.
+
+#include "client/render.h"
+#include "client/tone_map.h"
+#include "tests/client/hand_made_mesh.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace alvor {
+namespace {
+
+using Pixel = std::array<int, 3>;
+
+Pixel pixel(const Image& image, int x, int y) {
+  const auto at = static_cast<std::size_t>(3 * (y * image.width + x));
+  return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
+}
+
+int largest_difference(const Image& a, const Image& b) {
+  int most = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) most = std::max(most, std::abs(a.rgb[i] - b.rgb[i]));
+  return most;
+}
+
+/// Straight at a 1 x 1 m wall in the middle of a picture that shows 2 x 2 m.
+Camera facing_wall() {
+  Camera camera;
+  camera.eye = {0.5, 0.5, 1};
+  camera.target = {0.5, 0.5, 0};
+  camera.vertical_fov_degrees = 90;
+  camera.width = camera.height = 64;
+  return camera;
+}
+
+DisplayMesh wall(RgbF radiosity, int leaves_per_side = 1) {
+  DisplayMesh mesh;
+  add_wall(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, leaves_per_side, [=](const Vec3&) { return radiosity; });
+  return mesh;
+}
+
+RenderOptions fixed(const Camera& camera) {
+  RenderOptions options;
+  options.camera = camera;
+  options.exposure = 1;
+  return options;
+}
+
+TEST(Render, PixelsShowTheToneMappedRadiosity) {
+  const RgbF radiosity{0.8f, 0.3f, 0.05f};
+  const Image image = render(wall(radiosity), fixed(facing_wall()));
+  const Rgb shown = tone_map(widen(radiosity));
+  EXPECT_EQ(pixel(image, 32, 32), (Pixel{srgb_byte(shown.r), srgb_byte(shown.g), srgb_byte(shown.b)}));
+  const Pixel outside = pixel(image, 4, 4);
+  EXPECT_TRUE(outside[0] == outside[1] && outside[1] == outside[2] && outside[0] > 10 && outside[0] < 80);
+}
+
+TEST(Render, BacksAreLookedThrough) {
+  DisplayMesh mesh = wall(grey(0.4f));
+  const Image alone = render(mesh, fixed(facing_wall()));
+  for (const double z : {0.3, 0.5})
+    add_wall(mesh, {0, 0, z}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return RgbF{9, 0, 0}; });
+  EXPECT_EQ(render(mesh, fixed(facing_wall())).rgb, alone.rgb);
+}
+
+TEST(Render, WireframeDrawsOutlinesAndNotSpokes) {
+  const DisplayMesh mesh = wall(grey(0.4f), 2);
+  RenderOptions options = fixed(facing_wall());
+  const Image plain = render(mesh, options);
+  options.wireframe = true;
+  const Image lined = render(mesh, options);
+  EXPECT_LT(pixel(lined, 32, 26)[0], pixel(plain, 32, 26)[0] - 20);  // between two leaves; the line is half in this pixel
+  EXPECT_EQ(pixel(lined, 24, 24), pixel(plain, 24, 24));             // a leaf's centre, where its triangles meet
+  EXPECT_EQ(pixel(lined, 27, 27), pixel(plain, 27, 27));             // between two triangles of a leaf
+}
+
+TEST(Render, DoesNotDependOnUnitsOfLightOrPlace) {
+  RenderOptions options;
+  options.size = {160, 120};
+  const Image near = render(hand_made_room(), options);
+  EXPECT_LE(largest_difference(near, render(hand_made_room({.brightness = 1e-4f}), options)), 1);
+  // Rays are float32 and may fall to the other side of an edge; away from edges the pixels are the same.
+  const Image far = render(hand_made_room({.origin = {1e5, 0, -1e5}}), options);
+  EXPECT_EQ(pixel(near, 80, 60), pixel(far, 80, 60));
+  EXPECT_EQ(pixel(near, 20, 60), pixel(far, 20, 60));
+}
+
+TEST(Render, TheSameArgumentsGiveTheSamePicture) {
+  RenderOptions options;
+  options.size = {64, 48};
+  options.wireframe = true;
+  EXPECT_EQ(render(hand_made_room(), options).rgb, render(hand_made_room(), options).rgb);
+}
+
+TEST(Exposure, ShowsTheRoomAndLetsTheLampSaturate) {
+  RenderOptions options;
+  options.size = {160, 120};
+  const Image image = render(hand_made_room(), options);
+  const Pixel back_wall = pixel(image, 80, 60);
+  EXPECT_GT(back_wall[0], 100);
+  EXPECT_LT(back_wall[0], 230);
+  int brightest = 0;
+  for (const int band : image.rgb) brightest = std::max(brightest, band);
+  EXPECT_GT(brightest, 250);
+}
+
+TEST(Exposure, IsPositiveWhateverIsShown) {
+  EXPECT_GT(automatic_exposure(std::vector<LitArea>{}), 0);
+  EXPECT_GT(automatic_exposure(wall(grey(0))), 0);
+  EXPECT_GT(automatic_exposure(std::vector<LitArea>{{5, 1, true}}), 0);
+}
+
+bool inside_room(const Vec3& p) { return p.x > 0 && p.x < 4 && p.y > 0 && p.y < 3 && p.z > 0 && p.z < 5; }
+
+TEST(DefaultCamera, LooksIntoTheOpenSideOfARoom) {
+  const Camera camera = default_camera(hand_made_room());
+  EXPECT_LT(camera.eye.z, 0);
+  EXPECT_NEAR(camera.eye.x, 2, 1e-9);
+  EXPECT_NEAR(camera.eye.y, 1.5, 1e-9);
+}
+
+TEST(DefaultCamera, StandsWithinAClosedRoom) {
+  EXPECT_TRUE(inside_room(default_camera(hand_made_room({.front_open = false})).eye));
+}
+
+TEST(DefaultCamera, StandsOutsideASolid) {
+  DisplayMesh cube;
+  const auto lit = [](const Vec3&) { return grey(1); };
+  const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  for (const auto& [a, b] : {std::pair{x, y}, {y, z}, {z, x}}) {
+    add_wall(cube, {}, b, a, 1, lit);
+    add_wall(cube, cross(a, b), a, b, 1, lit);
+  }
+  const Camera camera = default_camera(cube);
+  EXPECT_GT(length(camera.eye - camera.target), 1);
+  EXPECT_GT(camera.eye.y, 0.5);
+}
+
+TEST(PngFile, HoldsTheSamePixels) {
+  const auto path = std::filesystem::temp_directory_path() / ("alvor_picture_" + std::to_string(getpid()) + ".png");
+  const Image image = render(wall(RgbF{0.8f, 0.3f, 0.05f}, 3), fixed(facing_wall()));
+  write_png(path, image);
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  ASSERT_TRUE(png_image_begin_read_from_file(&header, path.c_str()));
+  header.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(header));
+  ASSERT_TRUE(png_image_finish_read(&header, nullptr, rgb.data(), 0, nullptr));
+  EXPECT_EQ(rgb, image.rgb);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace alvor

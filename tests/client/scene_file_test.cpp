@@ -1,0 +1,258 @@
+#include "client/scene_file.h"
+
+#include "tests/client/faces.h"
+#include "tests/client/glb_file.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace alvor {
+namespace {
+
+const std::filesystem::path good_files = ALVOR_TEST_FILES "/client/good_files";
+const std::filesystem::path bad_files = ALVOR_TEST_FILES "/client/bad_files";
+
+std::vector<std::string> material_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Face& face : scene.faces) names.push_back(scene.materials[face.material].name);
+  return names;
+}
+
+void expect_near(const Rgb& found, const Rgb& expected) {
+  EXPECT_NEAR(found.r, expected.r, 1e-6);
+  EXPECT_NEAR(found.g, expected.g, 1e-6);
+  EXPECT_NEAR(found.b, expected.b, 1e-6);
+}
+
+std::string refusal(const std::filesystem::path& path) {
+  try {
+    read_scene_file(path);
+  } catch (const SceneFileError& error) {
+    const std::string text = error.what();
+    EXPECT_TRUE(text.starts_with(path.string() + ": ")) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    return text.substr(std::min(text.size(), path.string().size() + 2));
+  }
+  return "accepted";
+}
+
+TEST(SceneFile, QuadsInTheFileStayQuads) {
+  const SceneFile file = read_scene_file(ALVOR_SCENES "/cornell_box.obj");
+  EXPECT_EQ(corner_counts(file.scene), std::vector<std::uint32_t>(19, 4));
+  EXPECT_EQ(file.scene.vertices.size(), 32u);
+  EXPECT_TRUE(file.warnings.empty());
+}
+
+TEST(SceneFile, FacesKeepTheOrderOfTheFileWhateverTheirMaterial) {
+  const Scene scene = read_scene_file(ALVOR_SCENES "/cornell_box.obj").scene;
+  std::vector<std::string> expected(19, "white");
+  expected[5] = "light";
+  expected[7] = "green";
+  expected[8] = "red";
+  EXPECT_EQ(material_names(scene), expected);
+  const std::vector<std::uint32_t> light{12, 14, 15, 13};
+  EXPECT_TRUE(std::ranges::equal(scene.corners_of(scene.faces[5]), light));
+}
+
+TEST(SceneFile, RadianceBecomesEmission) {
+  const Scene scene = read_scene_file(ALVOR_SCENES "/cornell_box.obj").scene;
+  const Material& light = scene.materials[scene.faces[5].material];
+  expect_near(light.emission, {15 * std::numbers::pi, 15 * std::numbers::pi, 15 * std::numbers::pi});
+  expect_near(scene.materials[scene.faces[8].material].reflectance, {0.63, 0.06, 0.04});
+}
+
+TEST(SceneFile, CoordinatesAreThoseOfTheFile) {
+  const Scene scene = read_scene_file(ALVOR_SCENES "/cornell_box.obj").scene;
+  double highest_x = 0, highest_z = 0;
+  for (const Vec3& vertex : scene.vertices) {
+    highest_x = std::max(highest_x, vertex.x);
+    highest_z = std::max(highest_z, vertex.z);
+  }
+  EXPECT_EQ(highest_x, 556);
+  EXPECT_NEAR(highest_z, 559.2, 1e-12);
+}
+
+TEST(SceneFile, MillimetresSurviveFarFromTheOrigin) {
+  const Scene scene = read_scene_file(good_files / "far_away.obj").scene;
+  EXPECT_NEAR(corner(scene, 0, 0).x, 500000.001, 1e-9);
+  EXPECT_NEAR(corner(scene, 0, 2).y, 4000001.002, 1e-8);
+}
+
+TEST(SceneFile, ObjectsThatComeBackKeepTheOrderAndLinesAreNoFaces) {
+  const Scene scene = read_scene_file(good_files / "mixed.obj").scene;
+  EXPECT_EQ(corner_counts(scene), (std::vector<std::uint32_t>{4, 3, 5, 3}));
+  EXPECT_EQ(material_names(scene), (std::vector<std::string>{"grey", "bright lamp", "grey", "unknown"}));
+  EXPECT_EQ(corner(scene, 3, 1), (Vec3{1, 0, 0}));
+}
+
+TEST(SceneFile, ReflectanceOutOfRangeIsClampedAndSaidSo) {
+  const SceneFile file = read_scene_file(good_files / "mixed.obj");
+  expect_near(file.scene.materials[file.scene.faces[1].material].reflectance, {0.95, 0, 0.5});
+  EXPECT_EQ(file.warnings, (std::vector<std::string>{
+                               "material 'unknown' is in no material library: grey, reflectance 0.5",
+                               "material 'bright lamp': reflectance 1.2 -0.5 0.5 is clamped to 0.95 0 0.5"}));
+}
+
+TEST(SceneFile, ATextureCountsByItsMeanAndAMissingOneNotAtAll) {
+  const SceneFile file = read_scene_file(good_files / "textured.obj");
+  expect_near(file.scene.materials[0].reflectance, {0.25, 0.5, 0.5});
+  expect_near(file.scene.materials[1].reflectance, {0.5, 0.5, 0.5});
+  EXPECT_EQ(file.warnings, (std::vector<std::string>{
+                               "material 'checked': texture 'black_and_white.png' counts by its mean colour",
+                               "material 'lost': texture 'nowhere.png' cannot be read and is left out",
+                               "no material emits: the solution will be black"}));
+}
+
+TEST(SceneFile, AMissingMaterialLibraryLeavesGreyFaces) {
+  const SceneFile file = read_scene_file(good_files / "missing_library.obj");
+  expect_near(file.scene.materials[0].reflectance, {0.5, 0.5, 0.5});
+  ASSERT_EQ(file.warnings.size(), 3u);
+  EXPECT_EQ(file.warnings[0], "material library 'nowhere.mtl' cannot be read");
+}
+
+TEST(SceneFile, TrianglesMadeOfQuadsBecomeQuadsAgain) {
+  const Scene cube = read_scene_file(good_files / "cube.stl").scene;
+  EXPECT_EQ(corner_counts(cube), std::vector<std::uint32_t>(6, 4));
+  Vec3 sum;
+  for (std::size_t f = 0; f < cube.faces.size(); ++f) {
+    EXPECT_NEAR(length(area_vector(cube, f)), 1, 1e-12);
+    EXPECT_GT(dot(area_vector(cube, f), corner(cube, f, 0) - Vec3{0.5, 0.5, 0.5}), 0);
+    sum += area_vector(cube, f);
+  }
+  EXPECT_EQ(sum, Vec3());
+}
+
+TEST(SceneFile, TrianglesBesideQuadsStayTriangles) {
+  const Scene roof = read_scene_file(good_files / "roof.ply").scene;
+  EXPECT_EQ(corner_counts(roof), (std::vector<std::uint32_t>{4, 3, 4}));
+}
+
+TEST(SceneFile, AFileWithoutMaterialsIsGrey) {
+  for (const char* name : {"roof.ply", "cube.stl", "far_away.obj"}) {
+    const Scene scene = read_scene_file(good_files / name).scene;
+    ASSERT_EQ(scene.materials.size(), 1u) << name;
+    EXPECT_EQ(scene.materials[0].name, "default") << name;
+    EXPECT_EQ(scene.materials[0].reflectance, (Rgb{0.5, 0.5, 0.5})) << name;
+  }
+}
+
+TEST(SceneFile, ABadFileIsRefusedInOneLineWithPlaceAndReason) {
+  EXPECT_EQ(refusal(bad_files / "no_such_file.obj"), "file: does not exist");
+  EXPECT_EQ(refusal(bad_files), "file: is a directory");
+  EXPECT_EQ(refusal(bad_files / "empty.obj"), "file: is empty");
+  EXPECT_EQ(refusal(bad_files / "nan.obj"), "line 2: 'nan' is not a finite number");
+  EXPECT_EQ(refusal(bad_files / "short_vertex.obj"), "line 2: 'v' needs three numbers");
+  EXPECT_EQ(refusal(bad_files / "index_out_of_range.obj"), "face 1: vertex index 4 is out of range, there are 3 vertices");
+  EXPECT_EQ(refusal(bad_files / "index_zero.obj"), "face 0: vertex index 0 is out of range, 3 vertices come before it");
+  EXPECT_EQ(refusal(bad_files / "index_before_the_first.obj"),
+            "face 0: vertex index -4 is out of range, 3 vertices come before it");
+  EXPECT_EQ(refusal(bad_files / "no_faces.obj"), "scene: has no faces");
+  EXPECT_EQ(refusal(bad_files / "degenerate.obj"), "scene: all 2 faces are degenerate");
+  EXPECT_EQ(refusal(bad_files / "far_out.obj"), "vertex 1: coordinate 2e+09 is beyond 1e9 m");
+  EXPECT_EQ(refusal(bad_files / "bad_colour.obj"), "bad_colour.mtl line 2: 'inf' is not a finite number");
+  EXPECT_EQ(refusal(bad_files / "dark_light.obj"), "material 0 'lamp': emission -3.14159 is not a finite value >= 0");
+  EXPECT_EQ(refusal(bad_files / "prose.obj"), "scene: has no faces");
+}
+
+TEST(SceneFile, AFileThatIsNoSceneIsRefusedWithTheLibrarysReason) {
+  EXPECT_TRUE(refusal(bad_files / "prose.txt").starts_with("file: No suitable reader"));
+  EXPECT_TRUE(refusal(bad_files / "prose.gltf").starts_with("file: [json.exception.parse_error"));
+  EXPECT_EQ(refusal(bad_files / "endless.ply"), "file: its header has no end_header");
+  EXPECT_EQ(refusal(bad_files / "boastful.ply"), "element vertex: the file is too short for 2000000000 of them");
+  EXPECT_EQ(refusal(bad_files / "no_scene.gltf"), "scene: has no faces");
+  EXPECT_EQ(refusal(bad_files / "cut_off.glb"), "file: Too short data size for glTF Binary");
+  EXPECT_EQ(refusal(bad_files / "deep.gltf"), "file: its JSON is nested too deeply");
+  EXPECT_EQ(refusal(bad_files / "compressed.gltf"),
+            "file: requires the extension KHR_draco_mesh_compression, which is not supported");
+}
+
+/// A unit square in the xy plane facing +z, two triangles; accessor 0 its corners, 1 its indices.
+GltfBytes square_bytes() {
+  return GltfBytes().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}).add<std::uint16_t>({0, 1, 2, 0, 2, 3});
+}
+const std::string square_accessors =
+    R"("bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                     {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}])";
+const std::string square_mesh =
+    square_accessors + R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}])";
+const std::string lamp_material =
+    R"("materials": [{"name": "lamp", "doubleSided": true, "emissiveFactor": [1, 0.5, 0],
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}},
+        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.125, 1]}}])";
+const std::string one_node = R"("scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}])";
+
+TEST(SceneFile, TwoTrianglesOfAGlbBecomeOneQuadThatBeginsAtTheFirstCorner) {
+  const SceneFile file = read_scene_file(GlbFile(one_node + ", " + lamp_material + ", " + square_mesh, square_bytes()));
+  const std::vector<std::uint32_t> square{0, 1, 2, 3};
+  ASSERT_EQ(file.scene.faces.size(), 1u);
+  EXPECT_TRUE(std::ranges::equal(file.scene.corners_of(file.scene.faces[0]), square));
+  EXPECT_TRUE(file.warnings.empty());
+}
+
+TEST(SceneFile, EmissiveStrengthAndBothSidesAreTakenFromTheMaterial) {
+  const SceneFile file = read_scene_file(GlbFile(one_node + ", " + lamp_material + ", " + square_mesh, square_bytes()));
+  const Material& lamp = file.scene.materials.at(0);
+  expect_near(lamp.emission, {4 * std::numbers::pi, 2 * std::numbers::pi, 0});
+  expect_near(lamp.reflectance, {0.5, 0.25, 0.125});
+  EXPECT_TRUE(lamp.two_sided);
+}
+
+TEST(SceneFile, NestedNodesPlaceTheirMeshesAndMirrorsKeepTheFront) {
+  // The outer node turns +z to +x about y and moves; one inner node scales, the other mirrors z by its matrix.
+  const std::string nodes =
+      R"("scene": 0, "scenes": [{"nodes": [0]}],
+         "nodes": [{"children": [1, 2], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476], "translation": [10, 20, 30]},
+                   {"mesh": 0, "scale": [2, 3, 1]},
+                   {"mesh": 0, "matrix": [1, 0, 0, 0,  0, 1, 0, 0,  0, 0, -1, 0,  0, 0, 0, 1]}])";
+  const Scene scene = read_scene_file(GlbFile(nodes + ", " + lamp_material + ", " + square_mesh, square_bytes())).scene;
+  ASSERT_EQ(scene.faces.size(), 2u);
+  EXPECT_NEAR(length(corner(scene, 0, 2) - Vec3{10, 23, 28}), 0, 1e-12);
+  EXPECT_NEAR(length(area_vector(scene, 0) - Vec3{6, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(length(area_vector(scene, 1) - Vec3{-1, 0, 0}), 0, 1e-12);
+}
+
+TEST(SceneFile, StripsAndFansFaceTheSameWayAsTheirTriangles) {
+  // A strip names the corners in zigzag; a fan goes round. Neither has an index accessor in the second mesh.
+  const GltfBytes bytes = square_bytes().add<std::uint16_t>({0, 1, 3, 2});
+  const std::string meshes =
+      R"("bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 60, "byteLength": 8}],
+         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                       {"bufferView": 1, "componentType": 5123, "count": 4, "type": "SCALAR"}],
+         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 5}]},
+                    {"primitives": [{"attributes": {"POSITION": 0}, "mode": 6}, {"attributes": {"POSITION": 0}, "mode": 1}]}],
+         "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 1, "translation": [5, 0, 0]}])";
+  const Scene scene = read_scene_file(GlbFile(meshes, bytes)).scene;
+  ASSERT_EQ(scene.faces.size(), 2u);
+  for (std::size_t f = 0; f < 2; ++f) EXPECT_EQ(area_vector(scene, f), (Vec3{0, 0, 1})) << f;
+  expect_near(scene.materials.at(scene.faces[0].material).reflectance, {0.5, 0.5, 0.5});
+}
+
+TEST(SceneFile, HostileGltfIsRefusedByTheItemAtFault) {
+  const auto refusal_of = [&](const std::string& json) { return refusal(GlbFile(json, square_bytes())); };
+  const auto with = [](std::string text, const std::string& old, const std::string& by) {
+    return text.replace(text.find(old), old.size(), by);
+  };
+  const std::string rest = ", " + lamp_material + ", " + square_mesh;
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"("byteLength": 48)", R"("byteLength": 4000)")),
+            "bufferView 0: ends beyond buffer 0 of 60 bytes");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"("count": 4)", R"("count": 4611686018427387904)")),
+            "accessor 0: ends beyond its bufferView");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"("count": 4)", R"("count": 3)")),
+            "mesh 0 primitive 0: vertex index 3 is out of range, there are 3 vertices");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)")),
+            "accessor 0: its byteStride does not fit its elements");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"({"mesh": 0})", R"({"mesh": 0, "children": [0]})")),
+            "node 0: hangs from more than one node");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"({"mesh": 0})", R"({"mesh": 7})")), "scene: mesh 7 is not in the file");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"("material": 0)", R"("material": 3)")),
+            "mesh 0 primitive 0: material 3 is not in the file");
+  EXPECT_EQ(refusal_of(with(one_node + rest, R"("type": "VEC3")", R"("type": "VEC3", "sparse": {"count": 1,
+                "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}})")),
+            "accessor 0: sparse accessors are not supported");
+}
+
+}  // namespace
+}  // namespace alvor

@@ -1,0 +1,160 @@
+// Solution files: what comes back, what is refused, and what is left behind.
+
+#include "client/glb_file.h"
+#include "client/ply_file.h"
+#include "client/solution_file.h"
+#include "client/whole_file.h"
+#include "tests/client/hand_made_mesh.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace alvor {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder for each test, removed after it.
+class SolutionFile : public testing::TestWithParam<const char*> {
+ protected:
+  SolutionFile() : folder_(fs::temp_directory_path() / ("alvor_solution_file_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~SolutionFile() override { fs::remove_all(folder_); }
+  fs::path path() const { return folder_ / (std::string("room") + GetParam()); }
+  bool is_glb() const { return GetParam() == std::string(".glb"); }
+  std::string encoded(const DisplayMesh& mesh) const { return is_glb() ? encode_glb(mesh) : encode_ply(mesh); }
+  DisplayMesh decoded(std::string_view bytes) const { return is_glb() ? decode_glb(bytes) : decode_ply(bytes); }
+
+  /// Why the bytes are refused; empty if they are not.
+  std::string refusal(std::string_view bytes) const {
+    write_whole_file(path(), bytes);
+    try {
+      read_solution_file(path());
+      return {};
+    } catch (const SolutionFileError& error) {
+      return error.what();
+    }
+  }
+
+  fs::path folder_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Formats, SolutionFile, testing::Values(".glb", ".ply"),
+                         [](const auto& format) { return std::string(format.param + 1); });
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(length(a - b), tolerance); }
+
+TEST_P(SolutionFile, ComesBackAsItWas) {
+  const DisplayMesh mesh = hand_made_room();
+  write_solution_file(path(), mesh);
+  const DisplayMesh back = read_solution_file(path());
+  EXPECT_EQ(back.irradiance, mesh.irradiance);
+  EXPECT_EQ(back.radiosity, mesh.radiosity);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  ASSERT_EQ(back.positions.size(), mesh.positions.size());
+  ASSERT_EQ(back.normals.size(), mesh.normals.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    expect_near(back.positions[i], mesh.positions[i], 1e-6);
+    expect_near(back.normals[i], mesh.normals[i], 1e-6);
+  }
+}
+
+TEST_P(SolutionFile, KeepsItsDigitsFarFromTheOrigin) {
+  const DisplayMesh mesh = hand_made_room({.origin = {4e6, -3e6, 5e6}});  // float32 resolves 0.5 m here
+  write_solution_file(path(), mesh);
+  const DisplayMesh back = read_solution_file(path());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) expect_near(back.positions[i], mesh.positions[i], 1e-6);
+}
+
+TEST_P(SolutionFile, IsRefusedWhereverItWasCutOff) {
+  const std::string bytes = encoded(hand_made_room({.leaves_per_side = 1}));
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    ASSERT_THROW(decoded(std::string_view(bytes).substr(0, size)), SolutionFileError) << size << " bytes";
+}
+
+TEST_P(SolutionFile, IsReadOrRefusedWhateverByteIsWrong) {
+  const std::string bytes = encoded(hand_made_room({.leaves_per_side = 1}));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (const char wrong : {'\xff', '9'}) {
+      std::string changed = bytes;
+      changed[i] = wrong;
+      try {
+        decoded(changed);
+      } catch (const SolutionFileError&) {
+        continue;
+      }
+    }
+  }
+}
+
+TEST_P(SolutionFile, ErrorsAreOneLineThatBeginsWithTheFile) {
+  for (const std::string_view bytes : {"", "ply\n", "glTF", "ply\nobj end_header\n"}) {
+    const std::string why = refusal(bytes);
+    EXPECT_TRUE(why.starts_with(path().string() + ": ")) << why;
+    EXPECT_EQ(std::ranges::count(why, '\n'), 0) << why;
+  }
+}
+
+TEST_P(SolutionFile, ValuesThatCannotBeDrawnAreRefused) {
+  DisplayMesh mesh = hand_made_room();
+  mesh.triangles[5][1] = static_cast<std::uint32_t>(mesh.positions.size());
+  EXPECT_NE(refusal(encoded(mesh)).find("triangle 5: there is no vertex"), std::string::npos);
+  mesh = hand_made_room();
+  mesh.irradiance[7].g = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(refusal(encoded(mesh)).find("vertex 7: not finite"), std::string::npos);
+}
+
+TEST_P(SolutionFile, LeavesTheOldFileAndNothingElseWhenItCannotBeWritten) {
+  write_solution_file(path(), hand_made_room());
+  const std::string before = read_whole_file(path());
+  EXPECT_THROW(write_solution_file(path(), DisplayMesh{}), SolutionFileError);
+  EXPECT_EQ(read_whole_file(path()), before);
+
+  const fs::path blocked = folder_ / (std::string("folder") + GetParam());
+  fs::create_directories(blocked / "inside");
+  EXPECT_THROW(write_solution_file(blocked, hand_made_room()), SolutionFileError);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+}
+
+TEST(PlyFile, CountsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
+  std::string bytes = encode_ply(hand_made_room({.leaves_per_side = 1}));
+  const std::string element = "element vertex ";
+  const std::size_t at = bytes.find(element) + element.size();
+  bytes.replace(at, bytes.find('\n', at) - at, "2000000000");
+  EXPECT_THROW(decode_ply(bytes), SolutionFileError);
+}
+
+/// A GLB whose JSON has `from` replaced by `to`; spaces keep its size.
+std::string with_json(std::string glb, const std::string& from, std::string to) {
+  const std::size_t at = glb.find(from);
+  EXPECT_NE(at, std::string::npos);
+  EXPECT_LE(to.size(), from.size());
+  to.resize(from.size(), ' ');
+  return glb.replace(at, from.size(), to);
+}
+
+TEST(GlbFile, CountsAndPlacesBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
+  const DisplayMesh room = hand_made_room({.leaves_per_side = 2});
+  const std::string glb = encode_glb(room), count = "\"count\":" + std::to_string(room.positions.size());
+  EXPECT_THROW(decode_glb(with_json(glb, count, "\"count\":0")), SolutionFileError);
+  EXPECT_THROW(decode_glb(with_json(glb, count, "\"count\":9e9")), SolutionFileError);
+  EXPECT_THROW(decode_glb(with_json(glb, count, "\"count\":-1")), SolutionFileError);
+  EXPECT_THROW(decode_glb(with_json(glb, count, "\"count\":999")), SolutionFileError);
+  EXPECT_THROW(decode_glb(with_json(glb, "\"byteOffset\":0", "\"byteStride\":0")), SolutionFileError);
+  EXPECT_THROW(decode_glb(with_json(glb, "\"_RADIOSITY\"", "\"_RADIANCE\"")), SolutionFileError);
+}
+
+TEST(SolutionFileName, DecidesTheFormat) {
+  EXPECT_THROW(write_solution_file("room.obj", hand_made_room()), SolutionFileError);
+  EXPECT_THROW(read_solution_file("no/such/room.glb"), SolutionFileError);
+}
+
+}  // namespace
+}  // namespace alvor

@@ -1,0 +1,91 @@
+#include "meshing/display_mesh.h"
+
+#include "meshing/patch_forest.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace alvor {
+namespace {
+
+std::vector<LeafValue> refined_leaves(const BaseMesh& mesh, const std::function<RgbF(Vec3)>& field) {
+  PatchForest forest(mesh);
+  std::vector<NodeIndex> split;
+  for (std::size_t n = 0; n < 80; ++n) forest.split(forest.leaves()[n * 5 % forest.leaf_count()], {}, split);
+  std::vector<LeafValue> values;
+  for (const NodeIndex leaf : forest.leaves()) {
+    const Uv c = forest.shape(leaf).centre();
+    values.push_back({forest.id(leaf), field(mesh.roots()[forest.id(leaf).root_face()].at(c.u, c.v))});
+  }
+  std::ranges::sort(values, {}, &LeafValue::patch);
+  return values;
+}
+
+using Point = std::tuple<double, double, double>;
+
+TEST(DisplayMesh, ClosedRoomHasNoCracksAtHangingVertices) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{1, 1, 1}; }));
+  std::map<std::pair<Point, Point>, int> sides;
+  const auto point = [&](std::uint32_t v) {
+    const Vec3 p = display.positions[v];
+    return Point{p.x, p.y, p.z};
+  };
+  for (const auto& t : display.triangles)
+    for (int k = 0; k < 3; ++k) ++sides[{point(t[k]), point(t[(k + 1) % 3])}];
+  for (const auto& [side, count] : sides) {
+    EXPECT_EQ(count, 1);
+    EXPECT_TRUE(sides.contains({side.second, side.first})) << "an open edge, to the last bit of its positions";
+  }
+}
+
+TEST(DisplayMesh, UniformIrradianceStaysUniform) {
+  const BaseMesh mesh(test::furnace(2, 0.5));
+  const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{4, 4, 4}; }));
+  for (const RgbF& h : display.irradiance) EXPECT_EQ(h, (RgbF{4, 4, 4}));
+  for (const RgbF& b : display.radiosity) EXPECT_EQ(b, (RgbF{4, 4, 4}));
+}
+
+TEST(DisplayMesh, ValuesDoNotBleedAcrossACrease) {
+  const BaseMesh mesh(test::furnace(0, 0.5));
+  const auto leaves = refined_leaves(mesh, [](Vec3 p) { return p.y == 0 ? RgbF{1, 1, 1} : RgbF{7, 7, 7}; });
+  const DisplayMesh display = build_display_mesh(mesh, leaves);
+  for (std::size_t v = 0; v < display.positions.size(); ++v)
+    EXPECT_EQ(display.irradiance[v].r, display.normals[v].y > 0.5 ? 1 : 7);
+}
+
+TEST(DisplayMesh, LeavesWhereNothingArrivesDoNotDarkenTheirNeighbours) {
+  Scene scene;
+  scene.materials.push_back(test::grey(0, 0.5));
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const BaseMesh mesh(scene);
+  const PatchId root = PatchId::root(0);
+  const std::vector<LeafValue> leaves{
+      {root.child(0), {3, 3, 3}}, {root.child(1), {0, 0, 0}}, {root.child(2), {3, 3, 3}}, {root.child(3), {3, 3, 3}}};
+  const DisplayMesh display = build_display_mesh(mesh, leaves);
+  int lit = 0;
+  for (std::size_t v = 0; v < display.positions.size(); ++v) lit += display.irradiance[v].r == 3;
+  EXPECT_EQ(lit, 3 + 8);  // three centres, and all corners but the one that only the dark leaf has
+}
+
+TEST(DisplayMesh, EachTriangleStartsAtALeafCentreAndFacesTheFront) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  const auto leaves = refined_leaves(mesh, [](Vec3) { return RgbF{1, 1, 1}; });
+  const DisplayMesh display = build_display_mesh(mesh, leaves);
+  std::set<std::uint32_t> centres;
+  for (const auto& t : display.triangles) {
+    centres.insert(t[0]);
+    const Vec3 a = display.positions[t[0]], b = display.positions[t[1]], c = display.positions[t[2]];
+    EXPECT_GT(dot(cross(b - a, c - a), display.normals[t[0]]), 0);
+  }
+  EXPECT_EQ(centres.size(), leaves.size());
+}
+
+}  // namespace
+}  // namespace alvor

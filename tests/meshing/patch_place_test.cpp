@@ -1,0 +1,78 @@
+#include "meshing/patch_place.h"
+
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace alvor {
+namespace {
+
+/// A quad and a triangle that share an edge, and lie flat.
+Scene quad_and_triangle() {
+  Scene scene;
+  scene.materials.emplace_back();
+  test::add_polygon(scene, {{0, 0, 0}, {2, 0, 0}, {1.5, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{2, 0, 0}, {3, 1, 0}, {1.5, 1, 0}});
+  return scene;
+}
+
+bool contains(const BaseMesh& mesh, PatchId patch, Vec3 p) {
+  const PatchShape shape = shape_of(mesh, patch);
+  const auto corners = corners_of(mesh, shape);
+  for (int c = 0; c < shape.corner_count; ++c) {
+    const Vec3 a = corners[c], b = corners[(c + 1) % shape.corner_count];
+    if (cross(b - a, p - a).z < -1e-9) return false;
+  }
+  return true;
+}
+
+TEST(PatchPlace, ChildrenTileTheirParent) {
+  const BaseMesh mesh(quad_and_triangle());
+  for (const PatchId patch : {PatchId::root(0), PatchId::root(1), PatchId::root(1).child(3), PatchId::root(1).child(3).child(3)}) {
+    double area = 0;
+    for (int k = 0; k < 4; ++k) area += area_of(mesh, shape_of(mesh, patch.child(k)));
+    EXPECT_NEAR(area, area_of(mesh, shape_of(mesh, patch)), 1e-12);
+  }
+}
+
+TEST(PatchPlace, FinestPatchContainsThePoint) {
+  const BaseMesh mesh(quad_and_triangle());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform;
+  for (int n = 0; n < 1000; ++n)
+    for (const std::uint32_t root : {0u, 1u}) {
+      Uv at{uniform(random), uniform(random)};
+      if (root == 1 && at.u + at.v > 1) at = {1 - at.u, 1 - at.v};
+      const PatchId finest = finest_patch(mesh, root, at);
+      const Vec3 p = mesh.roots()[root].at(at.u, at.v);
+      for (const int level : {0, 1, 5, PatchId::max_level})
+        EXPECT_TRUE(contains(mesh, finest.ancestor(level), p)) << root << ' ' << at.u << ' ' << at.v << " level " << level;
+    }
+}
+
+TEST(PatchPlace, PlaceAcrossTouchesTheEdgeFromTheOtherSide) {
+  const BaseMesh mesh(quad_and_triangle());
+  int across_roots = 0;
+  for (const PatchId patch : {PatchId::root(0), PatchId::root(0).child(1).child(3), PatchId::root(1), PatchId::root(1).child(2),
+                              PatchId::root(1).child(3), PatchId::root(1).child(0).child(3)}) {
+    const PatchShape shape = shape_of(mesh, patch);
+    const auto corners = corners_of(mesh, shape);
+    for (int e = 0; e < shape.corner_count; ++e)
+      for (const double t : {0.25, 0.5, 0.75}) {
+        const auto place = place_across(mesh, shape, e, t);
+        if (!place) continue;
+        const Vec3 on_edge = lerp(corners[e], corners[(e + 1) % shape.corner_count], t);
+        const PatchShape there = shape_of(mesh, *place);
+        const Uv c = there.centre();
+        EXPECT_LT(length(mesh.roots()[there.root].at(c.u, c.v) - on_edge), 1e-3);
+        EXPECT_FALSE(patch.contains(*place));
+        across_roots += place->root_face() != patch.root_face();
+      }
+  }
+  EXPECT_GT(across_roots, 0);
+}
+
+}  // namespace
+}  // namespace alvor

@@ -1,0 +1,52 @@
+#include "radiosity/form_factor.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numbers>
+#include <vector>
+
+namespace alvor {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A rectangle a x b parallel to the receiver at height c, one corner above the point, its front down (Howell, catalogue B-3).
+double parallel_rectangle(double a, double b, double c) {
+  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * pi);
+}
+
+TEST(FormFactor, ParallelRectangleMatchesTheClosedForm) {
+  for (const auto& [a, b, c] : {std::array{1.0, 1.0, 1.0}, {2.0, 0.5, 0.1}, {1e-3, 1e-3, 10.0}, {1e3, 1e3, 1.0}}) {
+    const Vec3 front_down[] = {{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}};
+    const double expected = parallel_rectangle(a, b, c);
+    EXPECT_NEAR(point_to_polygon({0, 0, 0}, {0, 0, 1}, front_down), expected, 1e-9 * expected + 1e-15);
+  }
+}
+
+TEST(FormFactor, BackOfThePolygonGivesNothing) {
+  const Vec3 front_up[] = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  EXPECT_EQ(point_to_polygon({0, 0, 0}, {0, 0, 1}, front_up), 0);
+}
+
+TEST(FormFactor, PartBelowTheHorizonIsCutOff) {
+  const Vec3 wall[] = {{1, -1, -5}, {1, -1, 2}, {1, 1, 2}, {1, 1, -5}};
+  const Vec3 upper[] = {{1, -1, 0}, {1, -1, 2}, {1, 1, 2}, {1, 1, 0}};
+  const double whole = point_to_polygon({0, 0, 0}, {0, 0, 1}, wall);
+  EXPECT_GT(whole, 0.01);
+  EXPECT_NEAR(whole, point_to_polygon({0, 0, 0}, {0, 0, 1}, upper), 1e-12);
+}
+
+TEST(FormFactor, FacesOfAClosedRoomSumToOne) {
+  const Vec3 point{0.3, 0.2, 0}, normal{0, 0, 1};
+  const std::vector<std::vector<Vec3>> room{{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}},
+                                            {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}}, {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}},
+                                            {{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}};
+  double sum = 0;
+  for (const auto& face : room) sum += point_to_polygon(point, normal, face);
+  EXPECT_NEAR(sum, 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace alvor

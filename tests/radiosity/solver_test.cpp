@@ -1,0 +1,148 @@
+#include "radiosity/solver.h"
+
+#include "meshing/patch_place.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace alvor {
+namespace {
+
+std::vector<LeafValue> solved(const Scene& scene, const SolveOptions& options = {}) {
+  const BaseMesh mesh(scene);
+  SolutionLog log;
+  solve(mesh, options, log, {});
+  EXPECT_TRUE(log.closed());
+  return log.leaves();
+}
+
+/// A room with a lamp in the ceiling and a block on the floor.
+Scene lit_room(double scale = 1) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.6), test::grey(50, 0)};
+  test::add_box(scene, {0, 0, 0}, {4, 3, 5}, true);
+  test::add_box(scene, {1, 0, 1}, {2, 1, 3}, false);
+  test::add_polygon(scene, {{1.5, 2.99, 2}, {2.5, 2.99, 2}, {2.5, 2.99, 3}, {1.5, 2.99, 3}}, 1);
+  for (Vec3& vertex : scene.vertices) vertex = scale * vertex;
+  return scene;
+}
+
+TEST(Solver, FurnaceIsExactOnAnyMesh) {
+  // B = E / (1 - rho) everywhere, so H = 2 for E = 1 and rho = 0.5.
+  for (const int depth : {0, 1, 3}) {
+    for (const bool with_block : {false, true}) {
+      Scene scene = test::furnace(1, 0.5);
+      if (with_block) test::add_box(scene, {1, 0.5, 1}, {2, 1, 2}, false);
+      for (const LeafValue& leaf : solved(scene, {.tolerance = 1e-9, .max_depth = depth, .max_leaves = 2000}))
+        EXPECT_NEAR(leaf.irradiance.g, 2, 2e-5) << "depth " << depth;
+    }
+  }
+}
+
+TEST(Solver, LuminousCeilingOfAConvexRoomSatisfiesTheMeanValueIdentity) {
+  // Uniform rho: the area mean of B is mean E / (1 - rho), whatever the emission (reciprocity and closure).
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0.5)};
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, true, {0, 1, 0, 0, 0, 0});
+  const BaseMesh mesh(scene);
+  double mean = 0;
+  for (const LeafValue& leaf : solved(scene, {.tolerance = 0.005})) {
+    const double emission = mesh.material_of(leaf.patch.root_face()).emission.g;
+    mean += area_of(mesh, shape_of(mesh, leaf.patch)) * (emission + 0.5 * leaf.irradiance.g) / 6;
+  }
+  EXPECT_NEAR(mean, (1.0 / 6) / (1 - 0.5), 0.005 / 3);
+}
+
+TEST(Solver, UnitsAndOriginDoNotMatter) {
+  const auto metres = solved(lit_room());
+  const auto millimetres = solved(lit_room(1000));
+  Scene moved_scene = lit_room();
+  for (Vec3& vertex : moved_scene.vertices) vertex += {1e5, -2e5, 3e5};
+  const auto moved = solved(moved_scene);
+  ASSERT_EQ(metres.size(), millimetres.size());
+  for (std::size_t n = 0; n < metres.size(); ++n)
+    EXPECT_NEAR(metres[n].irradiance.g, millimetres[n].irradiance.g, 0.02 * metres[n].irradiance.g + 1e-3);
+  double before = 0, after = 0;
+  for (const LeafValue& leaf : metres) before += leaf.irradiance.g / double(metres.size());
+  for (const LeafValue& leaf : moved) after += leaf.irradiance.g / double(moved.size());
+  EXPECT_NEAR(before, after, 0.02 * before);
+}
+
+TEST(Solver, SameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
+  const auto once = solved(lit_room(), {.threads = 1, .seed = 4});
+  EXPECT_EQ(once, solved(lit_room(), {.threads = 1, .seed = 4}));
+  EXPECT_EQ(once, solved(lit_room(), {.threads = 2, .seed = 4}));
+  EXPECT_NE(once, solved(lit_room(), {.threads = 1, .seed = 5}));
+}
+
+TEST(Solver, LimitsAreKeptAndNamed) {
+  const BaseMesh mesh(lit_room());
+  SolutionLog few, flat;
+  EXPECT_EQ(solve(mesh, {.tolerance = 1e-9, .max_leaves = 1500}, few, {}).reason, StopReason::max_leaves);
+  EXPECT_LE(few.leaves().size(), 1500u);
+  SolutionLog shallow;
+  solve(mesh, {.tolerance = 0.02, .max_depth = 2}, shallow, {});
+  for (const LeafValue& leaf : shallow.leaves()) EXPECT_LE(leaf.patch.level(), 2);
+}
+
+TEST(Solver, RoomWithoutLightIsBlackAndDone) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.6)};
+  test::add_box(scene, {0, 0, 0}, {4, 3, 5}, true);
+  const BaseMesh mesh(scene);
+  SolutionLog log;
+  EXPECT_EQ(solve(mesh, {}, log, {}).reason, StopReason::dark);
+  EXPECT_EQ(log.last_step().rays, 0u);
+  for (const LeafValue& leaf : log.leaves()) EXPECT_TRUE(leaf.irradiance.is_zero());
+}
+
+TEST(Solver, StopRequestLeavesAUsableSolution) {
+  const BaseMesh mesh(lit_room());
+  SolutionLog log;
+  std::stop_source stop;
+  const auto handle = log.listen([&] {
+    if (log.head() == 6) stop.request_stop();
+  });
+  EXPECT_EQ(solve(mesh, {}, log, stop.get_token()).reason, StopReason::cancelled);
+  log.forget(handle);
+  EXPECT_EQ(log.head(), 6u);
+  EXPECT_TRUE(log.closed());
+  double brightest = 0;
+  for (const LeafValue& leaf : log.leaves()) brightest = std::max<double>(brightest, leaf.irradiance.g);
+  EXPECT_GT(brightest, 1);
+}
+
+TEST(Solver, StepsCountUpAndUnshotPowerGoesDown) {
+  const BaseMesh mesh(lit_room());
+  SolutionLog log;
+  solve(mesh, {}, log, {});
+  const auto steps = log.steps();
+  ASSERT_GT(steps.size(), 8u);
+  EXPECT_EQ(steps.front().rays, 0u);
+  EXPECT_EQ(steps.front().unshot_fraction, 1);
+  for (std::size_t n = 1; n < steps.size(); ++n) {
+    EXPECT_GE(steps[n].elapsed_s, steps[n - 1].elapsed_s);
+    EXPECT_GE(steps[n].rays, steps[n - 1].rays);
+    EXPECT_GE(steps[n].leaves, steps[n - 1].leaves);
+  }
+  EXPECT_LE(steps.back().unshot_fraction, 1e-6);
+  EXPECT_LE(steps.back().estimated_error, 0.02);
+}
+
+TEST(Solver, AmbientTermFadesAsLightIsShot) {
+  const BaseMesh mesh(lit_room());
+  SolutionLog with, without;
+  solve(mesh, {}, with, {});
+  solve(mesh, {.strategy = Strategy::sorted}, without, {});
+  double largest = 0;
+  for (const Step& step : with.steps()) largest = std::max(largest, step.ambient_irradiance.g);
+  EXPECT_GT(largest, 0.1);
+  EXPECT_LT(with.last_step().ambient_irradiance.g, 1e-4 * largest);
+  for (const Step& step : without.steps()) EXPECT_TRUE(step.ambient_irradiance.is_zero());
+  EXPECT_EQ(with.leaves(), without.leaves());
+}
+
+}  // namespace
+}  // namespace alvor

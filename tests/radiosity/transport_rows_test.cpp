@@ -1,0 +1,110 @@
+#include "radiosity/transport_rows.h"
+
+#include "meshing/patch_forest.h"
+#include "radiosity/form_factor.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <map>
+
+namespace alvor {
+namespace {
+
+struct Traced {
+  std::vector<PatchId> patches;
+  std::vector<TransportRow> rows;
+};
+
+Traced trace(const BaseMesh& mesh, int splits, std::uint64_t seed = 1) {
+  PatchForest forest(mesh);
+  std::vector<NodeIndex> split;
+  for (int n = 0; n < splits; ++n) forest.split(forest.leaves()[0], {}, split);
+  std::vector<PatchShape> shapes;
+  Traced traced;
+  for (const NodeIndex leaf : forest.leaves()) {
+    shapes.push_back(forest.shape(leaf));
+    traced.patches.push_back(forest.id(leaf));
+  }
+  const LocalScene scene(mesh);
+  RayBudget budget([] { return false; });
+  traced.rows = trace_rows(scene, DirectionSets(seed), shapes, traced.patches, seed, budget);
+  EXPECT_GE(budget.rays(), traced.patches.size() * rays_per_row);
+  return traced;
+}
+
+TEST(TransportRows, RowsOfAClosedRoomSumToOne) {
+  Scene scene = test::furnace(1, 0.5);
+  test::add_box(scene, {1, 0.5, 1}, {2, 1, 2}, false);
+  for (const TransportRow& row : trace(BaseMesh(scene), 100).rows)
+    EXPECT_EQ(row.hits.size(), row.ray_count()) << "every ray must end on a front";
+}
+
+TEST(TransportRows, HitsFollowTheFormFactorsOfTheFaces) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  const Traced traced = trace(mesh, 0);
+  std::map<std::uint32_t, int> hits;
+  for (const PatchId& hit : traced.rows[0].hits) ++hits[hit.root_face()];
+  // Rows sample uniformly over the floor: compare with the exact mean over a fine grid of its points.
+  std::map<std::uint32_t, double> exact;
+  constexpr int n = 20;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (std::uint32_t face = 1; face < 6; ++face)
+        exact[face] += point_to_polygon(mesh.roots()[0].at((i + 0.5) / n, (j + 0.5) / n), mesh.roots()[0].normal,
+                                        std::span(mesh.roots()[face].corners)) / (n * n);
+  for (const auto& [face, factor] : exact) {
+    const double standard_error = std::sqrt(factor * (1 - factor) / rays_per_row);  // stratified rays err less
+    EXPECT_NEAR(double(hits[face]) / rays_per_row, factor, 3 * standard_error) << "face " << face;
+  }
+  EXPECT_FALSE(hits.contains(0));
+}
+
+TEST(TransportRows, SameSeedGivesTheSameRowsAndAnotherSeedOthers) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  const Traced first = trace(mesh, 20, 5), again = trace(mesh, 20, 5), other = trace(mesh, 20, 6);
+  bool differ = false;
+  for (std::size_t r = 0; r < first.rows.size(); ++r) {
+    EXPECT_EQ(first.rows[r].hits, again.rows[r].hits);
+    differ |= first.rows[r].hits != other.rows[r].hits;
+  }
+  EXPECT_TRUE(differ);
+}
+
+TEST(TransportRows, OriginsUnderASolidAreHidden) {
+  Scene scene = test::furnace(1, 0.5);
+  test::add_box(scene, {0, 0, 0}, {1.5, 1, 4}, false);  // stands on half of the floor
+  const Traced traced = trace(BaseMesh(scene), 0);
+  const TransportRow& floor = traced.rows[0];
+  EXPECT_TRUE(floor.crosses_contact());
+  EXPECT_EQ(std::popcount(floor.hidden_origins), 8);
+  EXPECT_EQ(floor.ray_count(), 128u);
+  EXPECT_EQ(floor.hits.size(), floor.ray_count());
+}
+
+TEST(TransportRows, TwoSidedFacesAreHitOnTheSideThatIsSeen) {
+  Scene scene = test::furnace(1, 0.5);
+  scene.materials.push_back({"sheet", {}, {0.5, 0.5, 0.5}, true});
+  test::add_polygon(scene, {{0, 1, 0}, {0, 1, 4}, {3, 1, 4}, {3, 1, 0}}, 1);  // front up, across the whole room
+  const BaseMesh mesh(scene);
+  const Traced traced = trace(mesh, 0);
+  const std::uint32_t front = 6, back = mesh.roots()[6].twin;
+  for (const PatchId& hit : traced.rows[0].hits) EXPECT_NE(hit.root_face(), front);  // from the floor
+  for (const PatchId& hit : traced.rows[1].hits) EXPECT_NE(hit.root_face(), back);   // from the ceiling
+  EXPECT_EQ(traced.rows[0].hits.size(), traced.rows[0].ray_count());
+}
+
+TEST(TransportRows, AppendedRowsKeepTheirHalvesApart) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  TransportRow row = trace(mesh, 0, 1).rows[0];
+  const TransportRow more = trace(mesh, 0, 2).rows[0], before = row;
+  row.append(more);
+  EXPECT_EQ(row.ray_count(), 2u * rays_per_row);
+  EXPECT_EQ(row.first_half_hits, before.first_half_hits + more.first_half_hits);
+  EXPECT_EQ(row.hits[before.first_half_hits], more.hits[0]);
+  EXPECT_EQ(row.hits.back(), more.hits.back());
+}
+
+}  // namespace
+}  // namespace alvor

@@ -1,0 +1,49 @@
+#pragma once
+// Scenes that tests share.
+
+#include "meshing/scene.h"
+
+#include <array>
+#include <initializer_list>
+
+namespace alvor::test {
+
+inline void add_polygon(Scene& scene, std::initializer_list<Vec3> corners, std::uint32_t material = 0) {
+  std::vector<std::uint32_t> ring;
+  for (const Vec3& corner : corners) {
+    ring.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+    scene.vertices.push_back(corner);
+  }
+  scene.add_face(ring, material);
+}
+
+/// Six quads; normals point inwards for a room, outwards for a solid. Faces: floor (y low), ceiling, x low, x high, z low, z high.
+inline void add_box(Scene& scene, Vec3 low, Vec3 high, bool inwards, std::array<std::uint32_t, 6> materials = {}) {
+  const auto [x, y, z] = low;
+  const auto [X, Y, Z] = high;
+  const std::array<std::array<Vec3, 4>, 6> in{{{{{x, y, z}, {x, y, Z}, {X, y, Z}, {X, y, z}}},
+                                               {{{x, Y, z}, {X, Y, z}, {X, Y, Z}, {x, Y, Z}}},
+                                               {{{x, y, z}, {x, Y, z}, {x, Y, Z}, {x, y, Z}}},
+                                               {{{X, y, z}, {X, y, Z}, {X, Y, Z}, {X, Y, z}}},
+                                               {{{x, y, z}, {X, y, z}, {X, Y, z}, {x, Y, z}}},
+                                               {{{x, y, Z}, {x, Y, Z}, {X, Y, Z}, {X, y, Z}}}}};
+  for (std::size_t f = 0; f < 6; ++f) {
+    const auto& c = in[f];
+    if (inwards) add_polygon(scene, {c[0], c[1], c[2], c[3]}, materials[f]);
+    else add_polygon(scene, {c[3], c[2], c[1], c[0]}, materials[f]);
+  }
+}
+
+inline Material grey(double emission, double reflectance) {
+  return {"grey", {emission, emission, emission}, {reflectance, reflectance, reflectance}, false};
+}
+
+/// A closed room in which every surface emits and reflects the same.
+inline Scene furnace(double emission, double reflectance) {
+  Scene scene;
+  scene.materials.push_back(grey(emission, reflectance));
+  add_box(scene, {0, 0, 0}, {3, 2, 4}, true);
+  return scene;
+}
+
+}  // namespace alvor::test

@@ -1,0 +1,132 @@
+#include "client/client.h"
+#include "proto/codec.h"
+#include "tests/server/sample_scenes.h"
+#include "tests/server/staged_solver.h"
+#include "tests/server/test_server.h"
+
+#include <gtest/gtest.h>
+
+namespace alvor {
+namespace {
+
+template <class Call>
+std::string error_of(Call&& call) {
+  try {
+    call();
+  } catch (const RpcError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+ServiceOptions staged(StagedSolver& stage) {
+  ServiceOptions options;
+  options.solves.solver = stage.solver();
+  return options;
+}
+
+TEST(Api, SceneFarLargerThanAMessageComesBackAsItWas) {
+  TestServer server;
+  Client client(server.channel());
+  const Scene scene = squares(60'000);  // 7 MB; a message may have 4
+  const v1::Scene facts = client.create_scene(scene, "large");
+  EXPECT_EQ(facts.face_count(), 60'000u);
+  EXPECT_EQ(client.get_scene(facts.name()).display_name(), "large");
+  const Scene back = client.read_scene(facts.name());
+  EXPECT_EQ(back.vertices, scene.vertices);
+  EXPECT_EQ(back.corners, scene.corners);
+  EXPECT_EQ(back.faces.size(), scene.faces.size());
+}
+
+TEST(Api, BadScenesAreRefusedByPlaceAndNothingIsKept) {
+  TestServer server;
+  Client client(server.channel());
+  for (const BadScene& bad : bad_scenes())
+    EXPECT_EQ(error_of([&] { client.create_scene(bad.scene, ""); }).find("INVALID_ARGUMENT: " + bad.reason), 0u) << bad.reason;
+  EXPECT_TRUE(client.list_scenes().empty());
+}
+
+TEST(Api, UploadBeyondTheLimitEndsEarly) {
+  ServiceOptions options;
+  options.upload.corners = 1000;
+  TestServer server(options);
+  Client client(server.channel());
+  EXPECT_EQ(error_of([&] { client.create_scene(squares(30'000), ""); }),
+            "RESOURCE_EXHAUSTED: scene: more than 1000 corners, the limit of this server");
+}
+
+TEST(Api, UploadThatIsBrokenOffLeavesNothing) {
+  TestServer server;
+  const auto stub = v1::SceneService::NewStub(server.channel());
+  grpc::ClientContext context;
+  v1::Scene answer;
+  const auto writer = stub->CreateScene(&context, &answer);
+  v1::CreateSceneRequest message;
+  message.mutable_scene();
+  writer->Write(message);
+  const Scene scene = squares(3);
+  SceneSlicer(scene).next(*message.mutable_chunk());
+  writer->Write(message);
+  context.TryCancel();
+  EXPECT_EQ(writer->Finish().error_code(), grpc::CANCELLED);
+  EXPECT_TRUE(Client(server.channel()).list_scenes().empty());
+}
+
+TEST(Api, ErrorsNameTheResource) {
+  TestServer server;
+  Client client(server.channel());
+  EXPECT_EQ(error_of([&] { client.get_scene("scenes/x"); }), "NOT_FOUND: scenes/x does not exist");
+  EXPECT_EQ(error_of([&] { client.read_scene("scenes/x"); }), "NOT_FOUND: scenes/x does not exist");
+  EXPECT_EQ(error_of([&] { client.create_solve("scenes/x", {}); }), "NOT_FOUND: scenes/x does not exist");
+  EXPECT_EQ(error_of([&] { client.list_solves("scenes/x"); }), "NOT_FOUND: scenes/x does not exist");
+  Client::Watch watch;
+  EXPECT_EQ(error_of([&] { client.watch_solve("scenes/x/solves/y", watch, [](auto&) {}); }),
+            "NOT_FOUND: scenes/x/solves/y does not exist");
+  const std::string scene = client.create_scene(squares(1), "").name();
+  v1::SolveSpec spec;
+  spec.set_tolerance(2);
+  EXPECT_EQ(error_of([&] { client.create_solve(scene, spec); }), "INVALID_ARGUMENT: solve.spec.tolerance: 2 is outside (0, 1]");
+}
+
+TEST(Api, SceneLivesAsLongAsItsSolves) {
+  StagedSolver stage;
+  TestServer server(staged(stage));
+  Client client(server.channel());
+  const std::string scene = client.create_scene(squares(1), "").name();
+  const std::string solve = client.create_solve(scene, {}).name();
+  EXPECT_EQ(error_of([&] { client.delete_solve(solve); }), "FAILED_PRECONDITION: " + solve + " is running: cancel it first");
+  EXPECT_EQ(error_of([&] { client.delete_scene(scene); }), "FAILED_PRECONDITION: " + scene + " has solves: delete them first");
+  client.cancel_solve(solve);
+  Client::Watch watch;
+  EXPECT_EQ(client.watch_solve(solve, watch, [](auto&) {}).state(), v1::Solve::CANCELLED);
+  client.delete_solve(solve);
+  client.delete_scene(scene);
+  EXPECT_TRUE(client.list_scenes().empty());
+}
+
+TEST(Api, ListsGoOverAllPages) {
+  TestServer server;
+  Client client(server.channel());
+  for (int i = 0; i < 60; ++i) client.create_scene(squares(1), std::to_string(i));
+  const auto all = client.list_scenes();
+  ASSERT_EQ(all.size(), 60u);
+  EXPECT_EQ(all.front().display_name(), "59");
+  EXPECT_EQ(all.back().display_name(), "0");
+}
+
+TEST(Api, DarkSceneIsSolvedByTheRealSolver) {
+  TestServer server;
+  Client client(server.channel());
+  Scene dark = squares(2);
+  dark.materials[0].emission = {};
+  v1::SolveSpec spec;
+  spec.set_max_depth(0);
+  Client::Watch watch;
+  const auto started = client.create_solve(client.create_scene(dark, "").name(), spec);
+  const auto solve = client.watch_solve(started.name(), watch, [](auto&) {});
+  EXPECT_EQ(solve.state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(watch.mirror.leaf_count(), 2u);
+}
+
+}  // namespace
+}  // namespace alvor

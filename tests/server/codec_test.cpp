@@ -1,0 +1,123 @@
+#include "proto/codec.h"
+
+#include "tests/server/sample_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace alvor {
+namespace {
+
+Scene assemble(const std::vector<v1::GeometryChunk>& chunks) {
+  SceneAssembler assembler;
+  for (const auto& chunk : chunks) EXPECT_FALSE(assembler.add(chunk));
+  return assembler.take();
+}
+
+std::vector<v1::GeometryChunk> slice(const Scene& scene, std::size_t max_bytes) {
+  std::vector<v1::GeometryChunk> chunks;
+  SceneSlicer slicer(scene, max_bytes);
+  for (v1::GeometryChunk chunk; slicer.next(chunk);) chunks.push_back(chunk);
+  return chunks;
+}
+
+TEST(SceneCodec, EncodeDecodeEncodeGivesTheSameBytes) {
+  Scene scene = squares(50);
+  scene.materials.push_back({"mirror", {}, {0.1, 0.2, 0.3}, true});
+  scene.faces[7].material = 1;
+  const auto once = slice(scene, 1 << 20);
+  ASSERT_EQ(once.size(), 1u);
+  const auto twice = slice(assemble(once), 1 << 20);
+  ASSERT_EQ(twice.size(), 1u);
+  EXPECT_EQ(once[0].SerializeAsString(), twice[0].SerializeAsString());
+}
+
+TEST(SceneCodec, ManySmallChunksCarryTheSameScene) {
+  const Scene scene = squares(200);
+  const auto chunks = slice(scene, 300);
+  EXPECT_GT(chunks.size(), 50u);
+  for (const auto& chunk : chunks) EXPECT_LE(chunk.ByteSizeLong(), 300u);
+  EXPECT_EQ(slice(assemble(chunks), 1 << 20)[0].SerializeAsString(), slice(scene, 1 << 20)[0].SerializeAsString());
+}
+
+TEST(SceneCodec, FaceLargerThanAChunkTravelsWhole) {
+  Scene scene = squares(1);
+  scene.add_face(std::vector<std::uint32_t>(1000, 3), 0);
+  const Scene arrived = assemble(slice(scene, 300));
+  ASSERT_EQ(arrived.faces.size(), 2u);
+  EXPECT_EQ(arrived.faces[1].corner_count, 1000u);
+}
+
+TEST(SceneCodec, ChunksThatContradictThemselvesAreRefusedByName) {
+  struct Case {
+    const char* fault;
+    void (*spoil)(v1::GeometryChunk&);
+  };
+  const Case cases[] = {
+      {"chunk 1, vertex_coordinates: has 13 numbers, needs three per vertex", [](auto& c) { c.add_vertex_coordinates(1); }},
+      {"chunk 1, face_materials: has 2 entries for 1 faces", [](auto& c) { c.add_face_materials(0); }},
+      {"chunk 1, corner_vertices: has 5 entries, but face_corner_counts add up to 4", [](auto& c) { c.add_corner_vertices(0); }},
+      {"chunk 1, corner_vertices: has 4 entries, but face_corner_counts add up to 4294967295",
+       [](auto& c) { c.set_face_corner_counts(0, 0xffffffff); }},
+      {"face 1: has 2 corners, needs at least 3", [](auto& c) { c.set_face_corner_counts(0, 2); }},
+  };
+  const v1::GeometryChunk good = slice(squares(1), 1 << 20)[0];
+  for (const Case& spoilt : cases) {
+    v1::GeometryChunk bad = good;
+    spoilt.spoil(bad);
+    SceneAssembler assembler;
+    ASSERT_FALSE(assembler.add(good));
+    const auto fault = assembler.add(bad);
+    ASSERT_TRUE(fault) << spoilt.fault;
+    EXPECT_EQ(fault->text(), spoilt.fault);
+    EXPECT_EQ(assembler.scene().vertices.size(), 4u) << "a bad chunk leaves nothing behind";
+  }
+}
+
+Delta sample_delta() {
+  Delta delta;
+  delta.from_revision = 3;
+  delta.to_revision = 5;
+  delta.head = 9;
+  delta.values = {{PatchId::root(0).child(2), {1, 0.1f, 0}}, {PatchId::root(7), {3e-30f, 2, 1e30f}}};
+  delta.steps.resize(2);
+  delta.steps[0] = {4, 0.1, 3, 5, 1'000'000'000'000, 8, 0.5, 0.25, {}};
+  delta.steps[1] = {5, 1.9999999999, 4, 6, 1'000'000'000'001, 9, 0.3, 0.2, {1, 2, 3}};
+  return delta;
+}
+
+TEST(DeltaCodec, EncodeDecodeEncodeGivesTheSameBytes) {
+  v1::WatchSolveResponse once, twice;
+  encode(sample_delta(), once);
+  Delta decoded;
+  ASSERT_FALSE(decode(once, decoded));
+  EXPECT_EQ(decoded.values, sample_delta().values);
+  encode(decoded, twice);
+  EXPECT_EQ(once.SerializeAsString(), twice.SerializeAsString());
+}
+
+TEST(DeltaCodec, FramesThatContradictThemselvesAreRefused) {
+  v1::WatchSolveResponse message;
+  encode(sample_delta(), message);
+  Delta decoded;
+  message.add_irradiance(1);
+  EXPECT_EQ(decode(message, decoded)->text(), "irradiance: has 7 numbers for 2 patches, needs three each");
+  message.mutable_irradiance()->RemoveLast();
+  message.set_irradiance(4, NAN);
+  EXPECT_EQ(decode(message, decoded)->reason, "irradiance is not finite");
+}
+
+TEST(DurationCodec, TakesAnyNumber) {
+  for (const double seconds : {0.0, 1e-9, 0.9999999999, 1.25, -3.5, 86400.0 * 365})
+    EXPECT_NEAR(decode_seconds(encode_seconds(seconds)), seconds, 1e-9);
+  EXPECT_EQ(encode_seconds(NAN).seconds(), 0);
+  EXPECT_EQ(encode_seconds(INFINITY).seconds(), 315'576'000'000);
+}
+
+TEST(TextCodec, MakesValidUtf8OfAnything) {
+  EXPECT_EQ(as_utf8("Küche \xf0\x9f\x92\xa1"), "Küche \xf0\x9f\x92\xa1");
+  EXPECT_EQ(as_utf8("K\xfc" "che"), "K?che");
+  EXPECT_EQ(as_utf8("\xc0\x80 \xed\xa0\x80 \xe2\x82"), "?? ??? ??");
+}
+
+}  // namespace
+}  // namespace alvor

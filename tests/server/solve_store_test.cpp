@@ -1,0 +1,140 @@
+#include "server/solve_store.h"
+
+#include "tests/server/refusal.h"
+#include "tests/server/sample_scenes.h"
+#include "tests/server/staged_solver.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/null_sink.h>
+#include <spdlog/spdlog.h>
+
+namespace alvor {
+namespace {
+
+class SolveStoreTest : public testing::Test {
+ protected:
+  static SolveStoreOptions options_for(StagedSolver& stage) {
+    return {.max_running = 2,
+            .limits = {},
+            .solver = stage.solver(),
+            .logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>())};
+  }
+  std::shared_ptr<StoredSolve> create() { return solves.create(scenes.use(scene), {}); }
+  static v1::Solve ended(const std::shared_ptr<StoredSolve>& solve) {
+    // The state is final before the log's listeners are woken for the last time, but its waiters may be woken earlier.
+    while (!solve->ended()) std::this_thread::yield();
+    return solve->describe();
+  }
+
+  StagedSolver stage;
+  SceneStore scenes;
+  std::string scene = scenes.add(squares(2), "")->facts.name();
+  SolveStore solves{options_for(stage)};
+};
+
+TEST_F(SolveStoreTest, SolveRunsUntilTheSolverReturns) {
+  const auto solve = create();
+  EXPECT_EQ(solve->describe().state(), v1::Solve::RUNNING);
+  EXPECT_FALSE(solve->describe().has_last_step());
+  Step step;
+  step.shots = 3;
+  stage.log().publish({}, step);
+  EXPECT_EQ(solve->describe().last_step().shots(), 3u);
+  stage.finish();
+  EXPECT_EQ(ended(solve).state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(ended(solve).end_reason(), text(StopReason::tolerance));
+  EXPECT_TRUE(ended(solve).has_end_time());
+}
+
+TEST_F(SolveStoreTest, CancelledSolveStaysReadable) {
+  const auto solve = create();
+  stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
+  solves.cancel(solve->name);
+  EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
+  EXPECT_EQ(solves.find(solve->name)->log.leaves().size(), 1u);
+  EXPECT_EQ(ended(solves.cancel(solve->name)).state(), v1::Solve::CANCELLED) << "cancelling again changes nothing";
+}
+
+TEST_F(SolveStoreTest, SolverThatThrowsFailsTheSolveAndNotTheServer) {
+  const auto solve = create();
+  stage.fail("no rays today");
+  EXPECT_EQ(ended(solve).state(), v1::Solve::FAILED);
+  EXPECT_EQ(ended(solve).end_reason(), "no rays today");
+  solve->log.wait_beyond(solve->log.head());  // returns: the log is closed although the solver did not
+}
+
+TEST_F(SolveStoreTest, OnlySoManyRunAtATime) {
+  create();
+  create();
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(); }), "2 solves are running, as many as this server allows");
+}
+
+TEST_F(SolveStoreTest, RunningSolveCannotBeDeletedAndItsSceneNeither) {
+  const auto solve = create();
+  EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { solves.remove(solve->name); }),
+            solve->name + " is running: cancel it first");
+  stage.finish();
+  ended(solve);
+  EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { scenes.remove(scene); }), scene + " has solves: delete them first");
+  solves.remove(solve->name);
+  scenes.remove(scene);
+  EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { solves.find(solve->name); }), solve->name + " does not exist");
+}
+
+TEST_F(SolveStoreTest, ShutDownCancelsAndRefusesWhatComesLater) {
+  const auto solve = create();
+  stage.log();
+  solves.shut_down();
+  EXPECT_EQ(solve->describe().state(), v1::Solve::CANCELLED);
+  EXPECT_EQ(refusal_of(grpc::UNAVAILABLE, [&] { create(); }), "the server is stopping");
+}
+
+TEST_F(SolveStoreTest, ListsOneSceneOrAll) {
+  const std::string other = scenes.add(squares(1), "")->facts.name();
+  const auto first = create();
+  const auto second = solves.create(scenes.use(other), {});
+  EXPECT_EQ(solves.list(scene, {}).items.size(), 1u);
+  const auto all = solves.list("scenes/-", {}).items;
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0]->name, second->name);
+}
+
+TEST(SolveSpec, ZeroMeansTheDefault) {
+  const SolveOptions options = options_of({}, {}), defaults;
+  EXPECT_EQ(options.tolerance, defaults.tolerance);
+  EXPECT_EQ(options.max_depth, defaults.max_depth);
+  EXPECT_EQ(options.max_leaves, defaults.max_leaves);
+  EXPECT_EQ(options.time_limit_s, defaults.time_limit_s);
+  EXPECT_EQ(options.seed, defaults.seed);
+  v1::SolveSpec zeros;
+  zeros.set_max_depth(0);
+  zeros.set_seed(0);
+  EXPECT_EQ(options_of(zeros, {}).max_depth, 0);
+  EXPECT_EQ(options_of(zeros, {}).seed, 0u);
+}
+
+TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
+  struct Case {
+    const char* refusal;
+    void (*spoil)(v1::SolveSpec&);
+  };
+  const Case cases[] = {
+      {"solve.spec.tolerance: 2 is outside (0, 1]", [](auto& s) { s.set_tolerance(2); }},
+      {"solve.spec.tolerance: -0.5 is outside (0, 1]", [](auto& s) { s.set_tolerance(-0.5); }},
+      {"solve.spec.tolerance: nan is outside (0, 1]", [](auto& s) { s.set_tolerance(NAN); }},
+      {"solve.spec.max_depth: 16 is outside [0, 15]", [](auto& s) { s.set_max_depth(16); }},
+      {"solve.spec.max_elements: 101 is more than 100, the limit of this server", [](auto& s) { s.set_max_elements(101); }},
+      {"solve.spec.min_edge_meters: -1 is not a finite length >= 0", [](auto& s) { s.set_min_edge_meters(-1); }},
+      {"solve.spec.time_limit: -1 s is not a duration >= 0", [](auto& s) { s.mutable_time_limit()->set_seconds(-1); }},
+      {"solve.spec.threads: 2 is outside [0, 1]", [](auto& s) { s.set_threads(2); }},
+      {"solve.spec.strategy: 99 is not known to this server", [](auto& s) { s.set_strategy(static_cast<v1::Strategy>(99)); }},
+  };
+  for (const Case& spoilt : cases) {
+    v1::SolveSpec spec;
+    spoilt.spoil(spec);
+    EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT, [&] { options_of(spec, {.leaves = 100, .threads = 1}); }), spoilt.refusal);
+  }
+}
+
+}  // namespace
+}  // namespace alvor

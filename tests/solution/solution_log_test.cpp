@@ -1,0 +1,98 @@
+#include "solution/solution_log.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace alvor {
+namespace {
+
+const PatchId root = PatchId::root(0);
+
+LeafValue value(PatchId patch, float x) { return {patch, {x, 2 * x, 3 * x}}; }
+
+std::vector<LeafValue> children(PatchId patch, float x) {
+  return {value(patch.child(0), x), value(patch.child(1), x), value(patch.child(2), x), value(patch.child(3), x)};
+}
+
+TEST(SolutionLog, KeepsTheNewestValueOfEachLeaf) {
+  SolutionLog log;
+  log.publish(std::vector{value(root, 1)}, {});
+  log.publish(std::vector{value(root, 2)}, {});
+  EXPECT_EQ(log.head(), 2u);
+  EXPECT_EQ(log.leaves(), std::vector{value(root, 2)});
+}
+
+TEST(SolutionLog, SplitReplacesTheAncestor) {
+  SolutionLog log;
+  log.publish(std::vector{value(root, 1)}, {});
+  log.publish(children(root, 2), {});
+  EXPECT_EQ(log.leaves(), children(root, 2));
+}
+
+TEST(SolutionLog, SinceGivesOnlyWhatChanged) {
+  SolutionLog log;
+  log.publish(children(root, 1), {});
+  log.publish(std::vector{value(root.child(2), 5)}, {});
+  const Delta delta = log.since({1});
+  EXPECT_EQ(delta.values, std::vector{value(root.child(2), 5)});
+  EXPECT_EQ(delta.from_revision, 1u);
+  EXPECT_EQ(delta.to_revision, 2u);
+  EXPECT_TRUE(delta.whole());
+  EXPECT_TRUE(log.since({2}).values.empty());
+}
+
+TEST(SolutionLog, SinceCarriesEveryStepOfTheSpan) {
+  SolutionLog log;
+  for (int n = 1; n <= 5; ++n) log.publish(std::vector{value(root, float(n))}, {.shots = std::uint64_t(n)});
+  const Delta delta = log.since({2});
+  ASSERT_EQ(delta.steps.size(), 3u);
+  EXPECT_EQ(delta.steps.front().revision, 3u);
+  EXPECT_EQ(delta.steps.front().step, 2u);
+  EXPECT_EQ(delta.steps.back().shots, 5u);
+}
+
+TEST(SolutionLog, PagesWithinOneRevisionAddUpToTheWhole) {
+  SolutionLog log;
+  std::vector<LeafValue> all;
+  for (std::uint32_t r = 0; r < 25; ++r)
+    for (const LeafValue& leaf : children(PatchId::root(r), float(r))) all.push_back(leaf);
+  log.publish(all, {});
+  std::vector<LeafValue> got;
+  Cursor cursor;
+  for (Delta delta = log.since(cursor, 7);; delta = log.since(cursor, 7)) {
+    EXPECT_EQ(delta.from_revision, 0u);
+    got.insert(got.end(), delta.values.begin(), delta.values.end());
+    cursor = delta.next;
+    if (delta.whole()) break;
+    EXPECT_EQ(delta.to_revision, 0u);
+  }
+  EXPECT_EQ(got, all);
+}
+
+TEST(SolutionLog, ListenersHearEveryPublicationUntilForgotten) {
+  SolutionLog log;
+  int heard = 0;
+  const auto handle = log.listen([&] { ++heard; });
+  log.publish(std::vector{value(root, 1)}, {});
+  log.close();
+  EXPECT_EQ(heard, 2);
+  log.forget(handle);
+  log.publish(std::vector{value(root, 2)}, {});
+  EXPECT_EQ(heard, 2);
+}
+
+TEST(SolutionLog, WaitersWakeOnPublishAndClose) {
+  SolutionLog log;
+  std::jthread writer([&] {
+    log.publish(std::vector{value(root, 1)}, {});
+    log.close();
+  });
+  log.wait_beyond(0);
+  EXPECT_GE(log.head(), 1u);
+  log.wait_beyond(100);
+  EXPECT_TRUE(log.closed());
+}
+
+}  // namespace
+}  // namespace alvor
