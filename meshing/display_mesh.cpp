@@ -49,7 +49,9 @@ class Triangulation {
       centre_[leaf] = mesh.roots()[shape.root].at(c.u, c.v);
       for (int k = 0; k < shape.corner_count; ++k) corners_.insert(keys_.position(shape.root, shape.corners()[k]));
     }
-    slopes_ = leaf_slopes(forest_, leaves_, centre_, value_);
+    slopes_.reserve(leaves_.size());
+    for (const NodeIndex leaf : leaves_)
+      slopes_.push_back(leaf_slope(forest_, leaf, SmoothNeighbours(forest_, leaf), centre_, value_));
   }
 
   DisplayMesh build() {

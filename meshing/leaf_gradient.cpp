@@ -42,51 +42,44 @@ Rgb upper(const Rgb& a, const Rgb& b) { return {std::max(a.r, b.r), std::max(a.g
 
 }  // namespace
 
-bool smooth_neighbours(const PatchForest& forest, NodeIndex leaf, std::vector<NodeIndex>& neighbours) {
-  neighbours.clear();
-  bool has_crease = false;
+SmoothNeighbours::SmoothNeighbours(const PatchForest& forest, NodeIndex leaf) {
   const PatchShape shape = forest.shape(leaf);
   for (int e = 0; e < shape.corner_count; ++e) {
     if (const auto root_edge = root_edge_of(shape, e)) {
       const auto across = forest.mesh().across(shape.root, *root_edge);
       if (!across || !across->smooth) {
-        has_crease = true;
+        at_crease_ = true;
         continue;
       }
     }
     const NodeIndex near = forest.leaf_across(shape, e, 0.25), far = forest.leaf_across(shape, e, 0.75);
-    if (near != PatchForest::no_node) neighbours.push_back(near);
-    if (far != near && far != PatchForest::no_node) neighbours.push_back(far);
+    add(near);
+    if (far != near) add(far);
   }
-  return has_crease;
 }
 
-std::vector<LeafSlope> leaf_slopes(const PatchForest& forest, std::span<const NodeIndex> leaves, std::span<const Vec3> centre,
-                                   std::span<const Rgb> value) {
-  std::vector<LeafSlope> slopes;
-  slopes.reserve(leaves.size());
-  std::vector<NodeIndex> neighbours;
-  for (const NodeIndex leaf : leaves) {
-    LeafSlope slope{{}, {}, {}, value[leaf], value[leaf]};
-    if (!value[leaf].is_zero()) {
-      const TangentFrame frame(forest.mesh().roots()[forest.id(leaf).root_face()].normal);
-      NormalEquations equations;
-      smooth_neighbours(forest, leaf, neighbours);
-      for (const NodeIndex other : neighbours) {
-        const Vec3 d = centre[other] - centre[leaf];
-        if (value[other].is_zero() || dot(d, d) == 0) continue;
-        equations.add(dot(d, frame.s), dot(d, frame.t), value[other] - value[leaf]);
-        slope.low = lower(slope.low, value[other]);
-        slope.high = upper(slope.high, value[other]);
-      }
-      const auto [s, t] = equations.solve();
-      slope.r = s.r * frame.s + t.r * frame.t;
-      slope.g = s.g * frame.s + t.g * frame.t;
-      slope.b = s.b * frame.s + t.b * frame.t;
-    }
-    slopes.push_back(slope);
+void SmoothNeighbours::add(NodeIndex node) {
+  if (node != PatchForest::no_node) nodes_[count_++] = node;
+}
+
+LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
+                     std::span<const Rgb> value) {
+  LeafSlope slope{{}, {}, {}, value[leaf], value[leaf]};
+  if (value[leaf].is_zero()) return slope;
+  const TangentFrame frame(forest.mesh().roots()[forest.id(leaf).root_face()].normal);
+  NormalEquations equations;
+  for (const NodeIndex other : neighbours) {
+    const Vec3 d = centre[other] - centre[leaf];
+    if (value[other].is_zero() || dot(d, d) == 0) continue;
+    equations.add(dot(d, frame.s), dot(d, frame.t), value[other] - value[leaf]);
+    slope.low = lower(slope.low, value[other]);
+    slope.high = upper(slope.high, value[other]);
   }
-  return slopes;
+  const auto [s, t] = equations.solve();
+  slope.r = s.r * frame.s + t.r * frame.t;
+  slope.g = s.g * frame.s + t.g * frame.t;
+  slope.b = s.b * frame.s + t.b * frame.t;
+  return slope;
 }
 
 }  // namespace alvor

@@ -4,8 +4,8 @@
 #include "meshing/patch_forest.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
-#include <vector>
 
 namespace alvor {
 
@@ -17,12 +17,28 @@ struct LeafSlope {
   Rgb along(Vec3 offset) const { return {dot(r, offset), dot(g, offset), dot(b, offset)}; }
 };
 
-/// Weighted least squares over the leaves that share an edge, at most two across each; never across a crease. Neighbours where exactly
-/// nothing arrives take no part. `centre` and `value` are indexed by node; slopes come in the order of `leaves`.
-std::vector<LeafSlope> leaf_slopes(const PatchForest& forest, std::span<const NodeIndex> leaves, std::span<const Vec3> centre,
-                                   std::span<const Rgb> value);
+/// A leaf's neighbours across its edges, at most two across each, smooth ones only.
+class SmoothNeighbours {
+ public:
+  SmoothNeighbours() = default;
+  SmoothNeighbours(const PatchForest& forest, NodeIndex leaf);
 
-/// The leaf's neighbours across its edges, each once, smooth ones only. True if some edge has none: a crease or the surface's end.
-bool smooth_neighbours(const PatchForest& forest, NodeIndex leaf, std::vector<NodeIndex>& neighbours);
+  const NodeIndex* begin() const { return nodes_.data(); }
+  const NodeIndex* end() const { return nodes_.data() + count_; }
+  /// Some edge has no neighbour: a crease or the surface's end.
+  bool at_crease() const { return at_crease_; }
+
+ private:
+  void add(NodeIndex node);
+
+  std::array<NodeIndex, 8> nodes_;
+  std::uint8_t count_ = 0;
+  bool at_crease_ = false;
+};
+
+/// Weighted least squares over the neighbours; those where exactly nothing arrives take no part. `centre` and `value` are indexed by
+/// node. Safe from any thread.
+LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
+                     std::span<const Rgb> value);
 
 }  // namespace alvor

@@ -5,14 +5,15 @@
 namespace alvor {
 
 PatchForest::PatchForest(const BaseMesh& mesh) : mesh_(&mesh), leaf_count_(mesh.roots().size()) {
-  nodes_.reserve(mesh.roots().size());
-  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) nodes_.push_back({PatchId::root(root), 0});
+  ids_.reserve(mesh.roots().size());
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) ids_.push_back(PatchId::root(root));
+  first_child_.resize(ids_.size());
 }
 
 std::vector<NodeIndex> PatchForest::leaves() const {
   std::vector<NodeIndex> all;
   all.reserve(leaf_count_);
-  for (NodeIndex node = 0; node < nodes_.size(); ++node)
+  for (NodeIndex node = 0; node < ids_.size(); ++node)
     if (is_leaf(node)) all.push_back(node);
   return all;
 }
@@ -57,10 +58,11 @@ void PatchForest::split_down_to(std::span<const LeafValue> patches) {
 }
 
 void PatchForest::split_one(NodeIndex leaf) {
-  const auto first = static_cast<NodeIndex>(nodes_.size());
-  const PatchId parent = nodes_[leaf].id;
-  for (int k = 0; k < 4; ++k) nodes_.push_back({parent.child(k), 0});
-  nodes_[leaf].first_child = first;
+  const auto first = static_cast<NodeIndex>(ids_.size());
+  const PatchId parent = ids_[leaf];
+  for (int k = 0; k < 4; ++k) ids_.push_back(parent.child(k));
+  first_child_.resize(ids_.size());
+  first_child_[leaf] = first;
   leaf_count_ += 3;
 }
 

@@ -26,21 +26,28 @@ class PatchForest {
   explicit PatchForest(const BaseMesh& mesh);
 
   const BaseMesh& mesh() const { return *mesh_; }
-  std::size_t node_count() const { return nodes_.size(); }
+  std::size_t node_count() const { return ids_.size(); }
   std::size_t leaf_count() const { return leaf_count_; }
-  bool is_leaf(NodeIndex node) const { return nodes_[node].first_child == 0; }
-  PatchId id(NodeIndex node) const { return nodes_[node].id; }
+  bool is_leaf(NodeIndex node) const { return first_child_[node] == 0; }
+  PatchId id(NodeIndex node) const { return ids_[node]; }
   /// Requires: !is_leaf(node), 0 <= k < 4.
-  NodeIndex child(NodeIndex node, int k) const { return nodes_[node].first_child + k; }
-  PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, nodes_[node].id); }
+  NodeIndex child(NodeIndex node, int k) const { return first_child_[node] + k; }
+  PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, ids_[node]); }
   std::vector<NodeIndex> leaves() const;
 
   /// The leaf that contains `place`, or is it, or lies below it at its first corner. O(levels).
   NodeIndex leaf_at(PatchId place) const {
     NodeIndex node = place.root_face();
-    for (int level = 1; nodes_[node].first_child != 0; ++level)
-      node = nodes_[node].first_child + place.child_index(level);
+    for (int level = 1; first_child_[node] != 0; ++level)
+      node = first_child_[node] + place.child_index(level);
     return node;
+  }
+  /// The same, from a node that contains `place`.
+  NodeIndex leaf_at(PatchId place, NodeIndex from) const {
+    if (first_child_[from] == 0) return from;
+    for (int level = id(from).level() + 1; first_child_[from] != 0; ++level)
+      from = first_child_[from] + place.child_index(level);
+    return from;
   }
   /// The leaf across `edge` at `fraction` along it; `no_node` where the surface ends.
   NodeIndex leaf_across(const PatchShape& shape, int edge, double fraction) const;
@@ -54,14 +61,11 @@ class PatchForest {
   void split_down_to(std::span<const LeafValue> patches);
 
  private:
-  struct Node {
-    PatchId id;
-    NodeIndex first_child;  ///< 0: a leaf
-  };
   void split_one(NodeIndex leaf);
 
   const BaseMesh* mesh_;
-  std::vector<Node> nodes_;
+  std::vector<PatchId> ids_;
+  std::vector<NodeIndex> first_child_;  // 0: a leaf. Apart from the ids, so that walks down touch little memory.
   std::size_t leaf_count_ = 0;
 };
 

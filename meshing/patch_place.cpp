@@ -14,8 +14,36 @@ constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-std::uint32_t cell_of(double x) {
-  return static_cast<std::uint32_t>(std::clamp(x * grid_size, 0.0, grid_size - 1.0));
+std::uint32_t quad_path(float u, float v) {
+  const auto cell = [](float x) { return static_cast<std::int32_t>(std::clamp(x * grid_size, 0.0f, grid_size - 1.0f)); };
+  return spread_bits(static_cast<std::uint32_t>(cell(u))) | spread_bits(static_cast<std::uint32_t>(cell(v))) << 1;
+}
+
+/// Walks down in coordinates relative to the current triangle, 30-bit fixed point with a + b < 1; entering the inner child turns both
+/// axes. Without branches, level by level for all places at once, so that the compiler makes SIMD of it.
+template <int count>
+void triangle_paths(const float* us, const float* vs, std::uint32_t* path) {
+  constexpr std::uint32_t one = 1u << 30;
+  constexpr auto just_below_one = static_cast<float>(one - 256);  // float rounding stays within the 256
+  alignas(64) std::uint32_t as[count], bs[count], paths[count];
+  for (int n = 0; n < count; ++n) {
+    const float u = std::clamp(us[n], 0.0f, 1.0f), v = std::clamp(vs[n], 0.0f, 1.0f);
+    const float excess = std::max(0.0f, u + v - 1) / 2;
+    as[n] = static_cast<std::uint32_t>(static_cast<std::int32_t>((u - excess) * just_below_one));
+    bs[n] = static_cast<std::uint32_t>(static_cast<std::int32_t>((v - excess) * just_below_one));
+    paths[n] = 0;
+  }
+  for (int level = 0; level < PatchId::max_level; ++level)
+    for (int n = 0; n < count; ++n) {
+      std::uint32_t a = as[n] << 1, b = bs[n] << 1;
+      const std::uint32_t at_u = a >> 30, at_v = b >> 30;  // beyond half way: children 1 and 2
+      a &= one - 1, b &= one - 1;
+      const std::uint32_t inner = ((one - a - b) >> 31) & ~(at_u | at_v) & 1u, turn = 0u - inner;
+      as[n] = (a ^ turn) - turn + (one & turn);
+      bs[n] = (b ^ turn) - turn + (one & turn);
+      paths[n] = paths[n] << 2 | at_u | at_v << 1 | (turn & 3u);
+    }
+  std::copy_n(paths, count, path);
 }
 
 /// The point at `fraction` of root edge `edge`, moved `inwards` (grid units) into the root.
@@ -100,29 +128,18 @@ double area_of(const BaseMesh& mesh, const PatchShape& shape) {
   return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
 }
 
-PatchId finest_quad_patch(std::uint32_t root, double u, double v) {
-  return PatchId::finest(root, spread_bits(cell_of(u)) | (spread_bits(cell_of(v)) << 1));
+void finest_quad_paths(const float* u, const float* v, std::uint32_t* path) {
+  for (int n = 0; n < places_at_once; ++n) path[n] = quad_path(u[n], v[n]);
 }
 
-PatchId finest_triangle_patch(std::uint32_t root, double u, double v) {
-  // Walks down in coordinates relative to the current triangle; entering the inner child turns both axes.
-  double a = std::max(u, 0.0), b = std::max(v, 0.0);
-  if (const double excess = a + b - 1; excess > 0) a -= excess / 2, b -= excess / 2;
-  std::uint32_t path = 0;
-  for (int level = 0; level < PatchId::max_level; ++level) {
-    a *= 2, b *= 2;
-    std::uint32_t k = 0;
-    if (a >= 1) k = 1, a -= 1;
-    else if (b >= 1) k = 2, b -= 1;
-    else if (a + b > 1) k = 3, a = 1 - a, b = 1 - b;
-    path = path << 2 | k;
-  }
-  return PatchId::finest(root, path);
-}
+void finest_triangle_paths(const float* u, const float* v, std::uint32_t* path) { triangle_paths<places_at_once>(u, v, path); }
 
 PatchId finest_patch(const BaseMesh& mesh, std::uint32_t root, Uv at) {
-  return mesh.roots()[root].corner_count == 4 ? finest_quad_patch(root, at.u, at.v)
-                                              : finest_triangle_patch(root, at.u, at.v);
+  const auto u = static_cast<float>(at.u), v = static_cast<float>(at.v);
+  if (mesh.roots()[root].corner_count == 4) return PatchId::finest(root, quad_path(u, v));
+  std::uint32_t path;
+  triangle_paths<1>(&u, &v, &path);
+  return PatchId::finest(root, path);
 }
 
 std::optional<int> root_edge_of(const PatchShape& shape, int edge) {

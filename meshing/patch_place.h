@@ -39,9 +39,13 @@ PatchShape shape_of(const BaseMesh& mesh, PatchId patch);
 std::array<Vec3, 4> corners_of(const BaseMesh& mesh, const PatchShape& shape);
 double area_of(const BaseMesh& mesh, const PatchShape& shape);
 
-/// The finest patch that contains (u, v); coordinates outside the root are clamped into it.
-PatchId finest_quad_patch(std::uint32_t root, double u, double v);
-PatchId finest_triangle_patch(std::uint32_t root, double u, double v);
+/// Paths (see PatchId::finest) of the finest patches that contain each (u, v); coordinates outside the root are clamped into it. Sixteen at
+/// a time because rays come so.
+inline constexpr int places_at_once = 16;
+void finest_quad_paths(const float* u, const float* v, std::uint32_t* path);
+void finest_triangle_paths(const float* u, const float* v, std::uint32_t* path);
+
+/// The finest patch that contains a point; coordinates outside the root are clamped into it.
 PatchId finest_patch(const BaseMesh& mesh, std::uint32_t root, Uv at);
 
 /// The root edge on which the patch's edge lies, if any.

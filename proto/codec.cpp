@@ -59,7 +59,7 @@ google::protobuf::Duration encode_seconds(double seconds) {
 }
 
 double decode_seconds(const google::protobuf::Duration& duration) {
-  return static_cast<double>(duration.seconds()) + duration.nanos() * 1e-9;
+  return static_cast<double>(duration.seconds()) + duration.nanos() / 1e9;
 }
 
 v1::Rgb encode(const Rgb& value) {

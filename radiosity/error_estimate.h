@@ -4,16 +4,15 @@
 #include "meshing/leaf_gradient.h"
 
 #include <span>
-#include <vector>
 
 namespace alvor {
 
 /// What linear interpolation between leaves misses: a quarter of the largest difference between a smooth neighbour's value and the
 /// leaf's linear prediction of it, either way (for a parabola this is the interpolation error in the middle between two leaves);
 /// three times that at a crease, up to which the leaf
-/// extrapolates. Mean over bands, W/m2. Indexed like `leaves`; `centre` and `value` by node.
-std::vector<double> interpolation_errors(const PatchForest& forest, std::span<const NodeIndex> leaves, std::span<const Vec3> centre,
-                                         std::span<const Rgb> value, std::span<const LeafSlope> slopes);
+/// extrapolates. Mean over bands, W/m2. The spans are indexed by node.
+double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
+                           std::span<const Rgb> value, std::span<const LeafSlope> slope);
 
 /// The parts of the estimated nRMSE; squares add.
 struct ErrorEstimate {

@@ -1,5 +1,7 @@
 #include "radiosity/local_scene.h"
 
+#include <algorithm>
+
 namespace alvor {
 
 namespace {
@@ -52,16 +54,35 @@ LocalScene::LocalScene(const BaseMesh& mesh)
     std::array<Vec3, 4> corners;
     for (int c = 0; c < root.corner_count; ++c) corners[c] = frame_.to_local(root.corners[c]);
     corners_.push_back(corners);
-    roots_.push_back(make_local(root, corners));
+    const LocalRoot& local = roots_.emplace_back(make_local(root, corners));
+    has_twins_ |= local.twin != RootPatch::no_twin;
+    has_triangles_ |= !local.is_quad;
+    has_twisted_quads_ |= local.twist_u != 0 || local.twist_v != 0;
   }
 }
 
-PatchId LocalScene::place_of_hit(std::uint32_t r, float u, float v) const {
-  const LocalRoot& root = roots_[r];
-  if (!root.is_quad) return finest_triangle_patch(r, u, v);
-  if (root.twist_u == 0 && root.twist_v == 0) return finest_quad_patch(r, u, v);
-  const Uv at = bilinear(root, u, v);
-  return finest_quad_patch(r, at.u, at.v);
+void LocalScene::places_of_hits(const HitPacket& hits, std::uint32_t* path) const {
+  static_assert(places_at_once == RayPacket::width);
+  const auto for_each_hit = [&](auto&& body) {
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (hits.root[lane] != HitPacket::nothing) body(lane, roots_[hits.root[lane]]);
+  };
+  alignas(64) float u[RayPacket::width], v[RayPacket::width];
+  std::copy_n(hits.u, RayPacket::width, u);
+  std::copy_n(hits.v, RayPacket::width, v);
+  if (has_twisted_quads_)
+    for_each_hit([&](int lane, const LocalRoot& root) {
+      if (root.twist_u == 0 && root.twist_v == 0) return;
+      const Uv at = bilinear(root, u[lane], v[lane]);
+      u[lane] = static_cast<float>(at.u), v[lane] = static_cast<float>(at.v);
+    });
+  finest_quad_paths(u, v, path);
+  if (!has_triangles_) return;
+  alignas(64) std::uint32_t triangle_path[RayPacket::width];
+  finest_triangle_paths(u, v, triangle_path);
+  for_each_hit([&](int lane, const LocalRoot& root) {
+    if (!root.is_quad) path[lane] = triangle_path[lane];
+  });
 }
 
 }  // namespace alvor

@@ -38,14 +38,17 @@ class LocalScene {
     return std::span(corners_[r]).first(static_cast<std::size_t>(mesh_->roots()[r].corner_count));
   }
 
-  /// The finest patch at a hit of Embree's coordinates (u, v) on `root`.
-  PatchId place_of_hit(std::uint32_t root, float u, float v) const;
+  bool has_twins() const { return has_twins_; }
+
+  /// Paths (see PatchId::finest) of the finest patches at Embree's coordinates; arbitrary where nothing was hit.
+  void places_of_hits(const HitPacket& hits, std::uint32_t* path) const;
 
  private:
   const BaseMesh* mesh_;
   LocalFrame frame_;
   Visibility visibility_;
   std::vector<LocalRoot> roots_;
+  bool has_twisted_quads_ = false, has_triangles_ = false, has_twins_ = false;
   std::vector<std::array<Vec3, 4>> corners_;
 };
 

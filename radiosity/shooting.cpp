@@ -8,12 +8,12 @@ namespace alvor {
 
 Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
     : patches_(patches), leaves_(std::move(leaves)), hit_leaf_(std::move(hit_leaf)), patch_of_leaf_(leaves_.size()),
-      first_hit_(patches.size() + 1), weight_(patches.size()), irradiance_(patches.size()),
-      unshot_irradiance_(patches.size()), shot_irradiance_(patches.size()), leaf_power_(patches.size()) {
+      first_hit_(patches.size() + 1), receivers_(patches.size()), gathered_(patches.size()), shot_irradiance_(patches.size()),
+      leaf_power_(patches.size()) {
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     const ShootingPatch& patch = patches[p];
     first_hit_[p + 1] = first_hit_[p] + patch.row->hits.size();
-    weight_[p] = patch.row->is_hidden() ? 0 : 1.0 / patch.row->ray_count();
+    receivers_[p].weight = patch.row->is_hidden() ? 0 : 1.0 / patch.row->ray_count();
     for (std::uint32_t k = 0; k < patch.leaf_count; ++k) patch_of_leaf_[patch.first_leaf + k] = p;
   }
   transpose();
@@ -35,7 +35,7 @@ void Shooting::gather() {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
     Rgb sum;
     for (std::uint64_t h = first_hit_[p]; h < first_hit_[p + 1]; ++h) sum += leaves_[hit_leaf_[h]].shot;
-    irradiance_[p] = weight_[p] * sum;
+    gathered_[p] = receivers_[p].weight * sum;
   });
 }
 
@@ -58,14 +58,14 @@ void Shooting::reflect_gathered() {
     leaf_power_[p] = 0;
     for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
       ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
-      leaf.unshot += patches_[p].reflectance * irradiance_[p];
+      leaf.unshot += patches_[p].reflectance * gathered_[p];
       leaf_power_[p] += leaf.area * absolute(leaf.unshot).sum();
     }
   }
 }
 
 double Shooting::unshot_power_of(std::uint32_t patch) const {
-  return leaf_power_[patch] + patches_[patch].area * absolute(patches_[patch].reflectance * unshot_irradiance_[patch]).sum();
+  return leaf_power_[patch] + patches_[patch].area * absolute(patches_[patch].reflectance * receivers_[patch].unshot).sum();
 }
 
 double Shooting::unshot_power() const {
@@ -76,15 +76,14 @@ double Shooting::unshot_power() const {
 
 void Shooting::shoot(std::uint32_t shooter) {
   const ShootingPatch& patch = patches_[shooter];
-  const Rgb reflected = patch.reflectance * unshot_irradiance_[shooter];
-  shot_irradiance_[shooter] += unshot_irradiance_[shooter];
-  unshot_irradiance_[shooter] = {};
+  const Rgb reflected = patch.reflectance * receivers_[shooter].unshot;
+  shot_irradiance_[shooter] += receivers_[shooter].unshot;
+  receivers_[shooter].unshot = {};
   const bool leaves_differ = leaf_power_[shooter] != 0;
   for (std::uint64_t e = first_entry_[shooter]; e < first_entry_[shooter + 1]; ++e) {
-    const auto [receiver, leaf] = entries_[e];
-    const Rgb arriving = weight_[receiver] * (leaves_differ ? leaves_[leaf].unshot + reflected : reflected);
-    irradiance_[receiver] += arriving;
-    unshot_irradiance_[receiver] += arriving;
+    const auto [place, leaf] = entries_[e];
+    Receiver& receiver = receivers_[place];
+    receiver.unshot += receiver.weight * (leaves_differ ? leaves_[leaf].unshot + reflected : reflected);
   }
   if (!leaves_differ) return;
   leaf_power_[shooter] = 0;
@@ -113,8 +112,8 @@ Rgb Shooting::ambient_irradiance() const {
     const ShootingPatch& patch = patches_[p];
     area += patch.area;
     reflected += patch.area * patch.reflectance;
-    kept += patch.area * weight_[p] * static_cast<double>(patch.row->hits.size());
-    unshot += (patch.area * patch.reflectance) * unshot_irradiance_[p];
+    kept += patch.area * receivers_[p].weight * static_cast<double>(patch.row->hits.size());
+    unshot += (patch.area * patch.reflectance) * receivers_[p].unshot;
     for (std::uint32_t k = 0; k < patch.leaf_count; ++k)
       unshot += leaves_[patch.first_leaf + k].area * leaves_[patch.first_leaf + k].unshot;
   }
@@ -122,6 +121,13 @@ Rgb Shooting::ambient_irradiance() const {
   const double stays = kept / area;
   const auto band = [&](double u, double r) { return stays * (u / area) / (1 - stays * r / area); };
   return {band(unshot.r, reflected.r), band(unshot.g, reflected.g), band(unshot.b, reflected.b)};
+}
+
+std::vector<Rgb> Shooting::irradiance() const {
+  std::vector<Rgb> all;
+  all.reserve(patches_.size());
+  for (std::size_t p = 0; p < patches_.size(); ++p) all.push_back(gathered_[p] + shot_irradiance_[p] + receivers_[p].unshot);
+  return all;
 }
 
 std::vector<Rgb> Shooting::shot() const {

@@ -49,7 +49,7 @@ class Shooting {
   /// weakened by what escapes from an open scene.
   Rgb ambient_irradiance() const;
 
-  std::span<const Rgb> irradiance() const { return irradiance_; }  ///< by patch: received by rows so far
+  std::vector<Rgb> irradiance() const;  ///< by patch: received by rows so far
   /// What was distributed so far, by leaf.
   std::vector<Rgb> shot() const;
   /// By patch: half the difference of what the two halves of its row make of all that was shot. Estimates the standard error of
@@ -59,6 +59,11 @@ class Shooting {
  private:
   struct Entry {
     std::uint32_t receiver, leaf;
+  };
+  /// What a shot reads and writes of each receiver, on one cache line.
+  struct alignas(32) Receiver {
+    Rgb unshot;        ///< irradiance received and not yet reflected; rho times it is unshot on every leaf
+    double weight = 0; ///< of one hit
   };
   void transpose();
   void shoot(std::uint32_t shooter);
@@ -71,9 +76,8 @@ class Shooting {
   std::vector<std::uint64_t> first_hit_;     // by receiver, into hit_leaf_
   std::vector<std::uint64_t> first_entry_;   // by shooter, into entries_
   std::vector<Entry> entries_;
-  std::vector<double> weight_;               // by receiver: what one hit weighs
-  std::vector<Rgb> irradiance_;
-  std::vector<Rgb> unshot_irradiance_;       // by patch: received and not yet reflected; rho times it is unshot on every leaf
+  std::vector<Receiver> receivers_;          // by patch
+  std::vector<Rgb> gathered_;                // by patch: received before this pass
   std::vector<Rgb> shot_irradiance_;         // by patch: reflected already, not yet in ShootingLeaf::shot
   std::vector<double> leaf_power_;           // by patch: sum of area |unshot| over its leaves
 };

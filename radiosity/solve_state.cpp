@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace alvor {
 
@@ -13,16 +12,6 @@ constexpr double start_edge = 1.0 / 6;          // of the extent: no patch of th
 constexpr double start_area = 1e-3;              // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
 constexpr double most_area_emits = 0.5;         // beyond this share rows find the emitters as well as shadow rays do
 constexpr double marked_share = 0.9;            // of the squared error, per pass
-constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
-constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
-constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-constexpr double contact_error = 0.1;            // of a patch's irradiance: how much it varies where a solid's outline crosses it
-constexpr double noise_in_display = 0.4;        // of the half difference: low-discrepancy halves err less (0.7), interpolation averages (0.6)
-constexpr double noise_in_indicator = 0.5;      // of a row's variance: what noise alone adds to a squared indicator
-
-bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
-
-double squared(double x) { return x * x; }
 
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
@@ -87,6 +76,7 @@ void SolveState::fit_to_nodes() {
   row_is_traced_.resize(rows);
   row_irradiance_.resize(rows);
   row_slope_.resize(rows);
+  hit_leaves_.resize(rows);
   direct_.resize(leaves);
   direct_is_known_.resize(leaves);
   shot_.resize(leaves);
@@ -172,8 +162,21 @@ void SolveState::collect_leaves(NodeIndex node, std::vector<NodeIndex>& leaves) 
   for (int k = 0; k < 4; ++k) collect_leaves(leaf_forest_.child(node, k), leaves);
 }
 
+// Leaves only ever get finer, so each look-up starts where the last one ended.
+const std::vector<NodeIndex>& SolveState::find_hit_leaves(NodeIndex row) {
+  const auto& hits = rows_[row].hits;
+  auto& found = hit_leaves_[row];
+  if (found.size() != hits.size()) {
+    found.clear();
+    for (const PatchId hit : hits) found.push_back(hit.root_face());
+  }
+  for (std::size_t h = 0; h < hits.size(); ++h) found[h] = leaf_forest_.leaf_at(hits[h], found[h]);
+  return found;
+}
+
 void SolveState::begin_shooting() {
   patches_.clear();
+  row_neighbours_.clear();
   patch_leaves_.clear();
   patch_row_ = row_forest_.leaves();
   std::vector<std::uint32_t> place_of(leaf_forest_.node_count());
@@ -193,7 +196,7 @@ void SolveState::begin_shooting() {
   std::vector<std::uint32_t> hit_leaf(first_hit.back());
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     std::size_t at = first_hit[p];
-    for (const PatchId hit : patches_[p].row->hits) hit_leaf[at++] = place_of[leaf_forest_.leaf_at(hit)];
+    for (const NodeIndex leaf : find_hit_leaves(patch_row_[p])) hit_leaf[at++] = place_of[leaf];
   });
   std::vector<ShootingLeaf> leaves;
   leaves.reserve(patch_leaves_.size());
@@ -238,89 +241,6 @@ std::vector<LeafValue> SolveState::leaf_values() const {
     values.push_back({id, narrow(direct_[leaf].irradiance + indirect)});
   }
   return values;
-}
-
-bool SolveState::may_split(Candidate::Kind kind, NodeIndex patch) const {
-  if (kind == Candidate::Kind::split_leaf) return leaf_forest_.may_split(patch, limits_);
-  const NodeIndex leaf = leaf_node_of_row(patch);
-  return row_forest_.may_split(patch, limits_) && (!leaf_forest_.is_leaf(leaf) || leaf_forest_.may_split(leaf, limits_));
-}
-
-void SolveState::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
-                                double rays) {
-  for (std::size_t n = 0; n < patches.size(); ++n)
-    if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
-}
-
-// The two halves of one row tell its variance with one degree of freedom: too rough to act on, so neighbours are averaged in.
-std::vector<double> SolveState::row_variances() const {
-  const auto differences = shooting_->half_differences();
-  std::vector<double> raw(row_forest_.node_count());
-  for (std::size_t p = 0; p < patch_row_.size(); ++p) raw[patch_row_[p]] = differences[p].mean() * differences[p].mean();
-  std::vector<double> variances;
-  std::vector<NodeIndex> neighbours;
-  for (const NodeIndex row : patch_row_) {
-    smooth_neighbours(row_forest_, row, neighbours);
-    double sum = raw[row];
-    for (const NodeIndex other : neighbours) sum += raw[other];
-    variances.push_back(sum / static_cast<double>(1 + neighbours.size()));
-  }
-  return variances;
-}
-
-/// Squared errors integrated over the area, W2/m2; returns the power that rows bring, W.
-double SolveState::estimate_rows(ErrorEstimate& error) {
-  const auto slopes = leaf_slopes(row_forest_, patch_row_, row_centre_, row_irradiance_);
-  for (std::size_t p = 0; p < patch_row_.size(); ++p) row_slope_[patch_row_[p]] = slopes[p];
-  const auto variances = row_variances();
-  auto errors = interpolation_errors(row_forest_, patch_row_, row_centre_, row_irradiance_, slopes);
-  double power = 0;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const double area = patches_[p].area;
-    errors[p] = area * std::max(0.0, errors[p] * errors[p] - noise_in_indicator * variances[p]);
-    if (patches_[p].row->crosses_contact()) errors[p] += area * squared(contact_error * (row_irradiance_[patch_row_[p]] + direct_[patch_leaves_[patches_[p].first_leaf]].irradiance).mean());
-    error.indirect_mesh += errors[p];
-    const double noise = area * squared(noise_in_display) * variances[p];
-    error.sampling += noise;
-    power += area * row_irradiance_[patch_row_[p]].mean();
-    if (noise > 0 && rows_[patch_row_[p]].ray_count() < most_rays_per_row)
-      candidates_.push_back({Candidate::Kind::add_rays, patch_row_[p], noise, double(rows_[patch_row_[p]].ray_count())});
-  }
-  add_candidates(Candidate::Kind::split_row, patch_row_, errors, rays_per_row_split);
-  return power;
-}
-
-double SolveState::estimate_leaves(ErrorEstimate& error) {
-  std::vector<Rgb> direct(leaf_forest_.node_count());
-  double power = 0;
-  for (const NodeIndex leaf : patch_leaves_) {
-    direct[leaf] = direct_[leaf].irradiance;
-    power += leaf_area_[leaf] * direct[leaf].mean();
-  }
-  const auto slopes = leaf_slopes(leaf_forest_, patch_leaves_, leaf_centre_, direct);
-  auto errors = interpolation_errors(leaf_forest_, patch_leaves_, leaf_centre_, direct, slopes);
-  for (std::size_t n = 0; n < patch_leaves_.size(); ++n) {
-    errors[n] *= errors[n] * leaf_area_[patch_leaves_[n]];
-    error.direct_mesh += errors[n];
-  }
-  add_candidates(Candidate::Kind::split_leaf, patch_leaves_, errors, rays_per_leaf_split);
-  return power;
-}
-
-ErrorEstimate SolveState::estimate() {
-  take_irradiance();
-  candidates_.clear();
-  ErrorEstimate error;
-  const double power = estimate_rows(error) + estimate_leaves(error);
-  if (power <= 0) return {};
-  double area = 0;
-  for (std::size_t p = 0; p < patches_.size(); ++p)
-    if (!patches_[p].row->is_hidden()) area += patches_[p].area;
-  const double mean = power / area;
-  for (double* part : {&error.direct_mesh, &error.indirect_mesh, &error.sampling}) *part = std::sqrt(*part / area) / mean;
-  error.unshot = unshot_power() / emitted_power_;
-  if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
-  return error;
 }
 
 void SolveState::inherit(std::span<const NodeIndex> split) {

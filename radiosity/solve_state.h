@@ -34,8 +34,12 @@ class SolveState {
   Shooting& shooting() { return *shooting_; }
   /// Reads the irradiance by rows back, so that leaf_values() and estimate() see it.
   void take_irradiance();
+  /// The same, with slopes from row to row: what a finished pass shows.
+  void take_smooth_irradiance();
   /// What is still unshot, summed over bands, W, whatever the stage of the pass.
   double unshot_power() const;
+  /// The same, of the emitted power; 0 in the dark.
+  double unshot_fraction() const { return emitted_power_ > 0 ? unshot_power() / emitted_power_ : 0; }
   /// Display only, see Shooting::ambient_irradiance. Zero before the first shots.
   Rgb ambient_irradiance() const { return shooting_ ? shooting_->ambient_irradiance() : Rgb{}; }
 
@@ -61,6 +65,7 @@ class SolveState {
   NodeIndex leaf_node_of_row(NodeIndex row) const;
   Rgb row_emission(std::uint32_t root) const;
   bool add_rays(std::span<const NodeIndex> rows);
+  const std::vector<NodeIndex>& find_hit_leaves(NodeIndex row);
   std::vector<double> row_variances() const;
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
@@ -86,6 +91,7 @@ class SolveState {
   std::vector<Rgb> row_irradiance_;
   std::vector<Vec3> row_centre_;
   std::vector<LeafSlope> row_slope_;
+  std::vector<std::vector<NodeIndex>> hit_leaves_;  ///< where each hit of the row was found last
   // By node of leaf_forest_.
   std::vector<DirectLight> direct_;
   std::vector<bool> direct_is_known_;
@@ -97,6 +103,7 @@ class SolveState {
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> patch_row_;   // row node of each patch
   std::vector<NodeIndex> patch_leaves_;  // leaf nodes, patch after patch
+  std::vector<SmoothNeighbours> row_neighbours_;  // by patch; empty until needed
   std::unique_ptr<Shooting> shooting_;
   std::vector<Candidate> candidates_;
 };

@@ -61,7 +61,7 @@ class Run {
 
   SolveOutcome run() {
     const bool is_lit = state_.emitted_power() > 0;
-    if (!is_lit) error_ = 0;
+    if (!is_lit) error_ = {};
     publish();
     const StopReason reason = is_lit ? pass_until_done() : StopReason::dark;
     const double cpu = cpu_seconds() - cpu_before_;
@@ -72,7 +72,7 @@ class Run {
   StopReason pass_until_done() {
     for (bool first = true;; first = false) {
       if (!pass(first)) return stop_reason();
-      if (error_ <= options_.tolerance) return converge(StopReason::tolerance);
+      if (error_.total() <= options_.tolerance) return converge(StopReason::tolerance);
       const bool is_better = state_.refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
@@ -93,7 +93,7 @@ class Run {
     if (must_stop()) return false;
     state_.begin_shooting();
     if (!shoot_down_to(pass_unshot * options_.tolerance)) return false;
-    error_ = state_.estimate().total();
+    error_ = state_.estimate();
     publish();
     return true;
   }
@@ -101,7 +101,8 @@ class Run {
   /// The last pass goes on to where rounding begins: shots are cheap.
   StopReason converge(StopReason reason) {
     if (!shoot_down_to(final_unshot)) return stop_reason();
-    error_ = state_.estimate().total();
+    state_.take_smooth_irradiance();
+    error_.unshot = state_.unshot_fraction();
     publish();
     return reason;
   }
@@ -134,8 +135,8 @@ class Run {
     step.shots = shots_;
     step.rays = budget_.rays();
     step.leaves = state_.leaf_count();
-    step.unshot_fraction = state_.emitted_power() > 0 ? state_.unshot_power() / state_.emitted_power() : 0;
-    step.estimated_error = error_;
+    step.unshot_fraction = state_.unshot_fraction();
+    step.estimated_error = error_.total();
     if (options_.strategy != Strategy::sorted) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();
@@ -157,7 +158,7 @@ class Run {
   RayBudget budget_;
   SolveState state_;
   std::uint64_t shots_ = 0;
-  double error_ = 1;
+  ErrorEstimate error_{.unshot = 1};
   double published_at_ = 0, publishing_s_ = 0;
 };
 

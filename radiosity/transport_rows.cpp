@@ -132,22 +132,33 @@ class RowBatch {
 
   /// False, and nothing is stored, if the origin is hidden.
   bool store_origin(std::size_t p, std::vector<PatchId>& to) const {
-    const std::size_t before = to.size();
+    Outcome outcomes[RayPacket::width];
     int backs = 0;
     for (int lane = 0; lane < RayPacket::width; ++lane) {
-      const Outcome what = outcome(packets_[p], hits_[p], lane);
-      backs += what == Outcome::black_back;
-      if (what == Outcome::stored) to.push_back(place(packets_[p], hits_[p], lane));
+      outcomes[lane] = outcome(packets_[p], hits_[p], lane);
+      backs += outcomes[lane] == Outcome::black_back;
     }
-    if (2 * backs <= RayPacket::width) return true;
-    to.resize(before);
-    return false;
+    if (2 * backs > RayPacket::width) return false;
+    const HitPacket hit = turned_to_front(p);
+    alignas(64) std::uint32_t path[RayPacket::width];
+    scene_.places_of_hits(hit, path);
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcomes[lane] == Outcome::stored) to.push_back(PatchId::finest(hit.root[lane], path[lane]));
+    return true;
   }
 
-  PatchId place(const RayPacket& packet, const HitPacket& hit, int lane) const {
-    const std::uint32_t root = hit.root[lane];
-    if (meets_front(packet, hit, lane)) return scene_.place_of_hit(root, hit.u[lane], hit.v[lane]);
-    return scene_.place_of_hit(scene_.root(root).twin, hit.v[lane], hit.u[lane]);
+  /// Hits from behind as hits of the twin, where there is one.
+  HitPacket turned_to_front(std::size_t p) const {
+    HitPacket hit = hits_[p];
+    if (!scene_.has_twins()) return hit;
+    for (int lane = 0; lane < RayPacket::width; ++lane) {
+      if (hit.root[lane] == HitPacket::nothing || meets_front(packets_[p], hits_[p], lane)) continue;
+      const std::uint32_t twin = scene_.root(hit.root[lane]).twin;
+      if (twin == RootPatch::no_twin) continue;
+      hit.root[lane] = twin;
+      std::swap(hit.u[lane], hit.v[lane]);
+    }
+    return hit;
   }
 
   const LocalScene& scene_;

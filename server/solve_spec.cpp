@@ -4,6 +4,7 @@
 #include "server/status_error.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <thread>
 
@@ -23,11 +24,11 @@ int most_threads(const SolveLimits& limits) {
   return limits.threads > 0 ? std::min(limits.threads, machine) : machine;
 }
 
-double time_limit_of(const google::protobuf::Duration& limit) {
-  const bool is_duration = limit.nanos() > -1'000'000'000 && limit.nanos() < 1'000'000'000 && limit.seconds() <= 315'576'000'000;
-  const double seconds = decode_seconds(limit);
-  if (!is_duration || seconds < 0) refuse("time_limit", seconds, "s is not a duration >= 0");
-  return seconds > 0 ? seconds : SolveOptions{}.time_limit_s;
+double seconds_of(const google::protobuf::Duration& duration, const char* field) {
+  const bool is_duration = std::abs(duration.nanos()) < 1'000'000'000 && duration.seconds() <= 315'576'000'000;
+  const double seconds = decode_seconds(duration);
+  if (!is_duration || seconds < 0) refuse(field, seconds, "s is not a duration >= 0");
+  return seconds;
 }
 
 Strategy strategy_of(v1::Strategy strategy) {
@@ -60,7 +61,9 @@ SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
   if (!std::isfinite(options.min_edge_m) || options.min_edge_m < 0)
     refuse("min_edge_meters", options.min_edge_m, "is not a finite length >= 0");
 
-  options.time_limit_s = time_limit_of(spec.time_limit());
+  if (const double limit = seconds_of(spec.time_limit(), "time_limit"); limit > 0) options.time_limit_s = limit;
+  options.step_pause_s = seconds_of(spec.step_pause(), "step_pause");
+  if (options.step_pause_s > 60) refuse("step_pause", options.step_pause_s, "s is more than a minute");
 
   options.threads = spec.threads() == 0 ? limits.threads : spec.threads();
   if (options.threads < 0 || (spec.threads() != 0 && options.threads > most_threads(limits)))

@@ -20,7 +20,9 @@ namespace {
 
 const std::map<std::string, v1::Strategy> strategies{{"auto", v1::STRATEGY_UNSPECIFIED},
                                                      {"sorted", v1::STRATEGY_SORTED},
-                                                     {"sorted-ambient", v1::STRATEGY_SORTED_AMBIENT}};
+                                                     {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT}};
+
+constexpr double pace_of_frames_s = 0.04;
 
 /// What is not set is left to the server.
 struct SolveCommand {
@@ -34,6 +36,7 @@ struct SolveCommand {
   std::optional<int> threads;
   std::optional<std::uint64_t> seed;
   std::string strategy = "auto";  ///< a key of `strategies`
+  std::optional<double> pace_s;
 };
 
 v1::SolveSpec spec_of(const SolveCommand& command) {
@@ -45,6 +48,9 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
   if (command.seed) spec.set_seed(*command.seed);
   if (command.time_limit_s) *spec.mutable_time_limit() = encode_seconds(*command.time_limit_s);
   spec.set_strategy(strategies.at(command.strategy));
+  // Without a pace a small room is done between two frames.
+  const double pace_s = command.pace_s.value_or(command.outputs.frames.empty() ? 0 : pace_of_frames_s);
+  if (pace_s > 0) *spec.mutable_step_pause() = encode_seconds(pace_s);
   return spec;
 }
 
@@ -97,9 +103,11 @@ void add_limits(CLI::App& command, SolveCommand& options) {
 void add_method(CLI::App& command, SolveCommand& options) {
   command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
       ->type_name("S")
-      ->check(CLI::IsMember({"auto", "sorted", "sorted-ambient"}));
+      ->check(CLI::IsMember({"auto", "sorted", "sorted+ambient"}));
   command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")
       ->check(whole_from(1));
+  command.add_option("--pace", options.pace_s, "Pause after each step, seconds; not counted as run time (0; 0.04 with --frames)")
+      ->check(CLI::Range(0.0, 60.0));
   command.add_option("--seed", options.seed, "The same seed gives the same solution (1)")->check(whole_from(0));
 }
 

@@ -1,64 +1,29 @@
 // The command `alvor` as its users meet it: exit statuses, streams and files. Runs the built binary.
 
 #include "client/command/snapshots.h"
+#include "tests/command_line.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace alvor {
 namespace {
 
-namespace fs = std::filesystem;
-
 const std::string cornell_box = ALVOR_SCENES "/cornell_box.obj";
 const std::string points = ALVOR_TEST_FILES "/truth/cornell_box.points.csv";
-const std::string own_number = std::to_string(getpid());
 const std::string quick = " --tolerance 0.3 --max-depth 2 --seed 7";
-
-std::string text_of(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
 
 std::string cell(std::uint64_t number) { return std::string(",").append(std::to_string(number)).append(","); }
 
-struct Ran {
-  int status = -1;
-  std::string out, err;
-};
-
-/// A folder of its own for each test, and the command run in it.
-class Command : public testing::Test {
- protected:
-  Command() : folder_(fs::temp_directory_path() / ("alvor_command_test_" + own_number)) {
-    fs::create_directories(folder_);
-  }
-  ~Command() override { fs::remove_all(folder_); }
-
-  Ran run(const std::string& arguments) const {
-    const std::string line = "cd '" + folder_.string() + "' && '" ALVOR_BINARIES "/alvor' " + arguments + " >out 2>err";
-    const int ended = std::system(line.c_str());
-    return {WIFEXITED(ended) ? WEXITSTATUS(ended) : -1, text_of(folder_ / "out"), text_of(folder_ / "err")};
-  }
-  fs::path file(const std::string& name) const { return folder_ / name; }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
-
- private:
-  fs::path folder_;
-};
+using Command = test::CommandLine;
+using test::Ran;
+using test::text_of;
+namespace fs = std::filesystem;
 
 TEST_F(Command, WithoutArgumentsIsAUsageError) { EXPECT_EQ(run("").status, 2); }
 

@@ -125,6 +125,7 @@ TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
       {"solve.spec.max_depth: 16 is outside [0, 15]", [](auto& s) { s.set_max_depth(16); }},
       {"solve.spec.max_elements: 101 is more than 100, the limit of this server", [](auto& s) { s.set_max_elements(101); }},
       {"solve.spec.min_edge_meters: -1 is not a finite length >= 0", [](auto& s) { s.set_min_edge_meters(-1); }},
+      {"solve.spec.step_pause: 61 s is more than a minute", [](auto& s) { s.mutable_step_pause()->set_seconds(61); }},
       {"solve.spec.time_limit: -1 s is not a duration >= 0", [](auto& s) { s.mutable_time_limit()->set_seconds(-1); }},
       {"solve.spec.threads: 2 is outside [0, 1]", [](auto& s) { s.set_threads(2); }},
       {"solve.spec.strategy: 99 is not known to this server", [](auto& s) { s.set_strategy(static_cast<v1::Strategy>(99)); }},

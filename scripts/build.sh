@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# build.sh [TARGET...]: configures with the release preset and builds, quietly unless something is wrong.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+quietly() { "$@" > "$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
+
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+echo "Building (the first time takes some minutes)"
+quietly cmake --preset release
+quietly cmake --build --preset release ${1:+--target "$@"}

@@ -1,0 +1,50 @@
+#pragma once
+// The built commands as their users meet them: exit statuses, streams and files.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace alvor::test {
+
+namespace fs = std::filesystem;
+
+inline std::string text_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+struct Ran {
+  int status = -1;
+  std::string out, err;
+};
+
+/// A folder of its own for each test, and the command run in it.
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() : folder_(fs::temp_directory_path() / ("alvor_test_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~CommandLine() override { fs::remove_all(folder_); }
+
+  Ran run(const std::string& arguments) const {
+    const std::string line = "cd '" + folder_.string() + "' && '" ALVOR_BINARIES "/alvor' " + arguments + " >out 2>err";
+    const int ended = std::system(line.c_str());
+    return {WIFEXITED(ended) ? WEXITSTATUS(ended) : -1, text_of(folder_ / "out"), text_of(folder_ / "err")};
+  }
+  fs::path file(const std::string& name) const { return folder_ / name; }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
+
+ private:
+  fs::path folder_;
+};
+
+}  // namespace alvor::test
