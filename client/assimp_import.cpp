@@ -4,9 +4,9 @@
 #include "client/placement.h"
 #include "client/texture_colour.h"
 
-#include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 
 #include <algorithm>
 #include <fstream>
@@ -54,8 +54,8 @@ class AssimpReader {
     file_.scene.materials.push_back({name, emission_of_radiance(radiance), reflectance, two_sided != 0});
   }
 
-  Rgb colour(const aiMaterial& source, const std::string& name, const char* key, unsigned type, unsigned index,
-             aiTextureType map, const Rgb& fallback) {
+  Rgb colour(const aiMaterial& source, const std::string& name, const char* key, unsigned type, unsigned index, aiTextureType map,
+             const Rgb& fallback) {
     aiColor3D found;
     const Rgb factor = source.Get(key, type, index, found) == AI_SUCCESS ? Rgb{found.r, found.g, found.b} : fallback;
     aiString texture;

@@ -14,15 +14,12 @@ namespace alvor {
 static_assert(std::endian::native == std::endian::little, "GLB and PLY are written in the machine's byte order");
 
 template <class T>
-  requires std::is_arithmetic_v<T>
-void append_value(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
+requires std::is_arithmetic_v<T>
+void append_value(std::string& bytes, T value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); }
 
 /// Requires: offset + sizeof(T) <= bytes.size(). No alignment is needed.
 template <class T>
-  requires std::is_arithmetic_v<T>
-T value_at(std::string_view bytes, std::size_t offset) {
+requires std::is_arithmetic_v<T> T value_at(std::string_view bytes, std::size_t offset) {
   assert(offset + sizeof(T) <= bytes.size());
   T value;
   std::memcpy(&value, bytes.data() + offset, sizeof value);

@@ -60,9 +60,9 @@ class Scout {
 
 /// A side of the box, seen from outside.
 struct Side {
-  Vec3 inward;           ///< unit, along an axis
-  double openness = 0;   ///< in [0, 1]: share of rays that enter, weighted by how deep they get
-  double backs = 0;      ///< share of rays that meet the back of a surface first
+  Vec3 inward;          ///< unit, along an axis
+  double openness = 0;  ///< in [0, 1]: share of rays that enter, weighted by how deep they get
+  double backs = 0;     ///< share of rays that meet the back of a surface first
 };
 
 /// The plane that rays through `side` start from, just outside the box, at (s, t) in [0, 1].

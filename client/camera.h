@@ -13,7 +13,7 @@ struct Camera {
   Vec3 target;
   Vec3 up{0, 1, 0};
   double vertical_fov_degrees = 40;
-  int width = 1024;   ///< pixels
+  int width = 1024;  ///< pixels
   int height = 768;
 };
 

@@ -10,16 +10,18 @@ namespace {
 
 const char* name_of(grpc::StatusCode code) {
   static constexpr const char* names[] = {
-      "OK",        "CANCELLED",    "UNKNOWN",       "INVALID_ARGUMENT", "DEADLINE_EXCEEDED", "NOT_FOUND",
-      "ALREADY_EXISTS", "PERMISSION_DENIED", "RESOURCE_EXHAUSTED", "FAILED_PRECONDITION", "ABORTED", "OUT_OF_RANGE",
-      "UNIMPLEMENTED", "INTERNAL", "UNAVAILABLE", "DATA_LOSS", "UNAUTHENTICATED"};
+      "OK",        "CANCELLED",      "UNKNOWN",           "INVALID_ARGUMENT",   "DEADLINE_EXCEEDED",
+      "NOT_FOUND", "ALREADY_EXISTS", "PERMISSION_DENIED", "RESOURCE_EXHAUSTED", "FAILED_PRECONDITION",
+      "ABORTED",   "OUT_OF_RANGE",   "UNIMPLEMENTED",     "INTERNAL",           "UNAVAILABLE",
+      "DATA_LOSS", "UNAUTHENTICATED"};
   const auto index = static_cast<std::size_t>(code);
   return index < std::size(names) ? names[index] : "UNKNOWN";
 }
 
 std::string text_of(const grpc::Status& status) {
   std::string text = status.error_message();
-  std::ranges::replace_if(text, [](unsigned char c) { return c < 0x20; }, ' ');
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20; }, ' ');
   return std::string(name_of(status.error_code())) + (text.empty() ? "" : ": " + text);
 }
 
@@ -60,8 +62,7 @@ v1::Scene Client::create_scene(const Scene& scene, const std::string& display_na
   request.mutable_scene()->set_display_name(as_utf8(display_name));
   SceneSlicer slicer(scene);
   // A write fails when the server has refused what came before: Finish then tells why.
-  while (writer->Write(request) && slicer.next(*request.mutable_chunk())) {
-  }
+  while (writer->Write(request) && slicer.next(*request.mutable_chunk())) {}
   writer->WritesDone();
   check(writer->Finish());
   return stored;

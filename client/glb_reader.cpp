@@ -80,7 +80,9 @@ struct Elements {
   std::string_view bytes;
   std::size_t count = 0, stride = 0;
   template <class T>
-  T at(std::size_t i, std::size_t component = 0) const { return value_at<T>(bytes, i * stride + component * sizeof(T)); }
+  T at(std::size_t i, std::size_t component = 0) const {
+    return value_at<T>(bytes, i * stride + component * sizeof(T));
+  }
 };
 
 struct ElementKind {

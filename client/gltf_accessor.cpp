@@ -93,8 +93,8 @@ std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, int v
     throw ImportError(place, "buffer " + std::to_string(range.buffer) + " is not in the file");
   const std::span<const unsigned char> buffer = model.buffers[static_cast<std::size_t>(range.buffer)].data;
   if (range.byteOffset > buffer.size() || range.byteLength > buffer.size() - range.byteOffset)
-    throw ImportError(place, "ends beyond buffer " + std::to_string(range.buffer) + " of " + std::to_string(buffer.size()) +
-                                 " bytes");
+    throw ImportError(place,
+                      "ends beyond buffer " + std::to_string(range.buffer) + " of " + std::to_string(buffer.size()) + " bytes");
   return buffer.subspan(range.byteOffset, range.byteLength);
 }
 

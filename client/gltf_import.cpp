@@ -112,8 +112,7 @@ class GltfReader {
 
  private:
   std::vector<int> root_nodes() const {
-    if (!model_.scenes.empty())
-      return element(model_.scenes, std::max(model_.defaultScene, 0), "scene", "file").nodes;
+    if (!model_.scenes.empty()) return element(model_.scenes, std::max(model_.defaultScene, 0), "scene", "file").nodes;
     // A file without scenes is a library of nodes: show those that hang from no other.
     std::vector<bool> hangs(model_.nodes.size());
     for (const tinygltf::Node& node : model_.nodes)
@@ -199,7 +198,7 @@ class GltfReader {
   static std::uint32_t checked(std::uint32_t index, Vertices vertices, const std::string& place) {
     if (index < vertices.count) return vertices.first + index;
     throw ImportError(place, "vertex index " + std::to_string(index) + " is out of range, there are " +
-                      std::to_string(vertices.count) + " vertices");
+                                 std::to_string(vertices.count) + " vertices");
   }
 
   std::uint32_t material_of(const tinygltf::Primitive& primitive, const std::string& place) {

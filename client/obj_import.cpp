@@ -95,8 +95,8 @@ class ObjBuilder {
     const long long vertex = index > 0 ? index - 1LL : static_cast<long long>(scene.vertices.size()) + index;
     if (index == 0 || vertex < 0)
       throw ImportError("face " + std::to_string(scene.faces.size()),
-                        "vertex index " + std::to_string(index) + " is out of range, " +
-                            std::to_string(scene.vertices.size()) + " vertices come before it");
+                        "vertex index " + std::to_string(index) + " is out of range, " + std::to_string(scene.vertices.size()) +
+                            " vertices come before it");
     return static_cast<std::uint32_t>(vertex);
   }
 
@@ -125,8 +125,8 @@ void fill_materials(SceneFile& file, const MaterialLibrary& library, const std::
     const tinyobj::material_t* found = library.find(material.name);
     if (found) {
       material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, folder, file.warnings);
-      material.emission = emission_of_radiance(
-          under_texture(rgb_of(found->emission), found->emissive_texname, material, folder, file.warnings));
+      material.emission =
+          emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, folder, file.warnings));
     } else if (!material.name.empty()) {
       file.warnings.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
     } else {
@@ -139,9 +139,9 @@ void refuse_indices_beyond(const Scene& scene) {
   for (std::size_t f = 0; f < scene.faces.size(); ++f)
     for (const std::uint32_t vertex : scene.corners_of(scene.faces[f]))
       if (vertex >= scene.vertices.size())
-        throw ImportError("face " + std::to_string(f),
-                          "vertex index " + std::to_string(std::uint64_t{vertex} + 1) + " is out of range, there are " +
-                              std::to_string(scene.vertices.size()) + " vertices");
+        throw ImportError("face " + std::to_string(f), "vertex index " + std::to_string(std::uint64_t{vertex} + 1) +
+                                                           " is out of range, there are " +
+                                                           std::to_string(scene.vertices.size()) + " vertices");
 }
 
 }  // namespace

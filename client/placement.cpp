@@ -27,8 +27,7 @@ std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, 
   return static_cast<std::uint32_t>(first);
 }
 
-void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material,
-                     const Placement& placement) {
+void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement) {
   refuse_beyond(scene.corners.size() + polygon.size(), max_corners, "corners");
   scene.add_face(polygon, material);
   const auto second = scene.corners.end() - static_cast<std::ptrdiff_t>(polygon.size()) + 1;

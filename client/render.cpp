@@ -15,7 +15,7 @@ namespace {
 
 constexpr double background = 0.018;  ///< linear; dark grey
 constexpr double line_strength = 0.6;
-constexpr double dark_below = 0.01;   ///< luminance; darker places get a light line
+constexpr double dark_below = 0.01;  ///< luminance; darker places get a light line
 constexpr double light_line = 0.35;
 constexpr double crowded_pixels = 5;  ///< triangles lower than this fade their lines, or the picture would be all lines
 

@@ -16,8 +16,8 @@ namespace {
 
 using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 
-constexpr double weld_tolerance = 1e-9;      // of the extent
-constexpr double degenerate_area = 1e-14;    // of the longest diagonal squared
+constexpr double weld_tolerance = 1e-9;    // of the extent
+constexpr double degenerate_area = 1e-14;  // of the longest diagonal squared
 const double smooth_cosine = std::cos(25 * std::numbers::pi / 180);
 
 struct Box {

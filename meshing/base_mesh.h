@@ -22,8 +22,9 @@ struct RootPatch {
   double area = 0;               ///< m2
 
   static constexpr std::uint32_t no_twin = ~0u;
-  std::uint32_t twin = no_twin;  ///< the other side of a two-sided face; its corners are ours in the order 0, n-1, ..., 1, so (u, v) is (v, u)
-  bool is_back = false;          ///< the twin that looks against the face's orientation
+  std::uint32_t twin =
+      no_twin;  ///< the other side of a two-sided face; its corners are ours in the order 0, n-1, ..., 1, so (u, v) is (v, u)
+  bool is_back = false;  ///< the twin that looks against the face's orientation
 
   /// Position at (u, v): bilinear for a quad with (0,0), (1,0), (1,1), (0,1) at corners 0..3; for a triangle
   /// corner0 + u (corner1 - corner0) + v (corner2 - corner0).
@@ -40,8 +41,8 @@ struct Neighbour {
 /// What welding changed, for warnings.
 struct WeldReport {
   std::size_t welded_vertices = 0;
-  std::size_t degenerate_faces = 0;  ///< dropped: zero area or fewer than three distinct vertices
-  std::size_t split_faces = 0;       ///< polygons cut into several roots: more than four corners, concave or not planar
+  std::size_t degenerate_faces = 0;    ///< dropped: zero area or fewer than three distinct vertices
+  std::size_t split_faces = 0;         ///< polygons cut into several roots: more than four corners, concave or not planar
   std::size_t non_manifold_faces = 0;  ///< joined without neighbours, because an edge already had two faces
 };
 
@@ -58,8 +59,8 @@ class BaseMesh {
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
   const WeldReport& weld_report() const { return report_; }
 
-  Vec3 centre() const { return centre_; }     ///< of the bounding box of the roots, metres
-  double extent() const { return extent_; }   ///< longest side of that box, metres; > 0 unless there are no roots
+  Vec3 centre() const { return centre_; }    ///< of the bounding box of the roots, metres
+  double extent() const { return extent_; }  ///< longest side of that box, metres; > 0 unless there are no roots
 
  private:
   void find_neighbours();

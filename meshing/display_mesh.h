@@ -11,8 +11,8 @@
 
 namespace alvor {
 
-/// Each triangle is (centre of a leaf, corner, next corner), counter-clockwise: the side opposite its first vertex lies on the leaf's
-/// outline. Vertices are shared only where the surface is smooth and the material the same.
+/// Each triangle is (centre of a leaf, corner, next corner), counter-clockwise: the side opposite its first vertex lies on the
+/// leaf's outline. Vertices are shared only where the surface is smooth and the material the same.
 struct DisplayMesh {
   std::vector<Vec3> positions;   ///< metres
   std::vector<Vec3> normals;     ///< unit, of the front

@@ -36,8 +36,8 @@ class SmoothNeighbours {
   bool at_crease_ = false;
 };
 
-/// Weighted least squares over the neighbours; those where exactly nothing arrives take no part. `centre` and `value` are indexed by
-/// node. Safe from any thread.
+/// Weighted least squares over the neighbours; those where exactly nothing arrives take no part. `centre` and `value` are indexed
+/// by node. Safe from any thread.
 LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                      std::span<const Rgb> value);
 

@@ -38,15 +38,13 @@ class PatchForest {
   /// The leaf that contains `place`, or is it, or lies below it at its first corner. O(levels).
   NodeIndex leaf_at(PatchId place) const {
     NodeIndex node = place.root_face();
-    for (int level = 1; first_child_[node] != 0; ++level)
-      node = first_child_[node] + place.child_index(level);
+    for (int level = 1; first_child_[node] != 0; ++level) node = first_child_[node] + place.child_index(level);
     return node;
   }
   /// The same, from a node that contains `place`.
   NodeIndex leaf_at(PatchId place, NodeIndex from) const {
     if (first_child_[from] == 0) return from;
-    for (int level = id(from).level() + 1; first_child_[from] != 0; ++level)
-      from = first_child_[from] + place.child_index(level);
+    for (int level = id(from).level() + 1; first_child_[from] != 0; ++level) from = first_child_[from] + place.child_index(level);
     return from;
   }
   /// The leaf across `edge` at `fraction` along it; `no_node` where the surface ends.

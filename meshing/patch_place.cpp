@@ -19,8 +19,8 @@ std::uint32_t quad_path(float u, float v) {
   return spread_bits(static_cast<std::uint32_t>(cell(u))) | spread_bits(static_cast<std::uint32_t>(cell(v))) << 1;
 }
 
-/// Walks down in coordinates relative to the current triangle, 30-bit fixed point with a + b < 1; entering the inner child turns both
-/// axes. Without branches, level by level for all places at once, so that the compiler makes SIMD of it.
+/// Walks down in coordinates relative to the current triangle, 30-bit fixed point with a + b < 1; entering the inner child turns
+/// both axes. Without branches, level by level for all places at once, so that the compiler makes SIMD of it.
 template <int count>
 void triangle_paths(const float* us, const float* vs, std::uint32_t* path) {
   constexpr std::uint32_t one = 1u << 30;
@@ -117,8 +117,7 @@ std::array<Vec3, 4> corners_of(const BaseMesh& mesh, const PatchShape& shape) {
   const RootPatch& root = mesh.roots()[shape.root];
   const auto grid = shape.corners();
   std::array<Vec3, 4> at;
-  for (int c = 0; c < shape.corner_count; ++c)
-    at[c] = root.at(double(grid[c].i) / grid_size, double(grid[c].j) / grid_size);
+  for (int c = 0; c < shape.corner_count; ++c) at[c] = root.at(double(grid[c].i) / grid_size, double(grid[c].j) / grid_size);
   return at;
 }
 

@@ -21,8 +21,8 @@ struct Uv {
   double u = 0, v = 0;
 };
 
-/// A patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1. Triangles split at their edge
-/// midpoints: children 0..2 keep corners 0..2, child 3 is the inner one, turned by half a circle (size < 0).
+/// A patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1. Triangles split at their
+/// edge midpoints: children 0..2 keep corners 0..2, child 3 is the inner one, turned by half a circle (size < 0).
 struct PatchShape {
   std::uint32_t root = 0;
   int corner_count = 3;
@@ -39,8 +39,8 @@ PatchShape shape_of(const BaseMesh& mesh, PatchId patch);
 std::array<Vec3, 4> corners_of(const BaseMesh& mesh, const PatchShape& shape);
 double area_of(const BaseMesh& mesh, const PatchShape& shape);
 
-/// Paths (see PatchId::finest) of the finest patches that contain each (u, v); coordinates outside the root are clamped into it. Sixteen at
-/// a time because rays come so.
+/// Paths (see PatchId::finest) of the finest patches that contain each (u, v); coordinates outside the root are clamped into it.
+/// Sixteen at a time because rays come so.
 inline constexpr int places_at_once = 16;
 void finest_quad_paths(const float* u, const float* v, std::uint32_t* path);
 void finest_triangle_paths(const float* u, const float* v, std::uint32_t* path);

@@ -28,9 +28,8 @@ bool is_ear(std::span<const Vec3> p, std::span<const std::uint32_t> ring, std::s
   const std::size_t n = ring.size();
   const std::uint32_t ia = ring[(k + n - 1) % n], ib = ring[k], ic = ring[(k + 1) % n];
   if (dot(cross(p[ib] - p[ia], p[ic] - p[ib]), normal) <= 0) return false;
-  return std::ranges::none_of(ring, [&](std::uint32_t i) {
-    return i != ia && i != ib && i != ic && lies_inside(p[i], p[ia], p[ib], p[ic], normal);
-  });
+  return std::ranges::none_of(
+      ring, [&](std::uint32_t i) { return i != ia && i != ib && i != ic && lies_inside(p[i], p[ia], p[ib], p[ic], normal); });
 }
 
 // Starts at the second corner: a convex polygon becomes the fan about its first, as in most programs.

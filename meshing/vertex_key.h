@@ -12,7 +12,8 @@ namespace alvor {
 
 using VertexKey = std::uint64_t;
 
-/// Two families of keys: position keys are equal for the same place of the surface; smooth keys only where no crease lies between.
+/// Two families of keys: position keys are equal for the same place of the surface; smooth keys only where no crease lies
+/// between.
 class VertexKeys {
  public:
   explicit VertexKeys(const BaseMesh& mesh);

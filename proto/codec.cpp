@@ -191,9 +191,7 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
   return std::nullopt;
 }
 
-std::string SceneAssembler::place_in_chunk(const char* field) const {
-  return "chunk " + std::to_string(chunks_) + ", " + field;
-}
+std::string SceneAssembler::place_in_chunk(const char* field) const { return "chunk " + std::to_string(chunks_) + ", " + field; }
 
 SceneSlicer::SceneSlicer(const Scene& scene, std::size_t max_bytes)
     : scene_(scene), max_bytes_(static_cast<std::int64_t>(std::max<std::size_t>(max_bytes, 256))) {}

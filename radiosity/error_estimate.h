@@ -7,10 +7,10 @@
 
 namespace alvor {
 
-/// What linear interpolation between leaves misses: a quarter of the largest difference between a smooth neighbour's value and the
-/// leaf's linear prediction of it, either way (for a parabola this is the interpolation error in the middle between two leaves);
-/// three times that at a crease, up to which the leaf
-/// extrapolates. Mean over bands, W/m2. The spans are indexed by node.
+/// What linear interpolation between leaves misses: a quarter of the largest difference between a smooth neighbour's value and
+/// the leaf's linear prediction of it, either way (for a parabola this is the interpolation error in the middle between two
+/// leaves); three times that at a crease, up to which the leaf extrapolates. Mean over bands, W/m2. The spans are indexed by
+/// node.
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                            std::span<const Rgb> value, std::span<const LeafSlope> slope);
 

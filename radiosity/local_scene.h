@@ -18,8 +18,8 @@ struct Float3 {
 /// One root patch. A quad's point at (u, v) is origin + u edge_u + v edge_v + u v twist.
 struct LocalRoot {
   Float3 origin, edge_u, edge_v, twist;
-  Float3 tangent, bitangent, normal;    ///< orthonormal, right-handed
-  float twist_u = 0, twist_v = 0;       ///< twist = twist_u edge_u + twist_v edge_v; both 0 for parallelograms and triangles
+  Float3 tangent, bitangent, normal;  ///< orthonormal, right-handed
+  float twist_u = 0, twist_v = 0;     ///< twist = twist_u edge_u + twist_v edge_v; both 0 for parallelograms and triangles
   bool is_quad = false;
   std::uint32_t twin = RootPatch::no_twin;
 };

@@ -10,8 +10,8 @@
 
 namespace alvor {
 
-/// Rays of one origin are one packet; the directions of an origin are stratified 4 x 4 over the hemisphere's disk, those of all the
-/// origins of a patch together 16 x 16 ((0,2)-sequence, Sobol 1967).
+/// Rays of one origin are one packet; the directions of an origin are stratified 4 x 4 over the hemisphere's disk, those of all
+/// the origins of a patch together 16 x 16 ((0,2)-sequence, Sobol 1967).
 inline constexpr int rays_per_origin = 16;
 inline constexpr int origins_per_patch = 16;
 inline constexpr int rays_per_row = rays_per_origin * origins_per_patch;

@@ -7,8 +7,14 @@
 namespace alvor {
 
 Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
-    : patches_(patches), leaves_(std::move(leaves)), hit_leaf_(std::move(hit_leaf)), patch_of_leaf_(leaves_.size()),
-      first_hit_(patches.size() + 1), receivers_(patches.size()), gathered_(patches.size()), shot_irradiance_(patches.size()),
+    : patches_(patches),
+      leaves_(std::move(leaves)),
+      hit_leaf_(std::move(hit_leaf)),
+      patch_of_leaf_(leaves_.size()),
+      first_hit_(patches.size() + 1),
+      receivers_(patches.size()),
+      gathered_(patches.size()),
+      shot_irradiance_(patches.size()),
       leaf_power_(patches.size()) {
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
     const ShootingPatch& patch = patches[p];

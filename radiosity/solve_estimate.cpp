@@ -14,8 +14,9 @@ namespace {
 constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-constexpr double contact_error = 0.1;       // of a patch's irradiance: how much it varies where a solid's outline crosses it
-constexpr double noise_in_display = 0.4;    // of the half difference: low-discrepancy halves err less (0.7), interpolation averages (0.6)
+constexpr double contact_error = 0.1;  // of a patch's irradiance: how much it varies where a solid's outline crosses it
+constexpr double noise_in_display =
+    0.4;  // of the half difference: low-discrepancy halves err less (0.7), interpolation averages (0.6)
 constexpr double noise_in_indicator = 0.5;  // of a row's variance: what noise alone adds to a squared indicator
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
@@ -37,16 +38,14 @@ void for_each_leaf(const Field& field, Body&& body) {
 }
 
 void find_slopes(const Field& f, std::span<LeafSlope> by_node) {
-  for_each_leaf(f, [&](std::size_t n) {
-    by_node[f.leaves[n]] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value);
-  });
+  for_each_leaf(
+      f, [&](std::size_t n) { by_node[f.leaves[n]] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); });
 }
 
 std::vector<double> interpolation_errors(const Field& f, std::span<const LeafSlope> slope) {
   std::vector<double> errors(f.leaves.size());
-  for_each_leaf(f, [&](std::size_t n) {
-    errors[n] = interpolation_error(f.leaves[n], f.neighbours[n], f.centre, f.value, slope);
-  });
+  for_each_leaf(f,
+                [&](std::size_t n) { errors[n] = interpolation_error(f.leaves[n], f.neighbours[n], f.centre, f.value, slope); });
   return errors;
 }
 

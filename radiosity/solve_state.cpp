@@ -8,10 +8,10 @@ namespace alvor {
 
 namespace {
 
-constexpr double start_edge = 1.0 / 6;          // of the extent: no patch of the first mesh is longer
-constexpr double start_area = 1e-3;              // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
-constexpr double most_area_emits = 0.5;         // beyond this share rows find the emitters as well as shadow rays do
-constexpr double marked_share = 0.9;            // of the squared error, per pass
+constexpr double start_edge = 1.0 / 6;   // of the extent: no patch of the first mesh is longer
+constexpr double start_area = 1e-3;      // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+constexpr double most_area_emits = 0.5;  // beyond this share rows find the emitters as well as shadow rays do
+constexpr double marked_share = 0.9;     // of the squared error, per pass
 
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
@@ -29,8 +29,14 @@ Vec3 centre_of(const BaseMesh& mesh, const PatchShape& shape) {
 }  // namespace
 
 SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget)
-    : mesh_(mesh), options_(options), budget_(budget), scene_(mesh), directions_(options.seed),
-      limits_{options.max_depth, options.max_leaves, options.min_edge_m}, row_forest_(mesh), leaf_forest_(mesh) {
+    : mesh_(mesh),
+      options_(options),
+      budget_(budget),
+      scene_(mesh),
+      directions_(options.seed),
+      limits_{options.max_depth, options.max_leaves, options.min_edge_m},
+      row_forest_(mesh),
+      leaf_forest_(mesh) {
   choose_emitters();
   split_to_start();
   fit_to_nodes();
@@ -112,8 +118,8 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
   return nodes;
 }
 
-// Which points are hidden under a solid is known from rows only: along contacts leaves must not be finer than rows, and direct light that
-// was found without that knowledge is found again.
+// Which points are hidden under a solid is known from rows only: along contacts leaves must not be finer than rows, and direct
+// light that was found without that knowledge is found again.
 void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows_[row].hidden_origins == 0) return;
   std::vector<NodeIndex> leaves;
@@ -263,7 +269,8 @@ bool SolveState::split_leaf(NodeIndex leaf) {
 
 void SolveState::follow_contact(NodeIndex split_leaf) {
   const NodeIndex row = row_of(leaf_forest_.id(split_leaf));
-  if (row_forest_.id(row) == leaf_forest_.id(split_leaf) && (!row_is_traced_[row] || rows_[row].crosses_contact())) split_row(row);
+  if (row_forest_.id(row) == leaf_forest_.id(split_leaf) && (!row_is_traced_[row] || rows_[row].crosses_contact()))
+    split_row(row);
 }
 
 bool SolveState::split_row(NodeIndex row) {

@@ -16,8 +16,9 @@
 
 namespace alvor {
 
-/// Direct light is sharp and indirect light smooth, so they do not share a depth: rows hang on the leaves of a coarse forest, direct light
-/// on those of a finer one that contains it. One pass is: trace_new_rows, add_new_direct_light, begin_shooting, shots, refine.
+/// Direct light is sharp and indirect light smooth, so they do not share a depth: rows hang on the leaves of a coarse forest,
+/// direct light on those of a finer one that contains it. One pass is: trace_new_rows, add_new_direct_light, begin_shooting,
+/// shots, refine.
 class SolveState {
  public:
   SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget);
@@ -46,8 +47,8 @@ class SolveState {
   /// Irradiance of every leaf. Before the first shots this is direct light alone.
   std::vector<LeafValue> leaf_values() const;
   ErrorEstimate estimate();
-  /// Splits patches and adds rays where that pays most; ends the shooting. False if nothing was done: the limits forbid every split and
-  /// rows are not what errs most. Requires: estimate() just before.
+  /// Splits patches and adds rays where that pays most; ends the shooting. False if nothing was done: the limits forbid every
+  /// split and rows are not what errs most. Requires: estimate() just before.
   bool refine();
 
  private:
@@ -101,8 +102,8 @@ class SolveState {
 
   // Of the current pass.
   std::vector<ShootingPatch> patches_;
-  std::vector<NodeIndex> patch_row_;   // row node of each patch
-  std::vector<NodeIndex> patch_leaves_;  // leaf nodes, patch after patch
+  std::vector<NodeIndex> patch_row_;              // row node of each patch
+  std::vector<NodeIndex> patch_leaves_;           // leaf nodes, patch after patch
   std::vector<SmoothNeighbours> row_neighbours_;  // by patch; empty until needed
   std::unique_ptr<Shooting> shooting_;
   std::vector<Candidate> candidates_;

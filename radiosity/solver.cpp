@@ -1,5 +1,6 @@
 #include "radiosity/solver.h"
 
+#include "radiosity/cpu_clock.h"
 #include "radiosity/solve_state.h"
 
 #include <tbb/task_arena.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <ctime>
 #include <mutex>
 #include <thread>
 
@@ -15,17 +15,11 @@ namespace alvor {
 
 namespace {
 
-constexpr double pass_unshot = 0.1;      // of the tolerance: a pass shoots down to this fraction of the emitted power
-constexpr double final_unshot = 1e-6;    // of the emitted power
-constexpr double publish_when = 0.75;    // of the unshot power at the last publication
-constexpr double publishing_share = 0.1; // of the time, at most, goes into steps that only show progress
+constexpr double pass_unshot = 0.1;       // of the tolerance: a pass shoots down to this fraction of the emitted power
+constexpr double final_unshot = 1e-6;     // of the emitted power
+constexpr double publish_when = 0.75;     // of the unshot power at the last publication
+constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct CloseAtEnd {
   SolutionLog& log;
@@ -55,16 +49,20 @@ class SolveClock {
 
 class Run {
  public:
-  Run(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop)
-      : options_(options), log_(log), stop_(std::move(stop)), cpu_before_(cpu_seconds()),
-        budget_([this] { return must_stop(); }), state_(mesh, options, budget_) {}
+  Run(const BaseMesh& mesh, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log, std::stop_token stop)
+      : options_(options),
+        log_(log),
+        stop_(std::move(stop)),
+        cpu_(cpu),
+        budget_([this] { return must_stop(); }),
+        state_(mesh, options, budget_) {}
 
   SolveOutcome run() {
     const bool is_lit = state_.emitted_power() > 0;
     if (!is_lit) error_ = {};
     publish();
     const StopReason reason = is_lit ? pass_until_done() : StopReason::dark;
-    const double cpu = cpu_seconds() - cpu_before_;
+    const double cpu = cpu_.seconds();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0};
   }
 
@@ -154,7 +152,7 @@ class Run {
   SolutionLog& log_;
   std::stop_token stop_;
   SolveClock clock_;
-  double cpu_before_;
+  const CpuClock& cpu_;
   RayBudget budget_;
   SolveState state_;
   std::uint64_t shots_ = 0;
@@ -179,9 +177,10 @@ std::string_view text(StopReason reason) {
 SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   tbb::task_arena arena(threads);
+  const CpuClock cpu(arena);
   return arena.execute([&] {
     const CloseAtEnd close{log};
-    return Run(mesh, options, log, std::move(stop)).run();
+    return Run(mesh, options, cpu, log, std::move(stop)).run();
   });
 }
 

@@ -15,15 +15,15 @@ enum class Strategy { automatic, sorted, sorted_ambient };
 
 /// Everything that decides a solve. The same mesh, options and seed give the same bytes.
 struct SolveOptions {
-  double tolerance = 0.02;          ///< stop when the estimated nRMSE is at or below this; > 0
-  int max_depth = 10;               ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
+  double tolerance = 0.02;  ///< stop when the estimated nRMSE is at or below this; > 0
+  int max_depth = 10;       ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
   std::uint64_t max_leaves = 200'000;
-  double min_edge_m = 0;            ///< no split makes an edge shorter than this
+  double min_edge_m = 0;  ///< no split makes an edge shorter than this
   double time_limit_s = std::numeric_limits<double>::infinity();
-  int threads = 0;                  ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many as the machine has
   std::uint64_t seed = 1;
   Strategy strategy = Strategy::automatic;
-  double step_pause_s = 0;          ///< waits this long after each published step, for people who watch; not counted as solving time
+  double step_pause_s = 0;  ///< waits this long after each published step, for people who watch; not counted as solving time
 };
 
 enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled, dark };
@@ -32,13 +32,13 @@ std::string_view text(StopReason reason);
 
 struct SolveOutcome {
   StopReason reason = StopReason::tolerance;
-  double solve_s = 0;            ///< wall seconds
-  double cpu_s = 0;              ///< of the process during the solve
-  double traversal_share = 0;    ///< of the threads' time, spent in ray traversal
+  double solve_s = 0;          ///< wall seconds
+  double cpu_s = 0;            ///< of the threads that worked on it
+  double traversal_share = 0;  ///< of that time, spent in ray traversal
 };
 
-/// Solves on the calling thread and its worker threads; publishes every step to `log` and closes it. Step 1 is published before any
-/// ray is traced. A stop request is obeyed within one batch of rays or shots, and leaves a usable solution in the log.
+/// Solves on the calling thread and its worker threads; publishes every step to `log` and closes it. Step 1 is published before
+/// any ray is traced. A stop request is obeyed within one batch of rays or shots, and leaves a usable solution in the log.
 /// Requires: !mesh.roots().empty(), log.head() == 0.
 SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop);
 

@@ -27,8 +27,7 @@ struct TurnedFrame {
 };
 
 void aim(RayPacket& packet, const DirectionSets::Set& set, int origin, const TurnedFrame& frame) {
-  const float *x = &set.x[origin * rays_per_origin], *y = &set.y[origin * rays_per_origin],
-              *z = &set.z[origin * rays_per_origin];
+  const float *x = &set.x[origin * rays_per_origin], *y = &set.y[origin * rays_per_origin], *z = &set.z[origin * rays_per_origin];
   for (int r = 0; r < rays_per_origin; ++r) {
     packet.direction_x[r] = x[r] * frame.s.x + y[r] * frame.t.x + z[r] * frame.n.x;
     packet.direction_y[r] = x[r] * frame.s.y + y[r] * frame.t.y + z[r] * frame.n.y;
@@ -80,7 +79,7 @@ class RowBatch {
   Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {
     if (hit.root[lane] == HitPacket::nothing) return Outcome::escaped;
     return meets_front(packet, hit, lane) || scene_.root(hit.root[lane]).twin != RootPatch::no_twin ? Outcome::stored
-                                                                                                  : Outcome::black_back;
+                                                                                                    : Outcome::black_back;
   }
   bool meets_front(const RayPacket& packet, const HitPacket& hit, int lane) const {
     const Float3& n = scene_.root(hit.root[lane]).normal;

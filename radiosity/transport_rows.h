@@ -11,11 +11,11 @@
 
 namespace alvor {
 
-/// Where the rays of one patch ended. Hits are places, so they survive later splits. The two halves are from disjoint sets of origins, and
-/// their difference tells the row's sampling noise. Rays that left the scene or met a black back are counted but not stored: each hit
-/// weighs 1 / ray_count().
+/// Where the rays of one patch ended. Hits are places, so they survive later splits. The two halves are from disjoint sets of
+/// origins, and their difference tells the row's sampling noise. Rays that left the scene or met a black back are counted but not
+/// stored: each hit weighs 1 / ray_count().
 struct TransportRow {
-  std::vector<PatchId> hits;       ///< the first half's, then the second half's
+  std::vector<PatchId> hits;  ///< the first half's, then the second half's
   std::uint32_t first_half_hits = 0;
   std::uint32_t first_half_rays = 0, second_half_rays = 0;
   std::uint16_t hidden_origins = 0;  ///< bit o: origin o is hidden, see trace_rows
@@ -28,10 +28,10 @@ struct TransportRow {
   void append(const TransportRow& more);
 };
 
-/// Traces one row for each patch: 256 cosine-distributed rays from 16 stratified origins. An origin most of whose rays meet backs is hidden
-/// (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance of its visible half. In a closed
-/// scene a ray that slips through a seam is sent once more beside it, so that rows sum to 1. Rows come in the order of `patches`
-/// and do not depend on the number of threads. Requires: as many shapes as patches.
+/// Traces one row for each patch: 256 cosine-distributed rays from 16 stratified origins. An origin most of whose rays meet backs
+/// is hidden (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance of its visible
+/// half. In a closed scene a ray that slips through a seam is sent once more beside it, so that rows sum to 1. Rows come in the
+/// order of `patches` and do not depend on the number of threads. Requires: as many shapes as patches.
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget);
 

@@ -42,8 +42,7 @@ class EmbreeScene {
 
   /// Polygons of N corners each, under the geometry id `id`.
   template <std::size_t N>
-  void add(unsigned id, std::span<const std::array<float, 3>> vertices,
-           std::span<const std::array<std::uint32_t, N>> polygons) {
+  void add(unsigned id, std::span<const std::array<float, 3>> vertices, std::span<const std::array<std::uint32_t, N>> polygons) {
     if (polygons.empty()) return;
     const auto type = N == 4 ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE;
     RTCGeometry geometry = rtcNewGeometry(device_, type);
@@ -71,9 +70,7 @@ class EmbreeScene {
   RTCScene scene_;
 };
 
-std::array<float, 3> to_float(Vec3 p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
+std::array<float, 3> to_float(Vec3 p) { return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)}; }
 
 void copy_rays(const RayPacket& from, RTCRay16& to) {
   constexpr std::size_t bytes = sizeof(float) * RayPacket::width;
@@ -139,8 +136,8 @@ void Visibility::closest_hits(std::span<const RayPacket> packets, std::span<HitP
     HitPacket& hit = hits[p];
     for (int lane = 0; lane < RayPacket::width; ++lane) {
       const unsigned geometry = query.hit.geomID[lane];
-      hit.root[lane] = geometry == RTC_INVALID_GEOMETRY_ID ? HitPacket::nothing
-                                                           : handles_->root_of[geometry][query.hit.primID[lane]];
+      hit.root[lane] =
+          geometry == RTC_INVALID_GEOMETRY_ID ? HitPacket::nothing : handles_->root_of[geometry][query.hit.primID[lane]];
     }
     std::memcpy(hit.u, query.hit.u, sizeof hit.u);
     std::memcpy(hit.v, query.hit.v, sizeof hit.v);

@@ -36,7 +36,8 @@ struct LocalFrame {
   Vec3 to_local(Vec3 p) const { return (p - centre) / metres_per_unit; }
 };
 
-/// All root patches but the backs of two-sided faces (a hit from behind belongs to the twin), in local coordinates. Immutable; any number of threads may trace at a time.
+/// All root patches but the backs of two-sided faces (a hit from behind belongs to the twin), in local coordinates. Immutable;
+/// any number of threads may trace at a time.
 class Visibility {
  public:
   Visibility(std::span<const RootPatch> roots, const LocalFrame& frame);
@@ -61,7 +62,8 @@ class TriangleCaster {
   TriangleCaster(const TriangleCaster&) = delete;
   TriangleCaster& operator=(const TriangleCaster&) = delete;
 
-  /// A point of triangle `triangle`: (1-u-v) a + u b + v c. `distance` is in the positions' units, along the ray or through space.
+  /// A point of triangle `triangle`: (1-u-v) a + u b + v c. `distance` is in the positions' units, along the ray or through
+  /// space.
   struct Hit {
     std::uint32_t triangle;
     double u, v;

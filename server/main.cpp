@@ -2,13 +2,13 @@
 
 #include "server/service.h"
 
-#include <CLI/CLI.hpp>
 #include <grpc/support/log.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <csignal>
@@ -63,8 +63,7 @@ sigset_t block_stop_signals() {
 
 std::string wait_for_stop(const sigset_t& signals) {
   int number = 0;
-  while (sigwait(&signals, &number) != 0) {
-  }
+  while (sigwait(&signals, &number) != 0) {}
   return number == SIGINT ? "SIGINT" : "SIGTERM";
 }
 

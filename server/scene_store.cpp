@@ -52,8 +52,8 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
   v1::Scene facts = facts_of(scene, mesh, display_name);
 
   std::scoped_lock hold(lock_);
-  auto stored = std::make_shared<const StoredScene>(
-      StoredScene{next_number_++, std::move(facts), std::move(scene), std::move(mesh)});
+  auto stored =
+      std::make_shared<const StoredScene>(StoredScene{next_number_++, std::move(facts), std::move(scene), std::move(mesh)});
   scenes_[stored->facts.name()] = {stored, std::make_shared<const int>(0)};
   return stored;
 }
@@ -87,8 +87,7 @@ void SceneStore::remove(const std::string& name) {
   SceneUse removed;  // freed after the lock is
   std::scoped_lock hold(lock_);
   // First uses are only handed out under this lock, so a count of one cannot grow meanwhile.
-  if (entry(name).token.use_count() > 1)
-    throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves: delete them first");
+  if (entry(name).token.use_count() > 1) throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves: delete them first");
   removed = std::move(scenes_.extract(name).mapped());
 }
 

@@ -11,10 +11,7 @@ using google::protobuf::util::TimeUtil;
 
 StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, const v1::SolveSpec& spec,
                          const SolveOptions& options)
-    : number(solve_number),
-      name(scene->facts.name() + "/solves/" + random_id('s')),
-      scene_(std::move(scene)),
-      options_(options) {
+    : number(solve_number), name(scene->facts.name() + "/solves/" + random_id('s')), scene_(std::move(scene)), options_(options) {
   facts_.set_name(name);
   *facts_.mutable_spec() = spec;
   facts_.set_state(v1::Solve::RUNNING);

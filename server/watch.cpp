@@ -5,11 +5,7 @@
 namespace alvor {
 
 Watch::Watch(std::shared_ptr<FrameSource> frames, Cursor start, Clock::duration min_interval, FrameSink& sink)
-    : frames_(std::move(frames)),
-      min_interval_(min_interval),
-      sink_(sink),
-      cursor_(start),
-      sent_revision_(start.revision) {}
+    : frames_(std::move(frames)), min_interval_(min_interval), sink_(sink), cursor_(start), sent_revision_(start.revision) {}
 
 std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) {
   turn_asked_ = false;  // before anything is looked at: what happens from here on asks again
@@ -26,9 +22,7 @@ std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) 
   return std::nullopt;
 }
 
-bool Watch::may_send() const {
-  return sent_ - acknowledged_ < window && (sent_ == 0 || frames_->has_news(cursor_));
-}
+bool Watch::may_send() const { return sent_ - acknowledged_ < window && (sent_ == 0 || frames_->has_news(cursor_)); }
 
 // One pending timer is enough: later turns for the same wait ask for none.
 std::optional<Watch::Clock::time_point> Watch::wait_until(Clock::time_point due) {

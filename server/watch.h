@@ -65,7 +65,7 @@ class Watch {
   mutable std::mutex lock_;
   Cursor cursor_;
   std::uint64_t sent_ = 0, acknowledged_ = 0;
-  std::uint64_t sent_revision_;  ///< to_revision of the newest frame
+  std::uint64_t sent_revision_;             ///< to_revision of the newest frame
   std::shared_ptr<const Frame> under_way_;  ///< set between write() and written()
   std::optional<grpc::Status> end_;         ///< why to finish once nothing is under way
   bool finished_ = false;

@@ -18,15 +18,15 @@ struct LeafValue {
 
 /// Progress at one published revision. One line of the report.
 struct Step {
-  std::uint64_t revision = 0;      ///< the revision this step made; 1 is the first
-  double elapsed_s = 0;            ///< since the solve began
-  std::uint64_t step = 0;          ///< counts published steps from 0
-  std::uint64_t shots = 0;         ///< shots so far
-  std::uint64_t rays = 0;          ///< rays so far, shadow rays included
-  std::uint64_t leaves = 0;        ///< leaves now
-  double unshot_fraction = 1;      ///< sum |unshot power| / emitted power
-  double estimated_error = 1;      ///< estimate of nRMSE of the irradiance against truth
-  Rgb ambient_irradiance;          ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
+  std::uint64_t revision = 0;  ///< the revision this step made; 1 is the first
+  double elapsed_s = 0;        ///< since the solve began
+  std::uint64_t step = 0;      ///< counts published steps from 0
+  std::uint64_t shots = 0;     ///< shots so far
+  std::uint64_t rays = 0;      ///< rays so far, shadow rays included
+  std::uint64_t leaves = 0;    ///< leaves now
+  double unshot_fraction = 1;  ///< sum |unshot power| / emitted power
+  double estimated_error = 1;  ///< estimate of nRMSE of the irradiance against truth
+  Rgb ambient_irradiance;      ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
   friend bool operator==(const Step&, const Step&) = default;
 };
 

@@ -54,9 +54,7 @@ class PatchId {
     return PatchId(bits_ - lsb_() + static_cast<std::uint64_t>(2 * k + 1) * lsb);
   }
   /// Which child of its ancestor at `level` - 1 contains this patch. Requires: 1 <= level <= this->level().
-  constexpr int child_index(int level) const {
-    return static_cast<int>(bits_ >> (2 * (max_level - level) + 1)) & 3;
-  }
+  constexpr int child_index(int level) const { return static_cast<int>(bits_ >> (2 * (max_level - level) + 1)) & 3; }
 
   constexpr PatchId range_min() const { return PatchId(bits_ - (lsb_() - 1)); }
   constexpr PatchId range_max() const { return PatchId(bits_ + (lsb_() - 1)); }

@@ -13,9 +13,24 @@ struct RgbOf {
 
   friend constexpr bool operator==(const RgbOf&, const RgbOf&) = default;
 
-  constexpr RgbOf& operator+=(const RgbOf& o) { r += o.r; g += o.g; b += o.b; return *this; }
-  constexpr RgbOf& operator-=(const RgbOf& o) { r -= o.r; g -= o.g; b -= o.b; return *this; }
-  constexpr RgbOf& operator*=(T s) { r *= s; g *= s; b *= s; return *this; }
+  constexpr RgbOf& operator+=(const RgbOf& o) {
+    r += o.r;
+    g += o.g;
+    b += o.b;
+    return *this;
+  }
+  constexpr RgbOf& operator-=(const RgbOf& o) {
+    r -= o.r;
+    g -= o.g;
+    b -= o.b;
+    return *this;
+  }
+  constexpr RgbOf& operator*=(T s) {
+    r *= s;
+    g *= s;
+    b *= s;
+    return *this;
+  }
 
   friend constexpr RgbOf operator+(RgbOf a, const RgbOf& c) { return a += c; }
   friend constexpr RgbOf operator-(RgbOf a, const RgbOf& c) { return a -= c; }
@@ -32,15 +47,15 @@ struct RgbOf {
   bool is_finite() const { return std::isfinite(r) && std::isfinite(g) && std::isfinite(b); }
 };
 
-using Rgb = RgbOf<double>;   ///< for arithmetic
-using RgbF = RgbOf<float>;   ///< for storage and the wire
+using Rgb = RgbOf<double>;  ///< for arithmetic
+using RgbF = RgbOf<float>;  ///< for storage and the wire
 
-constexpr RgbF narrow(const Rgb& a) {
-  return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b)};
-}
+constexpr RgbF narrow(const Rgb& a) { return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b)}; }
 constexpr Rgb widen(const RgbF& a) { return {a.r, a.g, a.b}; }
 
 template <class T>
-RgbOf<T> absolute(const RgbOf<T>& a) { return {std::abs(a.r), std::abs(a.g), std::abs(a.b)}; }
+RgbOf<T> absolute(const RgbOf<T>& a) {
+  return {std::abs(a.r), std::abs(a.g), std::abs(a.b)};
+}
 
 }  // namespace alvor

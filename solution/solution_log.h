@@ -29,7 +29,7 @@ struct Delta {
   std::uint64_t head = 0;           ///< newest revision when the delta was made
   Cursor next;                      ///< where the next page starts
   std::vector<LeafValue> values;
-  std::vector<Step> steps;          ///< every step with from_revision < revision <= to_revision
+  std::vector<Step> steps;  ///< every step with from_revision < revision <= to_revision
   bool whole() const { return to_revision == head; }
 };
 

@@ -17,7 +17,8 @@ inline void add_polygon(Scene& scene, std::initializer_list<Vec3> corners, std::
   scene.add_face(ring, material);
 }
 
-/// Six quads; normals point inwards for a room, outwards for a solid. Faces: floor (y low), ceiling, x low, x high, z low, z high.
+/// Six quads; normals point inwards for a room, outwards for a solid. Faces: floor (y low), ceiling, x low, x high, z low, z
+/// high.
 inline void add_box(Scene& scene, Vec3 low, Vec3 high, bool inwards, std::array<std::uint32_t, 6> materials = {}) {
   const auto [x, y, z] = low;
   const auto [X, Y, Z] = high;

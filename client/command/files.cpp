@@ -22,8 +22,7 @@ DisplayMesh read_any_solution(const std::filesystem::path& path) {
 void require_writable(const std::filesystem::path& path, const std::string& option) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const std::string at = option + " " + path.string() + ": ";
-  if (!std::filesystem::is_directory(folder))
-    throw Failure(ExitStatus::usage, at + "there is no folder " + folder.string());
+  if (!std::filesystem::is_directory(folder)) throw Failure(ExitStatus::usage, at + "there is no folder " + folder.string());
   if (std::filesystem::is_directory(path)) throw Failure(ExitStatus::usage, at + "is a folder");
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw Failure(ExitStatus::usage, at + "the folder " + folder.string() + " cannot be written to");

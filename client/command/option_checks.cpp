@@ -28,9 +28,7 @@ CLI::Validator whole_from(std::uint64_t low) {
 }
 
 CLI::Validator triple() {
-  return {[](std::string& text) {
-            return parse_numbers(text, 3) ? std::string() : text + " is not three numbers like 1,2.5,-3";
-          },
+  return {[](std::string& text) { return parse_numbers(text, 3) ? std::string() : text + " is not three numbers like 1,2.5,-3"; },
           ""};
 }
 

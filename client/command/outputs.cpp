@@ -30,8 +30,7 @@ void make_frames_folder(const std::filesystem::path& folder) {
 void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
   if (followed.mirror.steps().empty() || (options.solution.empty() && options.frames.empty())) return;
   const BaseMesh mesh(scene);
-  if (!options.solution.empty())
-    write_solution_file(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
+  if (!options.solution.empty()) write_solution_file(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
   if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
 }
 
@@ -73,14 +72,11 @@ void warn(std::span<const std::string> warnings) {
   for (const std::string& warning : warnings) std::cerr << "warning: " << warning << '\n';
 }
 
-void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed,
-             std::span<const std::string> warnings) {
+void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
   if (!options.report.empty()) write_whole_file(options.report, step_table(followed.mirror.steps()));
   write_pictures(options, scene, followed);
-  if (options.json)
-    std::cout << outcome_json(followed, warnings);
-  else
-    print_for_people(options, followed);
+  if (options.json) std::cout << outcome_json(followed, warnings);
+  else print_for_people(options, followed);
   if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));
 }
 

@@ -32,7 +32,6 @@ void warn(std::span<const std::string> warnings);
 
 /// Writes the files, then prints the JSON object or a summary for people to stdout. Throws FileError or SolutionFileError if
 /// something could not be written, and Failure (failed) after all that if the solve did not end well.
-void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed,
-             std::span<const std::string> warnings);
+void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings);
 
 }  // namespace alvor

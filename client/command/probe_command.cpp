@@ -38,10 +38,8 @@ void run_probe(const ProbeCommand& command) {
   const std::vector<ProbePoint> points = read_asked_points(command.points);
   const std::vector<ProbeSample> samples = probe(read_solution(command.solution), points);
   warn_of_missed(samples);
-  if (command.output.empty())
-    std::cout << samples_csv(samples);
-  else
-    write_whole_file(command.output, samples_csv(samples));
+  if (command.output.empty()) std::cout << samples_csv(samples);
+  else write_whole_file(command.output, samples_csv(samples));
 }
 
 }  // namespace

@@ -47,8 +47,7 @@ Camera camera_of(const RenderCommand& command, const DisplayMesh& mesh) {
 }
 
 void require_picture_path(const std::filesystem::path& path) {
-  if (path.extension() != ".png")
-    throw Failure(ExitStatus::usage, "--output " + path.string() + ": a picture ends in .png");
+  if (path.extension() != ".png") throw Failure(ExitStatus::usage, "--output " + path.string() + ": a picture ends in .png");
   require_writable(path, "--output");
 }
 

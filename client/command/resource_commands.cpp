@@ -65,8 +65,12 @@ Row row_of(const v1::Scene& scene) {
 Row header_of(const v1::Solve&) { return {"NAME", "CREATED", "STATE", "LEAVES", "ERROR", "ENDED BY"}; }
 Row row_of(const v1::Solve& solve) {
   const v1::Step& step = solve.last_step();
-  return {solve.name(), TimeUtil::ToString(solve.create_time()), v1::Solve::State_Name(solve.state()),
-          std::to_string(step.leaves()), solve.has_last_step() ? percent(step.estimated_error()) : "-", solve.end_reason()};
+  return {solve.name(),
+          TimeUtil::ToString(solve.create_time()),
+          v1::Solve::State_Name(solve.state()),
+          std::to_string(step.leaves()),
+          solve.has_last_step() ? percent(step.estimated_error()) : "-",
+          solve.end_reason()};
 }
 
 template <class Resource>
@@ -130,9 +134,8 @@ void add_scenes_command(CLI::App& app) {
 void add_solves_command(CLI::App& app) {
   CLI::App& solves = *app.add_subcommand("solves", "The solves a server holds")->require_subcommand(1);
   const auto options = std::make_shared<ListOptions>();
-  CLI::App& list = add_list(solves, options, [](Client& client, const ListOptions& asked) {
-    return client.list_solves(asked.parent);
-  });
+  CLI::App& list =
+      add_list(solves, options, [](Client& client, const ListOptions& asked) { return client.list_solves(asked.parent); });
   list.add_option("scene", options->parent, "Only those of this scene")->type_name("SCENE");
   add_act(solves, "cancel", "Stop solves; what they found stays",
           [](Client& client, const std::string& name) { client.cancel_solve(name); });

@@ -18,9 +18,8 @@ namespace alvor {
 
 namespace {
 
-const std::map<std::string, v1::Strategy> strategies{{"auto", v1::STRATEGY_UNSPECIFIED},
-                                                     {"sorted", v1::STRATEGY_SORTED},
-                                                     {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT}};
+const std::map<std::string, v1::Strategy> strategies{
+    {"auto", v1::STRATEGY_UNSPECIFIED}, {"sorted", v1::STRATEGY_SORTED}, {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT}};
 
 constexpr double pace_of_frames_s = 0.04;
 
@@ -91,12 +90,9 @@ void run_solve(const SolveCommand& command) {
 }
 
 void add_limits(CLI::App& command, SolveCommand& options) {
-  command.add_option("--tolerance", options.tolerance, "Stop at this estimated relative error (0.02)")
-      ->check(above_up_to(0, 1));
-  command.add_option("--max-depth", options.max_depth, "Levels of subdivision; 0 does not refine (10)")
-      ->check(CLI::Range(0, 15));
-  command.add_option("--max-elements", options.max_elements, "Stop refining at this many leaves (200000)")
-      ->check(whole_from(1));
+  command.add_option("--tolerance", options.tolerance, "Stop at this estimated relative error (0.02)")->check(above_up_to(0, 1));
+  command.add_option("--max-depth", options.max_depth, "Levels of subdivision; 0 does not refine (10)")->check(CLI::Range(0, 15));
+  command.add_option("--max-elements", options.max_elements, "Stop refining at this many leaves (200000)")->check(whole_from(1));
   command.add_option("--time-limit", options.time_limit_s, "Stop after this many seconds")->check(above_up_to(0, 1e9));
 }
 
@@ -104,8 +100,7 @@ void add_method(CLI::App& command, SolveCommand& options) {
   command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
       ->type_name("S")
       ->check(CLI::IsMember({"auto", "sorted", "sorted+ambient"}));
-  command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")
-      ->check(whole_from(1));
+  command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
   command.add_option("--pace", options.pace_s, "Pause after each step, seconds; not counted as run time (0; 0.04 with --frames)")
       ->check(CLI::Range(0.0, 60.0));
   command.add_option("--seed", options.seed, "The same seed gives the same solution (1)")->check(whole_from(0));

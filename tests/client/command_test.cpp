@@ -29,13 +29,11 @@ TEST_F(Command, WithoutArgumentsIsAUsageError) { EXPECT_EQ(run("").status, 2); }
 
 TEST_F(Command, HelpIsNoError) { EXPECT_EQ(run("solve --help").status, 0); }
 
-TEST_F(Command, UnknownFlagsAreUsageErrors) {
-  EXPECT_EQ(run("solve " + cornell_box + " --no-such-flag").status, 2);
-}
+TEST_F(Command, UnknownFlagsAreUsageErrors) { EXPECT_EQ(run("solve " + cornell_box + " --no-such-flag").status, 2); }
 
 TEST_F(Command, ImpossibleOptionValuesAreUsageErrors) {
-  for (const std::string option : {"--tolerance 2", "--tolerance nan", "--max-depth 16", "--time-limit -1", "--strategy magic",
-                                   "--seed -1"})
+  for (const std::string option :
+       {"--tolerance 2", "--tolerance nan", "--max-depth 16", "--time-limit -1", "--strategy magic", "--seed -1"})
     EXPECT_EQ(run("solve " + cornell_box + " " + option).status, 2) << option;
 }
 

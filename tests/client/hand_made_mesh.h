@@ -51,11 +51,11 @@ inline DisplayMesh hand_made_room(const Room& room = {}) {
     return [=](const Vec3& p) { return static_cast<float>(0.1 + 0.2 * (p.y - o.y)) * room.brightness * tint; };
   };
   const RgbF white{1, 1, 1}, red{1, 0.15f, 0.1f}, green{0.15f, 0.8f, 0.2f};
-  add_wall(mesh, o, z, x, n, tinted(white));             // floor
-  add_wall(mesh, o + y, x, z, n, tinted(white));         // ceiling
-  add_wall(mesh, o + z, y, x, n, tinted(white));         // back
-  add_wall(mesh, o, y, z, n, tinted(green));             // x = 0
-  add_wall(mesh, o + x, z, y, n, tinted(red));           // x = 4
+  add_wall(mesh, o, z, x, n, tinted(white));      // floor
+  add_wall(mesh, o + y, x, z, n, tinted(white));  // ceiling
+  add_wall(mesh, o + z, y, x, n, tinted(white));  // back
+  add_wall(mesh, o, y, z, n, tinted(green));      // x = 0
+  add_wall(mesh, o + x, z, y, n, tinted(red));    // x = 4
   if (!room.front_open) add_wall(mesh, o, x, y, n, tinted(white));
   const std::size_t lamp = mesh.positions.size();
   add_leaf(mesh, {o + Vec3{1.5, 2.95, 2}, o + Vec3{2.5, 2.95, 2}, o + Vec3{2.5, 2.95, 3}, o + Vec3{1.5, 2.95, 3}},

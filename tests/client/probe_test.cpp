@@ -31,8 +31,8 @@ TEST(Probe, InterpolatesWithinTriangles) {
 
 TEST(Probe, TakesTheSideOfAThinWallThatFacesTheSameWay) {
   DisplayMesh wall;
-  add_wall(wall, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, [](const Vec3&) { return grey(1); });           // faces +z
-  add_wall(wall, {0, 0, -0.01}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return grey(2); });       // faces -z
+  add_wall(wall, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, [](const Vec3&) { return grey(1); });      // faces +z
+  add_wall(wall, {0, 0, -0.01}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return grey(2); });  // faces -z
   const auto samples = probe(wall, std::vector<ProbePoint>{{{0.4, 0.4, -0.009}, {0, 0, 1}}, {{0.4, 0.4, 0.2}, {0, 0, -1}}});
   EXPECT_FLOAT_EQ(samples[0].radiosity.r, 1);
   EXPECT_FLOAT_EQ(samples[1].radiosity.r, 2);

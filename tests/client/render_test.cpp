@@ -64,8 +64,7 @@ TEST(Render, PixelsShowTheToneMappedRadiosity) {
 TEST(Render, BacksAreLookedThrough) {
   DisplayMesh mesh = wall(grey(0.4f));
   const Image alone = render(mesh, fixed(facing_wall()));
-  for (const double z : {0.3, 0.5})
-    add_wall(mesh, {0, 0, z}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return RgbF{9, 0, 0}; });
+  for (const double z : {0.3, 0.5}) add_wall(mesh, {0, 0, z}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return RgbF{9, 0, 0}; });
   EXPECT_EQ(render(mesh, fixed(facing_wall())).rgb, alone.rgb);
 }
 

@@ -90,19 +90,19 @@ TEST(SceneFile, ObjectsThatComeBackKeepTheOrderAndLinesAreNoFaces) {
 TEST(SceneFile, ReflectanceOutOfRangeIsClampedAndSaidSo) {
   const SceneFile file = read_scene_file(good_files / "mixed.obj");
   expect_near(file.scene.materials[file.scene.faces[1].material].reflectance, {0.95, 0, 0.5});
-  EXPECT_EQ(file.warnings, (std::vector<std::string>{
-                               "material 'unknown' is in no material library: grey, reflectance 0.5",
-                               "material 'bright lamp': reflectance 1.2 -0.5 0.5 is clamped to 0.95 0 0.5"}));
+  EXPECT_EQ(file.warnings,
+            (std::vector<std::string>{"material 'unknown' is in no material library: grey, reflectance 0.5",
+                                      "material 'bright lamp': reflectance 1.2 -0.5 0.5 is clamped to 0.95 0 0.5"}));
 }
 
 TEST(SceneFile, ATextureCountsByItsMeanAndAMissingOneNotAtAll) {
   const SceneFile file = read_scene_file(good_files / "textured.obj");
   expect_near(file.scene.materials[0].reflectance, {0.25, 0.5, 0.5});
   expect_near(file.scene.materials[1].reflectance, {0.5, 0.5, 0.5});
-  EXPECT_EQ(file.warnings, (std::vector<std::string>{
-                               "material 'checked': texture 'black_and_white.png' counts by its mean colour",
-                               "material 'lost': texture 'nowhere.png' cannot be read and is left out",
-                               "no material emits: the solution will be black"}));
+  EXPECT_EQ(file.warnings,
+            (std::vector<std::string>{"material 'checked': texture 'black_and_white.png' counts by its mean colour",
+                                      "material 'lost': texture 'nowhere.png' cannot be read and is left out",
+                                      "no material emits: the solution will be black"}));
 }
 
 TEST(SceneFile, AMissingMaterialLibraryLeavesGreyFaces) {

@@ -1,8 +1,8 @@
 // Solution files: what comes back, what is refused, and what is left behind.
 
+#include "client/solution_file.h"
 #include "client/glb_file.h"
 #include "client/ply_file.h"
-#include "client/solution_file.h"
 #include "client/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
 

@@ -27,7 +27,8 @@ TEST(LeafGradient, LinearFieldsAreReproducedOnAnyMesh) {
     if (neighbours.at_crease()) continue;  // a direction may lack neighbours
     const Vec3 normal = mesh.roots()[forest.id(leaf).root_face()].normal;
     const Vec3 expected = slope - dot(slope, normal) * normal;
-    EXPECT_NEAR(length(leaf_slope(forest, leaf, neighbours, centre, value).g - 2 * expected), 0, 1e-5);  // the ridge of the normal equations is 1e-6
+    EXPECT_NEAR(length(leaf_slope(forest, leaf, neighbours, centre, value).g - 2 * expected), 0,
+                1e-5);  // the ridge of the normal equations is 1e-6
     ++with_full_slope;
   }
   EXPECT_GT(with_full_slope, 10);

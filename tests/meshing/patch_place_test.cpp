@@ -30,7 +30,8 @@ bool contains(const BaseMesh& mesh, PatchId patch, Vec3 p) {
 
 TEST(PatchPlace, ChildrenTileTheirParent) {
   const BaseMesh mesh(quad_and_triangle());
-  for (const PatchId patch : {PatchId::root(0), PatchId::root(1), PatchId::root(1).child(3), PatchId::root(1).child(3).child(3)}) {
+  for (const PatchId patch :
+       {PatchId::root(0), PatchId::root(1), PatchId::root(1).child(3), PatchId::root(1).child(3).child(3)}) {
     double area = 0;
     for (int k = 0; k < 4; ++k) area += area_of(mesh, shape_of(mesh, patch.child(k)));
     EXPECT_NEAR(area, area_of(mesh, shape_of(mesh, patch)), 1e-12);

@@ -15,15 +15,16 @@ std::string fault_after(const std::function<void(Scene&)>& spoil) {
   return fault ? fault->text() : "";
 }
 
-TEST(Scene, AGoodOneHasNoFault) { EXPECT_EQ(fault_after([](Scene&) {}), ""); }
+TEST(Scene, AGoodOneHasNoFault) {
+  EXPECT_EQ(fault_after([](Scene&) {}), "");
+}
 
 TEST(Scene, FaultsNameThePlaceAndTheReason) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(fault_after([](Scene& s) { s.faces.clear(); }), "scene: has no faces");
   EXPECT_EQ(fault_after([](Scene& s) { s.vertices[5].y = nan; }), "vertex 5: coordinate nan is not finite");
   EXPECT_EQ(fault_after([](Scene& s) { s.vertices[5].y = 2e9; }), "vertex 5: coordinate 2e+09 is beyond 1e9 m");
-  EXPECT_EQ(fault_after([](Scene& s) { s.corners[9] = 24; }),
-            "face 2: vertex index 24 is out of range, there are 24 vertices");
+  EXPECT_EQ(fault_after([](Scene& s) { s.corners[9] = 24; }), "face 2: vertex index 24 is out of range, there are 24 vertices");
   EXPECT_EQ(fault_after([](Scene& s) { s.faces[3].material = 1; }),
             "face 3: material index 1 is out of range, there are 1 materials");
   EXPECT_EQ(fault_after([](Scene& s) { s.faces[3].corner_count = 2; }), "face 3: has 2 corners, needs at least 3");

@@ -44,9 +44,7 @@ TEST(DirectLight, UnblockedIsExact) {
   EXPECT_NEAR(light.irradiance.g, emission * exact, 0.1 * 0.05 * 0.05 * emission * exact);
 }
 
-TEST(DirectLight, FullyBlockedIsZero) {
-  EXPECT_TRUE(light_on_floor(BaseMesh(lamp_and_floor(true))).irradiance.is_zero());
-}
+TEST(DirectLight, FullyBlockedIsZero) { EXPECT_TRUE(light_on_floor(BaseMesh(lamp_and_floor(true))).irradiance.is_zero()); }
 
 TEST(DirectLight, HalfBlockedMatchesTheVisibleHalf) {
   // The screen hides what lies beyond x = 0.05 as seen from half way: about half of the lamp.

@@ -40,8 +40,10 @@ TEST(FormFactor, PartBelowTheHorizonIsCutOff) {
 
 TEST(FormFactor, FacesOfAClosedRoomSumToOne) {
   const Vec3 point{0.3, 0.2, 0}, normal{0, 0, 1};
-  const std::vector<std::vector<Vec3>> room{{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}},
-                                            {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}}, {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}},
+  const std::vector<std::vector<Vec3>> room{{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}},
+                                            {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}},
+                                            {{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}},
+                                            {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}},
                                             {{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}};
   double sum = 0;
   for (const auto& face : room) sum += point_to_polygon(point, normal, face);

@@ -105,8 +105,8 @@ TEST(Shooting, IrradianceIsTheRowsTimesWhatWasShot) {
 }
 
 TEST(Shooting, AmbientTermBalancesTheEnergyOfAUniformEnclosure) {
-  // Uniform rho and equal areas: sum A (B + rho ambient) = sum A E / (1 - rho) after every shot, if rows are symmetric. Here every
-  // patch sees every leaf once, so they are.
+  // Uniform rho and equal areas: sum A (B + rho ambient) = sum A E / (1 - rho) after every shot, if rows are symmetric. Here
+  // every patch sees every leaf once, so they are.
   constexpr std::uint32_t count = 16;
   std::vector<TransportRow> rows(count);
   std::vector<ShootingPatch> patches;

@@ -53,7 +53,8 @@ TEST(TransportRows, HitsFollowTheFormFactorsOfTheFaces) {
     for (int j = 0; j < n; ++j)
       for (std::uint32_t face = 1; face < 6; ++face)
         exact[face] += point_to_polygon(mesh.roots()[0].at((i + 0.5) / n, (j + 0.5) / n), mesh.roots()[0].normal,
-                                        std::span(mesh.roots()[face].corners)) / (n * n);
+                                        std::span(mesh.roots()[face].corners)) /
+                       (n * n);
   for (const auto& [face, factor] : exact) {
     const double standard_error = std::sqrt(factor * (1 - factor) / rays_per_row);  // stratified rays err less
     EXPECT_NEAR(double(hits[face]) / rays_per_row, factor, 3 * standard_error) << "face " << face;

@@ -6,11 +6,11 @@
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <csignal>
 
 extern char** environ;
 
@@ -111,7 +111,10 @@ TEST(AlvordProgram, AnswersHealthAndReflectionAndStopsWhenAsked) {
   ASSERT_NE(address, "");
   const std::string serving("\x08\x01", 2);  // grpc.health.v1.HealthCheckResponse{status: SERVING}
   EXPECT_EQ(call(address, "/grpc.health.v1.Health/Check", ""), serving);
-  EXPECT_EQ(call(address, "/grpc.health.v1.Health/Check", "\x0a\x15" "alvor.v1.SolveService"), serving);
+  EXPECT_EQ(call(address, "/grpc.health.v1.Health/Check",
+                 "\x0a\x15"
+                 "alvor.v1.SolveService"),
+            serving);
   const std::string list_services("\x3a\x00", 2);  // ServerReflectionRequest{list_services: ""}
   const std::string services = call(address, "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", list_services);
   EXPECT_NE(services.find("alvor.v1.SceneService"), std::string::npos);

@@ -115,7 +115,9 @@ TEST(DurationCodec, TakesAnyNumber) {
 
 TEST(TextCodec, MakesValidUtf8OfAnything) {
   EXPECT_EQ(as_utf8("Küche \xf0\x9f\x92\xa1"), "Küche \xf0\x9f\x92\xa1");
-  EXPECT_EQ(as_utf8("K\xfc" "che"), "K?che");
+  EXPECT_EQ(as_utf8("K\xfc"
+                    "che"),
+            "K?che");
   EXPECT_EQ(as_utf8("\xc0\x80 \xed\xa0\x80 \xe2\x82"), "?? ??? ??");
 }
 

@@ -41,7 +41,10 @@ inline std::vector<BadScene> bad_scenes() {
       bad_scene("vertex 5: coordinate 2e+09 is beyond 1e9 m", [](Scene& s) { s.vertices[5].y = 2e9; }),
       bad_scene("face 1: vertex index 99 is out of range, there are 12 vertices", [](Scene& s) { s.corners[5] = 99; }),
       bad_scene("face 2: material index 7 is out of range, there are 1 materials", [](Scene& s) { s.faces[2].material = 7; }),
-      bad_scene("scene: all of its faces are degenerate", [](Scene& s) { for (Vec3& v : s.vertices) v.y = 0; }),
+      bad_scene("scene: all of its faces are degenerate",
+                [](Scene& s) {
+                  for (Vec3& v : s.vertices) v.y = 0;
+                }),
   };
 }
 

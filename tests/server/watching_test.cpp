@@ -30,9 +30,12 @@ class WatchingTest : public testing::Test {
   /// Watches until `revision` is reached, then drops the connection.
   void watch_up_to(std::uint64_t revision, Client::Watch& watch) {
     std::stop_source stop;
-    client.watch_solve(solve, watch, [&](const Client::Watch& at) {
-      if (at.mirror.revision() >= revision) stop.request_stop();
-    }, stop.get_token());
+    client.watch_solve(
+        solve, watch,
+        [&](const Client::Watch& at) {
+          if (at.mirror.revision() >= revision) stop.request_stop();
+        },
+        stop.get_token());
     EXPECT_GE(watch.mirror.revision(), revision);
   }
 

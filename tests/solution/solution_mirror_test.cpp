@@ -18,8 +18,7 @@ TEST(SolutionMirror, DeeperValueImpliesSplitsAndSiblingsInherit) {
   ASSERT_FALSE(mirror.apply(delta(0, 1, {{root, {1, 1, 1}}})));
   ASSERT_FALSE(mirror.apply(delta(1, 2, {{root.child(2).child(0), {5, 5, 5}}})));
   EXPECT_EQ(mirror.leaf_count(), 7u);
-  for (const LeafValue& leaf : mirror.leaves())
-    EXPECT_EQ(leaf.irradiance.r, leaf.patch == root.child(2).child(0) ? 5 : 1);
+  for (const LeafValue& leaf : mirror.leaves()) EXPECT_EQ(leaf.irradiance.r, leaf.patch == root.child(2).child(0) ? 5 : 1);
 }
 
 TEST(SolutionMirror, RefusesAGapAndStaysAsItWas) {

@@ -14,8 +14,8 @@ namespace alvor {
 namespace {
 
 using test::CommandLine;
-using test::fs::path;
 using test::text_of;
+using test::fs::path;
 
 const path reference = path(ALVOR_TEST_FILES) / "truth";
 
