@@ -124,7 +124,7 @@ Vec3 RootPatch::at(double u, double v) const {
   return lerp(lerp(corners[0], corners[1], u), lerp(corners[3], corners[2], u), v);
 }
 
-BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials) {
+BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials), absorption_(scene.absorption) {
   Box all;
   for (const Vec3& vertex : scene.vertices) all.add(vertex);
   const auto first = weld(scene.vertices, std::max(weld_tolerance * all.longest_side(), 1e-300));

@@ -57,6 +57,7 @@ class BaseMesh {
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
+  const Rgb& absorption() const { return absorption_; }  ///< of the medium, see Scene
   const WeldReport& weld_report() const { return report_; }
 
   Vec3 centre() const { return centre_; }    ///< of the bounding box of the roots, metres
@@ -68,6 +69,7 @@ class BaseMesh {
 
   std::vector<RootPatch> roots_;
   std::vector<Material> materials_;
+  Rgb absorption_;
   std::vector<std::array<std::optional<Neighbour>, 4>> neighbours_;
   WeldReport report_;
   Vec3 centre_;

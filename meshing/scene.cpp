@@ -56,6 +56,7 @@ void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t mater
 
 std::optional<Fault> find_fault(const Scene& scene) {
   if (scene.faces.empty()) return Fault{"scene", "has no faces"};
+  if (!scene.absorption.is_finite() || scene.absorption.min() < 0) return Fault{"absorption", "is not a finite number >= 0"};
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (auto reason = fault_in(scene.materials[i]))
       return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};

@@ -32,6 +32,7 @@ struct Scene {
   std::vector<std::uint32_t> corners;  ///< indices of vertices
   std::vector<Face> faces;
   std::vector<Material> materials;
+  Rgb absorption;  ///< of the medium that fills the scene, 1/m per band, >= 0: light fades by exp(-absorption r). 0: none
 
   std::span<const std::uint32_t> corners_of(const Face& face) const {
     return std::span(corners).subspan(face.first_corner, face.corner_count);
@@ -52,7 +53,8 @@ struct Fault {
 
 /// The first fault, looking at counts, then materials, vertices and faces in order. Linear in the size of the scene; never reads
 /// out of bounds, whatever the scene. A scene without fault has at least one face, finite coordinates within 1e9 m, indices in
-/// range, faces of three corners or more, finite emission >= 0 and reflectance in [0, 1). Degenerate faces are no fault.
+/// range, faces of three corners or more, finite emission and absorption >= 0 and reflectance in [0, 1). Degenerate faces are no
+/// fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

@@ -152,6 +152,7 @@ Material decode_material(const v1::Material& message) {
 
 std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   if (auto fault = fault_in(chunk)) return fault;
+  if (chunk.has_absorption_per_meter()) scene_.absorption = decode(chunk.absorption_per_meter());
   for (const v1::Material& material : chunk.materials()) scene_.materials.push_back(decode_material(material));
   for (int i = 0; i < chunk.vertex_coordinates_size(); i += 3)
     scene_.vertices.push_back({chunk.vertex_coordinates(i), chunk.vertex_coordinates(i + 1), chunk.vertex_coordinates(i + 2)});
@@ -198,7 +199,9 @@ SceneSlicer::SceneSlicer(const Scene& scene, std::size_t max_bytes)
 
 bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   chunk.Clear();
-  std::int64_t budget = max_bytes_ - 64;  // the tags and lengths of the five fields, and of the message around them
+  std::int64_t budget = max_bytes_ - 96;  // the absorption, the tags and lengths of the fields, and of the message around them
+  const bool is_first = material_ == 0 && vertex_ == 0;
+  if (is_first && !scene_.absorption.is_zero()) *chunk.mutable_absorption_per_meter() = encode(scene_.absorption);
   take_materials(chunk, budget);
   take_vertices(chunk, budget);
   take_faces(chunk, budget);

@@ -1,6 +1,7 @@
 #include "radiosity/direct_light.h"
 
 #include "radiosity/form_factor.h"
+#include "radiosity/medium.h"
 #include "radiosity/ray_source.h"
 
 #include <tbb/parallel_for.h>
@@ -16,19 +17,26 @@ constexpr std::size_t receivers_per_batch = 64;
 constexpr int packets_when_mixed = 3;
 constexpr float short_of_emitter = 1 - 1e-4f;
 
-/// Kernel-weighted visibility, summed over shadow rays.
+/// Kernel-weighted visibility, and what a medium lets through of it, summed over shadow rays.
 struct VisibleFraction {
   double weight = 0, visible = 0;
+  Rgb arriving;  // of `visible`, where there is a medium
   bool any_blocked = false, any_visible = false;
   bool mixed() const { return any_blocked && any_visible; }
   double value() const { return weight > 0 ? visible / weight : 0; }
+  Rgb dimmed() const { return weight > 0 ? arriving * (1 / weight) : Rgb{}; }
 };
 
 /// The shadow rays of a batch of receivers towards one emitter.
 class ShadowBatch {
  public:
   ShadowBatch(const LocalScene& scene, const Emitter& emitter, std::uint64_t seed)
-      : scene_(scene), root_(scene.root(emitter.root)), corners_(scene.corners(emitter.root)), emitter_(emitter), seed_(seed) {}
+      : scene_(scene),
+        medium_{scene.mesh().absorption()},
+        root_(scene.root(emitter.root)),
+        corners_(scene.corners(emitter.root)),
+        emitter_(emitter),
+        seed_(seed) {}
 
   void add_light(std::span<const Receiver> receivers, RayBudget& budget, std::span<DirectLight> light) {
     find_form_factors(receivers);
@@ -37,7 +45,9 @@ class ShadowBatch {
     trace(budget);
     look_closer_at_the_mixed(receivers, budget);
     for (const Lit& lit : lit_) {
-      light[lit.receiver].irradiance += (lit.form_factor * lit.fraction.value()) * emitter_.emission;
+      const double visible = lit.form_factor * lit.fraction.value();
+      light[lit.receiver].irradiance +=
+          medium_.is_clear() ? visible * emitter_.emission : lit.form_factor * (lit.fraction.dimmed() * emitter_.emission);
       light[lit.receiver].partly_shadowed |= lit.fraction.mixed();
     }
   }
@@ -133,8 +143,13 @@ class ShadowBatch {
       if (weight == 0) continue;
       fraction.weight += weight;
       fraction.visible += is_blocked ? 0 : weight;
+      if (!is_blocked && !medium_.is_clear()) fraction.arriving += weight * medium_.transmittance(distance(shadows.rays, o));
       (is_blocked ? fraction.any_blocked : fraction.any_visible) = true;
     }
+  }
+
+  double distance(const RayPacket& rays, int o) const {
+    return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
   }
 
   void look_closer_at_the_mixed(std::span<const Receiver> receivers, RayBudget& budget) {
@@ -151,6 +166,7 @@ class ShadowBatch {
   }
 
   const LocalScene& scene_;
+  Medium medium_;
   const LocalRoot& root_;
   std::span<const Vec3> corners_;
   const Emitter& emitter_;

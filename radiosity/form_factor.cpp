@@ -31,18 +31,29 @@ ClippedPolygon above_horizon(Vec3 point, Vec3 normal, std::span<const Vec3> poly
   return kept;
 }
 
+/// Lambert's sum over the edges of a polygon.
+double lambert_sum(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
+  if (polygon.empty()) return 0;
+  double sum = 0;
+  Vec3 a = polygon.back() - point;
+  for (const Vec3& corner : polygon) {
+    const Vec3 b = corner - point, edge_normal = cross(b, a);
+    const double sine = length(edge_normal);
+    if (sine > 0) sum += std::atan2(sine, dot(a, b)) * dot(edge_normal, normal) / sine;
+    a = b;
+  }
+  return std::clamp(sum / (2 * std::numbers::pi), 0.0, 1.0);
+}
+
 }  // namespace
 
 double point_to_polygon(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
   const ClippedPolygon seen = above_horizon(point, normal, polygon);
-  double sum = 0;
-  for (int c = 0; c < seen.count; ++c) {
-    const Vec3 a = seen.corner[c], b = seen.corner[c + 1 == seen.count ? 0 : c + 1];
-    const Vec3 edge_normal = cross(b, a);
-    const double sine = length(edge_normal);
-    if (sine > 0) sum += std::atan2(sine, dot(a, b)) * dot(edge_normal, normal) / sine;
-  }
-  return std::clamp(sum / (2 * std::numbers::pi), 0.0, 1.0);
+  return lambert_sum({}, normal, {seen.corner.data(), static_cast<std::size_t>(seen.count)});
+}
+
+double point_to_polygon_above(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
+  return lambert_sum(point, normal, polygon);
 }
 
 }  // namespace alvor

@@ -12,4 +12,7 @@ namespace alvor {
 /// counter-clockwise). Requires: 3 or 4 corners.
 double point_to_polygon(Vec3 point, Vec3 normal, std::span<const Vec3> polygon);
 
+/// The same for any number of corners, all of them above the horizon.
+double point_to_polygon_above(Vec3 point, Vec3 normal, std::span<const Vec3> polygon);
+
 }  // namespace alvor

@@ -23,6 +23,7 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
     for (std::uint32_t k = 0; k < patch.leaf_count; ++k) patch_of_leaf_[patch.first_leaf + k] = p;
   }
   transpose();
+  find_ambient_gain();
 }
 
 // Counting sort of all hits by the patch that was hit.
@@ -35,14 +36,100 @@ void Shooting::transpose() {
   for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
     for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
       entries_[next[patch_of_leaf_[hit_leaf_[h]]]++] = {receiver, hit_leaf_[h]};
+  transpose_transmittance();
 }
 
-void Shooting::gather() {
+// In the same order as the entries.
+void Shooting::transpose_transmittance() {
+  if (std::ranges::all_of(patches_, [](const ShootingPatch& patch) { return patch.row->transmittance.empty(); })) return;
+  entry_transmittance_.resize(hit_leaf_.size());
+  std::vector<std::uint64_t> next(first_entry_.begin(), first_entry_.end() - 1);
+  for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
+    for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
+      entry_transmittance_[next[patch_of_leaf_[hit_leaf_[h]]]++] =
+          patches_[receiver].row->transmittance[h - first_hit_[receiver]];
+}
+
+template <class Radiosity>
+Rgb Shooting::row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const {
+  Rgb sum;
+  const auto& transmittance = patches_[patch].row->transmittance;
+  if (transmittance.empty()) {
+    for (std::uint64_t h = first; h < last; ++h) sum += radiosity(hit_leaf_[h]);
+  } else {
+    for (std::uint64_t h = first; h < last; ++h) sum += widen(transmittance[h - first_hit_[patch]]) * radiosity(hit_leaf_[h]);
+  }
+  return sum;
+}
+
+void Shooting::find_ambient_gain() {
+  Rgb reflected;
+  double area = 0;
+  Rgb kept;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    area += patches_[p].area;
+    reflected += patches_[p].area * patches_[p].reflectance;
+    const Rgb arriving = row_sum(p, first_hit_[p], first_hit_[p + 1], [](std::uint32_t) { return Rgb{1, 1, 1}; });
+    kept += (patches_[p].area * receivers_[p].weight) * arriving;
+  }
+  if (area == 0) return;
+  const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
+  ambient_gain_ = {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
+}
+
+void Shooting::find_unshot() {
+  for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf)
+    leaves_[leaf].shot += patches_[patch_of_leaf_[leaf]].reflectance * shot_irradiance_[patch_of_leaf_[leaf]];
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
-    Rgb sum;
-    for (std::uint64_t h = first_hit_[p]; h < first_hit_[p + 1]; ++h) sum += leaves_[hit_leaf_[h]].shot;
+    const Rgb sum = row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return leaves_[leaf].shot; });
+    const Rgb before = gathered_[p] + shot_irradiance_[p];
     gathered_[p] = receivers_[p].weight * sum;
+    shot_irradiance_[p] = receivers_[p].unshot = {};
+    leaf_power_[p] = 0;
+    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
+      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
+      leaf.unshot += patches_[p].reflectance * (gathered_[p] - before);
+      leaf_power_[p] += leaf.area * absolute(leaf.unshot).sum();
+    }
   });
+  if (account_) account_->power = signed_unshot_power();
+}
+
+void Shooting::adopt_unshot() {
+  account_.reset();
+  for (std::uint32_t p = 0; p < patches_.size(); ++p) {
+    const Rgb newly = shot_irradiance_[p] + receivers_[p].unshot;
+    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
+      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
+      leaf.shot += leaf.unshot + patches_[p].reflectance * newly;
+      leaf.unshot = {};
+    }
+    gathered_[p] += newly;
+    shot_irradiance_[p] = receivers_[p].unshot = {};
+    leaf_power_[p] = 0;
+  }
+}
+
+// The whole of what comes from elsewhere is divided by m_ii = 1 - rho F_ii.
+void Shooting::gather(std::uint32_t receiver) {
+  const ShootingPatch& patch = patches_[receiver];
+  const double weight = receivers_[receiver].weight;
+  const std::uint64_t first = first_hit_[receiver], last = first_hit_[receiver + 1];
+  const auto is_own = [&](std::uint32_t leaf) { return leaf - patch.first_leaf < patch.leaf_count; };
+  const Rgb sum = row_sum(receiver, first, last,
+                          [&](std::uint32_t leaf) { return is_own(leaf) ? emission_of(leaf, receiver) : leaves_[leaf].shot; });
+  const Rgb own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) {
+                    return is_own(leaf) ? Rgb{1, 1, 1} : Rgb{};
+                  });
+  const Rgb& rho = patch.reflectance;
+  const Rgb irradiance = weight * Rgb{sum.r / (1 - rho.r * own.r), sum.g / (1 - rho.g * own.g), sum.b / (1 - rho.b * own.b)};
+  for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf) {
+    leaves_[leaf].shot = emission_of(leaf, receiver) + rho * irradiance;
+    leaves_[leaf].unshot = {};
+  }
+  gathered_[receiver] = irradiance;
+  receivers_[receiver].unshot = {};
+  leaf_power_[receiver] = 0;
 }
 
 std::vector<Rgb> Shooting::half_differences() const {
@@ -51,27 +138,12 @@ std::vector<Rgb> Shooting::half_differences() const {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     const TransportRow& row = *patches_[p].row;
     if (row.first_half_rays == 0 || row.second_half_rays == 0) return;
-    Rgb half[2];
-    for (std::size_t h = 0; h < row.hits.size(); ++h)
-      half[h < row.first_half_hits ? 0 : 1] += all_shot[hit_leaf_[first_hit_[p] + h]];
-    differences[p] = 0.5 * (half[0] * (1.0 / row.first_half_rays) - half[1] * (1.0 / row.second_half_rays));
+    const auto shot_of = [&](std::uint32_t leaf) { return all_shot[leaf]; };
+    const std::uint64_t middle = first_hit_[p] + row.first_half_hits;
+    const Rgb first = row_sum(p, first_hit_[p], middle, shot_of), second = row_sum(p, middle, first_hit_[p + 1], shot_of);
+    differences[p] = 0.5 * (first * (1.0 / row.first_half_rays) - second * (1.0 / row.second_half_rays));
   });
   return differences;
-}
-
-void Shooting::reflect_gathered() {
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    leaf_power_[p] = 0;
-    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
-      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
-      leaf.unshot += patches_[p].reflectance * gathered_[p];
-      leaf_power_[p] += leaf.area * absolute(leaf.unshot).sum();
-    }
-  }
-}
-
-double Shooting::unshot_power_of(std::uint32_t patch) const {
-  return leaf_power_[patch] + patches_[patch].area * absolute(patches_[patch].reflectance * receivers_[patch].unshot).sum();
 }
 
 double Shooting::unshot_power() const {
@@ -80,17 +152,31 @@ double Shooting::unshot_power() const {
   return power;
 }
 
-void Shooting::shoot(std::uint32_t shooter) {
-  const ShootingPatch& patch = patches_[shooter];
-  const Rgb reflected = patch.reflectance * receivers_[shooter].unshot;
-  shot_irradiance_[shooter] += receivers_[shooter].unshot;
-  receivers_[shooter].unshot = {};
-  const bool leaves_differ = leaf_power_[shooter] != 0;
-  for (std::uint64_t e = first_entry_[shooter]; e < first_entry_[shooter + 1]; ++e) {
-    const auto [place, leaf] = entries_[e];
-    Receiver& receiver = receivers_[place];
-    receiver.unshot += receiver.weight * (leaves_differ ? leaves_[leaf].unshot + reflected : reflected);
+// The two loops differ in what they read: a medium that is not there costs nothing.
+template <class Leaving>
+void Shooting::send(std::uint32_t shooter, Leaving&& leaving) {
+  const std::uint64_t first = first_entry_[shooter], last = first_entry_[shooter + 1];
+  const bool is_clear = entry_transmittance_.empty();
+  for (std::uint64_t e = first; is_clear && e < last; ++e) {
+    Receiver& receiver = receivers_[entries_[e].receiver];
+    receiver.unshot += receiver.weight * leaving(entries_[e].leaf);
   }
+  for (std::uint64_t e = first; !is_clear && e < last; ++e) {
+    Receiver& receiver = receivers_[entries_[e].receiver];
+    receiver.unshot += receiver.weight * (widen(entry_transmittance_[e]) * leaving(entries_[e].leaf));
+  }
+}
+
+void Shooting::shoot(std::uint32_t shooter, const Rgb& advance) {
+  const ShootingPatch& patch = patches_[shooter];
+  const Rgb irradiance = receivers_[shooter].unshot + advance;
+  const Rgb reflected = patch.reflectance * irradiance;
+  shot_irradiance_[shooter] += irradiance;
+  receivers_[shooter].unshot = Rgb{} - advance;
+  if (account_) book(shooter, reflected);
+  const bool leaves_differ = leaf_power_[shooter] != 0;
+  if (leaves_differ) send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + reflected; });
+  else send(shooter, [&](std::uint32_t) { return reflected; });
   if (!leaves_differ) return;
   leaf_power_[shooter] = 0;
   for (std::uint32_t k = 0; k < patch.leaf_count; ++k) {
@@ -100,34 +186,37 @@ void Shooting::shoot(std::uint32_t shooter) {
   }
 }
 
-// A threshold that halves is within a factor of two of the true order by power, at no cost for keeping one.
-std::size_t Shooting::sweep() {
-  double largest = 0;
-  for (std::uint32_t p = 0; p < patches_.size(); ++p) largest = std::max(largest, unshot_power_of(p));
-  std::size_t shots = 0;
-  if (largest == 0) return shots;
-  for (std::uint32_t p = 0; p < patches_.size(); ++p)
-    if (unshot_power_of(p) > largest / 2) shoot(p), ++shots;
-  return shots;
-}
-
-Rgb Shooting::ambient_irradiance() const {
-  Rgb unshot, reflected;
-  double area = 0, kept = 0;
+Rgb Shooting::signed_unshot_power() const {
+  Rgb power;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const ShootingPatch& patch = patches_[p];
-    area += patch.area;
-    reflected += patch.area * patch.reflectance;
-    kept += patch.area * receivers_[p].weight * static_cast<double>(patch.row->hits.size());
-    unshot += (patch.area * patch.reflectance) * receivers_[p].unshot;
+    power += (patch.area * patch.reflectance) * receivers_[p].unshot;
     for (std::uint32_t k = 0; k < patch.leaf_count; ++k)
-      unshot += leaves_[patch.first_leaf + k].area * leaves_[patch.first_leaf + k].unshot;
+      power += leaves_[patch.first_leaf + k].area * leaves_[patch.first_leaf + k].unshot;
   }
-  if (area == 0) return {};
-  const double stays = kept / area;
-  const auto band = [&](double u, double r) { return stays * (u / area) / (1 - stays * r / area); };
-  return {band(unshot.r, reflected.r), band(unshot.g, reflected.g), band(unshot.b, reflected.b)};
+  return power;
 }
+
+void Shooting::keep_ambient_account() {
+  account_.emplace(std::vector<Rgb>(leaves_.size()), signed_unshot_power());
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Rgb reflecting = (patches_[p].area * receivers_[p].weight) * patches_[p].reflectance;
+    const auto& transmittance = patches_[p].row->transmittance;
+    for (std::uint64_t h = first_hit_[p]; h < first_hit_[p + 1]; ++h)
+      account_->gain[hit_leaf_[h]] += transmittance.empty() ? reflecting : widen(transmittance[h - first_hit_[p]]) * reflecting;
+  }
+}
+
+// Before the shot: what leaves the shooter is no longer unshot, what is reflected of it elsewhere is.
+void Shooting::book(std::uint32_t shooter, const Rgb& reflected) {
+  for (std::uint32_t k = 0; k < patches_[shooter].leaf_count; ++k) {
+    const std::uint32_t at = patches_[shooter].first_leaf + k;
+    const ShootingLeaf& leaf = leaves_[at];
+    account_->power += (leaf.unshot + reflected) * (account_->gain[at] - Rgb{leaf.area, leaf.area, leaf.area});
+  }
+}
+
+Rgb Shooting::ambient_irradiance() const { return ambient_gain_ * (account_ ? account_->power : signed_unshot_power()); }
 
 std::vector<Rgb> Shooting::irradiance() const {
   std::vector<Rgb> all;
@@ -142,6 +231,16 @@ std::vector<Rgb> Shooting::shot() const {
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const std::uint32_t p = patch_of_leaf_[leaf];
     all.push_back(leaves_[leaf].shot + patches_[p].reflectance * shot_irradiance_[p]);
+  }
+  return all;
+}
+
+std::vector<Rgb> Shooting::unshot() const {
+  std::vector<Rgb> all;
+  all.reserve(leaves_.size());
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const std::uint32_t p = patch_of_leaf_[leaf];
+    all.push_back(leaves_[leaf].unshot + patches_[p].reflectance * receivers_[p].unshot);
   }
   return all;
 }

@@ -212,8 +212,12 @@ void SolveState::begin_shooting() {
     leaves.push_back({leaf_area_[leaf], radiosity - shot_[leaf], shot_[leaf]});
   }
   shooting_ = std::make_unique<Shooting>(patches_, std::move(leaves), std::move(hit_leaf));
-  shooting_->gather();
-  shooting_->reflect_gathered();
+  shooting_->find_unshot();
+}
+
+void SolveState::restart_shooting() {
+  std::ranges::fill(shot_, Rgb{});
+  begin_shooting();
 }
 
 void SolveState::take_irradiance() {

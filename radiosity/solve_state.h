@@ -32,7 +32,10 @@ class SolveState {
   void add_new_direct_light(const std::function<void()>& after_each);
   /// Sets up the transpose and the residual; the state of the previous pass carries over.
   void begin_shooting();
+  /// The same as if nothing had been shot: all that is unshot is direct light on its receivers.
+  void restart_shooting();
   Shooting& shooting() { return *shooting_; }
+  const Shooting& shooting() const { return *shooting_; }
   /// Reads the irradiance by rows back, so that leaf_values() and estimate() see it.
   void take_irradiance();
   /// The same, with slopes from row to row: what a finished pass shows.

@@ -106,7 +106,8 @@ class Run {
   }
 
   bool shoot_down_to(double fraction) {
-    Shooting& shooting = state_.shooting();
+    const Shooting& shooting = state_.shooting();
+    const auto stepper = make_stepper(options_.strategy, state_.shooting());
     double published = shooting.unshot_power();
     for (double unshot = published; unshot > fraction * state_.emitted_power(); unshot = shooting.unshot_power()) {
       if (must_stop()) return false;
@@ -115,7 +116,7 @@ class Run {
         state_.take_irradiance();
         publish_if_due();
       }
-      shots_ += shooting.sweep();
+      shots_ += stepper->sweep();
     }
     return true;
   }
@@ -135,7 +136,7 @@ class Run {
     step.leaves = state_.leaf_count();
     step.unshot_fraction = state_.unshot_fraction();
     step.estimated_error = error_.total();
-    if (options_.strategy != Strategy::sorted) step.ambient_irradiance = state_.ambient_irradiance();
+    if (shows_ambient(options_.strategy)) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;

@@ -2,6 +2,7 @@
 // The solve: rows, shots and splits until the stopping rule says enough.
 
 #include "meshing/base_mesh.h"
+#include "radiosity/strategies.h"
 #include "solution/solution_log.h"
 
 #include <cstdint>
@@ -10,8 +11,6 @@
 #include <string_view>
 
 namespace alvor {
-
-enum class Strategy { automatic, sorted, sorted_ambient };
 
 /// Everything that decides a solve. The same mesh, options and seed give the same bytes.
 struct SolveOptions {

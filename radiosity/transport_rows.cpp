@@ -1,5 +1,6 @@
 #include "radiosity/transport_rows.h"
 
+#include "radiosity/medium.h"
 #include "radiosity/ray_source.h"
 
 #include <tbb/parallel_for.h>
@@ -50,7 +51,8 @@ enum class Outcome { stored, escaped, black_back };
 /// Rows of a few neighbouring patches, traced together.
 class RowBatch {
  public:
-  RowBatch(const LocalScene& scene, std::span<const PatchShape> shapes) : scene_(scene), shapes_(shapes) {
+  RowBatch(const LocalScene& scene, std::span<const PatchShape> shapes)
+      : scene_(scene), medium_{scene.mesh().absorption()}, shapes_(shapes) {
     packets_.resize(shapes.size() * origins_per_patch);
     hits_.resize(packets_.size());
   }
@@ -111,6 +113,7 @@ class RowBatch {
       hits_[p].root[lane] = hit.root[r];
       hits_[p].u[lane] = hit.u[r];
       hits_[p].v[lane] = hit.v[r];
+      hits_[p].t[lane] = hit.t[r];
       return;
     }
   }
@@ -121,7 +124,7 @@ class RowBatch {
       std::uint32_t& rays = half == 0 ? row.first_half_rays : row.second_half_rays;
       for (int o = half; o < origins_per_patch; o += 2) {
         const std::size_t p = patch * origins_per_patch + static_cast<std::size_t>(o);
-        if (store_origin(p, row.hits)) rays += rays_per_origin;
+        if (store_origin(p, row)) rays += rays_per_origin;
         else row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
       }
       if (half == 0) row.first_half_hits = static_cast<std::uint32_t>(row.hits.size());
@@ -130,7 +133,7 @@ class RowBatch {
   }
 
   /// False, and nothing is stored, if the origin is hidden.
-  bool store_origin(std::size_t p, std::vector<PatchId>& to) const {
+  bool store_origin(std::size_t p, TransportRow& row) const {
     Outcome outcomes[RayPacket::width];
     int backs = 0;
     for (int lane = 0; lane < RayPacket::width; ++lane) {
@@ -142,7 +145,11 @@ class RowBatch {
     alignas(64) std::uint32_t path[RayPacket::width];
     scene_.places_of_hits(hit, path);
     for (int lane = 0; lane < RayPacket::width; ++lane)
-      if (outcomes[lane] == Outcome::stored) to.push_back(PatchId::finest(hit.root[lane], path[lane]));
+      if (outcomes[lane] == Outcome::stored) row.hits.push_back(PatchId::finest(hit.root[lane], path[lane]));
+    if (medium_.is_clear()) return true;
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcomes[lane] == Outcome::stored)
+        row.transmittance.push_back(narrow(medium_.transmittance(hit.t[lane] * scene_.frame().metres_per_unit)));
     return true;
   }
 
@@ -161,6 +168,7 @@ class RowBatch {
   }
 
   const LocalScene& scene_;
+  Medium medium_;
   std::span<const PatchShape> shapes_;
   std::vector<RayPacket> packets_;
   std::vector<HitPacket> hits_;
@@ -168,10 +176,22 @@ class RowBatch {
 
 }  // namespace
 
+namespace {
+
+/// Inserts the first half of `more` behind the first half of `all`, and the rest at the end.
+template <class T>
+void merge_halves(std::vector<T>& all, std::uint32_t first_half, const std::vector<T>& more, std::uint32_t more_first_half) {
+  const auto second_half = more.begin() + more_first_half;
+  all.insert(all.begin() + first_half, more.begin(), second_half);
+  all.insert(all.end(), second_half, more.end());
+}
+
+}  // namespace
+
 void TransportRow::append(const TransportRow& more) {
-  const auto second_half = more.hits.begin() + more.first_half_hits;
-  hits.insert(hits.begin() + first_half_hits, more.hits.begin(), second_half);
-  hits.insert(hits.end(), second_half, more.hits.end());
+  merge_halves(hits, first_half_hits, more.hits, more.first_half_hits);
+  if (!transmittance.empty() || !more.transmittance.empty())
+    merge_halves(transmittance, first_half_hits, more.transmittance, more.first_half_hits);
   first_half_hits += more.first_half_hits;
   first_half_rays += more.first_half_rays;
   second_half_rays += more.second_half_rays;

@@ -15,7 +15,8 @@ namespace alvor {
 /// origins, and their difference tells the row's sampling noise. Rays that left the scene or met a black back are counted but not
 /// stored: each hit weighs 1 / ray_count().
 struct TransportRow {
-  std::vector<PatchId> hits;  ///< the first half's, then the second half's
+  std::vector<PatchId> hits;        ///< the first half's, then the second half's
+  std::vector<RgbF> transmittance;  ///< of the medium along each hit's ray; empty: all of it
   std::uint32_t first_half_hits = 0;
   std::uint32_t first_half_rays = 0, second_half_rays = 0;
   std::uint16_t hidden_origins = 0;  ///< bit o: origin o is hidden, see trace_rows

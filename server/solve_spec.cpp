@@ -36,6 +36,9 @@ Strategy strategy_of(v1::Strategy strategy) {
     case v1::STRATEGY_UNSPECIFIED: return Strategy::automatic;
     case v1::STRATEGY_SORTED: return Strategy::sorted;
     case v1::STRATEGY_SORTED_AMBIENT: return Strategy::sorted_ambient;
+    case v1::STRATEGY_GATHER: return Strategy::gather;
+    case v1::STRATEGY_SHOOT: return Strategy::shoot;
+    case v1::STRATEGY_OVERSHOOT: return Strategy::overshoot;
     default: refuse("strategy", static_cast<int>(strategy), "is not known to this server");
   }
 }

@@ -47,4 +47,14 @@ inline Scene furnace(double emission, double reflectance) {
   return scene;
 }
 
+/// A closed room with a lamp in the ceiling, a block on the floor and one red wall.
+inline Scene coloured_room() {
+  Scene scene;
+  scene.materials = {grey(0, 0.7), grey(50, 0), {"red", {}, {0.6, 0.1, 0.05}, false}};
+  add_box(scene, {0, 0, 0}, {4, 3, 5}, true, {0, 0, 2, 0, 0, 0});
+  add_box(scene, {1, 0, 1}, {2, 1, 3}, false);
+  add_polygon(scene, {{1.5, 2.99, 2}, {2.5, 2.99, 2}, {2.5, 2.99, 3}, {1.5, 2.99, 3}}, 1);
+  return scene;
+}
+
 }  // namespace alvor::test

@@ -9,6 +9,10 @@ void add_solve_command(CLI::App& app);
 void add_watch_command(CLI::App& app);
 void add_probe_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_explain_command(CLI::App& app);
+void add_form_factor_command(CLI::App& app);
+void add_form_factors_command(CLI::App& app);
 void add_scenes_command(CLI::App& app);
 void add_solves_command(CLI::App& app);
 

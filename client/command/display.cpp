@@ -39,4 +39,10 @@ DisplayMesh shown_mesh(const BaseMesh& mesh, const Snapshot& moment, const Snaps
   return build_display_mesh(mesh, leaves);
 }
 
+DisplayMesh brightened_mesh(const BaseMesh& mesh, const Snapshot& moment) {
+  std::vector<LeafValue> leaves = covering(mesh, moment.leaves);
+  for (LeafValue& leaf : leaves) leaf.irradiance += moment.ambient_irradiance;
+  return build_display_mesh(mesh, leaves);
+}
+
 }  // namespace alvor

@@ -16,4 +16,7 @@ DisplayMesh solution_mesh(const BaseMesh& mesh, std::span<const LeafValue> leave
 /// leaves are hidden under or inside something, and light there would leak out along the contact.
 DisplayMesh shown_mesh(const BaseMesh& mesh, const Snapshot& moment, const Snapshot& last);
 
+/// The same while the final state is not known: the ambient term is added everywhere.
+DisplayMesh brightened_mesh(const BaseMesh& mesh, const Snapshot& moment);
+
 }  // namespace alvor

@@ -1,10 +1,13 @@
-// alvor render SOLUTION: a picture.
+// alvor render SOLUTION: a picture, of a file or of a solve on a server.
 
+#include "client/command/camera_options.h"
 #include "client/command/commands.h"
 #include "client/command/failure.h"
+#include "client/command/false_colour_options.h"
 #include "client/command/files.h"
-#include "client/command/numbers.h"
 #include "client/command/option_checks.h"
+#include "client/command/served_solution.h"
+#include "client/command/solve_name.h"
 #include "client/render.h"
 
 #include <cmath>
@@ -14,58 +17,58 @@ namespace alvor {
 
 namespace {
 
-/// What is empty is chosen to suit the solution. Places and directions are three numbers.
 struct RenderCommand {
-  std::filesystem::path solution;
+  std::string solution;
+  std::string server;  ///< empty: `solution` is a file
+  bool ambient = false;
   std::filesystem::path output;
   PictureSize size;
+  CameraOptions camera;
+  FalseColourOptions false_colour;
   double exposure_stops = 0;
   bool wireframe = false;
-  std::string eye, target, up;
-  std::optional<double> fov_degrees;
 };
-
-void take(const std::string& triple, Vec3& place) {
-  if (const auto numbers = parse_numbers(triple, 3)) place = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
-}
-
-void require_view(const Camera& camera) {
-  const Vec3 view = camera.target - camera.eye;
-  if (length(view) == 0) throw Failure(ExitStatus::usage, "--eye and --target are the same place");
-  if (length(cross(view, camera.up)) <= 1e-9 * length(view) * length(camera.up))
-    throw Failure(ExitStatus::usage, "--up lies along the view");
-}
-
-Camera camera_of(const RenderCommand& command, const DisplayMesh& mesh) {
-  Camera camera = default_camera(mesh, command.size);
-  take(command.eye, camera.eye);
-  take(command.target, camera.target);
-  take(command.up, camera.up);
-  camera.vertical_fov_degrees = command.fov_degrees.value_or(camera.vertical_fov_degrees);
-  require_view(camera);
-  return camera;
-}
 
 void require_picture_path(const std::filesystem::path& path) {
   if (path.extension() != ".png") throw Failure(ExitStatus::usage, "--output " + path.string() + ": a picture ends in .png");
   require_writable(path, "--output");
 }
 
+DisplayMesh read_from_anywhere(const RenderCommand& command) {
+  if (!command.server.empty()) return read_served_solution({command.server, command.solution, command.ambient});
+  if (is_solve_name(command.solution) && !std::filesystem::exists(command.solution))
+    throw Failure(ExitStatus::usage, command.solution + " is the name of a solve: where is it? Add --server HOST:PORT");
+  return read_solution(command.solution);
+}
+
 void run_render(const RenderCommand& command) {
   require_picture_path(command.output);
-  const DisplayMesh mesh = read_solution(command.solution);
   RenderOptions options;
-  options.camera = camera_of(command, mesh);
-  options.exposure = automatic_exposure(mesh, *options.camera) * std::exp2(command.exposure_stops);
+  options.false_colour = false_colour_of(command.false_colour, command.size);
   options.wireframe = command.wireframe;
+  const DisplayMesh mesh = read_from_anywhere(command);
+  options.camera = camera_of(command.camera, mesh, view_size(command.size, options.false_colour));
+  if (!options.false_colour) options.exposure = automatic_exposure(mesh, *options.camera) * std::exp2(command.exposure_stops);
   write_png(command.output, render(mesh, options));
 }
 
-void add_camera(CLI::App& command, RenderCommand& options) {
-  command.add_option("--eye", options.eye, "Where the camera is, metres")->type_name("X,Y,Z")->check(triple());
-  command.add_option("--target", options.target, "What it looks at")->type_name("X,Y,Z")->check(triple());
-  command.add_option("--up", options.up, "What is upright in the picture")->type_name("X,Y,Z")->check(triple());
-  command.add_option("--fov", options.fov_degrees, "Vertical angle of view, degrees")->check(above_up_to(0, 170));
+void add_source(CLI::App& command, RenderCommand& options) {
+  command.add_option("solution", options.solution, "What solve wrote, or scenes/SCENE/solves/SOLVE on a server")
+      ->required()
+      ->type_name("SOLUTION");
+  CLI::Option* server = command.add_option("--server", options.server, "Where the solve is: draw its newest state");
+  server->type_name("HOST:PORT");
+  command.add_flag("--ambient", options.ambient, "Add an estimate of the light still to come; for display only")->needs(server);
+}
+
+void add_picture(CLI::App& command, RenderCommand& options) {
+  command.add_option("-o,--output", options.output, "The picture")->required()->type_name("IMAGE.png");
+  command.add_option("--width", options.size.width, "Pixels (1024)")->check(CLI::Range(1, 16384));
+  command.add_option("--height", options.size.height, "Pixels (768)")->check(CLI::Range(1, 16384));
+  CLI::Option* exposure = command.add_option("--exposure", options.exposure_stops, "Stops brighter than automatic");
+  exposure->check(above_up_to(-50, 50));
+  command.add_flag("--wireframe", options.wireframe, "Draw the outlines of the leaves");
+  exposure->excludes(add_false_colour_options(command, options.false_colour));
 }
 
 }  // namespace
@@ -73,13 +76,9 @@ void add_camera(CLI::App& command, RenderCommand& options) {
 void add_render_command(CLI::App& app) {
   const auto options = std::make_shared<RenderCommand>();
   CLI::App& command = *app.add_subcommand("render", "Draw a solution");
-  command.add_option("solution", options->solution, "What solve wrote")->required()->type_name("SOLUTION");
-  command.add_option("-o,--output", options->output, "The picture")->required()->type_name("IMAGE.png");
-  command.add_option("--width", options->size.width, "Pixels (1024)")->check(CLI::Range(1, 16384));
-  command.add_option("--height", options->size.height, "Pixels (768)")->check(CLI::Range(1, 16384));
-  command.add_option("--exposure", options->exposure_stops, "Stops brighter than automatic")->check(above_up_to(-50, 50));
-  command.add_flag("--wireframe", options->wireframe, "Draw the outlines of the leaves");
-  add_camera(command, *options);
+  add_source(command, *options);
+  add_picture(command, *options);
+  add_camera_options(command, options->camera);
   command.callback([options] { run_render(*options); });
 }
 

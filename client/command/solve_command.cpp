@@ -4,6 +4,7 @@
 #include "client/command/connection.h"
 #include "client/command/failure.h"
 #include "client/command/interrupt.h"
+#include "client/command/numbers.h"
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
 #include "client/scene_file.h"
@@ -18,8 +19,12 @@ namespace alvor {
 
 namespace {
 
-const std::map<std::string, v1::Strategy> strategies{
-    {"auto", v1::STRATEGY_UNSPECIFIED}, {"sorted", v1::STRATEGY_SORTED}, {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT}};
+const std::map<std::string, v1::Strategy> strategies{{"auto", v1::STRATEGY_UNSPECIFIED},
+                                                     {"gather", v1::STRATEGY_GATHER},
+                                                     {"shoot", v1::STRATEGY_SHOOT},
+                                                     {"sorted", v1::STRATEGY_SORTED},
+                                                     {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT},
+                                                     {"overshoot", v1::STRATEGY_OVERSHOOT}};
 
 constexpr double pace_of_frames_s = 0.04;
 
@@ -36,6 +41,7 @@ struct SolveCommand {
   std::optional<std::uint64_t> seed;
   std::string strategy = "auto";  ///< a key of `strategies`
   std::optional<double> pace_s;
+  std::string absorption;  ///< three numbers; empty: none
 };
 
 v1::SolveSpec spec_of(const SolveCommand& command) {
@@ -83,7 +89,10 @@ Followed solve_and_follow(const SolveCommand& command, const SceneFile& file, st
 
 void run_solve(const SolveCommand& command) {
   prepare_outputs(command.outputs);
-  const SceneFile file = read_scene_file(command.scene);
+  SceneFile file = read_scene_file(command.scene);
+  if (const auto bands = parse_numbers(command.absorption, 3)) file.scene.absorption = {(*bands)[0], (*bands)[1], (*bands)[2]};
+  if (file.scene.absorption.min() < 0)
+    throw Failure(ExitStatus::usage, "--absorption: " + command.absorption + " has a negative number");
   std::vector<std::string> warnings;
   const Followed followed = solve_and_follow(command, file, warnings);
   deliver(command.outputs, file.scene, followed, warnings);
@@ -99,7 +108,10 @@ void add_limits(CLI::App& command, SolveCommand& options) {
 void add_method(CLI::App& command, SolveCommand& options) {
   command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
       ->type_name("S")
-      ->check(CLI::IsMember({"auto", "sorted", "sorted+ambient"}));
+      ->check(CLI::IsMember({"auto", "gather", "shoot", "sorted", "sorted+ambient", "overshoot"}));
+  command.add_option("--absorption", options.absorption, "Of a medium that fills the scene, 1/m per band (0,0,0)")
+      ->type_name("R,G,B")
+      ->check(triple());
   command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
   command.add_option("--pace", options.pace_s, "Pause after each step, seconds; not counted as run time (0; 0.04 with --frames)")
       ->check(CLI::Range(0.0, 60.0));

@@ -5,6 +5,7 @@
 #include "client/command/failure.h"
 #include "client/command/interrupt.h"
 #include "client/command/outputs.h"
+#include "client/command/solve_name.h"
 
 #include <memory>
 
@@ -24,13 +25,6 @@ struct Watched {
   std::vector<std::string> warnings;
   Followed followed;
 };
-
-std::string scene_name_of(const std::string& solve) {
-  const std::size_t end = solve.find("/solves/");
-  if (!solve.starts_with("scenes/") || end == solve.npos)
-    throw Failure(ExitStatus::usage, solve + " is not the name of a solve, as scenes/SCENE/solves/SOLVE");
-  return solve.substr(0, end);
-}
 
 Watched join_and_follow(const WatchCommand& command, const std::string& scene_name) {
   Interrupt interrupt;

@@ -117,6 +117,37 @@ TEST_F(Command, FramesAndPicturesAreDrawn) {
   EXPECT_TRUE(fs::exists(file("room.png")));
 }
 
+TEST_F(Command, RenderOptionsThatCannotBeMeantAreUsageErrors) {
+  ASSERT_EQ(run("solve " + cornell_box + quick + " -o room.glb").status, 0);
+  for (const std::string option :
+       {"--false-colour --range 3,1", "--false-colour --range 3", "--false-colour --range 0,1 --log-scale",
+        "--false-colour --band x", "--false-colour --exposure 1", "--band r", "--range 0,1", "--log-scale", "--ambient",
+        "--eye 1,2,3 --target 1,2,3"}) {
+    const Ran ran = run("render room.glb -o room.png " + option);
+    EXPECT_EQ(ran.status, 2) << option;
+    EXPECT_EQ(line_count(ran.err), 1) << ran.err;
+    EXPECT_FALSE(fs::exists(file("room.png"))) << option;
+  }
+}
+
+TEST_F(Command, RenderOfASolveWithoutAServerAsksForOne) {
+  const Ran ran = run("render scenes/a/solves/b -o room.png");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("--server"), std::string::npos) << ran.err;
+}
+
+TEST_F(Command, RenderOfASolveOnAnUnreachableServerHasItsOwnStatus) {
+  EXPECT_EQ(run("render scenes/a/solves/b -o room.png --server 127.0.0.1:1").status, 4);
+}
+
+TEST_F(Command, FalseColourIsSpelledBothWays) {
+  ASSERT_EQ(run("solve " + cornell_box + quick + " -o room.glb").status, 0);
+  const std::string options = " --width 240 --height 180 --wireframe --log-scale --band g";
+  ASSERT_EQ(run("render room.glb -o colour.png --false-colour" + options).status, 0);
+  ASSERT_EQ(run("render room.glb -o color.png --false-color" + options).status, 0);
+  EXPECT_EQ(text_of(file("colour.png")), text_of(file("color.png")));
+}
+
 /// A mirror at `revision`, with one root patch.
 SolutionMirror mirror_at(std::uint64_t revision) {
   SolutionMirror mirror;

@@ -2,13 +2,12 @@
 
 #include "client/render.h"
 #include "client/tone_map.h"
-#include "tests/client/hand_made_mesh.h"
+#include "tests/client/pictures.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -16,33 +15,10 @@
 namespace alvor {
 namespace {
 
-using Pixel = std::array<int, 3>;
-
-Pixel pixel(const Image& image, int x, int y) {
-  const auto at = static_cast<std::size_t>(3 * (y * image.width + x));
-  return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
-}
-
 int largest_difference(const Image& a, const Image& b) {
   int most = 0;
   for (std::size_t i = 0; i < a.rgb.size(); ++i) most = std::max(most, std::abs(a.rgb[i] - b.rgb[i]));
   return most;
-}
-
-/// Straight at a 1 x 1 m wall in the middle of a picture that shows 2 x 2 m.
-Camera facing_wall() {
-  Camera camera;
-  camera.eye = {0.5, 0.5, 1};
-  camera.target = {0.5, 0.5, 0};
-  camera.vertical_fov_degrees = 90;
-  camera.width = camera.height = 64;
-  return camera;
-}
-
-DisplayMesh wall(RgbF radiosity, int leaves_per_side = 1) {
-  DisplayMesh mesh;
-  add_wall(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, leaves_per_side, [=](const Vec3&) { return radiosity; });
-  return mesh;
 }
 
 RenderOptions fixed(const Camera& camera) {

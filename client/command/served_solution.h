@@ -1,0 +1,20 @@
+#pragma once
+// The solution of a solve on a server, running or ended.
+
+#include "meshing/display_mesh.h"
+
+#include <string>
+
+namespace alvor {
+
+struct ServedSolution {
+  std::string server;    ///< HOST:PORT
+  std::string solve;     ///< scenes/SCENE/solves/SOLVE
+  bool ambient = false;  ///< add the ambient term: for display only
+};
+
+/// The newest whole state that the server has, as a solution file would hold it, so that both give the same picture. Throws
+/// Failure if the name is none, the server cannot be reached or nothing was published; RpcError.
+DisplayMesh read_served_solution(const ServedSolution& source);
+
+}  // namespace alvor

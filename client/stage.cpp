@@ -1,0 +1,59 @@
+#include "client/stage.h"
+
+#include <algorithm>
+
+namespace alvor {
+namespace {
+
+constexpr double float_step = 4e-6;  ///< of a distance: enough to leave a surface for certain in float32
+
+/// An upper bound of the distance between two vertices, at most twice as large.
+double extent_of(const DisplayMesh& mesh) {
+  double radius = 0;
+  for (const Vec3& p : mesh.positions) radius = std::max(radius, length(p - mesh.positions.front()));
+  return 2 * radius;
+}
+
+}  // namespace
+
+Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles), extent_(extent_of(mesh)) {}
+
+std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
+  constexpr int most_backs = 64;
+  for (int backs = 0; backs < most_backs; ++backs) {
+    const auto hit = caster_.cast(origin, direction);
+    if (!hit) return std::nullopt;
+    if (dot(area_vector(hit->triangle), direction) < 0) return Seen{hit->triangle, hit->u, hit->v};
+    origin += direction * (hit->distance * (1 + float_step) + float_step * extent_);
+  }
+  return std::nullopt;
+}
+
+void Stage::glance(const Camera& camera, const std::function<void(const Seen&)>& on_seen) const {
+  constexpr int columns = 96, rows = 72;
+  const Viewfinder view(camera);
+  for (int i = 0; i < columns * rows; ++i) {
+    const double x = (i % columns + 0.5) / columns * camera.width, y = (i / columns + 0.5) / rows * camera.height;
+    if (const auto seen = look(view.eye(), view.direction(x, y))) on_seen(*seen);
+  }
+}
+
+double Stage::centre_weight(std::uint32_t triangle, Vec3 origin, Vec3 direction) const {
+  const Vec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
+  const Vec3 normal = area_vector(triangle);
+  const Vec3 point = origin + direction * (dot(b - origin, normal) / dot(direction, normal));
+  return dot(cross(b - point, c - point), normal) / dot(cross(b - a, c - a), normal);
+}
+
+Vec3 Stage::area_vector(std::uint32_t triangle) const {
+  const Vec3 a = corner(triangle, 0);
+  return cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
+}
+
+RgbF Stage::interpolated(const std::vector<RgbF>& values, const Seen& seen) const {
+  const auto [a, b, c] = mesh_.triangles[seen.triangle];
+  const auto u = static_cast<float>(seen.u), v = static_cast<float>(seen.v);
+  return (1 - u - v) * values[a] + u * values[b] + v * values[c];
+}
+
+}  // namespace alvor

@@ -1,0 +1,187 @@
+#include "radiosity/compare.h"
+
+#include "radiosity/solve_state.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include <ctime>
+
+namespace alvor {
+
+namespace {
+
+constexpr double pass_unshot = 0.1;         // of the tolerance: as the solver's passes
+constexpr double converged_unshot = 1e-12;  // of the emitted power
+constexpr double last_error = 1e-6;
+constexpr std::uint64_t most_sweeps = 1000;  // steps per patch that no strategy needs unless rho is above 0.99
+
+constexpr Strategy compared[]{Strategy::gather, Strategy::shoot, Strategy::sorted, Strategy::sorted_ambient, Strategy::overshoot};
+
+/// CPU time of this thread; only what strategies do counts.
+class StopWatch {
+ public:
+  template <class Work>
+  void time(Work&& work) {
+    const double begin = now_s();
+    work();
+    cpu_s_ += now_s() - begin;
+  }
+  double cpu_s() const { return cpu_s_; }
+
+ private:
+  static double now_s() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double cpu_s_ = 0;
+};
+
+/// The solution of a system, as a measure for others.
+class Reference {
+ public:
+  Reference() = default;
+  explicit Reference(const Shooting& converged) : irradiance_(converged.irradiance()) {
+    const auto radiosity = converged.shot();
+    for (std::uint32_t leaf = 0; leaf < radiosity.size(); ++leaf) norm_ += converged.leaf_area(leaf) * square(radiosity[leaf]);
+  }
+
+  double error_of(const Shooting& system, const Rgb& ambient) const {
+    const auto irradiance = system.irradiance();
+    double sum = 0;
+    for (std::size_t p = 0; p < irradiance.size(); ++p) {
+      const ShootingPatch& patch = system.patches()[p];
+      const Rgb shown = patch.row->is_hidden() ? irradiance[p] : irradiance[p] + ambient;
+      sum += patch.area * square(patch.reflectance * (shown - irradiance_[p]));
+    }
+    return norm_ > 0 ? std::sqrt(sum / norm_) : 0;
+  }
+
+ private:
+  static double square(const Rgb& a) { return (a * a).sum(); }
+  std::vector<Rgb> irradiance_;  // by patch
+  double norm_ = 0;
+};
+
+class Comparer {
+ public:
+  Comparer(const BaseMesh& mesh, const CompareOptions& options, std::stop_token stop)
+      : options_(options),
+        stop_(std::move(stop)),
+        budget_([this] { return stop_.stop_requested(); }),
+        state_(mesh, {.tolerance = options.tolerance, .seed = options.seed}, budget_) {}
+
+  Comparison run() {
+    if (state_.emitted_power() <= 0) return {};
+    adapt();
+    Comparison comparison;
+    if (!stop_.stop_requested()) comparison.converged = converge();
+    comparison.leaves = comparison.converged.size();
+    if (!stop_.stop_requested()) comparison.patches = state_.shooting().patch_count();
+    for (const Strategy strategy : compared)
+      if (!stop_.stop_requested()) comparison.courses.push_back(follow(strategy));
+    return comparison;
+  }
+
+ private:
+  /// The mesh and rows that a solve ends with.
+  void adapt() {
+    do {
+      state_.trace_new_rows();
+      state_.add_new_direct_light([] {});
+      if (stop_.stop_requested()) return;
+      state_.begin_shooting();
+      shoot_down_to(pass_unshot * options_.tolerance);
+    } while (state_.estimate().total() > options_.tolerance && state_.refine() && !stop_.stop_requested());
+  }
+
+  std::vector<LeafValue> converge() {
+    state_.restart_shooting();
+    shoot_down_to(converged_unshot);
+    reference_ = Reference(state_.shooting());
+    return displayed();
+  }
+
+  /// In the order of ids.
+  std::vector<LeafValue> displayed() {
+    state_.take_smooth_irradiance();
+    auto leaves = state_.leaf_values();
+    std::ranges::sort(leaves, {}, &LeafValue::patch);
+    return leaves;
+  }
+
+  void shoot_down_to(double fraction) {
+    const auto stepper = make_stepper(Strategy::automatic, state_.shooting());
+    while (state_.unshot_fraction() > fraction && !stop_.stop_requested()) stepper->sweep();
+  }
+
+  StrategyCourse follow(Strategy strategy) {
+    state_.restart_shooting();
+    StrategyCourse course{strategy, {}, 0, {}, {}};
+    StopWatch watch;
+    std::unique_ptr<Stepper> stepper;
+    watch.time([&] { stepper = make_stepper(strategy, state_.shooting()); });
+    std::uint64_t steps = 0;
+    for (bool is_done = false; !is_done;) {
+      look(steps, watch.cpu_s(), course);
+      const std::uint64_t target = next_look(steps);
+      watch.time([&] {
+        while (steps < target && stepper->step()) ++steps;
+      });
+      const bool is_exhausted = steps < target;
+      if (is_exhausted) look(steps, watch.cpu_s(), course);
+      is_done = is_exhausted || stop_.stop_requested() || is_enough(steps, course);
+    }
+    if (course.leaves.empty()) keep_picture(course);
+    return course;
+  }
+
+  void look(std::uint64_t steps, double cpu_s, StrategyCourse& course) {
+    const Rgb ambient = shows_ambient(course.strategy) ? state_.ambient_irradiance() : Rgb{};
+    course.curve.push_back({steps, cpu_s, reference_.error_of(state_.shooting(), ambient)});
+    if (steps == options_.steps) keep_picture(course);
+  }
+
+  void keep_picture(StrategyCourse& course) {
+    course.error = course.curve.back().error;
+    course.leaves = displayed();
+    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.ambient_irradiance();
+  }
+
+  std::uint64_t next_look(std::uint64_t steps) const {
+    const std::uint64_t next = steps + 1 + steps / 50;
+    return steps < options_.steps ? std::min(next, options_.steps) : next;
+  }
+
+  bool is_enough(std::uint64_t steps, const StrategyCourse& course) const {
+    const bool has_arrived = course.curve.back().error <= last_error && !course.leaves.empty();
+    return has_arrived || steps > std::max(options_.steps, most_sweeps * state_.shooting().patch_count());
+  }
+
+  CompareOptions options_;
+  std::stop_token stop_;
+  RayBudget budget_;
+  SolveState state_;
+  Reference reference_;
+};
+
+}  // namespace
+
+Comparison compare_strategies(const BaseMesh& mesh, const CompareOptions& options, std::stop_token stop) {
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  tbb::task_arena arena(threads);
+  return arena.execute([&] { return Comparer(mesh, options, std::move(stop)).run(); });
+}
+
+std::optional<std::uint64_t> steps_to(double error, const StrategyCourse& course) {
+  std::optional<std::uint64_t> steps;
+  for (auto sample = course.curve.rbegin(); sample != course.curve.rend() && sample->error <= error; ++sample)
+    steps = sample->steps;
+  return steps;
+}
+
+}  // namespace alvor

@@ -1,0 +1,20 @@
+#pragma once
+// A homogeneous medium that absorbs and does not scatter.
+
+#include "solution/rgb.h"
+
+#include <cmath>
+
+namespace alvor {
+
+struct Medium {
+  Rgb absorption;  ///< 1/m per band, >= 0
+
+  bool is_clear() const { return absorption.is_zero(); }
+  /// What is left of light after `distance` metres (Bouguer 1729, Lambert 1760).
+  Rgb transmittance(double distance) const {
+    return {std::exp(-absorption.r * distance), std::exp(-absorption.g * distance), std::exp(-absorption.b * distance)};
+  }
+};
+
+}  // namespace alvor

@@ -1,0 +1,42 @@
+#pragma once
+// In which order patches shoot or gather.
+
+#include <cstddef>
+#include <memory>
+#include <string_view>
+
+namespace alvor {
+
+class Shooting;
+
+/// All of them end at the same solution; what they know of it on the way differs.
+enum class Strategy {
+  automatic,       ///< the best one known: sorted_ambient
+  sorted,          ///< shooting, largest unshot power first (Cohen et al. 1988)
+  sorted_ambient,  ///< the same, displayed with the ambient term
+  gather,          ///< Gauss-Seidel over the full system, in the order of the patches
+  shoot,           ///< shooting in the order of the patches
+  overshoot,       ///< sorted shooting of unshot + rho ambient; what was too much is taken back (Feda & Purgathofer 1992)
+};
+
+/// As options and tables name it: "sorted+ambient".
+std::string_view text(Strategy strategy);
+/// Whether the ambient term is added to what is displayed.
+bool shows_ambient(Strategy strategy);
+
+/// Takes a system towards its solution. All measure what is left by the same residual, Shooting::unshot_power.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// Shoots or gathers one patch. False if there is nothing left to do. Among patches that have nothing to shoot the order goes
+  /// on without a step.
+  virtual bool step() = 0;
+  /// Many steps, in the order of the patches where that is nearly as good; returns their number. What is unshot is known
+  /// afterwards.
+  virtual std::size_t sweep() = 0;
+};
+
+/// Borrows the system. Requires: what is unshot is known (Shooting::find_unshot).
+std::unique_ptr<Stepper> make_stepper(Strategy strategy, Shooting& system);
+
+}  // namespace alvor

@@ -1,0 +1,116 @@
+#include "radiosity/form_factor_matrix.h"
+
+#include "radiosity/hemicube.h"
+#include "radiosity/visible_form_factor.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace alvor {
+namespace {
+
+/// A box around a box, each face cut into nu x nv quads.
+Scene concentric_cubes(double inner_side, int nu, int nv) {
+  Scene coarse, scene;
+  coarse.materials.push_back(test::grey(0, 0.5));
+  test::add_box(coarse, {0, 0, 0}, {1, 1, 1}, true);
+  const double low = 0.5 - inner_side / 2, high = 0.5 + inner_side / 2;
+  test::add_box(coarse, {low, low, low}, {high, high, high}, false);
+  scene.materials = coarse.materials;
+  for (const Face& face : coarse.faces) {
+    const auto ring = coarse.corners_of(face);
+    const auto at = [&](int i, int j) {
+      const Vec3 a = coarse.vertices[ring[0]], u = coarse.vertices[ring[1]] - a, v = coarse.vertices[ring[3]] - a;
+      return a + (static_cast<double>(i) / nu) * u + (static_cast<double>(j) / nv) * v;
+    };
+    for (int i = 0; i < nu; ++i)
+      for (int j = 0; j < nv; ++j) test::add_polygon(scene, {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+  }
+  return scene;
+}
+
+struct Matrix {
+  explicit Matrix(const Scene& scene, MatrixOptions options = {}) : mesh(scene), faces(scene, mesh), blockers(mesh) {
+    form_factor_matrix(faces, blockers, options, [&](std::uint32_t from, std::span<const MatrixEntry> row) {
+      EXPECT_EQ(from, rows.size());
+      rows.emplace_back(row.begin(), row.end());
+    });
+  }
+  MatrixEntry at(std::uint32_t from, std::uint32_t to) const {
+    for (const MatrixEntry& entry : rows[from])
+      if (entry.to == to) return entry;
+    return {to, 0, 0};
+  }
+  BaseMesh mesh;
+  FacePolygons faces;
+  Blockers blockers;
+  std::vector<std::vector<MatrixEntry>> rows;
+};
+
+TEST(FormFactorMatrix, RowsOfAClosedSceneSumToOneAndNeverMore) {
+  const Matrix matrix(concentric_cubes(0.5, 6, 4));
+  for (const auto& row : matrix.rows) {
+    double sum = 0;
+    for (const MatrixEntry& entry : row) {
+      EXPECT_GT(entry.value, 0);
+      sum += entry.value;
+    }
+    EXPECT_LE(sum, 1);
+    EXPECT_NEAR(sum, 1, 6e-6);
+  }
+}
+
+TEST(FormFactorMatrix, ReciprocityHoldsWithinTheBounds) {
+  const Matrix matrix(concentric_cubes(0.5, 4, 3));
+  for (std::uint32_t i = 0; i < matrix.rows.size(); ++i)
+    for (const MatrixEntry& entry : matrix.rows[i]) {
+      const MatrixEntry back = matrix.at(entry.to, i);
+      const double ours = matrix.faces.area(i), theirs = matrix.faces.area(entry.to);
+      EXPECT_NEAR(ours * entry.value, theirs * back.value,
+                  ours * entry.error_bound + theirs * back.error_bound + 1e-3 * ours * entry.value + 1e-6);
+    }
+}
+
+TEST(FormFactorMatrix, BoundsHoldWhereShadowsFall) {
+  const Matrix matrix(concentric_cubes(0.5, 5, 3));
+  std::vector<const ConvexPolygon*> blockers;
+  for (const ConvexPolygon& blocker : matrix.blockers.all()) blockers.push_back(&blocker);
+  int shadowed = 0;
+  for (std::uint32_t i = 0; i < 30; ++i)
+    for (const MatrixEntry& entry : matrix.rows[i]) {
+      const auto exact = visible_form_factor(ConvexPolygon(matrix.faces.pieces(i)[0]),
+                                             ConvexPolygon(matrix.faces.pieces(entry.to)[0]), blockers, 1e-4);
+      EXPECT_LE(std::abs(entry.value - exact.value), entry.error_bound + exact.error_bound) << i << " to " << entry.to;
+      shadowed += exact.points > 0;
+    }
+  EXPECT_GT(shadowed, 100);
+}
+
+TEST(FormFactorMatrix, ThreadsDoNotChangeIt) {
+  const Scene scene = concentric_cubes(0.5, 3, 2);
+  const Matrix one(scene, {.threads = 1}), two(scene, {.threads = 2});
+  for (std::size_t i = 0; i < one.rows.size(); ++i) {
+    ASSERT_EQ(one.rows[i].size(), two.rows[i].size());
+    for (std::size_t n = 0; n < one.rows[i].size(); ++n) EXPECT_EQ(one.rows[i][n].value, two.rows[i][n].value);
+  }
+}
+
+TEST(Blockers, WallsOfManyQuadsAreOne) {
+  const BaseMesh mesh(concentric_cubes(0.5, 7, 5));
+  EXPECT_EQ(Blockers(mesh).all().size(), 12u);
+}
+
+TEST(Hemicube, DeltaFormFactorsSumToOneAtAnyResolution) {
+  for (const int resolution : {2, 8, 50}) {
+    const Hemicube cube(resolution);
+    double sum = 0;
+    for (const Hemicube::Cell& cell : cube.cells()) {
+      EXPECT_GT(cell.delta, 0);
+      sum += cell.delta;
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace alvor

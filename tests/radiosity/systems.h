@@ -1,0 +1,121 @@
+#pragma once
+// Small linear systems of light that tests share.
+
+#include "radiosity/shooting.h"
+#include "radiosity/strategies.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <span>
+#include <vector>
+
+namespace alvor::test {
+
+/// A closed system x = e + rho F x. Before anything is shot, `unshot` of its leaves is e.
+struct System {
+  std::vector<TransportRow> rows;
+  std::vector<ShootingPatch> patches;
+  std::vector<ShootingLeaf> leaves;
+  std::vector<std::uint32_t> hit_leaf;
+
+  /// Random: each patch of one to three leaves, each row of 64 hits, not reciprocal. Patches see themselves.
+  explicit System(unsigned seed, std::uint32_t count = 20) : rows(count) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0.1, 0.9);
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const Rgb reflectance{uniform(random), uniform(random), uniform(random)};
+      add_patch(p, 64, reflectance);
+      for (std::uint32_t k = 1 + std::uint32_t(random() % 3); k > 0; --k)
+        add_leaf(p, uniform(random), {uniform(random), 0, uniform(random)});
+    }
+    for (std::size_t h = 0; h < 64u * count; ++h) hit_leaf.push_back(std::uint32_t(random() % leaves.size()));
+  }
+
+  /// Reciprocal: A_i F_ij = A_j F_ji exactly, areas from 16 to 64, one leaf a patch, the same reflectance everywhere; the first
+  /// `emitting` patches emit. Patches see themselves.
+  static System reciprocal(unsigned seed, std::uint32_t count, double reflectance, std::uint32_t emitting) {
+    System system;
+    system.rows.resize(count);
+    std::mt19937 random(seed);
+    std::vector<std::uint32_t> ends;  // of exchanges: each patch has as many as it has area, and any two may meet
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const auto area = 16u << random() % 3;
+      system.add_patch(p, area, {reflectance, reflectance, reflectance});
+      system.add_leaf(p, area, p < emitting ? Rgb{1, 0.5, 2} : Rgb{});
+      ends.insert(ends.end(), area, p);
+    }
+    std::ranges::shuffle(ends, random);
+    std::vector<std::vector<std::uint32_t>> hits(count);
+    for (std::size_t n = 0; n < ends.size(); n += 2) {
+      hits[ends[n]].push_back(ends[n + 1]);
+      hits[ends[n + 1]].push_back(ends[n]);
+    }
+    for (const auto& row : hits) system.hit_leaf.insert(system.hit_leaf.end(), row.begin(), row.end());
+    return system;
+  }
+
+  /// Rows times x, by patch.
+  std::vector<Rgb> gathered(std::span<const Rgb> x) const {
+    std::vector<Rgb> irradiance;
+    for (std::size_t p = 0, h = 0; p < patches.size(); ++p) {
+      Rgb sum;
+      const std::size_t count = rows[p].hits.size();
+      for (const std::size_t end = h + count; h < end; ++h) sum += x[hit_leaf[h]];
+      irradiance.push_back(sum * (1.0 / double(count)));
+    }
+    return irradiance;
+  }
+
+  /// e + rho F x - x, by leaf.
+  std::vector<Rgb> residual(std::span<const Rgb> x) const {
+    std::vector<Rgb> left;
+    const auto irradiance = gathered(x);
+    for (std::size_t p = 0; p < patches.size(); ++p)
+      for (std::uint32_t leaf = patches[p].first_leaf; leaf < patches[p].first_leaf + patches[p].leaf_count; ++leaf)
+        left.push_back(leaves[leaf].unshot + patches[p].reflectance * irradiance[p] - x[leaf]);
+    return left;
+  }
+
+  /// By many Jacobi iterations.
+  std::vector<Rgb> solved() const {
+    std::vector<Rgb> x(leaves.size());
+    for (int n = 0; n < 2000; ++n) {
+      const auto left = residual(x);
+      for (std::size_t leaf = 0; leaf < x.size(); ++leaf) x[leaf] += left[leaf];
+    }
+    return x;
+  }
+
+  /// With nothing shot, and what is unshot known. Borrows.
+  Shooting begun() const {
+    Shooting shooting(patches, leaves, hit_leaf);
+    shooting.find_unshot();
+    return shooting;
+  }
+
+ private:
+  System() = default;
+  void add_patch(std::uint32_t p, std::uint32_t hits, Rgb reflectance) {
+    rows[p].hits.resize(hits);
+    rows[p].first_half_hits = rows[p].first_half_rays = rows[p].second_half_rays = hits / 2;
+    patches.push_back({&rows[p], std::uint32_t(leaves.size()), 0, reflectance, 0});
+  }
+  void add_leaf(std::uint32_t p, double area, Rgb emission) {
+    leaves.push_back({area, emission, {}});
+    ++patches[p].leaf_count;
+    patches[p].area += area;
+  }
+};
+
+inline void expect_near(std::span<const Rgb> got, std::span<const Rgb> expected, double relative) {
+  ASSERT_EQ(got.size(), expected.size());
+  for (std::size_t n = 0; n < got.size(); ++n) {
+    EXPECT_NEAR(got[n].r, expected[n].r, relative * expected[n].r);
+    EXPECT_NEAR(got[n].g, expected[n].g, relative * expected[n].g + 1e-300);
+    EXPECT_NEAR(got[n].b, expected[n].b, relative * expected[n].b);
+  }
+}
+
+}  // namespace alvor::test
