@@ -188,7 +188,7 @@ MeasuredFormFactor FaceFormFactors::nusselt(std::uint32_t from, std::uint32_t to
 
 MeasuredFormFactor FaceFormFactors::hemicube(std::uint32_t from, std::uint32_t to) const {
   return timed("hemicube", [&] {
-    const Hemicube cube(options_.hemicube_resolution);
+    const Hemicube cube(HemicubeGrid::square(options_.hemicube_resolution));
     const FacePoints points(faces_, from, scene_.frame());
     const auto count = static_cast<std::size_t>(options_.hemicube_points);
     RaySums sums(scene_, to, count);

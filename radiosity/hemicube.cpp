@@ -26,21 +26,21 @@ double over(FormFactor&& f, double s0, double s1, double t0, double t1) {
 
 }  // namespace
 
-Hemicube::Hemicube(int resolution) {
-  const double step = 2.0 / resolution;
-  const auto at = [&](int n) { return -1 + n * step; };
-  for (int j = 0; j < resolution; ++j)
-    for (int i = 0; i < resolution; ++i)
-      cells_.push_back({{at(i), at(j), 1}, {step, 0, 0}, {0, step, 0}, over(top, at(i), at(i + 1), at(j), at(j + 1))});
-  for (int wall = 0; wall < 4; ++wall) {
-    const Vec3 out = wall == 0 ? Vec3{1, 0, 0} : wall == 1 ? Vec3{-1, 0, 0} : wall == 2 ? Vec3{0, 1, 0} : Vec3{0, -1, 0};
+Hemicube::Hemicube(const HemicubeGrid& grid) {
+  const auto edge = [](int n, int count) { return -1 + n * (2.0 / count); };
+  for (int j = 0; j < grid.top_t; ++j)
+    for (int i = 0; i < grid.top_s; ++i) {
+      const double s0 = edge(i, grid.top_s), s1 = edge(i + 1, grid.top_s), t0 = edge(j, grid.top_t), t1 = edge(j + 1, grid.top_t);
+      cells_.push_back({{s0, t0, 1}, {s1 - s0, 0, 0}, {0, t1 - t0, 0}, over(top, s0, s1, t0, t1)});
+    }
+  for (const Vec3 out : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
     const Vec3 along{-out.y, out.x, 0};
-    for (int j = 0; j < resolution / 2; ++j)
-      for (int i = 0; i < resolution; ++i)
-        cells_.push_back({out + at(i) * along + Vec3{0, 0, j * step},
-                          step * along,
-                          {0, 0, step},
-                          over(side, at(i), at(i + 1), j * step, (j + 1) * step)});
+    for (int j = 0; j < grid.side_up; ++j)
+      for (int i = 0; i < grid.side_along; ++i) {
+        const double s0 = edge(i, grid.side_along), s1 = edge(i + 1, grid.side_along);
+        const double z0 = static_cast<double>(j) / grid.side_up, z1 = static_cast<double>(j + 1) / grid.side_up;
+        cells_.push_back({out + s0 * along + Vec3{0, 0, z0}, (s1 - s0) * along, {0, 0, z1 - z0}, over(side, s0, s1, z0, z1)});
+      }
   }
 }
 

@@ -1,5 +1,7 @@
 #include "radiosity/sampling.h"
 
+#include "radiosity/hemicube.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -36,22 +38,54 @@ Disk concentric_disk(Uv p) {
   return {r * std::cos(phi), r * std::sin(phi)};
 }
 
+void set_direction(DirectionSets::Set& set, std::size_t n, Vec3 direction, double weight) {
+  set.x[n] = static_cast<float>(direction.x);
+  set.y[n] = static_cast<float>(direction.y);
+  set.z[n] = static_cast<float>(direction.z);
+  set.weight[n] = static_cast<float>(weight);
+}
+
+void place_on_disk(DirectionSets::Set& set, std::uint64_t scramble) {
+  for (std::uint32_t n = 0; n < rays_per_row; ++n) {
+    const Disk d =
+        concentric_disk(sobol_point(n, static_cast<std::uint32_t>(scramble), static_cast<std::uint32_t>(scramble >> 32)));
+    set_direction(set, n, {d.x, d.y, std::sqrt(std::max(1e-12, 1 - d.x * d.x - d.y * d.y))}, 1);
+  }
+}
+
+/// A point of the cell, as likely as the form factor density there: by rejection. So the cell's exact delta form factor is the
+/// right weight of its ray.
+Vec3 point_in(const Hemicube::Cell& cell, RandomStream& random) {
+  const auto density = [](Vec3 p) { return p.z / (dot(p, p) * dot(p, p)); };
+  constexpr double most_on_sides = 0.33;  // of z / r4, where z2 = 1 / 3; on the top it is 1
+  const double most = cell.side_s.z == 0 && cell.side_t.z == 0 ? 1 : most_on_sides;
+  for (;;) {
+    const Vec3 p = cell.corner + random.next() * cell.side_s + random.next() * cell.side_t;
+    if (random.next() * most <= density(p)) return p;
+  }
+}
+
+void place_on_hemicubes(DirectionSets::Set& set, std::uint64_t scramble) {
+  constexpr HemicubeGrid grid{4, 2, 2, 1};
+  const Hemicube cube(grid);
+  RandomStream random(scramble, PatchId::root(0));
+  for (std::size_t n = 0; n < rays_per_row; ++n) {
+    const Hemicube::Cell& cell = cube.cells()[n % rays_per_origin];
+    set_direction(set, n, normalized(point_in(cell, random)), rays_per_origin * cell.delta);
+  }
+}
+
 }  // namespace
 
 Uv sobol_point(std::uint32_t n, std::uint32_t scramble_u, std::uint32_t scramble_v) {
   return {(reverse_bits(n) ^ scramble_u) * 0x1p-32, (sobol_second(n) ^ scramble_v) * 0x1p-32};
 }
 
-DirectionSets::DirectionSets(std::uint64_t seed) : sets_(set_count) {
+DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(placing), sets_(set_count) {
   for (int s = 0; s < set_count; ++s) {
     const std::uint64_t scramble = mix_bits(seed + 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(s + 1));
-    for (std::uint32_t n = 0; n < rays_per_row; ++n) {
-      const Disk d =
-          concentric_disk(sobol_point(n, static_cast<std::uint32_t>(scramble), static_cast<std::uint32_t>(scramble >> 32)));
-      sets_[s].x[n] = static_cast<float>(d.x);
-      sets_[s].y[n] = static_cast<float>(d.y);
-      sets_[s].z[n] = static_cast<float>(std::sqrt(std::max(1e-12, 1 - d.x * d.x - d.y * d.y)));
-    }
+    if (placing == RayPlacing::nusselt) place_on_disk(sets_[s], scramble);
+    else place_on_hemicubes(sets_[s], scramble);
   }
 }
 

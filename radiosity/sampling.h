@@ -28,19 +28,28 @@ class RandomStream {
   std::uint64_t state_;
 };
 
-/// Cosine-distributed directions by Nusselt's analogy: uniform points of the unit disk, lifted to the hemisphere. Several
-/// independently scrambled sets of rays_per_row each; origin o uses the directions [16 o, 16 o + 16).
+/// How the rays of an origin are spread over its hemisphere.
+enum class RayPlacing {
+  nusselt,   ///< cosine-distributed: uniform points of the unit disk, lifted to the hemisphere (Nusselt 1928); all weigh the same
+  hemicube,  ///< one through each of sixteen cells of a hemicube, weighted by its delta form factor (Cohen & Greenberg 1985)
+};
+
+/// Directions about the normal. Several independently scrambled sets of rays_per_row each; origin o uses the directions
+/// [16 o, 16 o + 16), whose weights have the mean 1.
 class DirectionSets {
  public:
   static constexpr int set_count = 32;
   struct alignas(64) Set {
     std::array<float, rays_per_row> x, y, z;  ///< z along the normal, > 0
+    std::array<float, rays_per_row> weight;
   };
 
-  explicit DirectionSets(std::uint64_t seed);
+  explicit DirectionSets(std::uint64_t seed, RayPlacing placing = RayPlacing::nusselt);
+  bool has_weights() const { return placing_ == RayPlacing::hemicube; }  ///< otherwise all are 1
   const Set& operator[](std::uint32_t n) const { return sets_[n]; }
 
  private:
+  RayPlacing placing_;
   std::vector<Set> sets_;
 };
 

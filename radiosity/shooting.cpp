@@ -36,28 +36,27 @@ void Shooting::transpose() {
   for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
     for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
       entries_[next[patch_of_leaf_[hit_leaf_[h]]]++] = {receiver, hit_leaf_[h]};
-  transpose_transmittance();
+  transpose_weights();
 }
 
 // In the same order as the entries.
-void Shooting::transpose_transmittance() {
-  if (std::ranges::all_of(patches_, [](const ShootingPatch& patch) { return patch.row->transmittance.empty(); })) return;
-  entry_transmittance_.resize(hit_leaf_.size());
+void Shooting::transpose_weights() {
+  if (std::ranges::all_of(patches_, [](const ShootingPatch& patch) { return patch.row->hit_weight.empty(); })) return;
+  entry_weight_.resize(hit_leaf_.size());
   std::vector<std::uint64_t> next(first_entry_.begin(), first_entry_.end() - 1);
   for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
     for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
-      entry_transmittance_[next[patch_of_leaf_[hit_leaf_[h]]]++] =
-          patches_[receiver].row->transmittance[h - first_hit_[receiver]];
+      entry_weight_[next[patch_of_leaf_[hit_leaf_[h]]]++] = patches_[receiver].row->hit_weight[h - first_hit_[receiver]];
 }
 
 template <class Radiosity>
 Rgb Shooting::row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const {
   Rgb sum;
-  const auto& transmittance = patches_[patch].row->transmittance;
-  if (transmittance.empty()) {
+  const auto& weight = patches_[patch].row->hit_weight;
+  if (weight.empty()) {
     for (std::uint64_t h = first; h < last; ++h) sum += radiosity(hit_leaf_[h]);
   } else {
-    for (std::uint64_t h = first; h < last; ++h) sum += widen(transmittance[h - first_hit_[patch]]) * radiosity(hit_leaf_[h]);
+    for (std::uint64_t h = first; h < last; ++h) sum += widen(weight[h - first_hit_[patch]]) * radiosity(hit_leaf_[h]);
   }
   return sum;
 }
@@ -116,11 +115,15 @@ void Shooting::gather(std::uint32_t receiver) {
   const double weight = receivers_[receiver].weight;
   const std::uint64_t first = first_hit_[receiver], last = first_hit_[receiver + 1];
   const auto is_own = [&](std::uint32_t leaf) { return leaf - patch.first_leaf < patch.leaf_count; };
-  const Rgb sum = row_sum(receiver, first, last,
-                          [&](std::uint32_t leaf) { return is_own(leaf) ? emission_of(leaf, receiver) : leaves_[leaf].shot; });
-  const Rgb own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) {
-                    return is_own(leaf) ? Rgb{1, 1, 1} : Rgb{};
-                  });
+  bool sees_itself = false;
+  const Rgb sum = row_sum(receiver, first, last, [&](std::uint32_t leaf) {
+    if (!is_own(leaf)) return leaves_[leaf].shot;
+    sees_itself = true;
+    return emission_of(leaf, receiver);
+  });
+  Rgb own;
+  if (sees_itself)
+    own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) { return is_own(leaf) ? Rgb{1, 1, 1} : Rgb{}; });
   const Rgb& rho = patch.reflectance;
   const Rgb irradiance = weight * Rgb{sum.r / (1 - rho.r * own.r), sum.g / (1 - rho.g * own.g), sum.b / (1 - rho.b * own.b)};
   for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf) {
@@ -152,18 +155,18 @@ double Shooting::unshot_power() const {
   return power;
 }
 
-// The two loops differ in what they read: a medium that is not there costs nothing.
+// The two loops differ in what they read: weights that are not there cost nothing.
 template <class Leaving>
 void Shooting::send(std::uint32_t shooter, Leaving&& leaving) {
   const std::uint64_t first = first_entry_[shooter], last = first_entry_[shooter + 1];
-  const bool is_clear = entry_transmittance_.empty();
-  for (std::uint64_t e = first; is_clear && e < last; ++e) {
+  const bool is_even = entry_weight_.empty();
+  for (std::uint64_t e = first; is_even && e < last; ++e) {
     Receiver& receiver = receivers_[entries_[e].receiver];
     receiver.unshot += receiver.weight * leaving(entries_[e].leaf);
   }
-  for (std::uint64_t e = first; !is_clear && e < last; ++e) {
+  for (std::uint64_t e = first; !is_even && e < last; ++e) {
     Receiver& receiver = receivers_[entries_[e].receiver];
-    receiver.unshot += receiver.weight * (widen(entry_transmittance_[e]) * leaving(entries_[e].leaf));
+    receiver.unshot += receiver.weight * (widen(entry_weight_[e]) * leaving(entries_[e].leaf));
   }
 }
 
@@ -201,9 +204,9 @@ void Shooting::keep_ambient_account() {
   account_.emplace(std::vector<Rgb>(leaves_.size()), signed_unshot_power());
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const Rgb reflecting = (patches_[p].area * receivers_[p].weight) * patches_[p].reflectance;
-    const auto& transmittance = patches_[p].row->transmittance;
+    const auto& weight = patches_[p].row->hit_weight;
     for (std::uint64_t h = first_hit_[p]; h < first_hit_[p + 1]; ++h)
-      account_->gain[hit_leaf_[h]] += transmittance.empty() ? reflecting : widen(transmittance[h - first_hit_[p]]) * reflecting;
+      account_->gain[hit_leaf_[h]] += weight.empty() ? reflecting : widen(weight[h - first_hit_[p]]) * reflecting;
   }
 }
 

@@ -93,9 +93,9 @@ class Shooting {
     Rgb power;              ///< unshot now, W
   };
   void transpose();
-  void transpose_transmittance();
+  void transpose_weights();
   void find_ambient_gain();
-  /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, dimmed by the medium.
+  /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, weighted.
   template <class Radiosity>
   Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;
   /// Adds to each receiver what `leaving` says of the leaf that its ray found.
@@ -115,12 +115,12 @@ class Shooting {
   std::vector<std::uint64_t> first_hit_;    // by receiver, into hit_leaf_
   std::vector<std::uint64_t> first_entry_;  // by shooter, into entries_
   std::vector<Entry> entries_;
-  std::vector<RgbF> entry_transmittance_;  // by entry; empty where no medium dims
-  std::vector<Receiver> receivers_;        // by patch
-  std::vector<Rgb> gathered_;              // by patch: received, as far as it is in ShootingLeaf::shot
-  std::vector<Rgb> shot_irradiance_;       // by patch: reflected already, not yet in ShootingLeaf::shot
-  std::vector<double> leaf_power_;         // by patch: sum of area |unshot| over its leaves
-  Rgb ambient_gain_;                       // ambient irradiance of one unit of unshot power, 1/m2
+  std::vector<RgbF> entry_weight_;    // by entry; empty where all hits of a row weigh the same
+  std::vector<Receiver> receivers_;   // by patch
+  std::vector<Rgb> gathered_;         // by patch: received, as far as it is in ShootingLeaf::shot
+  std::vector<Rgb> shot_irradiance_;  // by patch: reflected already, not yet in ShootingLeaf::shot
+  std::vector<double> leaf_power_;    // by patch: sum of area |unshot| over its leaves
+  Rgb ambient_gain_;                  // ambient irradiance of one unit of unshot power, 1/m2
   std::optional<Account> account_;
 };
 

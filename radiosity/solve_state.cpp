@@ -33,7 +33,7 @@ SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBud
       options_(options),
       budget_(budget),
       scene_(mesh),
-      directions_(options.seed),
+      directions_(options.seed, options.form_factors == FormFactorMethod::hemicube ? RayPlacing::hemicube : RayPlacing::nusselt),
       limits_{options.max_depth, options.max_leaves, options.min_edge_m},
       row_forest_(mesh),
       leaf_forest_(mesh) {

@@ -12,6 +12,13 @@
 
 namespace alvor {
 
+/// How the rays of transport rows are placed. From emitters form factors are exact in any case.
+enum class FormFactorMethod {
+  automatic,  ///< the better one: nusselt
+  nusselt,    ///< cosine-distributed rays
+  hemicube,   ///< rays through the cells of hemicubes, weighted by delta form factors
+};
+
 /// Everything that decides a solve. The same mesh, options and seed give the same bytes.
 struct SolveOptions {
   double tolerance = 0.02;  ///< stop when the estimated nRMSE is at or below this; > 0
@@ -22,6 +29,7 @@ struct SolveOptions {
   int threads = 0;  ///< 0: as many as the machine has
   std::uint64_t seed = 1;
   Strategy strategy = Strategy::automatic;
+  FormFactorMethod form_factors = FormFactorMethod::automatic;
   double step_pause_s = 0;  ///< waits this long after each published step, for people who watch; not counted as solving time
 };
 

@@ -51,17 +51,18 @@ enum class Outcome { stored, escaped, black_back };
 /// Rows of a few neighbouring patches, traced together.
 class RowBatch {
  public:
-  RowBatch(const LocalScene& scene, std::span<const PatchShape> shapes)
-      : scene_(scene), medium_{scene.mesh().absorption()}, shapes_(shapes) {
+  RowBatch(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes)
+      : scene_(scene), medium_{scene.mesh().absorption()}, directions_(directions), shapes_(shapes) {
     packets_.resize(shapes.size() * origins_per_patch);
     hits_.resize(packets_.size());
   }
 
-  void trace(const DirectionSets& directions, std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
+  void trace(std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
     for (std::size_t p = 0; p < shapes_.size(); ++p) {
       RandomStream random(seed, patches[p]);
       const PatchPoints points = sample_points(scene_, shapes_[p], random);
-      const auto& set = directions[random.next_below(DirectionSets::set_count)];
+      const auto& set = directions_[random.next_below(DirectionSets::set_count)];
+      sets_.push_back(&set);
       const TurnedFrame frame(scene_.root(shapes_[p].root), 2 * std::numbers::pi * random.next());
       for (int o = 0; o < origins_per_patch; ++o) {
         RayPacket& packet = packets_[p * origins_per_patch + static_cast<std::size_t>(o)];
@@ -146,10 +147,11 @@ class RowBatch {
     scene_.places_of_hits(hit, path);
     for (int lane = 0; lane < RayPacket::width; ++lane)
       if (outcomes[lane] == Outcome::stored) row.hits.push_back(PatchId::finest(hit.root[lane], path[lane]));
-    if (medium_.is_clear()) return true;
+    if (medium_.is_clear() && !directions_.has_weights()) return true;
+    const float* weight = &sets_[p / origins_per_patch]->weight[p % origins_per_patch * rays_per_origin];
     for (int lane = 0; lane < RayPacket::width; ++lane)
       if (outcomes[lane] == Outcome::stored)
-        row.transmittance.push_back(narrow(medium_.transmittance(hit.t[lane] * scene_.frame().metres_per_unit)));
+        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hit.t[lane] * scene_.frame().metres_per_unit)));
     return true;
   }
 
@@ -169,6 +171,8 @@ class RowBatch {
 
   const LocalScene& scene_;
   Medium medium_;
+  const DirectionSets& directions_;
+  std::vector<const DirectionSets::Set*> sets_;  // of each patch
   std::span<const PatchShape> shapes_;
   std::vector<RayPacket> packets_;
   std::vector<HitPacket> hits_;
@@ -190,8 +194,8 @@ void merge_halves(std::vector<T>& all, std::uint32_t first_half, const std::vect
 
 void TransportRow::append(const TransportRow& more) {
   merge_halves(hits, first_half_hits, more.hits, more.first_half_hits);
-  if (!transmittance.empty() || !more.transmittance.empty())
-    merge_halves(transmittance, first_half_hits, more.transmittance, more.first_half_hits);
+  if (!hit_weight.empty() || !more.hit_weight.empty())
+    merge_halves(hit_weight, first_half_hits, more.hit_weight, more.first_half_hits);
   first_half_hits += more.first_half_hits;
   first_half_rays += more.first_half_rays;
   second_half_rays += more.second_half_rays;
@@ -204,8 +208,8 @@ std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSet
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
     const std::size_t first = batch * patches_per_batch, count = std::min(patches_per_batch, patches.size() - first);
-    RowBatch rays(scene, shapes.subspan(first, count));
-    rays.trace(directions, patches.subspan(first, count), seed, budget);
+    RowBatch rays(scene, directions, shapes.subspan(first, count));
+    rays.trace(patches.subspan(first, count), seed, budget);
     rays.store(std::span(rows).subspan(first, count));
   });
   return rows;

@@ -13,10 +13,11 @@ namespace alvor {
 
 /// Where the rays of one patch ended. Hits are places, so they survive later splits. The two halves are from disjoint sets of
 /// origins, and their difference tells the row's sampling noise. Rays that left the scene or met a black back are counted but not
-/// stored: each hit weighs 1 / ray_count().
+/// stored: each hit weighs 1 / ray_count(), times hit_weight.
 struct TransportRow {
-  std::vector<PatchId> hits;        ///< the first half's, then the second half's
-  std::vector<RgbF> transmittance;  ///< of the medium along each hit's ray; empty: all of it
+  std::vector<PatchId> hits;  ///< the first half's, then the second half's
+  /// Of each hit, where hits do not all weigh the same: a hemicube cell's share, what a medium lets through. Empty: all 1.
+  std::vector<RgbF> hit_weight;
   std::uint32_t first_half_hits = 0;
   std::uint32_t first_half_rays = 0, second_half_rays = 0;
   std::uint16_t hidden_origins = 0;  ///< bit o: origin o is hidden, see trace_rows

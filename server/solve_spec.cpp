@@ -43,6 +43,15 @@ Strategy strategy_of(v1::Strategy strategy) {
   }
 }
 
+FormFactorMethod form_factors_of(v1::FormFactors method) {
+  switch (method) {
+    case v1::FORM_FACTORS_UNSPECIFIED: return FormFactorMethod::automatic;
+    case v1::FORM_FACTORS_NUSSELT: return FormFactorMethod::nusselt;
+    case v1::FORM_FACTORS_HEMICUBE: return FormFactorMethod::hemicube;
+    default: refuse("form_factors", static_cast<int>(method), "is not known to this server");
+  }
+}
+
 }  // namespace
 
 SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
@@ -74,6 +83,7 @@ SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
 
   if (spec.has_seed()) options.seed = spec.seed();
   options.strategy = strategy_of(spec.strategy());
+  options.form_factors = form_factors_of(spec.form_factors());
   return options;
 }
 

@@ -26,6 +26,9 @@ const std::map<std::string, v1::Strategy> strategies{{"auto", v1::STRATEGY_UNSPE
                                                      {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT},
                                                      {"overshoot", v1::STRATEGY_OVERSHOOT}};
 
+const std::map<std::string, v1::FormFactors> form_factor_methods{
+    {"auto", v1::FORM_FACTORS_UNSPECIFIED}, {"nusselt", v1::FORM_FACTORS_NUSSELT}, {"hemicube", v1::FORM_FACTORS_HEMICUBE}};
+
 constexpr double pace_of_frames_s = 0.04;
 
 /// What is not set is left to the server.
@@ -39,7 +42,8 @@ struct SolveCommand {
   std::optional<double> time_limit_s;
   std::optional<int> threads;
   std::optional<std::uint64_t> seed;
-  std::string strategy = "auto";  ///< a key of `strategies`
+  std::string strategy = "auto";      ///< a key of `strategies`
+  std::string form_factors = "auto";  ///< a key of `form_factor_methods`
   std::optional<double> pace_s;
   std::string absorption;  ///< three numbers; empty: none
 };
@@ -53,6 +57,7 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
   if (command.seed) spec.set_seed(*command.seed);
   if (command.time_limit_s) *spec.mutable_time_limit() = encode_seconds(*command.time_limit_s);
   spec.set_strategy(strategies.at(command.strategy));
+  spec.set_form_factors(form_factor_methods.at(command.form_factors));
   // Without a pace a small room is done between two frames.
   const double pace_s = command.pace_s.value_or(command.outputs.frames.empty() ? 0 : pace_of_frames_s);
   if (pace_s > 0) *spec.mutable_step_pause() = encode_seconds(pace_s);
@@ -109,6 +114,9 @@ void add_method(CLI::App& command, SolveCommand& options) {
   command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
       ->type_name("S")
       ->check(CLI::IsMember({"auto", "gather", "shoot", "sorted", "sorted+ambient", "overshoot"}));
+  command.add_option("--form-factors", options.form_factors, "How the rays of transport rows are placed (auto)")
+      ->type_name("M")
+      ->check(CLI::IsMember({"auto", "nusselt", "hemicube"}));
   command.add_option("--absorption", options.absorption, "Of a medium that fills the scene, 1/m per band (0,0,0)")
       ->type_name("R,G,B")
       ->check(triple());

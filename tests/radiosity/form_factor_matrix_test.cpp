@@ -101,8 +101,9 @@ TEST(Blockers, WallsOfManyQuadsAreOne) {
 }
 
 TEST(Hemicube, DeltaFormFactorsSumToOneAtAnyResolution) {
-  for (const int resolution : {2, 8, 50}) {
-    const Hemicube cube(resolution);
+  for (const HemicubeGrid& grid : {HemicubeGrid::square(2), HemicubeGrid::square(50), HemicubeGrid{4, 2, 2, 1}}) {
+    const Hemicube cube(grid);
+    EXPECT_EQ(cube.cells().size(), static_cast<std::size_t>(grid.cell_count()));
     double sum = 0;
     for (const Hemicube::Cell& cell : cube.cells()) {
       EXPECT_GT(cell.delta, 0);

@@ -41,6 +41,12 @@ TEST(Solver, FurnaceIsExactOnAnyMesh) {
   }
 }
 
+TEST(Solver, FurnaceIsExactByHemicubesToo) {
+  for (const LeafValue& leaf :
+       solved(test::furnace(1, 0.5), {.tolerance = 1e-9, .max_depth = 2, .form_factors = FormFactorMethod::hemicube}))
+    EXPECT_NEAR(leaf.irradiance.g, 2, 2e-5);
+}
+
 TEST(Solver, LuminousCeilingOfAConvexRoomSatisfiesTheMeanValueIdentity) {
   // Uniform rho: the area mean of B is mean E / (1 - rho), whatever the emission (reciprocity and closure).
   Scene scene;

@@ -107,5 +107,29 @@ TEST(TransportRows, AppendedRowsKeepTheirHalvesApart) {
   EXPECT_EQ(row.hits.back(), more.hits.back());
 }
 
+TEST(DirectionSets, WeightsOfEachOriginHaveTheMeanOne) {
+  for (const RayPlacing placing : {RayPlacing::nusselt, RayPlacing::hemicube}) {
+    const DirectionSets sets(3, placing);
+    for (std::uint32_t s = 0; s < DirectionSets::set_count; ++s)
+      for (int origin = 0; origin < origins_per_patch; ++origin) {
+        double sum = 0;
+        for (int r = 0; r < rays_per_origin; ++r) sum += sets[s].weight[static_cast<std::size_t>(origin * rays_per_origin + r)];
+        EXPECT_NEAR(sum / rays_per_origin, 1, 1e-6);
+      }
+  }
+}
+
+// The weighted mean of z over cosine-distributed directions is 2/3; its standard error over 32 x 256 directions is below 0.003.
+TEST(DirectionSets, BothPlacingsSampleTheCosine) {
+  for (const RayPlacing placing : {RayPlacing::nusselt, RayPlacing::hemicube}) {
+    const DirectionSets sets(5, placing);
+    double mean = 0;
+    for (std::uint32_t s = 0; s < DirectionSets::set_count; ++s)
+      for (std::size_t n = 0; n < rays_per_row; ++n)
+        mean += sets[s].weight[n] * sets[s].z[n] / (rays_per_row * DirectionSets::set_count);
+    EXPECT_NEAR(mean, 2.0 / 3, 0.009);
+  }
+}
+
 }  // namespace
 }  // namespace alvor
