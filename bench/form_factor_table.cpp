@@ -27,6 +27,8 @@ sample may have met, which chance exceeds now and then.
 - **nusselt**: cosine-distributed low-discrepancy rays in 64 independent sets.
 - **hemicube**: 1024 hemicubes of 32 x 32 cells on top, one ray through each cell, weighted by exact delta form factors.
 
+Rays see float32 geometry and start a hair in front of their surface: in a wedge of a thousandth of a radian (dih-01) that hair counts.
+
 )";
 
 void print_row(const test::ReferenceFormFactor& row, const MeasuredFormFactor& got) {

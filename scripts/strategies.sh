@@ -21,7 +21,7 @@ room() {
   for strategy in gather shoot sorted sorted+ambient overshoot converged; do
     pictures+=(-label "$strategy" "$out/$strategy.png")
   done
-  montage "${pictures[@]}" -resize 320x240 -geometry +3+3 -tile 3x -colors 256 -strip "PNG8:$docs/$1.png"
+  montage "${pictures[@]}" -resize 300x225 -geometry +3+3 -tile 3x -depth 8 -strip "$docs/$1.png"
 }
 
 room cornell_box scenes/cornell_box.obj 0.02
