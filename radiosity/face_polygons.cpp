@@ -34,4 +34,11 @@ FacePolygons::FacePolygons(const Scene& scene, const BaseMesh& mesh) : pieces_(s
   }
 }
 
+FacePolygons::FacePolygons(std::vector<std::vector<Vec3>> polygons) {
+  for (auto& polygon : polygons) {
+    area_.push_back(length(area_vector(polygon)));
+    pieces_.emplace_back().push_back(std::move(polygon));
+  }
+}
+
 }  // namespace alvor

@@ -13,6 +13,8 @@ namespace alvor {
 class FacePolygons {
  public:
   FacePolygons(const Scene& scene, const BaseMesh& mesh);
+  /// One convex planar polygon a face.
+  explicit FacePolygons(std::vector<std::vector<Vec3>> polygons);
 
   std::size_t face_count() const { return pieces_.size(); }
   const std::vector<std::vector<Vec3>>& pieces(std::uint32_t face) const { return pieces_[face]; }

@@ -150,8 +150,8 @@ double kernel_sum(const Piece& from, const Piece& to) {
 
 class FormFactorRows::Pairs {
  public:
-  Pairs(const FacePolygons& faces, const Blockers& blockers, double accuracy)
-      : faces_(faces), blockers_(blockers), accuracy_(accuracy) {
+  Pairs(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed)
+      : faces_(faces), blockers_(blockers), accuracy_(accuracy), most_followed_(most_followed) {
     for (std::uint32_t face = 0; face < faces.face_count(); ++face) {
       first_.push_back(pieces_.size());
       for (const auto& corners : faces.pieces(face)) pieces_.push_back(make_piece(face, corners));
@@ -184,6 +184,7 @@ class FormFactorRows::Pairs {
   /// A pair whose light is partly blocked.
   struct Shadowed {
     const Piece* to;
+    ConvexPolygon seen;  // the part of `to` above the horizon
     std::vector<ConvexPolygon> blockers;
     FormFactor found;
   };
@@ -195,20 +196,23 @@ class FormFactorRows::Pairs {
     if (theirs.high <= slack || ours.high <= slack) return FormFactor{};
     thread_local std::vector<const ConvexPolygon*> nearby;
     blockers_.find_in(from.box.joined(to.box), nearby);
-    if (theirs.low < -slack || ours.low < -slack) return visible_form_factor(from.polygon, to.polygon, nearby, relative_accuracy);
-    const Obstruction obstruction(from.polygon, to.polygon, nearby);
+    const bool crosses = theirs.low < -slack || ours.low < -slack;
+    ConvexPolygon a = from.polygon, b = to.polygon;
+    if (crosses) cut_to_fronts(a, b);
+    if (a.is_empty() || b.is_empty()) return FormFactor{};
+    const Obstruction obstruction(a, b, nearby);
     if (obstruction.is_total()) return FormFactor{};
-    if (obstruction.is_clear()) return unobstructed(from, to);
-    shadowed.push_back({&to, {obstruction.parts().begin(), obstruction.parts().end()}, {}});
+    if (obstruction.is_clear())
+      return crosses ? polygon_form_factor(from.polygon, to.polygon, accuracy_ / 10) : unobstructed(from, to);
+    shadowed.push_back({&to, b, {obstruction.parts().begin(), obstruction.parts().end()}, {}});
     return std::nullopt;
   }
 
   /// Few pairs: each shadow's edge is followed. Many: all of them from the same points of `from`, more until the errors are
   /// small; where a shadow's edge crosses several faces, what one gets too much another gets too little, and their sum is right.
   void solve_shadowed(const Piece& from, std::vector<Shadowed>& pairs) const {
-    if (from.points.count == 0 || pairs.size() <= most_followed) {
-      for (Shadowed& pair : pairs)
-        pair.found = obstructed_form_factor(from.polygon, pair.to->polygon, pair.blockers, relative_accuracy);
+    if (from.points.count == 0 || pairs.size() <= most_followed_) {
+      for (Shadowed& pair : pairs) pair.found = followed(from, pair);
       return;
     }
     for (int level = 0; level <= most_levels; ++level) {
@@ -222,6 +226,19 @@ class FormFactorRows::Pairs {
     }
   }
 
+  FormFactor followed(const Piece& from, const Shadowed& pair) const {
+    ConvexPolygon front = from.polygon, seen = pair.to->polygon;
+    cut_to_fronts(front, seen);
+    FormFactor found = obstructed_form_factor(front, seen, pair.blockers, relative_accuracy);
+    const double share = length(area_vector(front.corners())) / from.area;
+    return {share * found.value, share * found.error_bound};
+  }
+
+  /// From a point of the row's face. Points behind the target see nothing of it.
+  static double visible_from(Vec3 p, const Piece& from, const Shadowed& pair) {
+    return pair.to->plane.height(p) > 0 ? point_to_visible(p, from.plane.normal, pair.seen, pair.blockers) : 0;
+  }
+
   /// The points of `from` once for each of 4^level equal parts of it.
   FormFactor from_common_points(const Piece& from, const Shadowed& pair, std::span<const Part> parts) const {
     const double share = 1.0 / static_cast<double>(parts.size());
@@ -229,7 +246,7 @@ class FormFactorRows::Pairs {
     for (const Part& part : parts) {
       double weighted = 0, plain = 0, low = 1, high = 0;
       for (int n = 0; n < from.points.count; ++n) {
-        const double value = point_to_visible(part.place(from.points.at(n)), from.plane.normal, pair.to->polygon, pair.blockers);
+        const double value = visible_from(part.place(from.points.at(n)), from, pair);
         weighted += from.points.weight[n] * value;
         plain += value / from.points.count;
         low = std::min(low, value), high = std::max(high, value);
@@ -268,18 +285,19 @@ class FormFactorRows::Pairs {
   static constexpr double shadow_error = 0.15;     // of the spread between points, where a shadow's edge passes between them
   static constexpr double unseen_error = 0.01;     // of the unobstructed factor: a corner that no point saw
   static constexpr double shadow_accuracy = 1000;  // accuracies that a shadowed pair may be off
-  static constexpr std::size_t most_followed = 32;
+
   static constexpr int most_levels = 3;
 
   const FacePolygons& faces_;
   const Blockers& blockers_;
   double accuracy_;
+  std::size_t most_followed_;
   std::vector<Piece> pieces_;
   std::vector<std::size_t> first_;
 };
 
-FormFactorRows::FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy)
-    : pairs_(std::make_unique<Pairs>(faces, blockers, accuracy)) {}
+FormFactorRows::FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed)
+    : pairs_(std::make_unique<Pairs>(faces, blockers, accuracy, most_followed)) {}
 FormFactorRows::~FormFactorRows() = default;
 
 std::vector<MatrixEntry> FormFactorRows::row(std::uint32_t from) const { return pairs_->row(from); }

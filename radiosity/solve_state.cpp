@@ -98,6 +98,7 @@ void SolveState::fit_to_nodes() {
 void SolveState::trace_new_rows() {
   for (auto traced = trace_untraced(); !traced.empty(); traced = trace_untraced())
     for (const NodeIndex row : traced) heed_hidden_origins(row);
+  if (options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
 }
 
 std::vector<NodeIndex> SolveState::trace_untraced() {

@@ -63,6 +63,7 @@ class SolveState {
   bool split_row(NodeIndex row);
   void follow_contact(NodeIndex split_leaf);
   std::vector<NodeIndex> trace_untraced();
+  void make_rows_exact();
   void heed_hidden_origins(NodeIndex row);
   void inherit(std::span<const NodeIndex> split);
   void collect_leaves(NodeIndex node, std::vector<NodeIndex>& leaves) const;

@@ -12,11 +12,12 @@
 
 namespace alvor {
 
-/// How the rays of transport rows are placed. From emitters form factors are exact in any case.
+/// How transport rows are found. From emitters form factors are exact in any case.
 enum class FormFactorMethod {
   automatic,  ///< the better one: nusselt
   nusselt,    ///< cosine-distributed rays
   hemicube,   ///< rays through the cells of hemicubes, weighted by delta form factors
+  analytic,   ///< no rays: exact form factors between all patches, again in each pass. O(n2): for small scenes
 };
 
 /// Everything that decides a solve. The same mesh, options and seed give the same bytes.

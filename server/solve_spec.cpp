@@ -48,6 +48,7 @@ FormFactorMethod form_factors_of(v1::FormFactors method) {
     case v1::FORM_FACTORS_UNSPECIFIED: return FormFactorMethod::automatic;
     case v1::FORM_FACTORS_NUSSELT: return FormFactorMethod::nusselt;
     case v1::FORM_FACTORS_HEMICUBE: return FormFactorMethod::hemicube;
+    case v1::FORM_FACTORS_ANALYTIC: return FormFactorMethod::analytic;
     default: refuse("form_factors", static_cast<int>(method), "is not known to this server");
   }
 }

@@ -26,8 +26,10 @@ const std::map<std::string, v1::Strategy> strategies{{"auto", v1::STRATEGY_UNSPE
                                                      {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT},
                                                      {"overshoot", v1::STRATEGY_OVERSHOOT}};
 
-const std::map<std::string, v1::FormFactors> form_factor_methods{
-    {"auto", v1::FORM_FACTORS_UNSPECIFIED}, {"nusselt", v1::FORM_FACTORS_NUSSELT}, {"hemicube", v1::FORM_FACTORS_HEMICUBE}};
+const std::map<std::string, v1::FormFactors> form_factor_methods{{"auto", v1::FORM_FACTORS_UNSPECIFIED},
+                                                                 {"nusselt", v1::FORM_FACTORS_NUSSELT},
+                                                                 {"hemicube", v1::FORM_FACTORS_HEMICUBE},
+                                                                 {"analytic", v1::FORM_FACTORS_ANALYTIC}};
 
 constexpr double pace_of_frames_s = 0.04;
 
@@ -114,9 +116,9 @@ void add_method(CLI::App& command, SolveCommand& options) {
   command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
       ->type_name("S")
       ->check(CLI::IsMember({"auto", "gather", "shoot", "sorted", "sorted+ambient", "overshoot"}));
-  command.add_option("--form-factors", options.form_factors, "How the rays of transport rows are placed (auto)")
+  command.add_option("--form-factors", options.form_factors, "How transport rows are found (auto)")
       ->type_name("M")
-      ->check(CLI::IsMember({"auto", "nusselt", "hemicube"}));
+      ->check(CLI::IsMember({"auto", "nusselt", "hemicube", "analytic"}));
   command.add_option("--absorption", options.absorption, "Of a medium that fills the scene, 1/m per band (0,0,0)")
       ->type_name("R,G,B")
       ->check(triple());

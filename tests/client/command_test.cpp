@@ -169,5 +169,60 @@ TEST(Snapshots, AreThinnedEvenlyAndEndWithTheLastState) {
     EXPECT_EQ(kept[i].revision - kept[i - 1].revision, kept[1].revision - kept[0].revision);
 }
 
+// A unit cube seen from within: each face sends 0.2 to each other one, to the third digit (0.19982 and 0.20004).
+const std::string cube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+
+TEST_F(Command, FormFactorIsGivenByEveryMethodWithItsBound) {
+  write("cube.obj", cube);
+  const Ran ran = run("form-factor cube.obj 0 1 --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto methods = nlohmann::json::parse(ran.out);
+  ASSERT_EQ(methods.size(), 4u);
+  for (const auto& method : methods)
+    EXPECT_NEAR(method.at("value").get<double>(), 0.199825, method.at("error_bound").get<double>() + 1e-6);
+}
+
+TEST_F(Command, FormFactorOfAFaceThatIsNotThereIsAUsageError) {
+  write("cube.obj", cube);
+  EXPECT_EQ(run("form-factor cube.obj 0 6").status, 2);
+  EXPECT_EQ(run("form-factor missing.obj 0 1").status, 3);
+}
+
+TEST_F(Command, FormFactorMatrixHasALinePerPairThatSeesEachOther) {
+  write("cube.obj", cube);
+  ASSERT_EQ(run("form-factors cube.obj -o F.csv").status, 0);
+  const std::string csv = text_of(file("F.csv"));
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "i,j,F,error_bound");
+  EXPECT_EQ(line_count(csv), 31);
+  EXPECT_FALSE(std::filesystem::exists(file("F.csv.part")));
+}
+
+TEST_F(Command, LawsOfFormFactorsAreMeasured) {
+  write("cube.obj", cube);
+  const Ran ran = run("explain --form-factors cube.obj");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  for (const std::string law : {"reciprocity", "additivity", "closure"}) EXPECT_NE(ran.out.find(law), std::string::npos);
+}
+
+TEST_F(Command, AMediumDimsTheRoom) {
+  const auto light = [&](const std::string& options) {
+    EXPECT_EQ(run("solve " + cornell_box + quick + options + " -o room.glb").status, 0);
+    EXPECT_EQ(run("probe room.glb --points " + points + " -o values.csv").status, 0);
+    std::istringstream lines(text_of(file("values.csv")));
+    std::string line;
+    std::getline(lines, line);
+    double sum = 0;
+    while (std::getline(lines, line)) {
+      for (int comma = 0; comma < 6; ++comma) line.erase(0, line.find(',') + 1);
+      sum += std::stod(line);
+    }
+    return sum;
+  };
+  EXPECT_LT(light(" --absorption 0.001,0,0"), 0.8 * light(""));
+  EXPECT_EQ(run("solve " + cornell_box + " --absorption -1,0,0").status, 2);
+}
+
 }  // namespace
 }  // namespace alvor

@@ -1,0 +1,60 @@
+// Rows of exact form factors in the place of sampled ones.
+
+#include "radiosity/form_factor_matrix.h"
+#include "radiosity/medium.h"
+#include "radiosity/solve_state.h"
+
+#include <tbb/parallel_for.h>
+
+#include <bit>
+
+namespace alvor {
+
+namespace {
+
+constexpr double accuracy = 1e-4;  // of single factors; shadowed ones err more, their sums less
+
+std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
+  const auto corners = corners_of(mesh, shape);
+  return {corners.begin(), corners.begin() + shape.corner_count};
+}
+
+/// The part of the patch that no solid stands on, as its rays found it: what is hidden receives nothing and must not darken the
+/// rest.
+double visible_share(const TransportRow& row) { return 1 - std::popcount(row.hidden_origins) / double(origins_per_patch); }
+
+}  // namespace
+
+// Rays were sent all the same, to tell what is hidden. A patch's form factor is spread over its leaves by area. The row is known
+// exactly, so it has one half and no noise.
+void SolveState::make_rows_exact() {
+  const std::vector<NodeIndex> rows = row_forest_.leaves();
+  std::vector<std::vector<Vec3>> polygons;
+  std::vector<std::vector<NodeIndex>> leaves(rows.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    polygons.push_back(polygon_of(mesh_, row_forest_.shape(rows[n])));
+    collect_leaves(leaf_node_of_row(rows[n]), leaves[n]);
+  }
+  const FacePolygons patches(std::move(polygons));
+  const Blockers blockers(mesh_);
+  const FormFactorRows form_factors(patches, blockers, accuracy, 0);
+  const Medium medium{mesh_.absorption()};
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
+    TransportRow& row = rows_[rows[n]];
+    if (row.is_hidden() || budget_.is_out()) return;
+    row.hits.clear();
+    row.hit_weight.clear();
+    row.first_half_rays = 1, row.second_half_rays = 0;
+    for (const MatrixEntry& entry : form_factors.row(static_cast<std::uint32_t>(n)))
+      for (const NodeIndex leaf : leaves[entry.to]) {
+        const double share = leaf_area_[leaf] / patches.area(entry.to) / visible_share(row);
+        const Rgb dimmed = medium.transmittance(length(leaf_centre_[leaf] - row_centre_[rows[n]]));
+        row.hits.push_back(leaf_forest_.id(leaf));
+        row.hit_weight.push_back(narrow(std::min(1.0, entry.value) * share * dimmed));
+      }
+    row.first_half_hits = static_cast<std::uint32_t>(row.hits.size());
+    hit_leaves_[rows[n]].clear();
+  });
+}
+
+}  // namespace alvor
