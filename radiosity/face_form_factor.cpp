@@ -14,7 +14,7 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t most_blockers = 200;  // between two faces, for `auto` to cut their shadows
-constexpr double ray_start = 3e-7;          // in front of the surface, local units
+constexpr double ray_start = 1.5e-7;          // in front of the surface, local units
 
 /// Points spread over a face: its pieces by area, each a fan of triangles.
 class FacePoints {

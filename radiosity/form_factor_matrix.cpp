@@ -211,7 +211,7 @@ class FormFactorRows::Pairs {
   /// Few pairs: each shadow's edge is followed. Many: all of them from the same points of `from`, more until the errors are
   /// small; where a shadow's edge crosses several faces, what one gets too much another gets too little, and their sum is right.
   void solve_shadowed(const Piece& from, std::vector<Shadowed>& pairs) const {
-    if (from.points.count == 0 || pairs.size() <= most_followed_) {
+    if (from.points.count == 0 || (pairs.size() <= most_followed_ && worth_following(pairs))) {
       for (Shadowed& pair : pairs) pair.found = followed(from, pair);
       return;
     }
@@ -226,10 +226,15 @@ class FormFactorRows::Pairs {
     }
   }
 
+  /// Following costs the product of blockers; among the furniture of a room the common points have to do.
+  static bool worth_following(std::span<const Shadowed> pairs) {
+    return std::ranges::all_of(pairs, [](const Shadowed& pair) { return pair.blockers.size() <= most_followed_blockers; });
+  }
+
   FormFactor followed(const Piece& from, const Shadowed& pair) const {
     ConvexPolygon front = from.polygon, seen = pair.to->polygon;
     cut_to_fronts(front, seen);
-    FormFactor found = obstructed_form_factor(front, seen, pair.blockers, relative_accuracy);
+    FormFactor found = obstructed_form_factor(front, seen, pair.blockers, relative_accuracy, most_points);
     const double share = length(area_vector(front.corners())) / from.area;
     return {share * found.value, share * found.error_bound};
   }
@@ -281,12 +286,14 @@ class FormFactorRows::Pairs {
   }
 
   static constexpr double relative_accuracy = 1e-3;
-  static constexpr double far_error = 0.1;         // at most 0.03 was seen
-  static constexpr double shadow_error = 0.15;     // of the spread between points, where a shadow's edge passes between them
-  static constexpr double unseen_error = 0.01;     // of the unobstructed factor: a corner that no point saw
-  static constexpr double shadow_accuracy = 1000;  // accuracies that a shadowed pair may be off
+  static constexpr std::uint64_t most_points = 10'000;  // that a face is looked from for one shadow
+  static constexpr double far_error = 0.1;              // at most 0.03 was seen
+  static constexpr double shadow_error = 0.15;          // of the spread between points, where a shadow's edge passes between them
+  static constexpr double unseen_error = 0.01;          // of the unobstructed factor: a corner that no point saw
+  static constexpr double shadow_accuracy = 1000;       // accuracies that a shadowed pair may be off
 
-  static constexpr int most_levels = 3;
+  static constexpr std::size_t most_followed_blockers = 16;
+  static constexpr int most_levels = 1;
 
   const FacePolygons& faces_;
   const Blockers& blockers_;
