@@ -14,7 +14,7 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t most_blockers = 200;  // between two faces, for `auto` to cut their shadows
-constexpr double ray_start = 1.5e-7;          // in front of the surface, local units
+constexpr double ray_start = 1.5e-7;        // in front of the surface, local units
 
 /// Points spread over a face: its pieces by area, each a fan of triangles.
 class FacePoints {
@@ -193,7 +193,6 @@ MeasuredFormFactor FaceFormFactors::hemicube(std::uint32_t from, std::uint32_t t
     const auto count = static_cast<std::size_t>(options_.hemicube_points);
     RaySums sums(scene_, to, count);
     RandomStream random(options_.seed + 1, PatchId::root(from));
-
     for (std::size_t p = 0; p < count; ++p) {
       const std::array<double, 4> shift{random.next(), random.next(), random.next(), random.next()};
       const auto spread = spread_point(p, {0.5, 0.5, 0.5, 0.5});
@@ -208,21 +207,21 @@ MeasuredFormFactor FaceFormFactors::hemicube(std::uint32_t from, std::uint32_t t
   });
 }
 
-MeasuredFormFactor FaceFormFactors::automatic(std::uint32_t from, std::uint32_t to) const {
+bool FaceFormFactors::much_stands_between(std::uint32_t from, std::uint32_t to) const {
   std::vector<const ConvexPolygon*> between;
-  std::size_t most = 0;
   for (const auto& ours : faces_.pieces(from))
     for (const auto& theirs : faces_.pieces(to)) {
       blockers_.find_in(Box::of(ours).joined(Box::of(theirs)), between);
-      most = std::max(most, between.size());
+      if (between.size() > most_blockers) return true;
     }
-  MeasuredFormFactor chosen = most <= most_blockers ? analytic(from, to) : nusselt(from, to);
-  chosen.method = "auto";
-  return chosen;
+  return false;
 }
 
 std::vector<MeasuredFormFactor> FaceFormFactors::by_all_methods(std::uint32_t from, std::uint32_t to) const {
-  return {automatic(from, to), analytic(from, to), nusselt(from, to), hemicube(from, to)};
+  const MeasuredFormFactor exact = analytic(from, to), sampled = nusselt(from, to);
+  MeasuredFormFactor automatic = much_stands_between(from, to) ? sampled : exact;
+  automatic.method = "auto";
+  return {automatic, exact, sampled, hemicube(from, to)};
 }
 
 }  // namespace alvor

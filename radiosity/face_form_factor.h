@@ -42,13 +42,15 @@ class FaceFormFactors {
   /// Hemicubes at stratified points, turned at random, one ray through each cell. The bound is three standard errors between
   /// points.
   MeasuredFormFactor hemicube(std::uint32_t from, std::uint32_t to) const;
-  /// The analytic method unless so much stands between that rays are cheaper.
-  MeasuredFormFactor automatic(std::uint32_t from, std::uint32_t to) const;
+  /// First "auto": the analytic result, unless so much stands between that rays are cheaper; then one of each method.
   std::vector<MeasuredFormFactor> by_all_methods(std::uint32_t from, std::uint32_t to) const;
 
   const FacePolygons& faces() const { return faces_; }
+  const Blockers& blockers() const { return blockers_; }
 
  private:
+  bool much_stands_between(std::uint32_t from, std::uint32_t to) const;
+
   FormFactorOptions options_;
   BaseMesh mesh_;
   FacePolygons faces_;

@@ -35,10 +35,9 @@ class Checks {
  public:
   Checks(const Scene& scene, std::uint64_t seed)
       : random_(seed, PatchId::root(0)),
-        mesh_(scene),
-        polygons_(scene, mesh_),
-        blockers_(mesh_),
-        methods_(scene, {.accuracy = accuracy, .nusselt_rays = 1 << 16, .seed = seed}) {}
+        methods_(scene, {.accuracy = accuracy, .nusselt_rays = 1 << 16, .seed = seed}),
+        polygons_(methods_.faces()),
+        blockers_(methods_.blockers()) {}
 
   std::vector<FormFactorCheck> run(std::size_t pair_count, std::size_t face_count) {
     std::vector<Pair> pairs;
@@ -108,10 +107,9 @@ class Checks {
   }
 
   RandomStream random_;
-  BaseMesh mesh_;
-  FacePolygons polygons_;
-  Blockers blockers_;
   FaceFormFactors methods_;
+  const FacePolygons& polygons_;
+  const Blockers& blockers_;
 };
 
 }  // namespace

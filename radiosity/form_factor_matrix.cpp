@@ -37,18 +37,6 @@ struct Points {
   }
 };
 
-struct TrianglePoint {
-  double a, b, weight;
-};
-/// Degree 5 (Radon) and degree 2 on a triangle; see Stroud 1971.
-constexpr std::array<TrianglePoint, 7> radon{{{1.0 / 3, 1.0 / 3, 0.225},
-                                              {0.47014206410511508977, 0.47014206410511508977, 0.13239415278850618074},
-                                              {0.05971587178976982045, 0.47014206410511508977, 0.13239415278850618074},
-                                              {0.47014206410511508977, 0.05971587178976982045, 0.13239415278850618074},
-                                              {0.10128650732345633880, 0.10128650732345633880, 0.12593918054482715260},
-                                              {0.79742698535308732240, 0.10128650732345633880, 0.12593918054482715260},
-                                              {0.10128650732345633880, 0.79742698535308732240, 0.12593918054482715260}}};
-
 /// One convex piece of a face, with what every pair asks of it.
 struct Piece {
   std::uint32_t face = 0;
@@ -72,7 +60,7 @@ Points points_of(std::span<const Vec3> p, double area) {
   } else if (p.size() <= 4) {
     for (std::size_t c = 2; c < p.size(); ++c) {
       const Vec3 u = p[c - 1] - p[0], v = p[c] - p[0];
-      for (const auto [a, b, weight] : radon) points.add(p[0] + a * u + b * v, weight * 0.5 * length(cross(u, v)) / area);
+      for (const auto [a, b, weight] : radon_7) points.add(p[0] + a * u + b * v, weight * 0.5 * length(cross(u, v)) / area);
     }
   }
   points.fill_up();

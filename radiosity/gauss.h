@@ -18,6 +18,20 @@ extern const std::array<GaussNode, 4> gauss_4;
 extern const std::array<GaussNode, 6> gauss_6;
 extern const std::array<GaussNode, 16> gauss_16;
 
+/// A point corner0 + a (corner1 - corner0) + b (corner2 - corner0) of a triangle.
+struct TriangleNode {
+  double a, b, weight;
+};
+
+/// Radon's rule of degree 5 on a triangle (Stroud 1971, T2:5-1); the weights sum to 1.
+inline constexpr std::array<TriangleNode, 7> radon_7{{{1.0 / 3, 1.0 / 3, 0.225},
+                                                      {0.47014206410511508977, 0.47014206410511508977, 0.13239415278850618074},
+                                                      {0.05971587178976982045, 0.47014206410511508977, 0.13239415278850618074},
+                                                      {0.47014206410511508977, 0.05971587178976982045, 0.13239415278850618074},
+                                                      {0.10128650732345633880, 0.10128650732345633880, 0.12593918054482715260},
+                                                      {0.79742698535308732240, 0.10128650732345633880, 0.12593918054482715260},
+                                                      {0.10128650732345633880, 0.79742698535308732240, 0.12593918054482715260}}};
+
 /// A quadrature value, and by how much it may be wrong.
 struct Quadrature {
   double value = 0, error = 0;

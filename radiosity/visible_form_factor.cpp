@@ -1,6 +1,7 @@
 #include "radiosity/visible_form_factor.h"
 
 #include "radiosity/form_factor.h"
+#include "radiosity/gauss.h"
 
 #include <array>
 #include <cmath>
@@ -111,15 +112,6 @@ struct Cell {
   friend bool operator<(const Cell& a, const Cell& b) { return a.error < b.error; }
 };
 
-/// Radon's rule of degree 5 on a triangle (Stroud 1971, T2:5-1): weights, and barycentric coordinates (a, b, b).
-struct TriangleNode {
-  double weight, a, b;
-};
-const double root_15 = std::sqrt(15.0);
-const std::array<TriangleNode, 3> radon{{{9.0 / 40, 1.0 / 3, 1.0 / 3},
-                                         {(155 - root_15) / 1200, (9 + 2 * root_15) / 21, (6 - root_15) / 21},
-                                         {(155 + root_15) / 1200, (9 - 2 * root_15) / 21, (6 + root_15) / 21}}};
-
 /// The surface, cut along the lines where the outline of a blocker meets the outline of what is looked at: an edge of one, a
 /// corner of the other. Between them what is visible changes smoothly (events between edges of several blockers are left out),
 /// and a thin leak of light has cells of its own.
@@ -181,12 +173,10 @@ class SurfaceIntegral {
  private:
   double value_of(const Cell& cell) {
     const auto [p, q, r] = cell.corner;
-    const auto f = [&](double a, double b, double c) { return point_to_visible(a * p + b * q + c * r, normal_, to_, blockers_); };
-    double sum = radon[0].weight * f(radon[0].a, radon[0].b, radon[0].b);
-    for (int n = 1; n < 3; ++n)
-      sum += radon[n].weight * (f(radon[n].a, radon[n].b, radon[n].b) + f(radon[n].b, radon[n].a, radon[n].b) +
-                                f(radon[n].b, radon[n].b, radon[n].a));
-    points_ += 7;
+    double sum = 0;
+    for (const auto [a, b, weight] : radon_7)
+      sum += weight * point_to_visible(p + a * (q - p) + b * (r - p), normal_, to_, blockers_);
+    points_ += radon_7.size();
     return 0.5 * length(cross(q - p, r - p)) * sum;
   }
 

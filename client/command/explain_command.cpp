@@ -2,6 +2,7 @@
 
 #include "client/command/commands.h"
 #include "client/command/failure.h"
+#include "client/command/outputs.h"
 #include "client/scene_file.h"
 #include "radiosity/form_factor_checks.h"
 
@@ -35,7 +36,7 @@ void explain_form_factors(const ExplainCommand& command, const Scene& scene) {
 void run_explain(const ExplainCommand& command) {
   if (!command.form_factors) throw Failure(ExitStatus::usage, "nothing to explain: say --form-factors");
   const SceneFile file = read_scene_file(command.scene);
-  for (const std::string& warning : file.warnings) std::cerr << "warning: " << warning << '\n';
+  warn(file.warnings);
   explain_form_factors(command, file.scene);
 }
 

@@ -3,6 +3,7 @@
 #include "client/command/commands.h"
 #include "client/command/failure.h"
 #include "client/command/numbers.h"
+#include "client/command/outputs.h"
 #include "client/scene_file.h"
 #include "radiosity/face_form_factor.h"
 
@@ -51,7 +52,7 @@ void require_face(const FormFactorCommand& command, const Scene& scene, const Fa
 
 void run_form_factor(const FormFactorCommand& command) {
   const SceneFile file = read_scene_file(command.scene);
-  for (const std::string& warning : file.warnings) std::cerr << "warning: " << warning << '\n';
+  warn(file.warnings);
   const FaceFormFactors form_factors(file.scene, command.options);
   for (const std::uint32_t face : {command.from, command.to}) require_face(command, file.scene, form_factors, face);
   const auto measured = form_factors.by_all_methods(command.from, command.to);

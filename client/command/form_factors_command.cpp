@@ -5,6 +5,7 @@
 #include "client/command/files.h"
 #include "client/command/numbers.h"
 #include "client/command/option_checks.h"
+#include "client/command/outputs.h"
 #include "client/scene_file.h"
 #include "radiosity/form_factor_matrix.h"
 
@@ -79,7 +80,7 @@ class RowsFile {
 void run_form_factors(const FormFactorsCommand& command) {
   require_writable(command.output, "--output");
   const SceneFile file = read_scene_file(command.scene);
-  for (const std::string& warning : file.warnings) std::cerr << "warning: " << warning << '\n';
+  warn(file.warnings);
   const auto start = std::chrono::steady_clock::now();
   const BaseMesh mesh(file.scene);
   const FacePolygons faces(file.scene, mesh);
