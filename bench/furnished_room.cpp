@@ -1,35 +1,14 @@
 // furnished_room DIR: writes furnished_room.obj and .mtl, a closed room with two lamps and furniture. The same bytes every time.
-// Lengths are metres, y is up. Where one thing lies flat on a larger one, the smaller face is left out: nothing is coincident.
+// Lengths are metres, y is up.
 
-#include "meshing/vec3.h"
+#include "bench/furniture.h"
 
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <fstream>
 #include <iostream>
-#include <numbers>
 #include <random>
-#include <sstream>
-#include <string>
 
-namespace alvor {
+namespace alvor::bench {
 
 namespace {
-
-// Faces of a box, to be left out.
-constexpr unsigned bottom = 1, top = 2, x_low = 4, x_high = 8, z_low = 16, z_high = 32;
-
-struct Place {
-  double x = 0, z = 0;      ///< on the floor, metres
-  double turn_degrees = 0;  ///< about the vertical, counter-clockwise from above
-  double y = 0;             ///< above the floor
-};
-
-struct Paint {
-  const char* name;
-  const char* lines;
-};
 
 constexpr Paint paints[]{{"wall", "Kd 0.78 0.74 0.66"},    {"ceiling", "Kd 0.86 0.86 0.84"}, {"floor", "Kd 0.45 0.30 0.18"},
                          {"oak", "Kd 0.58 0.42 0.26"},     {"walnut", "Kd 0.30 0.19 0.12"},  {"white", "Kd 0.80 0.80 0.78"},
@@ -39,54 +18,9 @@ constexpr Paint paints[]{{"wall", "Kd 0.78 0.74 0.66"},    {"ceiling", "Kd 0.86 
                          {"book_4", "Kd 0.72 0.58 0.20"},  {"book_5", "Kd 0.66 0.62 0.54"},  {"housing", "Kd 0.70 0.70 0.70"},
                          {"lamp", "Kd 0 0 0\nKe 14 13 11"}};
 
-class Obj {
- public:
-  void stand_at(const Place& place) { place_ = place; }
-
-  /// Solid, fronts outwards; or a room, fronts inwards.
-  void box(const char* material, Vec3 low, Vec3 high, unsigned left_out = 0, bool inwards = false) {
-    const int first = vertex_count_ + 1;
-    for (const double y : {low.y, high.y}) {
-      vertex({low.x, y, low.z});
-      vertex({high.x, y, low.z});
-      vertex({high.x, y, high.z});
-      vertex({low.x, y, high.z});
-    }
-    constexpr std::array<std::array<int, 4>, 6> outwards{
-        {{0, 1, 2, 3}, {7, 6, 5, 4}, {0, 3, 7, 4}, {2, 1, 5, 6}, {1, 0, 4, 5}, {3, 2, 6, 7}}};
-    for (unsigned side = 0; side < 6; ++side)
-      if (!(left_out >> side & 1)) face(material, first, outwards[side], inwards);
-  }
-
-  int face_count() const { return face_count_; }
-  std::string text() const { return text_.str(); }
-
- private:
-  void vertex(const Vec3& at) {
-    const double angle = place_.turn_degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-    char line[80];
-    std::snprintf(line, sizeof line, "v %.4f %.4f %.4f\n", place_.x + c * at.x + s * at.z, place_.y + at.y,
-                  place_.z - s * at.x + c * at.z);
-    text_ << line;
-    ++vertex_count_;
-  }
-  void face(const std::string& material, int first, const std::array<int, 4>& ring, bool reversed) {
-    if (material != material_) text_ << "usemtl " << (material_ = material) << '\n';
-    text_ << 'f';
-    for (int k = 0; k < 4; ++k) text_ << ' ' << first + ring[reversed ? 3 - k : k];
-    text_ << '\n';
-    ++face_count_;
-  }
-
-  std::ostringstream text_;
-  std::string material_;
-  Place place_;
-  int vertex_count_ = 0, face_count_ = 0;
-};
-
 constexpr double width = 6, height = 2.7, depth = 4.6;
 
-void add_room(Obj& obj) {
+void add_room(ObjWriter& obj) {
   obj.stand_at({});
   obj.box("floor", {0, 0, 0}, {width, height, depth}, ~bottom, true);
   obj.box("ceiling", {0, 0, 0}, {width, height, depth}, ~top, true);
@@ -94,35 +28,14 @@ void add_room(Obj& obj) {
 }
 
 /// Under the ceiling; the lower face shines.
-void add_lamp(Obj& obj, Place place, double along_x, double along_z) {
+void add_lamp(ObjWriter& obj, Place place, double along_x, double along_z) {
   obj.stand_at(place);
   const Vec3 low{-along_x / 2, height - 0.06, -along_z / 2}, high{along_x / 2, height, along_z / 2};
   obj.box("housing", low, high, top | bottom);
   obj.box("lamp", low, high, ~bottom);
 }
 
-void add_legs(Obj& obj, const char* material, double along_x, double along_z, double top_y, double thickness) {
-  for (const double x : {-along_x / 2, along_x / 2 - thickness})
-    for (const double z : {-along_z / 2, along_z / 2 - thickness})
-      obj.box(material, {x, 0, z}, {x + thickness, top_y, z + thickness}, bottom | top);
-}
-
-void add_table(Obj& obj, Place place, double along_x, double along_z, double top_y) {
-  obj.stand_at(place);
-  obj.box("oak", {-along_x / 2, top_y - 0.04, -along_z / 2}, {along_x / 2, top_y, along_z / 2});
-  add_legs(obj, "oak", along_x - 0.1, along_z - 0.1, top_y - 0.04, 0.07);
-}
-
-/// Looks towards +z.
-void add_chair(Obj& obj, Place place) {
-  obj.stand_at(place);
-  obj.box("walnut", {-0.22, 0.43, -0.22}, {0.22, 0.46, 0.22});
-  add_legs(obj, "walnut", 0.42, 0.42, 0.43, 0.04);
-  for (const double x : {-0.21, 0.17}) obj.box("walnut", {x, 0.46, -0.21}, {x + 0.04, 0.95, -0.17}, bottom);
-  for (const double y : {0.60, 0.72, 0.84}) obj.box("walnut", {-0.17, y, -0.20}, {0.17, y + 0.07, -0.18}, x_low | x_high);
-}
-
-void add_books(Obj& obj, std::minstd_rand& random, double from_x, double to_x, double shelf_y) {
+void add_books(ObjWriter& obj, std::minstd_rand& random, double from_x, double to_x, double shelf_y) {
   constexpr const char* colours[]{"book_1", "book_2", "book_3", "book_4", "book_5"};
   const auto between = [&](double low, double high) { return low + (high - low) * double(random() % 1000) / 1000; };
   for (double x = from_x + 0.01;;) {
@@ -135,7 +48,7 @@ void add_books(Obj& obj, std::minstd_rand& random, double from_x, double to_x, d
 }
 
 /// Its back is at z = 0.
-void add_bookcase(Obj& obj, Place place) {
+void add_bookcase(ObjWriter& obj, Place place) {
   constexpr double wide = 1.5, tall = 2.0, deep = 0.3, board = 0.025;
   obj.stand_at(place);
   for (const double x : {0.0, wide - board}) obj.box("oak", {x, 0, 0}, {x + board, tall, deep}, bottom);
@@ -149,7 +62,7 @@ void add_bookcase(Obj& obj, Place place) {
 }
 
 /// Its back is at z = 0.
-void add_cupboard(Obj& obj, Place place) {
+void add_cupboard(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   obj.box("white", {0, 0, 0}, {1.2, 1.0, 0.45}, bottom | top);
   obj.box("oak", {-0.02, 1.0, 0}, {1.22, 1.03, 0.48});
@@ -167,7 +80,7 @@ void add_cupboard(Obj& obj, Place place) {
 }
 
 /// In the wall z = 0.
-void add_door(Obj& obj, Place place) {
+void add_door(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   for (const double x : {0.0, 0.90}) obj.box("oak", {x, 0, 0}, {x + 0.08, 2.08, 0.035}, bottom | top | z_low);
   obj.box("oak", {-0.02, 2.08, 0}, {1.0, 2.17, 0.04}, z_low);
@@ -178,14 +91,14 @@ void add_door(Obj& obj, Place place) {
 }
 
 /// On the wall z = 0.
-void add_picture(Obj& obj, Place place) {
+void add_picture(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   obj.box("walnut", {0, 1.62, 0}, {0.9, 2.22, 0.03}, z_low);
   obj.box("canvas", {0.05, 1.67, 0.03}, {0.85, 2.17, 0.034}, z_low);
 }
 
 /// Looks towards +z; its back is at z = 0.
-void add_sofa(Obj& obj, Place place) {
+void add_sofa(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   for (const double x : {0.0, 1.7}) obj.box("blue", {x, 0, 0}, {x + 0.2, 0.62, 0.9}, bottom);
   obj.box("blue", {0.2, 0, 0}, {1.7, 0.85, 0.22}, bottom);
@@ -194,8 +107,8 @@ void add_sofa(Obj& obj, Place place) {
   for (const double x : {0.21, 0.955}) obj.box("blue", {x, 0.455, 0.23}, {x + 0.735, 0.90, 0.36});
 }
 
-Obj furnished_room() {
-  Obj obj;
+ObjWriter furnished_room() {
+  ObjWriter obj;
   add_room(obj);
   add_lamp(obj, {2.5, 2.6}, 1.4, 0.3);
   add_lamp(obj, {4.7, 2.6}, 0.6, 0.6);
@@ -203,41 +116,30 @@ Obj furnished_room() {
   add_cupboard(obj, {2.3, 0.02});
   add_picture(obj, {2.45, 0});
   add_door(obj, {4.2, 0});
-  add_table(obj, {2.3, 2.7}, 1.7, 0.9, 0.75);
+  add_table(obj, "oak", {2.3, 2.7}, 1.7, 0.9, 0.75);
   for (const double x : {1.9, 2.7}) {
-    add_chair(obj, {x, 2.0});
-    add_chair(obj, {x, 3.42, x < 2 ? 180.0 : 160.0});
+    add_chair(obj, "walnut", {x, 2.0});
+    add_chair(obj, "walnut", {x, 3.42, x < 2 ? 180.0 : 160.0});
   }
-  add_chair(obj, {1.05, 2.7, 90});
+  add_chair(obj, "walnut", {1.05, 2.7, 90});
   obj.stand_at({2.3, 2.7});
   obj.box("clay", {-0.12, 0.75, -0.12}, {0.12, 0.83, 0.12}, bottom);
   add_sofa(obj, {5.96, 1.6, -90});
   obj.stand_at({4.45, 2.55});
   obj.box("rug", {-0.55, 0, -1.1}, {0.55, 0.012, 1.1}, bottom);
-  add_table(obj, {3.75, 0.8}, 0.45, 0.45, 0.5);
-  add_table(obj, {.x = 4.45, .z = 2.55, .y = 0.012}, 0.5, 1.0, 0.42);
+  add_table(obj, "oak", {3.75, 0.8}, 0.45, 0.45, 0.5);
+  add_table(obj, "oak", {.x = 4.45, .z = 2.55, .y = 0.012}, 0.5, 1.0, 0.42);
   return obj;
-}
-
-bool write(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text << std::flush;
-  if (!out) std::cerr << "furnished_room: " << path << " cannot be written\n";
-  return out.good();
 }
 
 }  // namespace
 
-}  // namespace alvor
+}  // namespace alvor::bench
 
 int main(int argc, char** argv) {
+  using namespace alvor::bench;
   if (argc != 2) return std::cerr << "usage: furnished_room DIR\n", 2;
-  const std::string stem = std::string(argv[1]) + "/furnished_room";
-  std::string materials;
-  for (const auto& [name, lines] : alvor::paints)
-    materials.append("newmtl ").append(name).append("\n").append(lines).append("\n");
-  const alvor::Obj room = alvor::furnished_room();
-  if (!alvor::write(stem + ".mtl", materials) || !alvor::write(stem + ".obj", "mtllib furnished_room.mtl\n" + room.text()))
-    return 1;
+  const ObjWriter room = furnished_room();
+  if (!write_scene(std::string(argv[1]) + "/furnished_room.obj", paints, room)) return 1;
   std::cout << room.face_count() << " faces\n";
 }
