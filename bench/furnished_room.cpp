@@ -2,8 +2,9 @@
 // Lengths are metres, y is up.
 
 #include "bench/furniture.h"
+#include "bench/scene_program.h"
+#include "bench/walls.h"
 
-#include <iostream>
 #include <random>
 
 namespace alvor::bench {
@@ -25,14 +26,6 @@ void add_room(ObjWriter& obj) {
   obj.box("floor", {0, 0, 0}, {width, height, depth}, ~bottom, true);
   obj.box("ceiling", {0, 0, 0}, {width, height, depth}, ~top, true);
   obj.box("wall", {0, 0, 0}, {width, height, depth}, bottom | top, true);
-}
-
-/// Under the ceiling; the lower face shines.
-void add_lamp(ObjWriter& obj, Place place, double along_x, double along_z) {
-  obj.stand_at(place);
-  const Vec3 low{-along_x / 2, height - 0.06, -along_z / 2}, high{along_x / 2, height, along_z / 2};
-  obj.box("housing", low, high, top | bottom);
-  obj.box("lamp", low, high, ~bottom);
 }
 
 void add_books(ObjWriter& obj, std::minstd_rand& random, double from_x, double to_x, double shelf_y) {
@@ -110,8 +103,8 @@ void add_sofa(ObjWriter& obj, Place place) {
 ObjWriter furnished_room() {
   ObjWriter obj;
   add_room(obj);
-  add_lamp(obj, {2.5, 2.6}, 1.4, 0.3);
-  add_lamp(obj, {4.7, 2.6}, 0.6, 0.6);
+  add_lamp(obj, {2.5, height, 2.6}, 1.4, 0.3);
+  add_lamp(obj, {4.7, height, 2.6}, 0.6, 0.6);
   add_bookcase(obj, {0.3, 0.02});
   add_cupboard(obj, {2.3, 0.02});
   add_picture(obj, {2.45, 0});
@@ -136,10 +129,7 @@ ObjWriter furnished_room() {
 
 }  // namespace alvor::bench
 
-int main(int argc, char** argv) {
+int main(int count, char** arguments) {
   using namespace alvor::bench;
-  if (argc != 2) return std::cerr << "usage: furnished_room DIR\n", 2;
-  const ObjWriter room = furnished_room();
-  if (!write_scene(std::string(argv[1]) + "/furnished_room.obj", paints, room)) return 1;
-  std::cout << room.face_count() << " faces\n";
+  return run_scene_program(count, arguments, "furnished_room", paints, furnished_room);
 }

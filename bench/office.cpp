@@ -71,13 +71,13 @@ class Builder {
   }
 
   void add_corridor_wall(const Place& room, bool has_doorway) {
-    constexpr double from = -wall_thick / 2, to = room_wide + wall_thick / 2;
+    DoorwayWall wall = door_wall;
+    wall.from = -wall_thick / 2, wall.to = room_wide + wall_thick / 2;
     ObjWriter& obj = block_.obj;
     obj.stand_at(room);
-    if (!has_doorway) return obj.box("wall", {from, 0, -wall_thick}, {to, storey_high, -wall_thick}, ~z_low);
-    add_doorway_wall(obj, from, to, -wall_thick, false);
-    obj.box("carpet", {door_low, 0, -wall_thick}, {door_high, door_top, 0}, ~bottom, true);
-    obj.box("wall", {door_low, 0, -wall_thick}, {door_high, door_top, 0}, bottom | z_low | z_high, true);
+    if (!has_doorway) return obj.box("wall", {wall.from, 0, -wall_thick}, {wall.to, storey_high, -wall_thick}, ~z_low);
+    add_doorway_wall(obj, "wall", wall, -wall_thick, false);
+    add_doorway(obj, "wall", "carpet", wall, -wall_thick, 0);
   }
 
   void add_room(const Place& place, bool has_doorway) {

@@ -1,7 +1,6 @@
 #include "bench/office_room.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace alvor::bench {
@@ -12,24 +11,7 @@ void add_room_shell(ObjWriter& obj, const Place& room, bool has_doorway) {
   obj.box("carpet", low, high, ~bottom, true);
   obj.box("ceiling", low, high, ~top, true);
   obj.box("wall", low, high, bottom | top | (has_doorway ? z_low : 0), true);
-  if (has_doorway) add_doorway_wall(obj, 0, room_wide, 0, true);
-}
-
-// Cut at the height of the lintel all along: pieces share whole edges, so that light is interpolated across them.
-void add_doorway_wall(ObjWriter& obj, double from, double to, double at_z, bool from_inside) {
-  constexpr std::array heights{0.0, door_top, storey_high};
-  const std::array widths{from, door_low, door_high, to};
-  for (std::size_t row = 0; row < 2; ++row)
-    for (std::size_t column = 0; column < 3; ++column)
-      if (row == 1 || column != 1)
-        obj.box("wall", {widths[column], heights[row], at_z}, {widths[column + 1], heights[row + 1], at_z}, ~z_low, from_inside);
-}
-
-void add_lamp(ObjWriter& obj, Vec3 centre, double along_x, double along_z) {
-  const Vec3 low{centre.x - along_x / 2, centre.y - 0.06, centre.z - along_z / 2};
-  const Vec3 high{centre.x + along_x / 2, centre.y, centre.z + along_z / 2};
-  obj.box("housing", low, high, top | bottom);
-  obj.box("lamp", low, high, ~bottom);
+  if (has_doorway) add_doorway_wall(obj, "wall", door_wall, 0, true);
 }
 
 void add_lamps(ObjWriter& obj, const Place& room, int count) {

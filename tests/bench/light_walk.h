@@ -13,8 +13,9 @@ namespace alvor::test {
 
 struct LightWalk {
   int rays = 0;
-  int left = 0;   ///< met nothing
-  int backs = 0;  ///< met the back of a face
+  int left = 0;           ///< met nothing
+  int backs = 0;          ///< met the back of a face
+  std::vector<Vec3> met;  ///< where it met fronts
 };
 
 /// Casts rays from surfaces that light reaches.
@@ -67,6 +68,7 @@ class LightWalker {
       normal = mesh_.roots()[caster_.triangles.root[hit->triangle]].normal;
       if (dot(normal, direction) > 0) return void(++walk_.backs);
       at = from + direction * hit->distance;
+      walk_.met.push_back(at);
     }
   }
 
