@@ -9,4 +9,7 @@ namespace alvor {
 /// blue and green, ever lighter, so that the order shows in grey and to the colour-blind too.
 Rgb colour_map(double position);
 
+/// For values of either sign: linear sRGB of `position`, clamped to [0, 1]. 0 is dark blue, 0.5 nearly white, 1 dark red.
+Rgb diverging_colour_map(double position);
+
 }  // namespace alvor

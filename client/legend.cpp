@@ -1,6 +1,5 @@
 #include "client/legend.h"
 
-#include "client/colour_map.h"
 #include "client/round_number.h"
 #include "client/text.h"
 #include "client/tone_map.h"
@@ -46,14 +45,11 @@ Layout layout_of(const Image& image, const Legend& legend, const std::vector<Leg
   return at;
 }
 
-Colour colour_at(double position) {
-  const Rgb colour = colour_map(position);
-  return {srgb_byte(colour.r), srgb_byte(colour.g), srgb_byte(colour.b)};
-}
+Colour bytes_of(const Rgb& colour) { return {srgb_byte(colour.r), srgb_byte(colour.g), srgb_byte(colour.b)}; }
 
-void draw_bar(Image& image, const PixelBox& bar) {
+void draw_bar(Image& image, const PixelBox& bar, const Legend& legend) {
   for (int row = 0; row < bar.height; ++row)
-    fill(image, {bar.left, bar.top + row, bar.width, 1}, colour_at(1 - (row + 0.5) / bar.height));
+    fill(image, {bar.left, bar.top + row, bar.width, 1}, bytes_of(legend.colours(1 - (row + 0.5) / bar.height)));
 }
 
 void draw_label(Image& image, const Layout& at, const LegendLabel& label) {
@@ -69,7 +65,7 @@ void draw(Image& image, const Legend& legend) {
   fill(image, {at.panel_left, 0, image.width - at.panel_left, image.height}, paper);
   for (std::size_t i = 0; i < legend.title.size(); ++i)
     draw_text(image, at.bar.left, at.title_top + at.dot * line_height * static_cast<int>(i), legend.title[i], at.dot, ink);
-  draw_bar(image, at.bar);
+  draw_bar(image, at.bar, legend);
   for (const LegendLabel& label : labels) draw_label(image, at, label);
 }
 

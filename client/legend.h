@@ -2,6 +2,7 @@
 // What the colours of a false-colour picture mean, drawn beside it.
 
 #include "client/camera.h"
+#include "client/colour_map.h"
 #include "client/colour_scale.h"
 #include "client/png_file.h"
 
@@ -15,6 +16,7 @@ struct Legend {
   std::vector<std::string> title;  ///< lines above the bar; the unit is the last
   bool values_below = false;       ///< the ends stand for what lies beyond them too, and say so
   bool values_above = false;
+  Rgb (*colours)(double position) = colour_map;  ///< of the bar
 };
 
 /// A label of the bar.

@@ -132,6 +132,10 @@ Image render(const DisplayMesh& mesh, const RenderOptions& options) {
   return options.false_colour ? measured_picture(stage, camera, options) : lit_picture(stage, camera, options);
 }
 
+Image render(const Stage& stage, const Camera& camera, const std::function<Rgb(const Seen&)>& colour) {
+  return picture_of(stage, camera, {}, {colour, 0});
+}
+
 double automatic_exposure(const DisplayMesh& mesh, const Camera& camera) { return exposure_of(Stage(mesh), camera); }
 
 }  // namespace alvor

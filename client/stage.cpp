@@ -45,6 +45,11 @@ double Stage::centre_weight(std::uint32_t triangle, Vec3 origin, Vec3 direction)
   return dot(cross(b - point, c - point), normal) / dot(cross(b - a, c - a), normal);
 }
 
+Vec3 Stage::place(const Seen& seen) const {
+  const Vec3 a = corner(seen.triangle, 0);
+  return a + seen.u * (corner(seen.triangle, 1) - a) + seen.v * (corner(seen.triangle, 2) - a);
+}
+
 Vec3 Stage::area_vector(std::uint32_t triangle) const {
   const Vec3 a = corner(triangle, 0);
   return cross(corner(triangle, 1) - a, corner(triangle, 2) - a);

@@ -28,6 +28,8 @@ class Stage {
   /// What a coarse picture sees, the same whatever the size of the camera's picture: enough for exposure and scales.
   void glance(const Camera& camera, const std::function<void(const Seen&)>& on_seen) const;
 
+  Vec3 place(const Seen& seen) const;  ///< metres
+  Vec3 normal(const Seen& seen) const { return normalized(area_vector(seen.triangle)); }
   RgbF radiosity(const Seen& seen) const { return interpolated(mesh_.radiosity, seen); }
   RgbF irradiance(const Seen& seen) const { return interpolated(mesh_.irradiance, seen); }
 

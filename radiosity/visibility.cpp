@@ -29,9 +29,10 @@ class FlushDenormals {
 /// A device and a scene, released together.
 class EmbreeScene {
  public:
-  EmbreeScene() : device_(rtcNewDevice(nullptr)) {
+  explicit EmbreeScene(RTCSceneFlags flags = RTC_SCENE_FLAG_NONE) : device_(rtcNewDevice(nullptr)) {
     if (!device_) throw std::runtime_error("Embree: no device");
     scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, flags);
   }
   ~EmbreeScene() {
     rtcReleaseScene(scene_);
@@ -160,6 +161,9 @@ void Visibility::occlusions(std::span<const RayPacket> packets, std::span<std::u
 }
 
 struct TriangleCaster::Handles {
+  explicit Handles(Traversal traversal)
+      : scene(traversal == Traversal::watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE) {}
+
   EmbreeScene scene;
   std::vector<Vec3> positions;  // relative to `centre`
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -221,6 +225,16 @@ bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+RTCRay ray_along(Vec3 origin, Vec3 direction, float t_max) {
+  const auto from = to_float(origin), along = to_float(direction);
+  RTCRay ray{};
+  ray.org_x = from[0], ray.org_y = from[1], ray.org_z = from[2];
+  ray.dir_x = along[0], ray.dir_y = along[1], ray.dir_z = along[2];
+  ray.tfar = t_max;
+  ray.mask = ~0u;
+  return ray;
+}
+
 Vec3 centre_of(std::span<const Vec3> positions) {
   if (positions.empty()) return {};
   Vec3 low = positions[0], high = low;
@@ -233,8 +247,9 @@ Vec3 centre_of(std::span<const Vec3> positions) {
 
 }  // namespace
 
-TriangleCaster::TriangleCaster(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles)
-    : handles_(std::make_unique<Handles>()) {
+TriangleCaster::TriangleCaster(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+                               Traversal traversal)
+    : handles_(std::make_unique<Handles>(traversal)) {
   handles_->centre = centre_of(positions);
   std::vector<std::array<float, 3>> vertices;
   for (const Vec3& p : positions) {
@@ -251,16 +266,20 @@ TriangleCaster::~TriangleCaster() = default;
 std::optional<TriangleCaster::Hit> TriangleCaster::cast(Vec3 origin, Vec3 direction) const {
   const FlushDenormals flush;
   RTCIntersectContext context = incoherent_context();
-  RTCRayHit query{};
-  const auto from = to_float(origin - handles_->centre), along = to_float(direction);
-  query.ray.org_x = from[0], query.ray.org_y = from[1], query.ray.org_z = from[2];
-  query.ray.dir_x = along[0], query.ray.dir_y = along[1], query.ray.dir_z = along[2];
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
+  RTCRayHit query;
+  query.ray = ray_along(origin - handles_->centre, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(handles_->scene.get(), &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+}
+
+bool TriangleCaster::is_blocked(Vec3 from, Vec3 to) const {
+  const FlushDenormals flush;
+  RTCIntersectContext context = incoherent_context();
+  RTCRay ray = ray_along(from - handles_->centre, to - from, 1);
+  rtcOccluded1(handles_->scene.get(), &context, &ray);
+  return ray.tfar < 0;  // Embree sets -inf where blocked
 }
 
 std::optional<TriangleCaster::Hit> TriangleCaster::nearest(Vec3 point, Vec3 normal) const {

@@ -54,10 +54,14 @@ class Visibility {
   std::unique_ptr<Handles> handles_;
 };
 
-/// One ray or one point at a time against plain triangles, for drawing and probing. Immutable; safe from any thread.
+/// Whether a ray may slip through the common edge of two triangles: rarely, where it must be fast, or never.
+enum class Traversal { fast, watertight };
+
+/// One ray or one point at a time against plain triangles, for drawing, probing and verifying. Immutable; safe from any thread.
 class TriangleCaster {
  public:
-  TriangleCaster(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
+  TriangleCaster(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
+                 Traversal traversal = Traversal::fast);
   ~TriangleCaster();
   TriangleCaster(const TriangleCaster&) = delete;
   TriangleCaster& operator=(const TriangleCaster&) = delete;
@@ -71,6 +75,8 @@ class TriangleCaster {
   };
   /// Nearest surface along `direction` (unit), front or back.
   std::optional<Hit> cast(Vec3 origin, Vec3 direction) const;
+  /// Whether a surface, front or back, lies between two points.
+  bool is_blocked(Vec3 from, Vec3 to) const;
   /// Nearest point of a surface whose normal lies within 60 degrees of `normal` (unit).
   std::optional<Hit> nearest(Vec3 point, Vec3 normal) const;
 

@@ -1,10 +1,10 @@
 // alvor solve SCENE: reads the scene, has it solved here or by a server, follows the light and writes what came out.
 
+#include "client/command/absorption_option.h"
 #include "client/command/commands.h"
 #include "client/command/connection.h"
 #include "client/command/failure.h"
 #include "client/command/interrupt.h"
-#include "client/command/numbers.h"
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
 #include "client/scene_file.h"
@@ -97,9 +97,7 @@ Followed solve_and_follow(const SolveCommand& command, const SceneFile& file, st
 void run_solve(const SolveCommand& command) {
   prepare_outputs(command.outputs);
   SceneFile file = read_scene_file(command.scene);
-  if (const auto bands = parse_numbers(command.absorption, 3)) file.scene.absorption = {(*bands)[0], (*bands)[1], (*bands)[2]};
-  if (file.scene.absorption.min() < 0)
-    throw Failure(ExitStatus::usage, "--absorption: " + command.absorption + " has a negative number");
+  take_absorption(command.absorption, file.scene);
   std::vector<std::string> warnings;
   const Followed followed = solve_and_follow(command, file, warnings);
   deliver(command.outputs, file.scene, followed, warnings);
@@ -119,9 +117,7 @@ void add_method(CLI::App& command, SolveCommand& options) {
   command.add_option("--form-factors", options.form_factors, "How transport rows are found (auto)")
       ->type_name("M")
       ->check(CLI::IsMember({"auto", "nusselt", "hemicube", "analytic"}));
-  command.add_option("--absorption", options.absorption, "Of a medium that fills the scene, 1/m per band (0,0,0)")
-      ->type_name("R,G,B")
-      ->check(triple());
+  add_absorption_option(command, options.absorption);
   command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
   command.add_option("--pace", options.pace_s, "Pause after each step, seconds; not counted as run time (0; 0.04 with --frames)")
       ->check(CLI::Range(0.0, 60.0));

@@ -30,6 +30,15 @@ TEST(ColourMap, PlacesOutsideGetTheEnds) {
   EXPECT_EQ(colour_map(7), colour_map(1));
 }
 
+TEST(DivergingColourMap, IsWhiteInTheMiddleBlueBelowAndRedAbove) {
+  EXPECT_EQ(shown(diverging_colour_map(0.5)), (Pixel{247, 247, 247}));
+  for (const double off : {0.1, 0.3, 0.5}) {
+    const Rgb below = diverging_colour_map(0.5 - off), above = diverging_colour_map(0.5 + off);
+    EXPECT_GT(below.b, below.r) << off;
+    EXPECT_GT(above.r, above.b) << off;
+  }
+}
+
 TEST(ColourScale, ValuesOutsideGetTheEnds) {
   for (const bool logarithmic : {false, true}) {
     const ColourScale scale{2, 8, logarithmic};

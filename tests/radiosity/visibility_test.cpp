@@ -79,5 +79,17 @@ TEST(TriangleCaster, CastReturnsTheFirstTriangleAlongTheRay) {
   EXPECT_FALSE(caster.cast({5, 5, 5}, {0, 0, -1}));
 }
 
+TEST(TriangleCaster, OnlyWhatLiesBetweenTwoPointsBlocks) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}};
+  for (const Traversal traversal : {Traversal::fast, Traversal::watertight}) {
+    const TriangleCaster caster(positions, triangles, traversal);
+    EXPECT_TRUE(caster.is_blocked({0.25, 0.25, 5}, {0.25, 0.25, -5}));
+    EXPECT_TRUE(caster.is_blocked({0.25, 0.25, -5}, {0.25, 0.25, 1e-4}));
+    EXPECT_FALSE(caster.is_blocked({0.25, 0.25, 5}, {0.25, 0.25, 1e-4}));
+    EXPECT_FALSE(caster.is_blocked({2, 2, 5}, {2, 2, -5}));
+  }
+}
+
 }  // namespace
 }  // namespace alvor

@@ -1,0 +1,81 @@
+#include "client/verify/error_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace alvor {
+
+namespace {
+
+constexpr double normal_97_5 = 1.959964;  ///< quantile of the normal distribution: 95 % lie within it
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+template <class Value>
+double mean_of(std::span<const ComparedPoint> points, Value value) {
+  double sum = 0;
+  for (const ComparedPoint& point : points) sum += value(point);
+  return sum / static_cast<double>(points.size());
+}
+
+double error(const ComparedPoint& p) { return p.solution - p.truth; }
+double squared_error(const ComparedPoint& p) { return error(p) * error(p) - p.truth_variance; }
+double truth(const ComparedPoint& p) { return p.truth; }
+
+double positive_root(double square) { return std::sqrt(std::max(0.0, square)); }
+
+/// Of a mean over points of `influence`, whose mean is 0.
+template <class Influence>
+double standard_error(std::span<const ComparedPoint> points, Influence influence) {
+  const double square = mean_of(points, [&](const ComparedPoint& p) { return influence(p) * influence(p); });
+  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(1, points.size() - 1)));
+}
+
+Confidence nrmse_of(std::span<const ComparedPoint> points, double mean_truth) {
+  const double mean_square = mean_of(points, squared_error), scale = 1 / (mean_truth * mean_truth);
+  const double spread = normal_97_5 * standard_error(points, [&](const ComparedPoint& p) {
+                          return scale * (squared_error(p) - mean_square - 2 * mean_square * (p.truth / mean_truth - 1));
+                        });
+  const double square = scale * mean_square;
+  return {positive_root(square), positive_root(square - spread), positive_root(square + spread)};
+}
+
+Confidence bias_of(std::span<const ComparedPoint> points, double mean_truth) {
+  const double bias = mean_of(points, error) / mean_truth;
+  const double spread =
+      normal_97_5 * standard_error(points, [&](const ComparedPoint& p) { return (error(p) - bias * p.truth) / mean_truth; });
+  return {bias, bias - spread, bias + spread};
+}
+
+/// Root of the mean of `square` / truth^2 over points that have a truth.
+template <class Square>
+double relative_root(std::span<const ComparedPoint> points, Square square) {
+  double sum = 0, count = 0;
+  for (const ComparedPoint& p : points)
+    if (p.truth > 0) sum += square(p) / (p.truth * p.truth), ++count;
+  return count > 0 ? positive_root(sum / count) : 0;
+}
+
+}  // namespace
+
+ErrorStatistics error_statistics(std::span<const ComparedPoint> points) {
+  ErrorStatistics statistics;
+  statistics.points = points.size();
+  if (points.empty()) return statistics;
+  const auto variance = [](const ComparedPoint& p) { return p.truth_variance; };
+  statistics.mean_truth = mean_of(points, truth);
+  statistics.relative_rms = relative_root(points, squared_error);
+  statistics.relative_truth_error = relative_root(points, variance);
+  if (!(statistics.mean_truth > 0)) {
+    const bool lit = std::ranges::any_of(points, [](const ComparedPoint& p) { return p.solution != 0; });
+    if (lit) statistics.nrmse = {infinite, infinite, infinite};
+    return statistics;
+  }
+  statistics.nrmse = nrmse_of(points, statistics.mean_truth);
+  statistics.bias = bias_of(points, statistics.mean_truth);
+  statistics.truth_error = std::sqrt(mean_of(points, variance)) / statistics.mean_truth;
+  return statistics;
+}
+
+}  // namespace alvor

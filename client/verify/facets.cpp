@@ -1,0 +1,56 @@
+#include "client/verify/facets.h"
+
+#include "meshing/polygon.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+constexpr double line_area = 1e-14;  ///< of the longest side squared: below, a triangle is a line
+
+double longest_side(const std::array<Vec3, 3>& corners) {
+  return std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
+}
+
+void add_triangle(std::vector<Facet>& facets, const std::array<Vec3, 3>& corners, std::uint32_t face) {
+  const Vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double longest = longest_side(corners), area = 0.5 * length(doubled);
+  if (!(area > line_area * longest * longest)) return;
+  facets.push_back({corners, normalized(doubled), area, face});
+}
+
+void add_face(std::vector<Facet>& facets, const Scene& scene, std::uint32_t face) {
+  std::vector<Vec3> polygon;
+  for (const std::uint32_t corner : scene.corners_of(scene.faces[face])) polygon.push_back(scene.vertices[corner]);
+  for (const auto& [a, b, c, d] : pieces_of(polygon)) {
+    add_triangle(facets, {polygon[a], polygon[b], polygon[c]}, face);
+    if (d != no_corner) add_triangle(facets, {polygon[a], polygon[c], polygon[d]}, face);
+  }
+}
+
+}  // namespace
+
+std::vector<Facet> facets_of(const Scene& scene) {
+  std::vector<Facet> facets;
+  for (std::uint32_t face = 0; face < scene.faces.size(); ++face) add_face(facets, scene, face);
+  return facets;
+}
+
+Extent extent_of(std::span<const Vec3> points) {
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return {lerp(low, high, 0.5), std::max({high.x - low.x, high.y - low.y, high.z - low.z})};
+}
+
+Extent extent_of(std::span<const Facet> facets) {
+  std::vector<Vec3> corners;
+  for (const Facet& facet : facets) corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
+  return extent_of(std::span<const Vec3>(corners));
+}
+
+}  // namespace alvor

@@ -1,0 +1,158 @@
+#include "client/verify/path_tracer.h"
+
+#include "radiosity/visibility.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace alvor {
+
+namespace {
+
+/// Of the extent. Twenty times what float32 loses of a place, so that no ray meets the surface it leaves.
+constexpr double off_surface = 1e-6;
+
+/// Paths that carry more go on for certain: ending them at their first bend undoes the even spread of directions. On the
+/// Cornell box 0.5 gives 43 % less variance for the same time than 1; a quarter gives no more.
+constexpr double dim = 0.5;
+
+/// Cosine-distributed about a unit normal (Nusselt's analogy), in a frame without branches (Duff et al. 2017).
+Vec3 cosine_direction(Vec3 normal, UnitPair at) {
+  const float angle = static_cast<float>(2 * std::numbers::pi * at.u);
+  const double radius = std::sqrt(at.v), x = radius * std::cos(angle), y = radius * std::sin(angle);
+  const double sign = std::copysign(1.0, normal.z), a = -1 / (sign + normal.z), b = normal.x * normal.y * a;
+  const Vec3 tangent{1 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
+  const Vec3 bitangent{b, sign + normal.y * normal.y * a, -normal.y};
+  return x * tangent + y * bitangent + std::sqrt(1 - at.v) * normal;
+}
+
+/// Uniform on a light.
+Vec3 place_on(const Light& light, UnitPair at) {
+  const double edge = std::sqrt(at.u);
+  return light.corner + edge * (1 - at.v) * light.side_u + edge * at.v * light.side_v;
+}
+
+/// How much a sample of one way counts where the other might have found the same place.
+double share_of(double density, double other_density) { return density / (density + other_density); }
+
+}  // namespace
+
+PathTracer::PathTracer(const Scene& scene) : clear_(scene.absorption.is_zero()) {
+  const std::vector<Facet> facets = facets_of(scene);
+  extent_ = extent_of(facets);
+  absorption_ = scene.absorption * extent_.longest_side;
+  add_surfaces(scene, facets);
+  std::vector<Vec3> corners;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const Surface& s : surfaces_) {
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    corners.insert(corners.end(), {s.corner, s.corner + s.side_u, s.corner + s.side_v});
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  caster_ = std::make_unique<const TriangleCaster>(corners, triangles, Traversal::watertight);
+}
+
+PathTracer::~PathTracer() = default;
+
+void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets) {
+  const double scale = 1 / extent_.longest_side;
+  std::vector<Light> lights;
+  for (const Facet& facet : facets) {
+    const Material& material = scene.materials[scene.faces[facet.face].material];
+    const auto& [a, b, c] = facet.corners;
+    surfaces_.push_back({(a - extent_.centre) * scale, (b - a) * scale, (c - a) * scale, facet.normal, material.emission,
+                         material.reflectance, material.two_sided, static_cast<std::uint32_t>(lights.size())});
+    const Surface& s = surfaces_.back();
+    if (material.emission.is_zero()) continue;
+    lights.push_back({s.corner, s.side_u, s.side_v, s.normal, facet.area * scale * scale, s.emission, s.two_sided});
+  }
+  lights_ = LightTree(std::move(lights));
+}
+
+Rgb PathTracer::irradiance(const SurfacePoint& point, std::uint32_t paths, PathRandom random) const {
+  if (lights_.empty()) return {};
+  const Bend start = start_at(point);
+  const EvenPairs lights(random), directions(random);
+  Rgb sum;
+  for (std::uint32_t n = 0; n < paths; ++n) sum += path(start, {lights[n], directions[n]}, random);
+  return sum * (1.0 / paths);
+}
+
+bool PathTracer::is_enclosed(const SurfacePoint& point, std::uint32_t rays, PathRandom random) const {
+  const Bend start = start_at(point);
+  const EvenPairs directions(random);
+  std::uint32_t backs = 0;
+  for (std::uint32_t n = 0; n < rays; ++n) {
+    const Vec3 direction = cosine_direction(start.normal, directions[n]);
+    backs += caster_->cast(start.place, direction) && !meet(start, direction).surface;
+  }
+  return 2 * backs > rays;
+}
+
+PathTracer::Bend PathTracer::start_at(const SurfacePoint& point) const {
+  const Vec3 place = (point.position - extent_.centre) / extent_.longest_side;
+  return {place + off_surface * point.normal, point.normal};
+}
+
+Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
+  Rgb arriving, throughput{1, 1, 1};
+  for (;;) {
+    arriving += throughput * from_chosen_light(bend, choices.light);
+    const Vec3 direction = cosine_direction(bend.normal, choices.direction);
+    const Met met = meet(bend, direction);
+    if (!met.surface) return arriving;
+    if (!clear_) throughput = throughput * transmittance(met.distance);
+    if (!met.surface->emission.is_zero()) arriving += throughput * from_met_light(bend, direction, met);
+    throughput = throughput * met.surface->reflectance;
+    const double survival = std::min(1.0, throughput.max() / dim);
+    if (!(random.number() < survival)) return arriving;
+    throughput *= 1 / survival;
+    bend = met.bend;
+    choices = {random.pair(), random.pair()};
+  }
+}
+
+// With `density` of directions by cosine and `light_density` by choosing a place, a sample of the latter is
+// emission / pi * cosine / light_density, times its share: which is the emission times the other way's share.
+Rgb PathTracer::from_chosen_light(const Bend& bend, UnitPair choice) const {
+  const auto chosen = lights_.choose(bend.place, bend.normal, choice.u);
+  if (!chosen) return {};
+  const Light& light = lights_[chosen->light];
+  const Vec3 on_light = place_on(light, {chosen->rest, choice.v});
+  const double seen_side = dot(light.normal, bend.place - on_light) >= 0 ? 1 : -1;
+  if (seen_side < 0 && !light.two_sided) return {};
+  const Vec3 end = on_light + seen_side * off_surface * light.normal, towards = on_light - bend.place;
+  const double distance = length(towards), height = dot(bend.normal, towards), back = std::abs(dot(light.normal, towards));
+  if (height <= 0 || back <= 0 || caster_->is_blocked(bend.place, end)) return {};
+  const double light_density = chosen->probability * distance * distance * distance / (light.area * back);
+  const Rgb light_here = light.emission * share_of(height / (distance * std::numbers::pi), light_density);
+  return clear_ ? light_here : light_here * transmittance(distance);
+}
+
+Rgb PathTracer::from_met_light(const Bend& bend, Vec3 direction, const Met& met) const {
+  const std::uint32_t light = met.surface->light;
+  const double chosen = lights_.probability(bend.place, bend.normal, light);
+  const double light_density = chosen * met.distance * met.distance / (lights_[light].area * met.cosine);
+  return met.surface->emission * share_of(dot(bend.normal, direction) / std::numbers::pi, light_density);
+}
+
+PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction) const {
+  const auto hit = caster_->cast(bend.place, direction);
+  if (!hit) return {};
+  const Surface& s = surfaces_[hit->triangle];
+  const double cosine = -dot(s.normal, direction);
+  if (cosine <= 0 && !s.two_sided) return {};
+  const Vec3 normal = cosine > 0 ? s.normal : -s.normal;
+  // From u and v rather than along the ray: exactly on the surface, however long the ray was.
+  const Vec3 place = s.corner + hit->u * s.side_u + hit->v * s.side_v;
+  return {&s, {place + off_surface * normal, normal}, hit->distance, std::abs(cosine)};
+}
+
+Rgb PathTracer::transmittance(double distance) const {
+  return {std::exp(-absorption_.r * distance), std::exp(-absorption_.g * distance), std::exp(-absorption_.b * distance)};
+}
+
+}  // namespace alvor

@@ -1,0 +1,269 @@
+// Path tracing against closed forms and against Monte Carlo of others.
+
+#include "client/scene_file.h"
+#include "client/verify/irradiance_estimate.h"
+#include "client/verify/surface_points.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+namespace alvor {
+namespace {
+
+using test::add_polygon;
+using test::grey;
+
+constexpr double sure = 4;  ///< standard errors: once in 16 000, if the seed were not fixed
+
+IrradianceEstimate traced(const Scene& scene, const SurfacePoint& point, std::uint64_t paths = 4096) {
+  return trace_irradiance(PathTracer(scene), std::span(&point, 1), {.paths = paths, .threads = 1}).front();
+}
+
+double error_of(const IrradianceEstimate& estimate) { return std::sqrt(estimate.variance_of_band_mean()); }
+
+/// A black floor about the z axis at height 0.
+void add_black_floor(Scene& scene, double side) {
+  const double h = side / 2;
+  const auto black = static_cast<std::uint32_t>(scene.materials.size());
+  scene.materials.push_back(grey(0, 0));
+  add_polygon(scene, {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}}, black);
+}
+
+/// A square of this side about the z axis at height z, facing down.
+void add_ceiling(Scene& scene, double side, double z, std::uint32_t material) {
+  const double h = side / 2;
+  add_polygon(scene, {{-h, -h, z}, {-h, h, z}, {h, h, z}, {h, -h, z}}, material);
+}
+
+/// Of a point, as seen from below a corner of a rectangle of sides a, b parallel to it at distance 1.
+double corner_form_factor(double a, double b) {
+  const double ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
+  return (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * std::numbers::pi);
+}
+
+TEST(PathTracer, FurnaceIsUniformUpToItsCorners) {
+  for (const double reflectance : {0.0, 0.5, 0.9}) {
+    const Scene scene = test::furnace(1 - reflectance, reflectance);
+    for (const Vec3 place : {Vec3{1.5, 0, 2}, {0.001, 0, 0.001}, {2.9, 0, 0.5}}) {
+      const auto estimate = traced(scene, {place, {0, 1, 0}});
+      EXPECT_NEAR(estimate.mean().mean(), 1, sure * error_of(estimate)) << reflectance;
+      EXPECT_LT(error_of(estimate), 0.02) << reflectance;
+    }
+  }
+}
+
+TEST(PathTracer, SquareEmitterGivesItsFormFactor) {
+  Scene scene;
+  scene.materials = {grey(3, 0)};
+  add_ceiling(scene, 1, 1, 0);
+  add_black_floor(scene, 1);
+  for (const auto& [x, form_factor] : {std::pair{0.0, 4 * corner_form_factor(0.5, 0.5)}, {0.5, 2 * corner_form_factor(1, 0.5)}}) {
+    const auto estimate = traced(scene, {{x, 0, 0}, {0, 0, 1}});
+    EXPECT_NEAR(estimate.mean().mean(), 3 * form_factor, sure * error_of(estimate));
+    EXPECT_LT(error_of(estimate), 0.005 * 3 * form_factor);  // no sample exceeds the emission
+  }
+}
+
+TEST(PathTracer, AMediumDimsByDistance) {
+  constexpr double side = 0.05, distance = 5;
+  Scene scene;
+  scene.materials = {grey(1, 0)};
+  scene.absorption = {0, 0.1, 1};
+  add_ceiling(scene, side, distance, 0);
+  add_black_floor(scene, 1);
+  const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}});
+  const double clear = side * side / (std::numbers::pi * distance * distance);  // the square is small: good to 1e-4
+  EXPECT_NEAR(estimate.mean().r, clear, 3e-4 * clear);
+  EXPECT_NEAR(estimate.mean().g, clear * std::exp(-0.5), 3e-4 * clear);
+  EXPECT_NEAR(estimate.mean().b, clear * std::exp(-5), 3e-4 * clear);
+}
+
+TEST(PathTracer, AMediumDimsReflectedLightOnBothLegs) {
+  // Lamp and point lie side by side and look up at a small white square.
+  Scene scene;
+  scene.materials = {grey(100, 0), grey(0, 0.8)};
+  scene.absorption = {0, 0.1, 0.2};
+  const double h = 0.05;
+  add_polygon(scene, {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}}, 0);
+  add_ceiling(scene, 0.5, 5, 1);
+  const auto estimate = traced(scene, {{0.2, 0, 0}, {0, 0, 1}}, 1 << 15);
+  const double clear = estimate.mean().r;
+  EXPECT_GT(clear, 0);
+  EXPECT_NEAR(estimate.mean().g / clear, std::exp(-1), 0.003);  // legs are 5 to 5.02 m long
+  EXPECT_NEAR(estimate.mean().b / clear, std::exp(-2), 0.003);
+}
+
+TEST(PathTracer, BacksAreBlackAndBlockUnlessTwoSided) {
+  const SurfacePoint below{{0, 0, 0}, {0, 0, 1}};
+  for (const bool two_sided : {false, true}) {
+    Scene scene;
+    scene.materials = {grey(1, 0)};
+    scene.materials[0].two_sided = two_sided;
+    add_polygon(scene, {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});  // looks up
+    add_black_floor(scene, 1);
+    const auto estimate = traced(scene, below);
+    EXPECT_NEAR(estimate.mean().mean(), two_sided ? 4 * corner_form_factor(1, 1) : 0, sure * error_of(estimate) + 1e-12);
+    EXPECT_EQ(PathTracer(scene).is_enclosed(below, 64, PathRandom(1, 0, 0)), !two_sided);
+  }
+  Scene shaded;
+  shaded.materials = {grey(1, 0), grey(0, 0.5)};
+  add_ceiling(shaded, 1, 2, 0);
+  add_polygon(shaded, {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}, 1);
+  add_black_floor(shaded, 1);
+  EXPECT_TRUE(traced(shaded, below).mean().is_zero());
+}
+
+TEST(PathTracer, UnderASolidIsEnclosed) {
+  const Scene scene = test::coloured_room();  // a block stands at x 1 to 2, z 1 to 3
+  const PathTracer tracer(scene);
+  EXPECT_TRUE(tracer.is_enclosed({{1.5, 0, 2}, {0, 1, 0}}, 64, PathRandom(1, 0, 0)));
+  EXPECT_FALSE(tracer.is_enclosed({{3, 0, 2}, {0, 1, 0}}, 64, PathRandom(1, 0, 0)));
+}
+
+TEST(PathTracer, KnowsNeitherUnitsNorOrigin) {
+  Scene scene = test::coloured_room();
+  scene.absorption = {0.1, 0.2, 0.3};
+  const SurfacePoint point{{0, 1, 2.5}, {1, 0, 0}};
+  const auto here = traced(scene, point);
+  const double scale = 1e-3;
+  const Vec3 away{1000, -500, 0};
+  Scene there = scene;
+  for (Vec3& vertex : there.vertices) vertex = scale * vertex + away;
+  there.absorption *= 1 / scale;
+  const auto moved = traced(there, {scale * point.position + away, point.normal});
+  const double error = std::hypot(error_of(here), error_of(moved));
+  EXPECT_NEAR(moved.mean().mean(), here.mean().mean(), sure * error);
+}
+
+/// Numbers of a line; none where it does not begin with one.
+std::vector<double> numbers_of(const std::string& line) {
+  std::istringstream cells(line);
+  std::vector<double> numbers;
+  for (double number; cells >> number; cells.ignore()) numbers.push_back(number);
+  return numbers;
+}
+
+TEST(PathTracer, AgreesWithStoredTruthWithinBothErrors) {
+  const Scene scene = read_scene_file(ALVOR_TEST_FILES "/truth/cornell_box.obj").scene;
+  std::ifstream file(ALVOR_TEST_FILES "/truth/cornell_box.irradiance.csv");
+  std::vector<SurfacePoint> points;
+  std::vector<std::vector<double>> truth;
+  for (std::string line; std::getline(file, line);)
+    if (const auto row = numbers_of(line); row.size() == 12) {
+      truth.push_back(row);
+      points.push_back({{row[0], row[1], row[2]}, normalized({row[3], row[4], row[5]})});
+    }
+  ASSERT_EQ(points.size(), 300u);
+  const auto estimates = trace_irradiance(PathTracer(scene), points, {.paths = 4000});
+  double squares = 0, sum = 0, weight = 0;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const double variance = estimates[n].variance().g + truth[n][10] * truth[n][10];
+    const double difference = estimates[n].mean().g - truth[n][7];
+    squares += difference * difference / variance;
+    sum += difference / variance, weight += 1 / variance;
+  }
+  // Student's squares of 62 degrees of freedom have mean 1.03; the mean of 300 spreads by 0.09.
+  EXPECT_NEAR(squares / 300, 1.03, 0.35);
+  EXPECT_LT(std::abs(sum / std::sqrt(weight)), sure);  // all points together
+}
+
+TEST(PathTracer, ResultsDependOnSeedAndPathsOnly) {
+  const Scene scene = test::coloured_room();
+  const PathTracer tracer(scene);
+  const auto points = draw_surface_points(scene, 50, 3);
+  const auto one = trace_irradiance(tracer, points, {.paths = 100, .seed = 5, .threads = 1});
+  const auto two = trace_irradiance(tracer, points, {.paths = 100, .seed = 5, .threads = 2});
+  const auto other = trace_irradiance(tracer, points, {.paths = 100, .seed = 6, .threads = 1});
+  for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(one[n].mean(), two[n].mean());
+  EXPECT_NE(one[0].mean(), other[0].mean());
+}
+
+TEST(PathTracer, TimeLimitLeavesAllPointsTheSameRounds) {
+  const Scene scene = test::coloured_room();
+  const auto points = draw_surface_points(scene, 20, 3);
+  const auto estimates = trace_irradiance(PathTracer(scene), points, {.paths = 1'000'000'000, .time_limit_s = 0.02});
+  for (const auto& estimate : estimates) EXPECT_EQ(estimate.rounds(), estimates.front().rounds());
+  EXPECT_GE(estimates.front().rounds(), 2u);
+}
+
+TEST(RoundPlan, HasManyRoundsOfAPowerOfTwo) {
+  EXPECT_EQ(RoundPlan(2).rounds, 2u);
+  EXPECT_EQ(RoundPlan(1000).paths_per_round, 32u);
+  EXPECT_EQ(RoundPlan(1000).rounds, 32u);
+  EXPECT_EQ(RoundPlan(1 << 20).paths_per_round, 64u);
+}
+
+TEST(SurfacePoints, AreUniformByAreaOverFrontsAndBothSidesOfTwoSided) {
+  Scene scene;
+  scene.materials = {grey(0, 0.5), grey(0, 0.5)};
+  scene.materials[1].two_sided = true;
+  add_polygon(scene, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}, 0);  // 2 m2
+  add_polygon(scene, {{0, 0, 1}, {1, 0, 1}, {0, 2, 1}}, 1);             // 2 x 1 m2
+  constexpr int count = 40000;
+  std::array<int, 3> seen{};  // one-sided, front and back of two-sided
+  double mean_x = 0;
+  for (const SurfacePoint& point : draw_surface_points(scene, count, 1)) {
+    ++seen[point.face == 0 ? 0 : point.normal.z > 0 ? 1 : 2];
+    if (point.face == 0) mean_x += point.position.x;
+  }
+  const double spread = sure * std::sqrt(count * 0.25);
+  EXPECT_NEAR(seen[0], count / 2.0, spread);
+  EXPECT_NEAR(seen[1], count / 4.0, spread);
+  EXPECT_NEAR(seen[2], count / 4.0, spread);
+  EXPECT_NEAR(mean_x / seen[0], 1, sure * std::sqrt(1.0 / 3 / seen[0]));
+}
+
+/// Small lamps on a ceiling, every other one turned up.
+LightTree lamps(int count) {
+  std::vector<Light> lights;
+  for (int n = 0; n < count; ++n) {
+    Light light{{n % 10 * 1.0, n / 10 * 1.0, 3}, {0, 0.1, 0}, {0.1, 0, 0}, {0, 0, -1}, 0.005, {1.0 + n, 1, 1}, false};
+    if (n % 2) std::swap(light.side_u, light.side_v), light.normal = {0, 0, 1};
+    lights.push_back(light);
+  }
+  return LightTree(std::move(lights));
+}
+
+TEST(LightTree, ChoosesWithTheProbabilitiesItSays) {
+  constexpr int count = 100, draws = 100000;
+  const LightTree tree = lamps(count);
+  const Vec3 point{2, 3, 0}, normal = normalized({0.3, 0, 1});
+  std::vector<int> chosen(count);
+  double left = 0;
+  int found = 0;
+  for (int n = 0; n < draws; ++n) {
+    const auto choice = tree.choose(point, normal, (n + 0.5) / draws);
+    if (!choice) continue;
+    ++found, ++chosen[choice->light], left += choice->rest;
+    ASSERT_DOUBLE_EQ(choice->probability, tree.probability(point, normal, choice->light));
+  }
+  EXPECT_NEAR(left / found, 0.5, 1e-3);
+  for (std::uint32_t light = 0; light < count; ++light) {
+    EXPECT_NEAR(chosen[light], draws * tree.probability(point, normal, light), 1.5) << light;
+    EXPECT_EQ(chosen[light] > 0, light % 2 == 0) << light;  // the others face up
+  }
+}
+
+TEST(LightTree, ManyLampsGiveWhatTheyGiveOneByOne) {
+  Scene scene;
+  scene.materials = {grey(10, 0)};
+  double expected = 0;
+  for (int n = 0; n < 400; ++n) {
+    const double x = n % 20 - 9.5, y = n / 20 - 9.5, h = 0.05;
+    add_polygon(scene, {{x - h, y - h, 1}, {x - h, y + h, 1}, {x + h, y + h, 1}, {x + h, y - h, 1}});
+    const double square = x * x + y * y + 1;
+    expected += 10 * 0.01 / (std::numbers::pi * square * square);
+  }
+  add_black_floor(scene, 1);
+  const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}});
+  EXPECT_NEAR(estimate.mean().mean(), expected, sure * error_of(estimate) + 5e-3 * expected);  // lamps are not points
+  EXPECT_LT(error_of(estimate), 0.02 * expected);
+}
+
+}  // namespace
+}  // namespace alvor
