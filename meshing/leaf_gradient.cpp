@@ -37,9 +37,6 @@ struct NormalEquations {
   }
 };
 
-Rgb lower(const Rgb& a, const Rgb& b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
-Rgb upper(const Rgb& a, const Rgb& b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
-
 }  // namespace
 
 SmoothNeighbours::SmoothNeighbours(const PatchForest& forest, NodeIndex leaf) {

@@ -127,6 +127,11 @@ double area_of(const BaseMesh& mesh, const PatchShape& shape) {
   return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
 }
 
+Vec3 centre_of(const BaseMesh& mesh, const PatchShape& shape) {
+  const Uv c = shape.centre();
+  return mesh.roots()[shape.root].at(c.u, c.v);
+}
+
 void finest_quad_paths(const float* u, const float* v, std::uint32_t* path) {
   for (int n = 0; n < places_at_once; ++n) path[n] = quad_path(u[n], v[n]);
 }

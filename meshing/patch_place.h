@@ -38,6 +38,7 @@ PatchShape shape_of(const BaseMesh& mesh, PatchId patch);
 /// Corner positions in the mesh's units; corners[3] unused for a triangle.
 std::array<Vec3, 4> corners_of(const BaseMesh& mesh, const PatchShape& shape);
 double area_of(const BaseMesh& mesh, const PatchShape& shape);
+Vec3 centre_of(const BaseMesh& mesh, const PatchShape& shape);
 
 /// Paths (see PatchId::finest) of the finest patches that contain each (u, v); coordinates outside the root are clamped into it.
 /// Sixteen at a time because rays come so.

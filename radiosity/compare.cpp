@@ -45,9 +45,14 @@ class StopWatch {
 class Reference {
  public:
   Reference() = default;
-  explicit Reference(const Shooting& converged) : irradiance_(converged.irradiance()) {
-    const auto radiosity = converged.shot();
-    for (std::uint32_t leaf = 0; leaf < radiosity.size(); ++leaf) norm_ += converged.leaf_area(leaf) * square(radiosity[leaf]);
+  /// The irradiance that solves a system of which nothing is shot.
+  Reference(const Shooting& unshot_system, std::vector<Rgb> irradiance) : irradiance_(std::move(irradiance)) {
+    const auto own = unshot_system.unshot();
+    for (std::size_t p = 0; p < irradiance_.size(); ++p) {
+      const ShootingPatch& patch = unshot_system.patches()[p];
+      for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf)
+        norm_ += unshot_system.leaf_area(leaf) * square(own[leaf] + patch.reflectance * irradiance_[p]);
+    }
   }
 
   double error_of(const Shooting& system, const Rgb& ambient) const {
@@ -81,7 +86,7 @@ class Comparer {
     Comparison comparison;
     if (!stop_.stop_requested()) comparison.converged = converge();
     comparison.leaves = comparison.converged.size();
-    if (!stop_.stop_requested()) comparison.patches = state_.shooting().patch_count();
+    if (!stop_.stop_requested()) comparison.patches = patch_count_;
     for (const Strategy strategy : compared)
       if (!stop_.stop_requested()) comparison.courses.push_back(follow(strategy));
     return comparison;
@@ -94,62 +99,64 @@ class Comparer {
       state_.trace_new_rows();
       state_.add_new_direct_light([] {});
       if (stop_.stop_requested()) return;
-      state_.begin_shooting();
-      shoot_down_to(pass_unshot * options_.tolerance);
+      state_.begin_exchange();
+      exchange_down_to(pass_unshot * options_.tolerance);
     } while (state_.estimate().total() > options_.tolerance && state_.refine() && !stop_.stop_requested());
   }
 
   std::vector<LeafValue> converge() {
-    state_.restart_shooting();
-    shoot_down_to(converged_unshot);
-    reference_ = Reference(state_.shooting());
-    return displayed();
+    state_.begin_exchange();
+    exchange_down_to(converged_unshot);
+    const auto irradiance = state_.exchange().irradiance();
+    patch_count_ = irradiance.size();
+    reference_ = Reference(state_.unshot_system(), irradiance);
+    state_.show_smoothly();
+    return sorted_leaves();
   }
 
   /// In the order of ids.
-  std::vector<LeafValue> displayed() {
-    state_.take_smooth_irradiance();
+  std::vector<LeafValue> sorted_leaves() const {
     auto leaves = state_.leaf_values();
     std::ranges::sort(leaves, {}, &LeafValue::patch);
     return leaves;
   }
 
-  void shoot_down_to(double fraction) {
-    const auto stepper = make_stepper(Strategy::automatic, state_.shooting());
-    while (state_.unshot_fraction() > fraction && !stop_.stop_requested()) stepper->sweep();
+  void exchange_down_to(double fraction) {
+    while (state_.unshot_fraction() > fraction && !stop_.stop_requested()) state_.exchange().sweep();
   }
 
   StrategyCourse follow(Strategy strategy) {
-    state_.restart_shooting();
+    Shooting system = state_.unshot_system();
     StrategyCourse course{strategy, {}, 0, {}, {}};
     StopWatch watch;
     std::unique_ptr<Stepper> stepper;
-    watch.time([&] { stepper = make_stepper(strategy, state_.shooting()); });
+    watch.time([&] { stepper = make_stepper(strategy, system); });
     std::uint64_t steps = 0;
     for (bool is_done = false; !is_done;) {
-      look(steps, watch.cpu_s(), course);
+      look(system, steps, watch.cpu_s(), course);
       const std::uint64_t target = next_look(steps);
       watch.time([&] {
         while (steps < target && stepper->step()) ++steps;
       });
       const bool is_exhausted = steps < target;
-      if (is_exhausted) look(steps, watch.cpu_s(), course);
+      if (is_exhausted) look(system, steps, watch.cpu_s(), course);
       is_done = is_exhausted || stop_.stop_requested() || is_enough(steps, course);
     }
-    if (course.leaves.empty()) keep_picture(course);
+    if (course.leaves.empty()) keep_picture(system, course);
     return course;
   }
 
-  void look(std::uint64_t steps, double cpu_s, StrategyCourse& course) {
-    const Rgb ambient = shows_ambient(course.strategy) ? state_.ambient_irradiance() : Rgb{};
-    course.curve.push_back({steps, cpu_s, reference_.error_of(state_.shooting(), ambient)});
-    if (steps == options_.steps) keep_picture(course);
+  void look(const Shooting& system, std::uint64_t steps, double cpu_s, StrategyCourse& course) {
+    const Rgb ambient = shows_ambient(course.strategy) ? system.ambient_irradiance() : Rgb{};
+    course.curve.push_back({steps, cpu_s, reference_.error_of(system, ambient)});
+    if (steps == options_.steps) keep_picture(system, course);
   }
 
-  void keep_picture(StrategyCourse& course) {
+  void keep_picture(const Shooting& system, StrategyCourse& course) {
     course.error = course.curve.back().error;
-    course.leaves = displayed();
-    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.ambient_irradiance();
+    state_.show(system.irradiance());
+    course.leaves = sorted_leaves();
+    if (shows_ambient(course.strategy)) course.ambient_irradiance = system.ambient_irradiance();
   }
 
   std::uint64_t next_look(std::uint64_t steps) const {
@@ -159,7 +166,7 @@ class Comparer {
 
   bool is_enough(std::uint64_t steps, const StrategyCourse& course) const {
     const bool has_arrived = course.curve.back().error <= last_error && !course.leaves.empty();
-    return has_arrived || steps > std::max(options_.steps, most_sweeps * state_.shooting().patch_count());
+    return has_arrived || steps > std::max(options_.steps, most_sweeps * patch_count_);
   }
 
   CompareOptions options_;
@@ -167,6 +174,7 @@ class Comparer {
   RayBudget budget_;
   SolveState state_;
   Reference reference_;
+  std::size_t patch_count_ = 0;
 };
 
 }  // namespace

@@ -8,185 +8,292 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 namespace alvor {
 
 namespace {
 
 constexpr std::size_t receivers_per_batch = 64;
-constexpr int packets_when_mixed = 3;
+constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 1, packets_of_lit_rest = 4;
 constexpr float short_of_emitter = 1 - 1e-4f;
+constexpr double stratified = 0.5;  // of the variance of independent rays
+
+using Lanes = std::array<float, RayPacket::width>;
 
 /// Kernel-weighted visibility, and what a medium lets through of it, summed over shadow rays.
 struct VisibleFraction {
-  double weight = 0, visible = 0;
-  Rgb arriving;  // of `visible`, where there is a medium
-  bool any_blocked = false, any_visible = false;
-  bool mixed() const { return any_blocked && any_visible; }
-  double value() const { return weight > 0 ? visible / weight : 0; }
-  Rgb dimmed() const { return weight > 0 ? arriving * (1 / weight) : Rgb{}; }
+  std::array<double, 4> weight{}, visible{};  // by quarter of the patch
+  Rgb arriving;                               // of `visible`, where there is a medium
+  int blocked_rays = 0, visible_rays = 0;
+
+  bool mixed() const { return blocked_rays > 0 && visible_rays > 0; }
+  double value() const {
+    const double all = sum(weight);
+    return all > 0 ? sum(visible) / all : 0;
+  }
+  double value(int quarter) const { return weight[quarter] > 0 ? visible[quarter] / weight[quarter] : value(); }
+  Rgb dimmed() const { return sum(weight) > 0 ? arriving * (1 / sum(weight)) : Rgb{}; }
+  double variance() const { return mixed() ? stratified * value() * (1 - value()) / (blocked_rays + visible_rays) : 0; }
+
+ private:
+  static double sum(const std::array<double, 4>& x) { return x[0] + x[1] + x[2] + x[3]; }
 };
 
-/// The shadow rays of a batch of receivers towards one emitter.
+/// The shadow rays of a batch of receivers.
 class ShadowBatch {
  public:
-  ShadowBatch(const LocalScene& scene, const Emitter& emitter, std::uint64_t seed)
+  ShadowBatch(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers, std::uint64_t seed,
+              RayBudget& budget, std::span<DirectLight> light)
       : scene_(scene),
         medium_{scene.mesh().absorption()},
-        root_(scene.root(emitter.root)),
-        corners_(scene.corners(emitter.root)),
-        emitter_(emitter),
-        seed_(seed) {}
+        emitters_(emitters),
+        receivers_(receivers),
+        seed_(seed),
+        budget_(budget),
+        light_(light) {}
 
-  void add_light(std::span<const Receiver> receivers, RayBudget& budget, std::span<DirectLight> light) {
-    find_form_factors(receivers);
-    if (lit_.empty()) return;
-    for (std::size_t k = 0; k < lit_.size(); ++k) aim(receivers[lit_[k].receiver], k, 0, k);
-    trace(budget);
-    look_closer_at_the_mixed(receivers, budget);
-    for (const Lit& lit : lit_) {
-      const double visible = lit.form_factor * lit.fraction.value();
-      light[lit.receiver].irradiance +=
-          medium_.is_clear() ? visible * emitter_.emission : lit.form_factor * (lit.fraction.dimmed() * emitter_.emission);
-      light[lit.receiver].partly_shadowed |= lit.fraction.mixed();
+  void add_all() {
+    for (std::size_t r = 0; r < receivers_.size(); ++r)
+      for (std::uint32_t e = 0; e < emitters_.size(); ++e) look_at(r, e);
+    add_looked_at();
+  }
+
+  void add_chosen(const LightTree& tree) {
+    std::vector<LightChoice> choices(receivers_.size());
+    for (std::size_t r = 0; r < receivers_.size(); ++r) {
+      if (receivers_[r].hidden_origins == 0xffff) continue;
+      const Sphere sphere = around(receivers_[r].shape);
+      choices[r] = tree.choose(sphere.centre, sphere.radius, normal_of(receivers_[r]));
+      std::ranges::sort(choices[r].single);
+      for (const std::uint32_t e : choices[r].single) look_at(r, e);
     }
+    add_looked_at();
+    for (std::size_t r = 0; r < receivers_.size(); ++r)
+      if (choices[r].rest_bound > 0) add_rest(r, choices[r], tree);
   }
 
  private:
+  /// A receiver and an emitter that face each other.
   struct Lit {
     std::size_t receiver;
-    double form_factor;
+    std::uint32_t emitter;
+    std::array<double, 4> form_factor;  // by quarter
     VisibleFraction fraction;
+    double mean_form_factor() const { return (form_factor[0] + form_factor[1] + form_factor[2] + form_factor[3]) / 4; }
   };
-  struct Shadows {
-    RayPacket rays;
-    alignas(64) float weight[RayPacket::width];
-    std::size_t lit;
+  struct Sphere {
+    Vec3 centre;
+    double radius;
   };
 
-  void find_form_factors(std::span<const Receiver> receivers) {
-    const Vec3 front = scene_.mesh().roots()[emitter_.root].normal;
-    for (std::size_t r = 0; r < receivers.size(); ++r) {
-      const auto shape = receivers[r].shape;
-      const Vec3 normal = scene_.mesh().roots()[shape.root].normal;
-      if (shape.root == emitter_.root || receivers[r].hidden_origins == 0xffff) continue;
-      double sum = 0;
-      for (int k = 0; k < 4; ++k) {
-        const Vec3 at = local_point(shape.child(k).centre(), shape.root);
-        if (dot(at - corners_[0], front) > 0) sum += point_to_polygon(at, normal, corners_);
-      }
-      if (sum > 0) lit_.push_back({r, sum / 4, {}});
-    }
-    shadows_.resize(lit_.size());
-    blocked_.resize(lit_.size());
-  }
+  Vec3 normal_of(const Receiver& receiver) const { return scene_.mesh().roots()[receiver.shape.root].normal; }
   Vec3 local_point(Uv at, std::uint32_t root) const {
     return scene_.frame().to_local(scene_.mesh().roots()[root].at(at.u, at.v));
   }
-
-  /// Ray o goes from origin o to a point of the emitter; `round` counts the packets of one receiver.
-  void aim(const Receiver& receiver, std::size_t slot, std::uint32_t round, std::size_t lit) {
-    RandomStream random(seed_, receiver.patch);
-    const PatchPoints from = sample_points(scene_, receiver.shape, random);
-    const auto scramble_u = static_cast<std::uint32_t>(random.next() * 0x1p32);
-    const auto scramble_v = static_cast<std::uint32_t>(random.next() * 0x1p32);
-    const std::uint32_t turn = random.next_below(16) ^ (round * 5);
-    Shadows& shadows = shadows_[slot];
-    shadows.lit = lit;
-    for (std::uint32_t o = 0; o < origins_per_patch; ++o) {
-      Uv target = sobol_point(16 * round + (o ^ turn), scramble_u, scramble_v);
-      if (!root_.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
-      set_ray(shadows, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, target);
-    }
-    weigh(shadows, receiver);
+  Sphere around(const PatchShape& shape) const {
+    Sphere sphere{local_point(shape.centre(), shape.root), 0};
+    const auto corners = corners_of(scene_.mesh(), shape);
+    for (int c = 0; c < shape.corner_count; ++c)
+      sphere.radius = std::max(sphere.radius, length(scene_.frame().to_local(corners[c]) - sphere.centre));
+    return sphere;
   }
 
-  void set_ray(Shadows& shadows, int o, Float3 from, Uv target) {
+  void look_at(std::size_t r, std::uint32_t e) {
+    const PatchShape& shape = receivers_[r].shape;
+    const std::uint32_t root = emitters_[e].root;
+    if (shape.root == root || receivers_[r].hidden_origins == 0xffff) return;
+    const auto corners = scene_.corners(root);
+    const Vec3 normal = normal_of(receivers_[r]), front = scene_.mesh().roots()[root].normal;
+    Lit lit{r, e, {}, {}};
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 at = local_point(shape.child(k).centre(), shape.root);
+      if (dot(at - corners[0], front) > 0) lit.form_factor[k] = point_to_polygon(at, normal, corners);
+    }
+    if (lit.mean_form_factor() > 0) lit_.push_back(lit);
+  }
+
+  void add_looked_at() {
+    std::vector<std::size_t> all(lit_.size());
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+    trace(all, 0, 1);
+    std::erase_if(all, [this](std::size_t k) { return !lit_[k].fraction.mixed(); });
+    trace(all, 1, packets_when_mixed);
+    for (const Lit& lit : lit_) add(lit);
+  }
+
+  void add(const Lit& lit) const {
+    DirectLight& light = light_[lit.receiver];
+    const Rgb& emission = emitters_[lit.emitter].emission;
+    const double visible = lit.mean_form_factor() * lit.fraction.value();
+    if (visible <= 0) return;
+    const Rgb arriving =
+        medium_.is_clear() ? visible * emission : lit.mean_form_factor() * (lit.fraction.dimmed() * emission);
+    light.irradiance += arriving;
+    for (int k = 0; k < 4; ++k) light.quarters[k] += narrow((lit.form_factor[k] * lit.fraction.value(k) / visible) * arriving);
+    const double per_fraction = arriving.mean() / lit.fraction.value();
+    light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());
+  }
+
+  void trace(std::span<const std::size_t> lit, std::uint32_t first_round, std::uint32_t rounds) {
+    rays_.resize(lit.size() * rounds);
+    weights_.resize(rays_.size());
+    blocked_.resize(rays_.size());
+    for (std::size_t n = 0; n < rays_.size(); ++n) {
+      const Lit& pair = lit_[lit[n / rounds]];
+      aim(receivers_[pair.receiver], emitters_[pair.emitter], first_round + static_cast<std::uint32_t>(n % rounds), n);
+    }
+    if (rays_.empty()) return;
+    budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
+    for (std::size_t n = 0; n < rays_.size(); ++n) count(lit_[lit[n / rounds]].fraction, n);
+  }
+
+  /// Ray o goes from origin o to a point of the emitter; `round` counts the packets of one pair.
+  void aim(const Receiver& receiver, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
+    RandomStream random(seed_, receiver.patch);
+    const PatchPoints from = sample_points(scene_, receiver.shape, random);
+    const std::uint64_t scramble = mix_bits(seed_ ^ mix_bits(receiver.patch.bits()) ^ (emitter.root + 1ull) * 0x9e3779b97f4a7c15u);
+    const std::uint32_t turn = static_cast<std::uint32_t>(scramble >> 60) ^ (round * 5);
+    for (std::uint32_t o = 0; o < origins_per_patch; ++o) {
+      const Uv target = sobol_point(16 * round + (o ^ turn), static_cast<std::uint32_t>(scramble),
+                                    static_cast<std::uint32_t>(mix_bits(scramble)));
+      set_ray(packet, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root, target);
+    }
+    hide(packet, receiver);
+  }
+
+  void set_ray(std::size_t packet, int o, Float3 from, std::uint32_t root, Uv target) {
+    const LocalRoot& to = scene_.root(root);
+    if (!to.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
     const auto u = static_cast<float>(target.u), v = static_cast<float>(target.v);
     const auto at = [&](float origin, float edge_u, float edge_v, float twist) {
       return origin + u * edge_u + v * edge_v + u * v * twist;
     };
-    RayPacket& rays = shadows.rays;
+    RayPacket& rays = rays_[packet];
     rays.origin_x[o] = from.x, rays.origin_y[o] = from.y, rays.origin_z[o] = from.z;
-    rays.direction_x[o] = at(root_.origin.x, root_.edge_u.x, root_.edge_v.x, root_.twist.x) - from.x;
-    rays.direction_y[o] = at(root_.origin.y, root_.edge_u.y, root_.edge_v.y, root_.twist.y) - from.y;
-    rays.direction_z[o] = at(root_.origin.z, root_.edge_u.z, root_.edge_v.z, root_.twist.z) - from.z;
+    rays.direction_x[o] = at(to.origin.x, to.edge_u.x, to.edge_v.x, to.twist.x) - from.x;
+    rays.direction_y[o] = at(to.origin.y, to.edge_u.y, to.edge_v.y, to.twist.y) - from.y;
+    rays.direction_z[o] = at(to.origin.z, to.edge_u.z, to.edge_v.z, to.twist.z) - from.z;
     rays.t_min[o] = 0;
     rays.t_max[o] = short_of_emitter;
+    there_[o] = to.normal;
   }
 
-  /// cos cos / r2 of each ray, direction being from patch to emitter; 0 for hidden origins.
-  void weigh(Shadows& shadows, const Receiver& receiver) const {
-    const Float3 &n = scene_.root(receiver.shape.root).normal, &m = root_.normal;
-    const RayPacket& rays = shadows.rays;
+  /// Weighs each ray by cos cos / r2, direction being from patch to emitter; 0 for hidden origins.
+  void hide(std::size_t packet, const Receiver& receiver) {
+    const Float3& n = scene_.root(receiver.shape.root).normal;
+    const RayPacket& rays = rays_[packet];
     for (int o = 0; o < RayPacket::width; ++o) {
+      const Float3& m = there_[o];
       const float x = rays.direction_x[o], y = rays.direction_y[o], z = rays.direction_z[o];
       const float squared = x * x + y * y + z * z;
       const float here = std::max(0.0f, x * n.x + y * n.y + z * n.z), there = std::max(0.0f, -(x * m.x + y * m.y + z * m.z));
-      shadows.weight[o] = here * there / (squared * squared + 1e-30f);
+      weights_[packet][o] = receiver.hidden_origins >> o & 1 ? 0 : here * there / (squared * squared + 1e-30f);
     }
-    for (int o = 0; o < RayPacket::width; ++o)
-      if (receiver.hidden_origins >> o & 1) shadows.weight[o] = 0;
   }
 
-  void trace(RayBudget& budget) {
-    rays_.resize(shadows_.size());
-    for (std::size_t k = 0; k < shadows_.size(); ++k) rays_[k] = shadows_[k].rays;
-    budget.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
-    for (std::size_t k = 0; k < shadows_.size(); ++k) count(shadows_[k], blocked_[k]);
-  }
-  void count(const Shadows& shadows, std::uint16_t blocked) {
-    VisibleFraction& fraction = lit_[shadows.lit].fraction;
+  void count(VisibleFraction& fraction, std::size_t packet) const {
     for (int o = 0; o < RayPacket::width; ++o) {
-      const double weight = shadows.weight[o];
-      const bool is_blocked = blocked >> o & 1;
+      const double weight = weights_[packet][o];
       if (weight == 0) continue;
-      fraction.weight += weight;
-      fraction.visible += is_blocked ? 0 : weight;
-      if (!is_blocked && !medium_.is_clear()) fraction.arriving += weight * medium_.transmittance(distance(shadows.rays, o));
-      (is_blocked ? fraction.any_blocked : fraction.any_visible) = true;
+      fraction.weight[o / 4] += weight;
+      if (blocked_[packet] >> o & 1) {
+        ++fraction.blocked_rays;
+        continue;
+      }
+      ++fraction.visible_rays;
+      fraction.visible[o / 4] += weight;
+      if (!medium_.is_clear()) fraction.arriving += weight * medium_.transmittance(distance(rays_[packet], o));
     }
   }
-
   double distance(const RayPacket& rays, int o) const {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
   }
 
-  void look_closer_at_the_mixed(std::span<const Receiver> receivers, RayBudget& budget) {
-    std::vector<std::size_t> mixed;
-    for (std::size_t k = 0; k < lit_.size(); ++k)
-      if (lit_[k].fraction.mixed()) mixed.push_back(k);
-    if (mixed.empty()) return;
-    shadows_.resize(mixed.size() * packets_when_mixed);
-    blocked_.resize(shadows_.size());
-    std::size_t slot = 0;
-    for (const std::size_t k : mixed)
-      for (std::uint32_t round = 1; round <= packets_when_mixed; ++round) aim(receivers[lit_[k].receiver], slot++, round, k);
-    trace(budget);
+  /// Emitters that bring little each: a few rays to some of them, more if any arrives.
+  void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
+    Samples samples;
+    sample_rest(r, choice, tree, 0, packets_of_rest, samples);
+    if (!samples.sum.is_zero()) sample_rest(r, choice, tree, packets_of_rest, packets_of_lit_rest, samples);
+    if (samples.count == 0) return;
+    const Rgb mean = (1 / samples.count) * samples.sum;
+    light_[r].irradiance += mean;
+    for (RgbF& quarter : light_[r].quarters) quarter += narrow(mean);
+    light_[r].variance += static_cast<float>(std::max(0.0, samples.squares / samples.count - mean.mean() * mean.mean()) / samples.count);
+  }
+  struct Samples {
+    Rgb sum;
+    double squares = 0, count = 0;
+  };
+  void sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree, std::uint32_t first, std::uint32_t packets,
+                   Samples& samples) {
+    const Receiver& receiver = receivers_[r];
+    RandomStream place(seed_, receiver.patch), random(seed_ + 1 + first, receiver.patch);
+    const PatchPoints from = sample_points(scene_, receiver.shape, place);
+    const Sphere sphere = around(receiver.shape);
+    rays_.resize(packets);
+    weights_.resize(packets);
+    blocked_.resize(packets);
+    std::vector<Rgb> brings(packets * RayPacket::width);
+    for (std::size_t n = 0; n < brings.size(); ++n) {
+      const auto o = n % RayPacket::width;
+      const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
+      const Emitter& emitter = emitters_[drawn.emitter];
+      const double scale = scene_.frame().metres_per_unit, area = scene_.mesh().roots()[emitter.root].area / (scale * scale);
+      set_ray(n / RayPacket::width, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root, {random.next(), random.next()});
+      if (drawn.probability > 0) brings[n] = (area / (std::numbers::pi * drawn.probability)) * emitter.emission;
+      if (o + 1 == RayPacket::width) hide(n / RayPacket::width, receiver);
+    }
+    budget_.spend(brings.size(), [&] { scene_.visibility().occlusions(rays_, blocked_); });
+    for (std::size_t n = 0; n < brings.size(); ++n) {
+      const auto packet = n / RayPacket::width, o = n % RayPacket::width;
+      if (receiver.hidden_origins >> o & 1) continue;
+      samples.count += 1;
+      if (blocked_[packet] >> o & 1) continue;
+      Rgb arriving = double(weights_[packet][o]) * brings[n];
+      if (!medium_.is_clear()) arriving = medium_.transmittance(distance(rays_[packet], static_cast<int>(o))) * arriving;
+      samples.sum += arriving;
+      samples.squares += arriving.mean() * arriving.mean();
+    }
   }
 
   const LocalScene& scene_;
   Medium medium_;
-  const LocalRoot& root_;
-  std::span<const Vec3> corners_;
-  const Emitter& emitter_;
+  std::span<const Emitter> emitters_;
+  std::span<const Receiver> receivers_;
   std::uint64_t seed_;
+  RayBudget& budget_;
+  std::span<DirectLight> light_;
   std::vector<Lit> lit_;
-  std::vector<Shadows> shadows_;
   std::vector<RayPacket> rays_;
+  std::vector<Lanes> weights_;
   std::vector<std::uint16_t> blocked_;
+  std::array<Float3, RayPacket::width> there_;
 };
 
-}  // namespace
-
-void add_direct_light(const LocalScene& scene, const Emitter& emitter, std::span<const Receiver> receivers, std::uint64_t seed,
-                      RayBudget& budget, std::span<DirectLight> light) {
+template <class Work>
+void in_batches(std::span<const Receiver> receivers, const RayBudget& budget, Work&& work) {
   const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
     const std::size_t first = batch * receivers_per_batch;
-    const std::size_t count = std::min(receivers_per_batch, receivers.size() - first);
-    ShadowBatch(scene, emitter, seed).add_light(receivers.subspan(first, count), budget, light.subspan(first, count));
+    work(first, std::min(receivers_per_batch, receivers.size() - first));
+  });
+}
+
+}  // namespace
+
+void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
+                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light) {
+  in_batches(receivers, budget, [&](std::size_t first, std::size_t count) {
+    ShadowBatch(scene, emitters, receivers.subspan(first, count), seed, budget, light.subspan(first, count)).add_all();
+  });
+}
+
+void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
+                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light) {
+  in_batches(receivers, budget, [&](std::size_t first, std::size_t count) {
+    ShadowBatch(scene, emitters, receivers.subspan(first, count), seed, budget, light.subspan(first, count)).add_chosen(tree);
   });
 }
 

@@ -7,19 +7,24 @@ namespace alvor {
 
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                            std::span<const Rgb> value, std::span<const LeafSlope> slope) {
-  double worst = 0;
+  double squares = 0, count = 0;
   bool at_crease = neighbours.at_crease();
   const auto miss = [&](NodeIndex from, NodeIndex to) {
-    return std::abs((value[to] - value[from] - slope[from].along(centre[to] - centre[from])).mean());
+    return (value[to] - value[from] - slope[from].along(centre[to] - centre[from])).mean();
   };
   for (const NodeIndex other : neighbours) {
-    if (value[leaf].is_zero() != value[other].is_zero()) at_crease = true;
-    else worst = std::max({worst, miss(leaf, other), miss(other, leaf)});
+    if (value[leaf].is_zero() != value[other].is_zero()) {
+      at_crease = true;
+      continue;
+    }
+    const double there = miss(leaf, other), back = miss(other, leaf);
+    squares += std::max(there * there, back * back);
+    count += 1;
   }
-  return worst * (at_crease ? 0.75 : 0.25);
+  return count > 0 ? std::sqrt(squares / count) * (at_crease ? 0.4 : 0.25) : 0;
 }
 
-double ErrorEstimate::mesh() const { return std::hypot(direct_mesh, indirect_mesh); }
+double ErrorEstimate::mesh() const { return std::hypot(interpolation, misfit); }
 double ErrorEstimate::total() const { return std::hypot(mesh(), sampling, unshot); }
 
 }  // namespace alvor

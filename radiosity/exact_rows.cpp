@@ -26,7 +26,7 @@ double visible_share(const TransportRow& row) { return 1 - std::popcount(row.hid
 }  // namespace
 
 // Rays were sent all the same, to tell what is hidden. A patch's form factor is spread over its leaves by area. The row is known
-// exactly, so it has one half and no noise.
+// exactly, so it has no origins and no noise.
 void SolveState::make_rows_exact() {
   const std::vector<NodeIndex> rows = row_forest_.leaves();
   std::vector<std::vector<Vec3>> polygons;
@@ -44,7 +44,8 @@ void SolveState::make_rows_exact() {
     if (row.is_hidden() || budget_.is_out()) return;
     row.hits.clear();
     row.hit_weight.clear();
-    row.first_half_rays = 1, row.second_half_rays = 0;
+    row.origin_hits.clear();
+    row.rays = 1;
     for (const MatrixEntry& entry : form_factors.row(static_cast<std::uint32_t>(n)))
       for (const NodeIndex leaf : leaves[entry.to]) {
         const double share = leaf_area_[leaf] / patches.area(entry.to) / visible_share(row);
@@ -52,7 +53,6 @@ void SolveState::make_rows_exact() {
         row.hits.push_back(leaf_forest_.id(leaf));
         row.hit_weight.push_back(narrow(std::min(1.0, entry.value) * share * dimmed));
       }
-    row.first_half_hits = static_cast<std::uint32_t>(row.hits.size());
     hit_leaves_[rows[n]].clear();
   });
 }

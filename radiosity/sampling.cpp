@@ -91,8 +91,9 @@ DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(
 
 Uv origin_in(const PatchShape& patch, int origin, Uv jitter) {
   const PatchShape stratum = patch.child(origin >> 2).child(origin & 3);
-  if (stratum.corner_count == 3 && jitter.u + jitter.v > 1) jitter = {1 - jitter.u, 1 - jitter.v};
-  return {(stratum.first.i + jitter.u * stratum.size) / grid_size, (stratum.first.j + jitter.v * stratum.size) / grid_size};
+  const double sign = is_white(origin) ? 1 : -1, room = stratum.corner_count == 3 ? 0.3 : 1;  // a triangle's middle is near its edges
+  const Uv middle = stratum.centre();
+  return {middle.u + room * sign * jitter.u * stratum.size / grid_size, middle.v + room * sign * jitter.v * stratum.size / grid_size};
 }
 
 }  // namespace alvor

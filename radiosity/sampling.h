@@ -53,7 +53,11 @@ class DirectionSets {
   std::vector<Set> sets_;
 };
 
-/// A point of the patch in stratum `origin` of its 16 (its grandchildren), moved within the stratum by `jitter` in [0, 1)^2.
+/// Strata of a patch form a chessboard. Its white fields: half of the strata, with the same mean position as the other half.
+constexpr bool is_white(int origin) { return ((origin ^ origin >> 1) & 1) == 0; }
+
+/// A point of the patch in stratum `origin` of its 16 (its grandchildren): the middle, moved by `jitter` in [-1/2, 1/2)^2 of the
+/// stratum on white fields and against it on black ones, so that the mean of all sixteen stays in the middle.
 Uv origin_in(const PatchShape& patch, int origin, Uv jitter);
 
 /// Point n of the (0,2)-sequence, digits scrambled by `scramble_u`, `scramble_v`.

@@ -135,20 +135,6 @@ void Shooting::gather(std::uint32_t receiver) {
   leaf_power_[receiver] = 0;
 }
 
-std::vector<Rgb> Shooting::half_differences() const {
-  const std::vector<Rgb> all_shot = shot();
-  std::vector<Rgb> differences(patches_.size());
-  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    const TransportRow& row = *patches_[p].row;
-    if (row.first_half_rays == 0 || row.second_half_rays == 0) return;
-    const auto shot_of = [&](std::uint32_t leaf) { return all_shot[leaf]; };
-    const std::uint64_t middle = first_hit_[p] + row.first_half_hits;
-    const Rgb first = row_sum(p, first_hit_[p], middle, shot_of), second = row_sum(p, middle, first_hit_[p + 1], shot_of);
-    differences[p] = 0.5 * (first * (1.0 / row.first_half_rays) - second * (1.0 / row.second_half_rays));
-  });
-  return differences;
-}
-
 double Shooting::unshot_power() const {
   double power = 0;
   for (std::uint32_t p = 0; p < patches_.size(); ++p) power += unshot_power_of(p);

@@ -74,9 +74,6 @@ class Shooting {
   std::vector<Rgb> shot() const;
   /// What is not, by leaf.
   std::vector<Rgb> unshot() const;
-  /// By patch: half the difference of what the two halves of its row make of all that was shot. Estimates the standard error of
-  /// irradiance(). In parallel.
-  std::vector<Rgb> half_differences() const;
 
  private:
   struct Entry {

@@ -14,10 +14,10 @@ namespace {
 constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
+constexpr double noise_in_display = 0.16;  // of the variance of direct light: vertices average over the leaves around them
+constexpr double noise_of_quarters = 12;   // of that variance; 5 measured, and what it may be above that by chance
+constexpr double misfit_at_centre = 0.25;  // of the squared misfit in a window, that its fit has in the middle
 constexpr double contact_error = 0.1;  // of a patch's irradiance: how much it varies where a solid's outline crosses it
-constexpr double noise_in_display =
-    0.4;  // of the half difference: low-discrepancy halves err less (0.7), interpolation averages (0.6)
-constexpr double noise_in_indicator = 0.5;  // of a row's variance: what noise alone adds to a squared indicator
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
@@ -57,10 +57,45 @@ std::vector<SmoothNeighbours> find_neighbours(const PatchForest& forest, std::sp
 
 }  // namespace
 
-void SolveState::take_smooth_irradiance() {
-  take_irradiance();
+/// By leaf: emitted, and reflected of what arrives, as it is shown.
+std::vector<Rgb> SolveState::radiosity() const {
+  std::vector<Rgb> radiosity(leaf_forest_.node_count());
+  for (std::size_t p = 0; p < patches_.size(); ++p)
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      radiosity[patch_leaves_[k]] = own_radiosity_[k] + patches_[p].reflectance * row_irradiance_[patch_row_[p]];
+  return radiosity;
+}
+
+RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity) const {
+  const TransportRow& row = rows_[node];
+  RowSamples quarters;
+  if (row.origin_hits.empty()) {
+    quarters.fill({row_irradiance_[node], double(row.rays)});
+    return quarters;
+  }
+  std::size_t hit = 0;
+  for (std::size_t o = 0; o < row.origin_hits.size(); ++o) {
+    if (row.origin_hits[o] == TransportRow::not_sampled) continue;
+    QuarterSample& quarter = quarters[o % origins_per_patch / 4];
+    quarter.rays += rays_per_origin;
+    for (const std::size_t end = hit + row.origin_hits[o]; hit < end; ++hit) {
+      const Rgb& leaving = radiosity[hit_leaves_[node][hit]];
+      quarter.irradiance += row.hit_weight.empty() ? leaving : widen(row.hit_weight[hit]) * leaving;
+    }
+  }
+  for (QuarterSample& quarter : quarters)
+    if (quarter.rays > 0) quarter.irradiance *= 1 / quarter.rays;
+  return quarters;
+}
+
+void SolveState::show_smoothly() {
+  show();
   if (row_neighbours_.empty()) row_neighbours_ = find_neighbours(row_forest_, patch_row_);
-  find_slopes({row_forest_, patch_row_, row_neighbours_, row_centre_, row_irradiance_}, row_slope_);
+  const auto leaving = radiosity();
+  std::vector<RowSamples> samples(patch_row_.size());
+  tbb::parallel_for(std::size_t{0}, patch_row_.size(), [&](std::size_t p) { samples[p] = samples_of(patch_row_[p], leaving); });
+  const auto fits = fit_field(row_forest_, patch_row_, row_neighbours_, samples, row_centre_);
+  for (std::size_t p = 0; p < patch_row_.size(); ++p) row_fit_[patch_row_[p]] = fits[p];
 }
 
 bool SolveState::may_split(Candidate::Kind kind, NodeIndex patch) const {
@@ -75,76 +110,77 @@ void SolveState::add_candidates(Candidate::Kind kind, std::span<const NodeIndex>
     if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
 }
 
-// The two halves of one row tell its variance with one degree of freedom: too rough to act on, so neighbours are averaged in.
-std::vector<double> SolveState::row_variances() const {
-  const auto differences = shooting_->half_differences();
-  std::vector<double> raw(row_forest_.node_count());
-  for (std::size_t p = 0; p < patch_row_.size(); ++p) raw[patch_row_[p]] = squared(differences[p].mean());
-  std::vector<double> variances;
-  variances.reserve(patch_row_.size());
-  for (std::size_t p = 0; p < patch_row_.size(); ++p) {
-    double sum = raw[patch_row_[p]], count = 1;
-    for (const NodeIndex other : row_neighbours_[p]) sum += raw[other], ++count;
-    variances.push_back(sum / count);
-  }
-  return variances;
-}
-
-/// Squared errors integrated over the area, W2/m2; returns the power that rows bring, W.
-double SolveState::estimate_rows(ErrorEstimate& error) {
-  const auto variances = row_variances();
-  auto errors = interpolation_errors({row_forest_, patch_row_, row_neighbours_, row_centre_, row_irradiance_}, row_slope_);
-  double power = 0;
+/// Squared errors integrated over the area, W2/m2.
+void SolveState::estimate_rows(ErrorEstimate& error) {
+  std::vector<double> errors(patches_.size());
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const NodeIndex row = patch_row_[p];
-    const double area = patches_[p].area;
-    errors[p] = area * std::max(0.0, squared(errors[p]) - noise_in_indicator * variances[p]);
+    const FieldFit& fit = row_fit_[row];
+    const double area = patches_[p].area, noise = area * fit.variance;
+    errors[p] = area * misfit_at_centre * fit.squared_misfit;
     if (rows_[row].crosses_contact()) {
       const Rgb direct = direct_[patch_leaves_[patches_[p].first_leaf]].irradiance;
       errors[p] += area * squared(contact_error * (row_irradiance_[row] + direct).mean());
     }
-    error.indirect_mesh += errors[p];
-    const double noise = area * squared(noise_in_display) * variances[p];
+    error.misfit += errors[p];
     error.sampling += noise;
-    power += area * row_irradiance_[row].mean();
     if (noise > 0 && rows_[row].ray_count() < most_rays_per_row)
       candidates_.push_back({Candidate::Kind::add_rays, row, noise, double(rows_[row].ray_count())});
   }
   add_candidates(Candidate::Kind::split_row, patch_row_, errors, rays_per_row_split);
-  return power;
 }
 
+/// Mean square of what the quarters of a leaf have beyond its slope and the noise of their shadow rays: RMS over the leaf it is
+/// 2 / sqrt(3) times that of the middles of four quarters.
+double SolveState::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
+  const PatchShape shape = leaf_forest_.shape(leaf);
+  const FieldFit& fit = row_fit_[row_of(leaf_forest_.id(leaf))];
+  double squares = 0;
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 at = centre_of(mesh_, shape.child(k));
+    const Rgb there = widen(direct_[leaf].quarters[k]) + fit.at(at);
+    squares += squared((there - irradiance - slope.along(at - leaf_centre_[leaf])).mean()) / 4;
+  }
+  return 4.0 / 3 * std::max(0.0, squares - noise_of_quarters * direct_[leaf].variance);
+}
+
+/// The same; returns the power that arrives, W.
 double SolveState::estimate_leaves(ErrorEstimate& error) {
-  std::vector<Rgb> direct(leaf_forest_.node_count());
+  std::vector<Rgb> irradiance(leaf_forest_.node_count());
   double power = 0;
   for (const NodeIndex leaf : patch_leaves_) {
-    direct[leaf] = direct_[leaf].irradiance;
-    power += leaf_area_[leaf] * direct[leaf].mean();
+    irradiance[leaf] = direct_[leaf].irradiance + indirect(leaf);
+    power += leaf_area_[leaf] * irradiance[leaf].mean();
   }
   const auto neighbours = find_neighbours(leaf_forest_, patch_leaves_);
-  const Field field{leaf_forest_, patch_leaves_, neighbours, leaf_centre_, direct};
+  const Field field{leaf_forest_, patch_leaves_, neighbours, leaf_centre_, irradiance};
   std::vector<LeafSlope> slope(leaf_forest_.node_count());
   find_slopes(field, slope);
   auto errors = interpolation_errors(field, slope);
   for (std::size_t n = 0; n < patch_leaves_.size(); ++n) {
-    errors[n] *= errors[n] * leaf_area_[patch_leaves_[n]];
-    error.direct_mesh += errors[n];
+    const NodeIndex leaf = patch_leaves_[n];
+    const double within = squared_contrast(leaf, irradiance[leaf], slope[leaf]), noise = noise_in_display * leaf_area_[leaf] * direct_[leaf].variance;
+    errors[n] = leaf_area_[leaf] * std::max(errors[n] * errors[n], within);
+    error.interpolation += errors[n];
+    error.sampling += noise;
+    errors[n] += noise;
   }
   add_candidates(Candidate::Kind::split_leaf, patch_leaves_, errors, rays_per_leaf_split);
   return power;
 }
 
 ErrorEstimate SolveState::estimate() {
-  take_smooth_irradiance();
+  show_smoothly();
   candidates_.clear();
   ErrorEstimate error;
-  const double power = estimate_rows(error) + estimate_leaves(error);
+  estimate_rows(error);
+  const double power = estimate_leaves(error);
   if (power <= 0) return {};
   double area = 0;
   for (std::size_t p = 0; p < patches_.size(); ++p)
     if (!patches_[p].row->is_hidden()) area += patches_[p].area;
   const double mean = power / area;
-  for (double* part : {&error.direct_mesh, &error.indirect_mesh, &error.sampling}) *part = std::sqrt(*part / area) / mean;
+  for (double* part : {&error.interpolation, &error.misfit, &error.sampling}) *part = std::sqrt(*part / area) / mean;
   error.unshot = unshot_fraction();
   if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
   return error;

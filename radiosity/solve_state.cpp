@@ -1,5 +1,7 @@
 #include "radiosity/solve_state.h"
 
+#include "radiosity/gathering.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,6 +13,8 @@ namespace {
 constexpr double start_edge = 1.0 / 6;   // of the extent: no patch of the first mesh is longer
 constexpr double start_area = 1e-3;      // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
 constexpr double most_area_emits = 0.5;  // beyond this share rows find the emitters as well as shadow rays do
+constexpr std::size_t most_one_by_one = 12;  // emitters
+constexpr std::size_t parts_shown = 8;       // of a scene with more
 constexpr double marked_share = 0.9;     // of the squared error, per pass
 
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
@@ -19,11 +23,6 @@ double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   for (int e = 0; e < shape.corner_count; ++e)
     longest = std::max(longest, length(corners[(e + 1) % shape.corner_count] - corners[e]));
   return longest;
-}
-
-Vec3 centre_of(const BaseMesh& mesh, const PatchShape& shape) {
-  const Uv c = shape.centre();
-  return mesh.roots()[shape.root].at(c.u, c.v);
 }
 
 }  // namespace
@@ -57,6 +56,7 @@ void SolveState::choose_emitters() {
   if (emission_by_rows_) emitters_.clear();
   std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
   waiting_power_ = emitted_power_;
+  if (emitters_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(scene_, emitters_);
 }
 
 Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? mesh_.material_of(root).emission : Rgb{}; }
@@ -81,7 +81,7 @@ void SolveState::fit_to_nodes() {
   rows_.resize(rows);
   row_is_traced_.resize(rows);
   row_irradiance_.resize(rows);
-  row_slope_.resize(rows);
+  row_fit_.resize(rows);
   hit_leaves_.resize(rows);
   direct_.resize(leaves);
   direct_is_known_.resize(leaves);
@@ -129,8 +129,7 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows_[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
 
-void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
-  std::vector<NodeIndex> nodes;
+std::vector<Receiver> SolveState::unlit_receivers(std::vector<NodeIndex>& nodes) const {
   std::vector<Receiver> receivers;
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
     if (direct_is_known_[leaf]) continue;
@@ -140,12 +139,32 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     nodes.push_back(leaf);
     receivers.push_back({leaf_forest_.id(leaf), leaf_forest_.shape(leaf), same ? rows_[row].hidden_origins : none});
   }
+  return receivers;
+}
+
+// Few emitters light the scene one after the other, many light one part of it after the other.
+void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
+  std::vector<NodeIndex> nodes;
+  const std::vector<Receiver> receivers = unlit_receivers(nodes);
   std::vector<DirectLight> light(nodes.size());
-  for (const Emitter& emitter : emitters_) {
-    add_direct_light(scene_, emitter, receivers, options_.seed, budget_, light);
-    for (std::size_t n = 0; n < nodes.size(); ++n) direct_[nodes[n]] = light[n];
-    waiting_power_ = std::max(0.0, waiting_power_ - emitter.power);
+  const auto show = [&](std::size_t first, std::size_t count, double power) {
+    for (std::size_t n = first; n < first + count; ++n) direct_[nodes[n]] = light[n];
+    waiting_power_ = std::max(0.0, waiting_power_ - power);
     after_each();
+  };
+  if (light_tree_) {
+    const std::size_t step = receivers.size() / parts_shown + 1;
+    for (std::size_t first = 0; first < receivers.size(); first += step) {
+      const std::size_t count = std::min(step, receivers.size() - first);
+      add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
+                       std::span(light).subspan(first, count));
+      show(first, count, emitted_power_ * static_cast<double>(count) / static_cast<double>(receivers.size()));
+    }
+  } else {
+    for (const Emitter& emitter : emitters_) {
+      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light);
+      show(0, nodes.size(), emitter.power);
+    }
   }
   waiting_power_ = 0;
   for (const NodeIndex leaf : nodes) direct_is_known_[leaf] = true;
@@ -181,56 +200,75 @@ const std::vector<NodeIndex>& SolveState::find_hit_leaves(NodeIndex row) {
   return found;
 }
 
-void SolveState::begin_shooting() {
+void SolveState::begin_exchange() {
+  list_patches();
+  tbb::parallel_for(std::size_t{0}, patch_row_.size(), [this](std::size_t p) { find_hit_leaves(patch_row_[p]); });
+  if (options_.strategy == Strategy::automatic) exchange_ = begin_gathering();
+  else exchange_ = std::make_unique<ShotExchange>(begin_shooting(), options_.strategy);
+}
+
+void SolveState::list_patches() {
   patches_.clear();
   row_neighbours_.clear();
   patch_leaves_.clear();
+  own_radiosity_.clear();
   patch_row_ = row_forest_.leaves();
-  std::vector<std::uint32_t> place_of(leaf_forest_.node_count());
-  std::vector<std::size_t> first_hit{0};
   for (const NodeIndex row : patch_row_) {
     const auto first = static_cast<std::uint32_t>(patch_leaves_.size());
     collect_leaves(leaf_node_of_row(row), patch_leaves_);
     ShootingPatch patch{&rows_[row], first, static_cast<std::uint32_t>(patch_leaves_.size()) - first,
                         mesh_.material_of(row_forest_.id(row).root_face()).reflectance, 0};
-    for (std::size_t n = first; n < patch_leaves_.size(); ++n) {
-      patch.area += leaf_area_[patch_leaves_[n]];
-      place_of[patch_leaves_[n]] = static_cast<std::uint32_t>(n);
-    }
+    for (std::size_t n = first; n < patch_leaves_.size(); ++n) patch.area += leaf_area_[patch_leaves_[n]];
     patches_.push_back(patch);
-    first_hit.push_back(first_hit.back() + rows_[row].hits.size());
   }
-  std::vector<std::uint32_t> hit_leaf(first_hit.back());
-  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    std::size_t at = first_hit[p];
-    for (const NodeIndex leaf : find_hit_leaves(patch_row_[p])) hit_leaf[at++] = place_of[leaf];
-  });
-  std::vector<ShootingLeaf> leaves;
-  leaves.reserve(patch_leaves_.size());
   for (const NodeIndex leaf : patch_leaves_) {
     const std::uint32_t root = leaf_forest_.id(leaf).root_face();
-    const Rgb radiosity = row_emission(root) + mesh_.material_of(root).reflectance * direct_[leaf].irradiance;
-    leaves.push_back({leaf_area_[leaf], radiosity - shot_[leaf], shot_[leaf]});
+    own_radiosity_.push_back(row_emission(root) + mesh_.material_of(root).reflectance * direct_[leaf].irradiance);
   }
-  shooting_ = std::make_unique<Shooting>(patches_, std::move(leaves), std::move(hit_leaf));
-  shooting_->find_unshot();
 }
 
-void SolveState::restart_shooting() {
+std::unique_ptr<Exchange> SolveState::begin_gathering() {
+  std::vector<const NodeIndex*> hit_leaf;
+  std::vector<Rgb> irradiance;
+  for (const NodeIndex row : patch_row_) {
+    hit_leaf.push_back(hit_leaves_[row].data());
+    irradiance.push_back(row_irradiance_[row]);
+  }
+  return std::make_unique<Gathering>(patches_, patch_leaves_, leaf_forest_.node_count(), own_radiosity_, std::move(hit_leaf),
+                                     std::move(irradiance));
+}
+
+Shooting SolveState::begin_shooting() {
+  std::vector<std::uint32_t> place_of(leaf_forest_.node_count()), hit_leaf;
+  std::vector<ShootingLeaf> leaves;
+  leaves.reserve(patch_leaves_.size());
+  for (std::uint32_t n = 0; n < patch_leaves_.size(); ++n) {
+    const NodeIndex leaf = patch_leaves_[n];
+    place_of[leaf] = n;
+    leaves.push_back({leaf_area_[leaf], own_radiosity_[n] - shot_[leaf], shot_[leaf]});
+  }
+  for (const NodeIndex row : patch_row_)
+    for (const NodeIndex leaf : hit_leaves_[row]) hit_leaf.push_back(place_of[leaf]);
+  Shooting shooting(patches_, std::move(leaves), std::move(hit_leaf));
+  shooting.find_unshot();
+  return shooting;
+}
+
+Shooting SolveState::unshot_system() {
   std::ranges::fill(shot_, Rgb{});
-  begin_shooting();
+  return begin_shooting();
 }
 
-void SolveState::take_irradiance() {
-  const auto irradiance = shooting_->irradiance();
+void SolveState::show(std::span<const Rgb> irradiance) {
   for (std::size_t p = 0; p < patch_row_.size(); ++p) {
-    row_irradiance_[patch_row_[p]] = irradiance[p];
-    row_slope_[patch_row_[p]] = {{}, {}, {}, irradiance[p], irradiance[p]};
+    const NodeIndex row = patch_row_[p];
+    row_irradiance_[row] = irradiance[p];
+    row_fit_[row] = FieldFit::constant(irradiance[p]);
   }
 }
 
 double SolveState::unshot_power() const {
-  if (shooting_) return shooting_->unshot_power();
+  if (exchange_) return exchange_->unshot_power();
   double power = waiting_power_;
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
     const Rgb reflectance = mesh_.material_of(leaf_forest_.id(leaf).root_face()).reflectance;
@@ -244,12 +282,7 @@ std::vector<LeafValue> SolveState::leaf_values() const {
   values.reserve(leaf_forest_.leaf_count());
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
     const PatchId id = leaf_forest_.id(leaf);
-    const NodeIndex row = row_of(id);
-    const LeafSlope& slope = row_slope_[row];
-    Rgb indirect = row_irradiance_[row] + slope.along(leaf_centre_[leaf] - row_centre_[row]);
-    indirect = {std::max(indirect.r, slope.low.r / 4), std::max(indirect.g, slope.low.g / 4),
-                std::max(indirect.b, slope.low.b / 4)};
-    values.push_back({id, narrow(direct_[leaf].irradiance + indirect)});
+    values.push_back({id, narrow(direct_[leaf].irradiance + indirect(leaf))});
   }
   return values;
 }
@@ -288,8 +321,8 @@ bool SolveState::split_row(NodeIndex row) {
     split_leaf(leaf_node_of_row(parent));
     for (int k = 0; k < 4; ++k) {
       const NodeIndex child = row_forest_.child(parent, k);
-      row_irradiance_[child] = row_irradiance_[parent];
-      row_slope_[child] = {{}, {}, {}, row_irradiance_[parent], row_irradiance_[parent]};
+      row_fit_[child] = row_fit_[parent];
+      row_irradiance_[child] = row_fit_[parent].at(row_centre_[child]);
     }
   }
   return done;
@@ -310,9 +343,11 @@ bool SolveState::add_rays(std::span<const NodeIndex> rows) {
 
 bool SolveState::refine() {
   const std::size_t leaves_before = leaf_forest_.leaf_count(), rows_before = row_forest_.leaf_count();
-  const auto shot = shooting_->shot();
-  for (std::size_t n = 0; n < patch_leaves_.size(); ++n) shot_[patch_leaves_[n]] = shot[n];
-  shooting_.reset();
+  if (const auto* shots = dynamic_cast<const ShotExchange*>(exchange_.get())) {
+    const auto shot = shots->system().shot();
+    for (std::size_t n = 0; n < patch_leaves_.size(); ++n) shot_[patch_leaves_[n]] = shot[n];
+  }
+  exchange_.reset();
   std::vector<NodeIndex> noisy;
   for (const Candidate& candidate : mark(std::move(candidates_), marked_share)) {
     if (candidate.kind == Candidate::Kind::add_rays) noisy.push_back(candidate.patch);

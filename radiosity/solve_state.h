@@ -4,6 +4,8 @@
 #include "meshing/leaf_gradient.h"
 #include "radiosity/direct_light.h"
 #include "radiosity/error_estimate.h"
+#include "radiosity/exchange.h"
+#include "radiosity/irradiance_field.h"
 #include "radiosity/marking.h"
 #include "radiosity/shooting.h"
 #include "radiosity/solver.h"
@@ -17,8 +19,8 @@
 namespace alvor {
 
 /// Direct light is sharp and indirect light smooth, so they do not share a depth: rows hang on the leaves of a coarse forest,
-/// direct light on those of a finer one that contains it. One pass is: trace_new_rows, add_new_direct_light, begin_shooting,
-/// shots, refine.
+/// direct light on those of a finer one that contains it. One pass is: trace_new_rows, add_new_direct_light, begin_exchange, sweeps
+/// of the exchange, refine.
 class SolveState {
  public:
   SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget);
@@ -28,33 +30,39 @@ class SolveState {
   std::size_t leaf_count() const { return leaf_forest_.leaf_count(); }
 
   void trace_new_rows();
-  /// `after_each` is called when an emitter's light is complete.
+  /// `after_each` is called now and then, when what direct_ holds may be shown.
   void add_new_direct_light(const std::function<void()>& after_each);
-  /// Sets up the transpose and the residual; the state of the previous pass carries over.
-  void begin_shooting();
-  /// The same as if nothing had been shot: all that is unshot is direct light on its receivers.
-  void restart_shooting();
-  Shooting& shooting() { return *shooting_; }
-  const Shooting& shooting() const { return *shooting_; }
-  /// Reads the irradiance by rows back, so that leaf_values() and estimate() see it.
-  void take_irradiance();
-  /// The same, with slopes from row to row: what a finished pass shows.
-  void take_smooth_irradiance();
+  /// Sets up the exchange of light; what the previous pass found carries over.
+  void begin_exchange();
+  /// Requires: begin_exchange before, not refined since.
+  Exchange& exchange() { return *exchange_; }
+  const Exchange& exchange() const { return *exchange_; }
+  /// The system of the current rows as if nothing had been shot: all that is unshot is direct light on its receivers. Borrows from
+  /// the state, until it is refined. Requires: begin_exchange before.
+  Shooting unshot_system();
+  /// Makes irradiance by patch what leaf_values() shows.
+  void show(std::span<const Rgb> irradiance);
+  void show() { show(exchange_->irradiance()); }
+  /// The same, smooth from row to row, from what the rays of rows find: what a finished pass shows.
+  void show_smoothly();
   /// What is still unshot, summed over bands, W, whatever the stage of the pass.
   double unshot_power() const;
   /// The same, of the emitted power; 0 in the dark.
   double unshot_fraction() const { return emitted_power_ > 0 ? unshot_power() / emitted_power_ : 0; }
   /// Display only, see Shooting::ambient_irradiance. Zero before the first shots.
-  Rgb ambient_irradiance() const { return shooting_ ? shooting_->ambient_irradiance() : Rgb{}; }
+  Rgb ambient_irradiance() const { return exchange_ ? exchange_->ambient_irradiance() : Rgb{}; }
 
   /// Irradiance of every leaf. Before the first shots this is direct light alone.
   std::vector<LeafValue> leaf_values() const;
   ErrorEstimate estimate();
-  /// Splits patches and adds rays where that pays most; ends the shooting. False if nothing was done: the limits forbid every
+  /// Splits patches and adds rays where that pays most; ends the exchange. False if nothing was done: the limits forbid every
   /// split and rows are not what errs most. Requires: estimate() just before.
   bool refine();
 
  private:
+  void list_patches();
+  std::unique_ptr<Exchange> begin_gathering();
+  Shooting begin_shooting();
   void choose_emitters();
   void split_to_start();
   void fit_to_nodes();
@@ -71,11 +79,15 @@ class SolveState {
   Rgb row_emission(std::uint32_t root) const;
   bool add_rays(std::span<const NodeIndex> rows);
   const std::vector<NodeIndex>& find_hit_leaves(NodeIndex row);
-  std::vector<double> row_variances() const;
+  std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
+  RowSamples samples_of(NodeIndex row, std::span<const Rgb> radiosity) const;
+  std::vector<Rgb> radiosity() const;
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
-  double estimate_rows(ErrorEstimate& error);
+  void estimate_rows(ErrorEstimate& error);
   double estimate_leaves(ErrorEstimate& error);
+  double squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const;
+  Rgb indirect(NodeIndex leaf) const { return row_fit_[row_of(leaf_forest_.id(leaf))].at(leaf_centre_[leaf]); }
 
   const BaseMesh& mesh_;
   SolveOptions options_;
@@ -85,6 +97,7 @@ class SolveState {
   RefinementLimits limits_;
   PatchForest row_forest_, leaf_forest_;
   std::vector<Emitter> emitters_;
+  std::unique_ptr<LightTree> light_tree_;  ///< where there are many
   bool emission_by_rows_ = false;
   std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
   double emitted_power_ = 0;
@@ -95,12 +108,12 @@ class SolveState {
   std::vector<bool> row_is_traced_;
   std::vector<Rgb> row_irradiance_;
   std::vector<Vec3> row_centre_;
-  std::vector<LeafSlope> row_slope_;
+  std::vector<FieldFit> row_fit_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;  ///< where each hit of the row was found last
   // By node of leaf_forest_.
   std::vector<DirectLight> direct_;
   std::vector<bool> direct_is_known_;
-  std::vector<Rgb> shot_;
+  std::vector<Rgb> shot_;  ///< what shots distributed so far, when they are how light is exchanged
   std::vector<Vec3> leaf_centre_;
   std::vector<double> leaf_area_;
 
@@ -109,7 +122,8 @@ class SolveState {
   std::vector<NodeIndex> patch_row_;              // row node of each patch
   std::vector<NodeIndex> patch_leaves_;           // leaf nodes, patch after patch
   std::vector<SmoothNeighbours> row_neighbours_;  // by patch; empty until needed
-  std::unique_ptr<Shooting> shooting_;
+  std::vector<Rgb> own_radiosity_;                // by place of patch_leaves_
+  std::unique_ptr<Exchange> exchange_;
   std::vector<Candidate> candidates_;
 };
 

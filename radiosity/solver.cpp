@@ -16,7 +16,7 @@ namespace alvor {
 namespace {
 
 constexpr double pass_unshot = 0.1;       // of the tolerance: a pass shoots down to this fraction of the emitted power
-constexpr double final_unshot = 1e-6;     // of the emitted power
+constexpr double final_unshot = 1e-3;     // of the tolerance: the last pass goes on to this
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
@@ -74,7 +74,7 @@ class Run {
       const bool is_better = state_.refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
-        state_.begin_shooting();
+        state_.begin_exchange();
         return converge(limit_reached());
       }
     }
@@ -89,34 +89,32 @@ class Run {
       if (first && !must_stop()) publish_if_due();
     });
     if (must_stop()) return false;
-    state_.begin_shooting();
-    if (!shoot_down_to(pass_unshot * options_.tolerance)) return false;
+    state_.begin_exchange();
+    if (!exchange_down_to(pass_unshot * options_.tolerance)) return false;
     error_ = state_.estimate();
     publish();
     return true;
   }
 
-  /// The last pass goes on to where rounding begins: shots are cheap.
   StopReason converge(StopReason reason) {
-    if (!shoot_down_to(final_unshot)) return stop_reason();
-    state_.take_smooth_irradiance();
+    if (!exchange_down_to(final_unshot * options_.tolerance)) return stop_reason();
+    state_.show_smoothly();
     error_.unshot = state_.unshot_fraction();
     publish();
     return reason;
   }
 
-  bool shoot_down_to(double fraction) {
-    const Shooting& shooting = state_.shooting();
-    const auto stepper = make_stepper(options_.strategy, state_.shooting());
-    double published = shooting.unshot_power();
-    for (double unshot = published; unshot > fraction * state_.emitted_power(); unshot = shooting.unshot_power()) {
+  bool exchange_down_to(double fraction) {
+    Exchange& exchange = state_.exchange();
+    double published = exchange.unshot_power();
+    for (double unshot = published; unshot > fraction * state_.emitted_power(); unshot = exchange.unshot_power()) {
       if (must_stop()) return false;
       if (unshot < publish_when * published) {
         published = unshot;
-        state_.take_irradiance();
+        state_.show();
         publish_if_due();
       }
-      shots_ += stepper->sweep();
+      shots_ += exchange.sweep();
     }
     return true;
   }

@@ -1,17 +1,18 @@
 #pragma once
 // In which order patches shoot or gather.
 
+#include "radiosity/exchange.h"
+#include "radiosity/shooting.h"
+
 #include <cstddef>
 #include <memory>
 #include <string_view>
 
 namespace alvor {
 
-class Shooting;
-
 /// All of them end at the same solution; what they know of it on the way differs.
 enum class Strategy {
-  automatic,       ///< the best one known: sorted_ambient
+  automatic,       ///< the best one known: gathering everywhere at once (radiosity/gathering.h), displayed with the ambient term
   sorted,          ///< shooting, largest unshot power first (Cohen et al. 1988)
   sorted_ambient,  ///< the same, displayed with the ambient term
   gather,          ///< Gauss-Seidel over the full system, in the order of the patches
@@ -36,7 +37,27 @@ class Stepper {
   virtual std::size_t sweep() = 0;
 };
 
-/// Borrows the system. Requires: what is unshot is known (Shooting::find_unshot).
+/// Borrows the system. Requires: what is unshot is known (Shooting::find_unshot). `automatic` has no steps of one patch: in its
+/// place comes `sorted`.
 std::unique_ptr<Stepper> make_stepper(Strategy strategy, Shooting& system);
+
+/// A system and what takes it to its solution.
+class ShotExchange : public Exchange {
+ public:
+  /// Requires: what is unshot is known; its patches live longer.
+  ShotExchange(Shooting system, Strategy strategy) : system_(std::move(system)), stepper_(make_stepper(strategy, system_)) {}
+  ShotExchange(const ShotExchange&) = delete;
+  ShotExchange& operator=(const ShotExchange&) = delete;
+
+  std::size_t sweep() override { return stepper_->sweep(); }
+  double unshot_power() const override { return system_.unshot_power(); }
+  std::vector<Rgb> irradiance() const override { return system_.irradiance(); }
+  Rgb ambient_irradiance() const override { return system_.ambient_irradiance(); }
+  const Shooting& system() const { return system_; }
+
+ private:
+  Shooting system_;
+  std::unique_ptr<Stepper> stepper_;
+};
 
 }  // namespace alvor

@@ -121,14 +121,15 @@ class RowBatch {
 
   void store_row(std::size_t patch, TransportRow& row) const {
     row.hits.reserve(rays_per_row);
-    for (int half = 0; half < 2; ++half) {
-      std::uint32_t& rays = half == 0 ? row.first_half_rays : row.second_half_rays;
-      for (int o = half; o < origins_per_patch; o += 2) {
-        const std::size_t p = patch * origins_per_patch + static_cast<std::size_t>(o);
-        if (store_origin(p, row)) rays += rays_per_origin;
-        else row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+    row.origin_hits.assign(origins_per_patch, TransportRow::not_sampled);
+    for (int o = 0; o < origins_per_patch; ++o) {
+      const std::size_t before = row.hits.size();
+      if (store_origin(patch * origins_per_patch + static_cast<std::size_t>(o), row)) {
+        row.rays += rays_per_origin;
+        row.origin_hits[o] = static_cast<std::uint8_t>(row.hits.size() - before);
+      } else {
+        row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
       }
-      if (half == 0) row.first_half_hits = static_cast<std::uint32_t>(row.hits.size());
     }
     row.hits.shrink_to_fit();
   }
@@ -180,25 +181,27 @@ class RowBatch {
 
 }  // namespace
 
-namespace {
-
-/// Inserts the first half of `more` behind the first half of `all`, and the rest at the end.
-template <class T>
-void merge_halves(std::vector<T>& all, std::uint32_t first_half, const std::vector<T>& more, std::uint32_t more_first_half) {
-  const auto second_half = more.begin() + more_first_half;
-  all.insert(all.begin() + first_half, more.begin(), second_half);
-  all.insert(all.end(), second_half, more.end());
+Rgb TransportRow::stored_weight() const {
+  if (hit_weight.empty()) return static_cast<double>(hits.size()) * Rgb{1, 1, 1};
+  Rgb sum;
+  for (const RgbF& weight : hit_weight) sum += widen(weight);
+  return sum;
 }
 
-}  // namespace
-
 void TransportRow::append(const TransportRow& more) {
-  merge_halves(hits, first_half_hits, more.hits, more.first_half_hits);
-  if (!hit_weight.empty() || !more.hit_weight.empty())
-    merge_halves(hit_weight, first_half_hits, more.hit_weight, more.first_half_hits);
-  first_half_hits += more.first_half_hits;
-  first_half_rays += more.first_half_rays;
-  second_half_rays += more.second_half_rays;
+  std::size_t hit = 0;
+  for (std::size_t o = 0; o < more.origin_hits.size(); ++o) {
+    const std::uint8_t count = more.origin_hits[o];
+    const bool counts = count != not_sampled && !(hidden_origins >> (o % origins_per_patch) & 1);
+    origin_hits.push_back(counts ? count : not_sampled);
+    if (counts) {
+      hits.insert(hits.end(), more.hits.begin() + hit, more.hits.begin() + hit + count);
+      if (!more.hit_weight.empty())
+        hit_weight.insert(hit_weight.end(), more.hit_weight.begin() + hit, more.hit_weight.begin() + hit + count);
+      rays += rays_per_origin;
+    }
+    if (count != not_sampled) hit += count;
+  }
 }
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,

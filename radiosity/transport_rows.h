@@ -4,6 +4,7 @@
 #include "radiosity/local_scene.h"
 #include "radiosity/ray_budget.h"
 #include "radiosity/sampling.h"
+#include "solution/rgb.h"
 
 #include <cstdint>
 #include <span>
@@ -11,22 +12,26 @@
 
 namespace alvor {
 
-/// Where the rays of one patch ended. Hits are places, so they survive later splits. The two halves are from disjoint sets of
-/// origins, and their difference tells the row's sampling noise. Rays that left the scene or met a black back are counted but not
-/// stored: each hit weighs 1 / ray_count(), times hit_weight.
+/// Where the rays of one patch ended. Hits are places, so they survive later splits. Rays that left the scene or met a black back
+/// are counted but not stored: each hit weighs 1 / ray_count(), times hit_weight.
 struct TransportRow {
-  std::vector<PatchId> hits;  ///< the first half's, then the second half's
+  std::vector<PatchId> hits;  ///< origin after origin, round after round
   /// Of each hit, where hits do not all weigh the same: a hemicube cell's share, what a medium lets through. Empty: all 1.
   std::vector<RgbF> hit_weight;
-  std::uint32_t first_half_hits = 0;
-  std::uint32_t first_half_rays = 0, second_half_rays = 0;
+  /// Hits that each origin has; origins_per_patch entries a round of rays, `not_sampled` for origins that are hidden. Empty where
+  /// the row did not come from rays.
+  std::vector<std::uint8_t> origin_hits;
+  std::uint32_t rays = 0;
   std::uint16_t hidden_origins = 0;  ///< bit o: origin o is hidden, see trace_rows
 
-  std::uint32_t ray_count() const { return first_half_rays + second_half_rays; }
-  bool is_hidden() const { return ray_count() == 0; }
+  static constexpr std::uint8_t not_sampled = 255;
+  std::uint32_t ray_count() const { return rays; }
+  bool is_hidden() const { return rays == 0; }
   /// The outline of a solid that stands on the patch runs through it.
   bool crosses_contact() const { return hidden_origins != 0 && !is_hidden(); }
-  /// Adds the rays of another sampling of the same patch. The hidden origins stay those of the first.
+  /// Sum of what the hits weigh, times ray_count().
+  Rgb stored_weight() const;
+  /// Adds another round of rays of the same patch. The hidden origins stay those of the first.
   void append(const TransportRow& more);
 };
 

@@ -53,6 +53,11 @@ using RgbF = RgbOf<float>;  ///< for storage and the wire
 constexpr RgbF narrow(const Rgb& a) { return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b)}; }
 constexpr Rgb widen(const RgbF& a) { return {a.r, a.g, a.b}; }
 
+/// The smaller of each band.
+constexpr Rgb lower(const Rgb& a, const Rgb& b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
+/// The larger.
+constexpr Rgb upper(const Rgb& a, const Rgb& b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
+
 template <class T>
 RgbOf<T> absolute(const RgbOf<T>& a) {
   return {std::abs(a.r), std::abs(a.g), std::abs(a.b)};

@@ -1,0 +1,63 @@
+#pragma once
+// Light exchange by gathering everywhere at once, accelerated by generalised conjugate residuals.
+
+#include "radiosity/exchange.h"
+#include "radiosity/shooting.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at all
+/// patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual (GCR,
+/// Eisenstat, Elman & Schultz 1983). Bands are systems of their own. It needs no transpose of the rows, and its residual, times
+/// the reflectance, is the unshot radiosity, of either sign. Results do not depend on the number of threads.
+class Gathering : public Exchange {
+ public:
+  /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
+  /// `own_radiosity` by place what they emit and reflect of direct light; `hit_leaf` of each patch is by hit of its row.
+  /// `irradiance` by patch is where to begin. Borrows all but that.
+  Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
+            std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance);
+
+  std::size_t sweep() override;
+  double unshot_power() const override { return unshot_power_; }
+  std::vector<Rgb> irradiance() const override;
+  Rgb ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
+
+  /// By leaf, for rays that hit it: own radiosity and reflected irradiance().
+  struct alignas(16) Radiosity {
+    float r = 0, g = 0, b = 0, unused = 0;
+  };
+  std::vector<Radiosity> radiosity() const;
+
+ private:
+  struct Direction {
+    std::vector<Rgb> step, change;  // by patch: of the irradiance, and what that takes from the residual
+    Rgb norm;                       // of the change, squared
+  };
+  void gather(std::vector<Rgb>& received);
+  Rgb row_times_radiosity(std::size_t patch) const;
+  void make_conjugate(Direction& next) const;
+  void find_weights();
+  void find_unshot();
+  Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
+
+  static constexpr std::size_t remembered = 6;
+  std::span<const ShootingPatch> patches_;
+  std::span<const std::uint32_t> leaf_of_place_;
+  std::span<const Rgb> own_radiosity_;
+  std::vector<const std::uint32_t*> hit_leaf_;
+  std::vector<Radiosity> leaving_;           // by leaf: what the next gathering finds
+  std::vector<Rgb> irradiance_, residual_;   // by patch
+  std::vector<Rgb> power_weight_;            // by patch: area times reflectance
+  std::vector<Direction> directions_;        // the last ones, in a ring
+  std::size_t steps_ = 0;
+  double unshot_power_ = 0;
+  Rgb unshot_sum_, ambient_gain_;
+};
+
+}  // namespace alvor

@@ -1,0 +1,282 @@
+#include "radiosity/irradiance_field.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace alvor {
+
+namespace {
+
+constexpr double narrow_window = 1.5, wide_window = 3.5;  // radius, in edges of the row's patch
+constexpr double near_rows = 1.6;                         // closer than this rows count by quarters, else as a whole
+constexpr double misfit_allowed = 1.3;                    // of the noise's variance
+constexpr double kernel_response = 0.7;                   // mean of w2 over that of w, where the fit's centre listens
+constexpr std::size_t most_rows = 64;                     // in a window
+constexpr double same_surface = 0.9;                      // cosine between normals
+
+/// What a number of rays say, and where.
+struct Sample {
+  Vec3 at;
+  Rgb irradiance;
+  double rays = 0;
+};
+
+/// A sample seen from a row's centre, in units of the row's edge.
+struct Seen {
+  double s, t, rays, r, g, b;
+};
+
+/// Samples around one row.
+struct Window {
+  std::array<Seen, 4 * most_rows> samples;
+  std::size_t count = 0;
+  double noise = 0;  ///< variance of the mean over bands of one ray
+};
+
+/// The rows of a window, each once, in the order of arrival.
+class RowSet {
+ public:
+  bool add(std::uint32_t row) {
+    std::size_t slot = (row * 0x9e3779b1u >> 24) % slots;
+    for (; table_[slot] != 0; slot = (slot + 1) % slots)
+      if (table_[slot] == row + 1) return false;
+    if (count_ == most_rows) return false;
+    table_[slot] = row + 1;
+    rows_[count_++] = row;
+    return true;
+  }
+  std::size_t size() const { return count_; }
+  std::uint32_t operator[](std::size_t n) const { return rows_[n]; }
+
+ private:
+  static constexpr std::size_t slots = 256;
+  std::array<std::uint32_t, slots> table_{};
+  std::array<std::uint32_t, most_rows> rows_;
+  std::size_t count_ = 0;
+};
+
+/// Normal equations of a weighted fit: for each function of the basis its products with the basis, then with the bands.
+template <int n>
+class NormalEquations {
+ public:
+  void add(const Seen& sample, double weight) {
+    const double s = sample.s, t = sample.t;
+    const double row[width] = {1, s, t, s * s, s * t, t * t, sample.r, sample.g, sample.b, 0, 0, 0};
+    for (int i = 0; i < n; ++i) {
+      const double scale = weight * row[i];
+      for (int j = 0; j < width; ++j) sums_[i][j] += scale * row[j];
+    }
+    const double mean = (sample.r + sample.g + sample.b) / 3;
+    squares_ += weight * mean * mean;
+    weight_over_rays_ += weight / sample.rays;
+    ++count_;
+  }
+
+  struct Solution {
+    std::array<Rgb, 6> coefficient{};
+    double misfit = 0;    ///< mean square residual
+    double response = 0;  ///< of the centre to one ray's variance
+    double noise = 0;     ///< that a sample has of one ray's variance
+  };
+  std::optional<Solution> solve() const {
+    if (count_ < n + n / 2) return std::nullopt;
+    double a[n][width];
+    for (int i = 0; i < n; ++i) std::copy_n(sums_[i], width, a[i]);
+    for (int i = 0; i < n; ++i) a[i][response] = i == 0;
+    for (int i = 0; i < n; ++i)
+      if (!eliminate(a, i)) return std::nullopt;
+    Solution solution;
+    double explained = 0;
+    for (int i = 0; i < n; ++i) {
+      solution.coefficient[i] = {a[i][bands], a[i][bands + 1], a[i][bands + 2]};
+      explained += solution.coefficient[i].mean() * (sums_[i][bands] + sums_[i][bands + 1] + sums_[i][bands + 2]) / 3;
+    }
+    const double freedom = 1 - double(n) / count_;
+    solution.misfit = std::max(0.0, squares_ - explained) / sums_[0][0] / freedom;
+    solution.response = kernel_response * a[0][response];
+    solution.noise = weight_over_rays_ / sums_[0][0];
+    return solution;
+  }
+
+ private:
+  static constexpr int bands = 6, response = 9, width = 12;
+  /// Gauss-Jordan; the matrix is symmetric positive definite, so pivots come in order.
+  bool eliminate(double (&a)[n][width], int i) const {
+    if (!(a[i][i] > 1e-9 * sums_[i][i])) return false;
+    const double inverse = 1 / a[i][i];
+    for (int j = 0; j < width; ++j) a[i][j] *= inverse;
+    for (int k = 0; k < n; ++k) {
+      if (k == i) continue;
+      const double factor = a[k][i];
+      for (int j = 0; j < width; ++j) a[k][j] -= factor * a[i][j];
+    }
+    return true;
+  }
+
+  double sums_[n][width] = {};
+  double squares_ = 0, weight_over_rays_ = 0;
+  int count_ = 0;
+};
+
+template <int n>
+auto fit(const Window& window, double radius) {
+  NormalEquations<n> equations;
+  const double inverse = 1 / (radius * radius);
+  for (std::size_t k = 0; k < window.count; ++k) {
+    const Seen& sample = window.samples[k];
+    const double q = 1 - (sample.s * sample.s + sample.t * sample.t) * inverse;
+    if (q > 0) equations.add(sample, q * q * sample.rays);
+  }
+  return equations.solve();
+}
+
+class Fitter {
+ public:
+  Fitter(const PatchForest& forest, std::span<const NodeIndex> rows, std::span<const SmoothNeighbours> neighbours,
+         std::span<const RowSamples> samples, std::span<const Vec3> centre)
+      : forest_(forest), rows_(rows), neighbours_(neighbours), centre_(centre), place_(forest.node_count()), known_(rows.size()) {
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
+      place_[rows[n]] = static_cast<std::uint32_t>(n);
+      learn(forest.shape(rows[n]), samples[n], known_[n]);
+    });
+  }
+
+  FieldFit fit_at(std::size_t n) const {
+    FieldFit field = frame_of(n);
+    if (known_[n].is_dark) return field;
+    Window window;
+    look_around(n, field, window);
+    const double own_response = 1 / known_[n].whole.rays;
+    const auto wide = alvor::fit<6>(window, wide_window);
+    if (wide && wide->response < own_response && wide->misfit <= misfit_allowed * wide->noise * window.noise)
+      return take(*wide, window, field), field;
+    const auto narrow = alvor::fit<3>(window, narrow_window);
+    if (narrow && narrow->response < own_response) take(*narrow, window, field);
+    else take_own_mean(n, window, field);
+    return field;
+  }
+
+ private:
+  /// What is known of a row by itself.
+  struct Known {
+    std::array<Sample, 4> quarters;
+    Sample whole;
+    Vec3 normal;
+    double edge = 0;
+    double noise = -1;  ///< variance of one ray, by what no plane through the quarters explains; negative: not known
+    bool is_dark = true;
+  };
+
+  void learn(const PatchShape& shape, const RowSamples& samples, Known& known) const {
+    const RootPatch& root = forest_.mesh().roots()[shape.root];
+    known.normal = root.normal;
+    known.edge = std::sqrt(area_of(forest_.mesh(), shape));
+    Rgb sum;
+    for (int k = 0; k < 4; ++k) {
+      const Uv c = shape.child(k).centre();
+      known.quarters[k] = {root.at(c.u, c.v), samples[k].irradiance, samples[k].rays};
+      known.whole.rays += samples[k].rays;
+      known.whole.at += samples[k].rays * known.quarters[k].at;
+      sum += samples[k].rays * samples[k].irradiance;
+    }
+    if (known.whole.rays == 0) return;
+    known.whole.at = known.whole.at / known.whole.rays;
+    known.whole.irradiance = (1 / known.whole.rays) * sum;
+    known.is_dark = sum.is_zero();
+    if (std::ranges::all_of(samples, [](const QuarterSample& q) { return q.rays > 0; }))
+      known.noise = squared_bend(samples, shape.corner_count == 4) * known.whole.rays / 4;
+  }
+  static double squared_bend(const RowSamples& q, bool is_quad) {
+    const Rgb ends = q[0].irradiance + q[3].irradiance, others = q[1].irradiance + q[2].irradiance;
+    const double bend = is_quad ? (ends - others).mean() / 2 : (4 * q[3].irradiance - ends - others).mean() / std::sqrt(12);
+    return bend * bend;
+  }
+
+  FieldFit frame_of(std::size_t n) const {
+    const Vec3 normal = known_[n].normal, axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 s = normalized(cross(axis, normal));
+    FieldFit field;
+    field.centre = centre_[rows_[n]];
+    field.s = s / known_[n].edge;
+    field.t = cross(normal, s) / known_[n].edge;
+    return field;
+  }
+
+  /// Breadth first over smooth neighbours.
+  void look_around(std::size_t n, FieldFit& field, Window& window) const {
+    const Known& own = known_[n];
+    RowSet rows;
+    rows.add(static_cast<std::uint32_t>(n));
+    field.low = field.high = own.whole.irradiance;
+    double noise = 0, noisy = 0;
+    for (std::size_t next = 0; next < rows.size(); ++next) {
+      const Known& row = known_[rows[next]];
+      const Vec3 d = row.whole.at - field.centre;
+      add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
+      if (row.noise >= 0) noise += row.noise, noisy += 1;
+      for (const NodeIndex other : neighbours_[rows[next]]) {
+        const Known& candidate = known_[place_[other]];
+        const Vec3 away = centre_[other] - field.centre;
+        const bool is_near = dot(away, away) < wide_window * wide_window * own.edge * own.edge;
+        if (is_near && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface) rows.add(place_[other]);
+      }
+    }
+    if (noisy > 0) window.noise = noise / noisy;
+  }
+  static void add_samples(const Known& row, bool is_near, FieldFit& field, Window& window) {
+    if (!is_near) return add_sample(row.whole, field, window);
+    for (const Sample& quarter : row.quarters) {
+      if (quarter.rays == 0) continue;
+      add_sample(quarter, field, window);
+      field.low = lower(field.low, quarter.irradiance);
+      field.high = upper(field.high, quarter.irradiance);
+    }
+  }
+  static void add_sample(const Sample& sample, const FieldFit& field, Window& window) {
+    const Vec3 d = sample.at - field.centre;
+    const Rgb& value = sample.irradiance;
+    window.samples[window.count++] = {dot(d, field.s), dot(d, field.t), sample.rays, value.r, value.g, value.b};
+  }
+
+  template <class Solution>
+  static void take(const Solution& solution, const Window& window, FieldFit& field) {
+    field.coefficient = solution.coefficient;
+    field.variance = solution.response * window.noise;
+    field.squared_misfit = std::max(0.0, solution.misfit - solution.noise * window.noise);
+  }
+  void take_own_mean(std::size_t n, const Window& window, FieldFit& field) const {
+    field.coefficient = {known_[n].whole.irradiance};
+    field.variance = window.noise / known_[n].whole.rays;
+  }
+
+  const PatchForest& forest_;
+  std::span<const NodeIndex> rows_;
+  std::span<const SmoothNeighbours> neighbours_;
+  std::span<const Vec3> centre_;
+  std::vector<std::uint32_t> place_;  // by node
+  std::vector<Known> known_;          // by place
+};
+
+}  // namespace
+
+Rgb FieldFit::at(Vec3 point) const {
+  const double u = dot(point - centre, s), v = dot(point - centre, t);
+  const Rgb value = coefficient[0] + u * coefficient[1] + v * coefficient[2] + (u * u) * coefficient[3] +
+                    (u * v) * coefficient[4] + (v * v) * coefficient[5];
+  const auto within = [](double x, double l, double h) { return std::clamp(x, std::max(l - (h - l) / 2, l / 4), h + (h - l) / 2); };
+  return {within(value.r, low.r, high.r), within(value.g, low.g, high.g), within(value.b, low.b, high.b)};
+}
+
+std::vector<FieldFit> fit_field(const PatchForest& forest, std::span<const NodeIndex> rows,
+                                std::span<const SmoothNeighbours> neighbours, std::span<const RowSamples> samples,
+                                std::span<const Vec3> centre) {
+  const Fitter fitter(forest, rows, neighbours, samples, centre);
+  std::vector<FieldFit> fits(rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) { fits[n] = fitter.fit_at(n); });
+  return fits;
+}
+
+}  // namespace alvor
