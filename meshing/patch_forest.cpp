@@ -1,6 +1,7 @@
 #include "meshing/patch_forest.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace alvor {
 
@@ -58,6 +59,7 @@ void PatchForest::split_down_to(std::span<const LeafValue> patches) {
 }
 
 void PatchForest::split_one(NodeIndex leaf) {
+  assert(is_leaf(leaf));
   const auto first = static_cast<NodeIndex>(ids_.size());
   const PatchId parent = ids_[leaf];
   for (int k = 0; k < 4; ++k) ids_.push_back(parent.child(k));

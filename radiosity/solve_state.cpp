@@ -314,6 +314,7 @@ void SolveState::follow_contact(NodeIndex split_leaf) {
 bool SolveState::split_row(NodeIndex row) {
   if (!row_forest_.is_leaf(row)) return true;
   if (!split_leaf(leaf_node_of_row(row))) return false;
+  if (!row_forest_.is_leaf(row)) return true;  // it followed a contact
   std::vector<NodeIndex> split;
   const bool done = row_forest_.split(row, limits_, split);
   fit_to_nodes();
