@@ -13,7 +13,8 @@ namespace {
 constexpr double narrow_window = 1.5, wide_window = 3.5;  // radius, in edges of the row's patch
 constexpr double near_rows = 1.6;                         // closer than this rows count by quarters, else as a whole
 constexpr double misfit_allowed = 1.3;                    // of the noise's variance
-constexpr double kernel_response = 0.7;                   // mean of w2 over that of w, where the fit's centre listens
+constexpr double residual_noise = 0.8;                    // of a sample's variance is left after a fit that knows it
+constexpr double kernel_response = 0.7;                    // mean of w2 over that of w, where the fit's centre listens
 constexpr std::size_t most_rows = 64;                     // in a window
 constexpr double same_surface = 0.9;                      // cosine between normals
 
@@ -29,18 +30,11 @@ struct Seen {
   double s, t, rays, r, g, b;
 };
 
-/// Samples around one row.
-struct Window {
-  std::array<Seen, 4 * most_rows> samples;
-  std::size_t count = 0;
-  double noise = 0;  ///< variance of the mean over bands of one ray
-};
-
 /// The rows of a window, each once, in the order of arrival.
 class RowSet {
  public:
   bool add(std::uint32_t row) {
-    std::size_t slot = (row * 0x9e3779b1u >> 24) % slots;
+    std::size_t slot = (row * 0x9e3779b1u >> 23) % slots;
     for (; table_[slot] != 0; slot = (slot + 1) % slots)
       if (table_[slot] == row + 1) return false;
     if (count_ == most_rows) return false;
@@ -52,10 +46,20 @@ class RowSet {
   std::uint32_t operator[](std::size_t n) const { return rows_[n]; }
 
  private:
-  static constexpr std::size_t slots = 256;
+  static constexpr std::size_t slots = 512;
   std::array<std::uint32_t, slots> table_{};
   std::array<std::uint32_t, most_rows> rows_;
   std::size_t count_ = 0;
+};
+
+/// Samples around one row, as far as it has been looked.
+struct Window {
+  RowSet rows;
+  std::size_t looked_at = 0;  ///< of the rows
+  double noisy = 0;           ///< of the rows: their noise is known
+  std::array<Seen, 2 * most_rows + 64> samples;
+  std::size_t count = 0;
+  double noise = 0;  ///< variance of the mean over bands of one ray
 };
 
 /// Normal equations of a weighted fit: for each function of the basis its products with the basis, then with the bands.
@@ -148,14 +152,11 @@ class Fitter {
     FieldFit field = frame_of(n);
     if (known_[n].is_dark) return field;
     Window window;
-    look_around(n, field, window);
-    const double own_response = 1 / known_[n].whole.rays;
-    const auto wide = alvor::fit<6>(window, wide_window);
-    if (wide && wide->response < own_response && wide->misfit <= misfit_allowed * wide->noise * window.noise)
-      return take(*wide, window, field), field;
-    const auto narrow = alvor::fit<3>(window, narrow_window);
-    if (narrow && narrow->response < own_response) take(*narrow, window, field);
-    else take_own_mean(n, window, field);
+    window.rows.add(static_cast<std::uint32_t>(n));
+    field.low = field.high = known_[n].whole.irradiance;
+    look_around(n, wide_window, field, window);
+    choose_fit(n, window, field);
+    field.squared_misfit = misfit_of(n, window, field);
     return field;
   }
 
@@ -205,26 +206,27 @@ class Fitter {
     return field;
   }
 
-  /// Breadth first over smooth neighbours.
-  void look_around(std::size_t n, FieldFit& field, Window& window) const {
+  /// Breadth first over smooth neighbours, on from where it ended.
+  void look_around(std::size_t n, double radius, FieldFit& field, Window& window) const {
     const Known& own = known_[n];
-    RowSet rows;
-    rows.add(static_cast<std::uint32_t>(n));
-    field.low = field.high = own.whole.irradiance;
-    double noise = 0, noisy = 0;
-    for (std::size_t next = 0; next < rows.size(); ++next) {
-      const Known& row = known_[rows[next]];
-      const Vec3 d = row.whole.at - field.centre;
-      add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
-      if (row.noise >= 0) noise += row.noise, noisy += 1;
-      for (const NodeIndex other : neighbours_[rows[next]]) {
+    const double squared_reach = radius * radius * own.edge * own.edge;
+    double noise = window.noise * window.noisy;
+    for (std::size_t next = 0; next < window.rows.size(); ++next) {
+      const Known& row = known_[window.rows[next]];
+      if (next >= window.looked_at) {
+        const Vec3 d = row.whole.at - field.centre;
+        add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
+        if (row.noise >= 0) noise += row.noise, window.noisy += 1;
+      }
+      for (const NodeIndex other : neighbours_[window.rows[next]]) {
         const Known& candidate = known_[place_[other]];
         const Vec3 away = centre_[other] - field.centre;
-        const bool is_near = dot(away, away) < wide_window * wide_window * own.edge * own.edge;
-        if (is_near && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface) rows.add(place_[other]);
+        if (dot(away, away) < squared_reach && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface)
+          window.rows.add(place_[other]);
       }
     }
-    if (noisy > 0) window.noise = noise / noisy;
+    window.looked_at = window.rows.size();
+    if (window.noisy > 0) window.noise = noise / window.noisy;
   }
   static void add_samples(const Known& row, bool is_near, FieldFit& field, Window& window) {
     if (!is_near) return add_sample(row.whole, field, window);
@@ -238,14 +240,37 @@ class Fitter {
   static void add_sample(const Sample& sample, const FieldFit& field, Window& window) {
     const Vec3 d = sample.at - field.centre;
     const Rgb& value = sample.irradiance;
+    if (window.count == window.samples.size()) return;
     window.samples[window.count++] = {dot(d, field.s), dot(d, field.t), sample.rays, value.r, value.g, value.b};
+  }
+
+  void choose_fit(std::size_t n, const Window& window, FieldFit& field) const {
+    const double own_response = 1 / known_[n].whole.rays;
+    const auto wide = alvor::fit<6>(window, wide_window);
+    if (wide && wide->response < own_response && wide->misfit <= misfit_allowed * wide->noise * window.noise)
+      return take(*wide, window, field);
+    const auto narrow = alvor::fit<3>(window, narrow_window);
+    if (narrow && narrow->response < own_response) take(*narrow, window, field);
+    else take_own_mean(n, window, field);
+  }
+
+  /// What the row's own quarters say, beyond what noise explains.
+  double misfit_of(std::size_t n, const Window& window, const FieldFit& field) const {
+    double squares = 0, count = 0;
+    for (const Sample& quarter : known_[n].quarters) {
+      if (quarter.rays == 0) continue;
+      const double difference = (quarter.irradiance - field.at(quarter.at)).mean();
+      squares += difference * difference - residual_noise * window.noise / quarter.rays;
+      count += 1;
+    }
+    return squares / count;
   }
 
   template <class Solution>
   static void take(const Solution& solution, const Window& window, FieldFit& field) {
     field.coefficient = solution.coefficient;
     field.variance = solution.response * window.noise;
-    field.squared_misfit = std::max(0.0, solution.misfit - solution.noise * window.noise);
+    field.window_misfit = std::max(0.0, solution.misfit - solution.noise * window.noise);
   }
   void take_own_mean(std::size_t n, const Window& window, FieldFit& field) const {
     field.coefficient = {known_[n].whole.irradiance};

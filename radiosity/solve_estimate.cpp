@@ -117,12 +117,14 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
     const NodeIndex row = patch_row_[p];
     const FieldFit& fit = row_fit_[row];
     const double area = patches_[p].area, noise = area * fit.variance;
-    errors[p] = area * misfit_at_centre * fit.squared_misfit;
+    error.misfit += area * fit.squared_misfit;
+    errors[p] = area * misfit_at_centre * fit.window_misfit;
     if (rows_[row].crosses_contact()) {
       const Rgb direct = direct_[patch_leaves_[patches_[p].first_leaf]].irradiance;
-      errors[p] += area * squared(contact_error * (row_irradiance_[row] + direct).mean());
+      const double by_contact = area * squared(contact_error * (row_irradiance_[row] + direct).mean());
+      errors[p] += by_contact;
+      error.misfit += by_contact;
     }
-    error.misfit += errors[p];
     error.sampling += noise;
     if (noise > 0 && rows_[row].ray_count() < most_rays_per_row)
       candidates_.push_back({Candidate::Kind::add_rays, row, noise, double(rows_[row].ray_count())});
@@ -180,7 +182,7 @@ ErrorEstimate SolveState::estimate() {
   for (std::size_t p = 0; p < patches_.size(); ++p)
     if (!patches_[p].row->is_hidden()) area += patches_[p].area;
   const double mean = power / area;
-  for (double* part : {&error.interpolation, &error.misfit, &error.sampling}) *part = std::sqrt(*part / area) / mean;
+  for (double* part : {&error.interpolation, &error.misfit, &error.sampling}) *part = std::sqrt(std::max(0.0, *part) / area) / mean;
   error.unshot = unshot_fraction();
   if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
   return error;
