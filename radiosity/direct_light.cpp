@@ -23,22 +23,40 @@ using Lanes = std::array<float, RayPacket::width>;
 
 /// Kernel-weighted visibility, and what a medium lets through of it, summed over shadow rays.
 struct VisibleFraction {
-  std::array<double, 4> weight{}, visible{};  // by quarter of the patch
-  Rgb arriving;                               // of `visible`, where there is a medium
-  int blocked_rays = 0, visible_rays = 0;
+  std::array<float, origins_per_patch> weight{}, visible{};
+  std::uint32_t rays_per_origin = 0;
+  Rgb arriving;  // of `visible`, where there is a medium
+  bool any_blocked = false, any_visible = false;
 
-  bool mixed() const { return blocked_rays > 0 && visible_rays > 0; }
-  double value() const {
-    const double all = sum(weight);
-    return all > 0 ? sum(visible) / all : 0;
+  bool mixed() const { return any_blocked && any_visible; }
+  double value() const { return all_ > 0 ? all_visible_ / all_ : 0; }
+  /// At an origin; where all its rays are hidden as everywhere.
+  double value(int o) const { return weight[o] > 0 ? double(visible[o]) / weight[o] : value(); }
+  Rgb dimmed() const { return all_ > 0 ? arriving * (1 / all_) : Rgb{}; }
+  double variance() const { return mixed() ? stratified * value() * (1 - value()) / (rays_per_origin * origins_per_patch) : 0; }
+  /// Mean over origins of the variance of value(o).
+  double origin_variance() const {
+    if (!mixed() || rays_per_origin < 2) return 0;
+    double sum = 0;
+    for (int o = 0; o < origins_per_patch; ++o) sum += value(o) * (1 - value(o));
+    return sum / origins_per_patch / (rays_per_origin - 1);
   }
-  double value(int quarter) const { return weight[quarter] > 0 ? visible[quarter] / weight[quarter] : value(); }
-  Rgb dimmed() const { return sum(weight) > 0 ? arriving * (1 / sum(weight)) : Rgb{}; }
-  double variance() const { return mixed() ? stratified * value() * (1 - value()) / (blocked_rays + visible_rays) : 0; }
+  void finish() {
+    for (int o = 0; o < origins_per_patch; ++o) all_ += weight[o], all_visible_ += visible[o];
+  }
 
  private:
-  static double sum(const std::array<double, 4>& x) { return x[0] + x[1] + x[2] + x[3]; }
+  double all_ = 0, all_visible_ = 0;
 };
+
+/// A plane over the patch's strata with the means that its quarters have.
+double at_origin(const std::array<double, 4>& quarter, int o) {
+  const double u = (2 * (o >> 2 & 1) + (o & 1)) / 4.0 + 0.125 - 0.5, v = (2 * (o >> 3) + (o >> 1 & 1)) / 4.0 + 0.125 - 0.5;
+  const double mean = (quarter[0] + quarter[1] + quarter[2] + quarter[3]) / 4;
+  const double along_u = quarter[1] + quarter[3] - quarter[0] - quarter[2];
+  const double along_v = quarter[2] + quarter[3] - quarter[0] - quarter[1];
+  return std::max(0.0, mean + u * along_u + v * along_v);
+}
 
 /// The shadow rays of a batch of receivers.
 class ShadowBatch {
@@ -119,20 +137,25 @@ class ShadowBatch {
     trace(all, 0, 1);
     std::erase_if(all, [this](std::size_t k) { return !lit_[k].fraction.mixed(); });
     trace(all, 1, packets_when_mixed);
-    for (const Lit& lit : lit_) add(lit);
+    for (Lit& lit : lit_) add(lit);
   }
 
-  void add(const Lit& lit) const {
+  void add(Lit& lit) const {
+    lit.fraction.finish();
     DirectLight& light = light_[lit.receiver];
     const Rgb& emission = emitters_[lit.emitter].emission;
-    const double visible = lit.mean_form_factor() * lit.fraction.value();
+    const double form_factor = lit.mean_form_factor(), visible = form_factor * lit.fraction.value();
     if (visible <= 0) return;
-    const Rgb arriving =
-        medium_.is_clear() ? visible * emission : lit.mean_form_factor() * (lit.fraction.dimmed() * emission);
+    const Rgb arriving = medium_.is_clear() ? visible * emission : form_factor * (lit.fraction.dimmed() * emission);
     light.irradiance += arriving;
-    for (int k = 0; k < 4; ++k) light.quarters[k] += narrow((lit.form_factor[k] * lit.fraction.value(k) / visible) * arriving);
-    const double per_fraction = arriving.mean() / lit.fraction.value();
+    const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / form_factor;
+    const bool is_quad = scene_.root(receivers_[lit.receiver].shape.root).is_quad;
+    for (int o = 0; o < origins_per_patch; ++o) {
+      const double here = is_quad ? at_origin(lit.form_factor, o) : lit.form_factor[o / 4];
+      light.at_origin[o] += static_cast<float>(scale * here * lit.fraction.value(o));
+    }
     light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());
+    light.origin_variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.origin_variance());
   }
 
   void trace(std::span<const std::size_t> lit, std::uint32_t first_round, std::uint32_t rounds) {
@@ -193,17 +216,16 @@ class ShadowBatch {
   }
 
   void count(VisibleFraction& fraction, std::size_t packet) const {
+    ++fraction.rays_per_origin;
     for (int o = 0; o < RayPacket::width; ++o) {
-      const double weight = weights_[packet][o];
+      const float weight = weights_[packet][o];
       if (weight == 0) continue;
-      fraction.weight[o / 4] += weight;
-      if (blocked_[packet] >> o & 1) {
-        ++fraction.blocked_rays;
-        continue;
-      }
-      ++fraction.visible_rays;
-      fraction.visible[o / 4] += weight;
-      if (!medium_.is_clear()) fraction.arriving += weight * medium_.transmittance(distance(rays_[packet], o));
+      fraction.weight[o] += weight;
+      const bool is_blocked = blocked_[packet] >> o & 1;
+      (is_blocked ? fraction.any_blocked : fraction.any_visible) = true;
+      if (is_blocked) continue;
+      fraction.visible[o] += weight;
+      if (!medium_.is_clear()) fraction.arriving += double(weight) * medium_.transmittance(distance(rays_[packet], o));
     }
   }
   double distance(const RayPacket& rays, int o) const {
@@ -218,7 +240,7 @@ class ShadowBatch {
     if (samples.count == 0) return;
     const Rgb mean = (1 / samples.count) * samples.sum;
     light_[r].irradiance += mean;
-    for (RgbF& quarter : light_[r].quarters) quarter += narrow(mean);
+    for (float& there : light_[r].at_origin) there += static_cast<float>(mean.mean());
     light_[r].variance += static_cast<float>(std::max(0.0, samples.squares / samples.count - mean.mean() * mean.mean()) / samples.count);
   }
   struct Samples {

@@ -16,8 +16,10 @@ namespace alvor {
 /// What emitters give a patch: irradiance averaged over the part of the patch that is not hidden.
 struct DirectLight {
   Rgb irradiance;
-  std::array<RgbF, 4> quarters{};  ///< the same of its children, as far as its own rays tell
-  float variance = 0;              ///< of the irradiance by shadow rays, mean over bands, (W/m2)^2
+  /// What arrives at each origin as far as its own rays tell; mean over bands. Origins are those of transport rows.
+  std::array<float, origins_per_patch> at_origin{};
+  float variance = 0;         ///< of the irradiance by shadow rays, mean over bands, (W/m2)^2
+  float origin_variance = 0;  ///< of at_origin by shadow rays, mean over origins
 };
 
 /// A patch that receives. `hidden_origins` as in TransportRow.

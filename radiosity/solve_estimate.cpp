@@ -15,7 +15,7 @@ constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shado
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
 constexpr double noise_in_display = 0.16;  // of the variance of direct light: vertices average over the leaves around them
-constexpr double noise_of_quarters = 12;   // of that variance; 5 measured, and what it may be above that by chance
+constexpr double noise_of_origins = 1.7;   // of their variance, and what it may be above that by chance
 constexpr double misfit_at_centre = 0.25;  // of the squared misfit in a window, that its fit has in the middle
 constexpr double contact_error = 0.1;  // of a patch's irradiance: how much it varies where a solid's outline crosses it
 
@@ -132,18 +132,21 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
   add_candidates(Candidate::Kind::split_row, patch_row_, errors, rays_per_row_split);
 }
 
-/// Mean square of what the quarters of a leaf have beyond its slope and the noise of their shadow rays: RMS over the leaf it is
-/// 2 / sqrt(3) times that of the middles of four quarters.
+/// Mean square of what arrives at the origins of a leaf beyond its slope and the noise of their shadow rays.
 double SolveState::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
   const PatchShape shape = leaf_forest_.shape(leaf);
   const FieldFit& fit = row_fit_[row_of(leaf_forest_.id(leaf))];
+  const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
   double squares = 0;
   for (int k = 0; k < 4; ++k) {
-    const Vec3 at = centre_of(mesh_, shape.child(k));
-    const Rgb there = widen(direct_[leaf].quarters[k]) + fit.at(at);
-    squares += squared((there - irradiance - slope.along(at - leaf_centre_[leaf])).mean()) / 4;
+    const PatchShape quarter = shape.child(k);
+    const double indirect = fit.at(centre_of(mesh_, quarter)).mean();
+    for (int o = 0; o < 4; ++o) {
+      const Vec3 offset = centre_of(mesh_, quarter.child(o)) - leaf_centre_[leaf];
+      squares += squared(direct_[leaf].at_origin[4 * k + o] + indirect - irradiance.mean() - dot(steepest, offset));
+    }
   }
-  return 4.0 / 3 * std::max(0.0, squares - noise_of_quarters * direct_[leaf].variance);
+  return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct_[leaf].origin_variance);
 }
 
 /// The same; returns the power that arrives, W.

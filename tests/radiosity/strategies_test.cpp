@@ -59,11 +59,11 @@ TEST(Strategies, AgreeOnARoom) {
   SolveState state(mesh, {.max_depth = 4}, budget);
   state.trace_new_rows();
   state.add_new_direct_light([] {});
+  state.begin_exchange();
   std::vector<Rgb> expected;
   for (const Strategy strategy : all) {
     SCOPED_TRACE(text(strategy));
-    state.begin_shooting();
-    Shooting& shooting = state.shooting();
+    Shooting shooting = state.unshot_system();
     step_until(strategy, shooting, 1e-9 * shooting.unshot_power());
     const auto shot = shooting.shot();
     if (expected.empty()) expected = shot;
@@ -139,7 +139,7 @@ TEST(Strategies, GatheringDividesTheWholeSumWhereAPatchSeesItself) {
   // One patch that sees nothing but itself: x = e / (1 - rho) in one step, also where it has two leaves.
   std::vector<TransportRow> rows(1);
   rows[0].hits.resize(64);
-  rows[0].first_half_hits = rows[0].first_half_rays = rows[0].second_half_rays = 32;
+  rows[0].rays = 64;
   const std::vector<ShootingPatch> patches{{&rows[0], 0, 2, {0.5, 0.9, 0}, 2}};
   std::vector<std::uint32_t> hit_leaf(64);
   for (std::size_t h = 0; h < 32; ++h) hit_leaf[h] = 1;

@@ -99,7 +99,7 @@ struct System {
   System() = default;
   void add_patch(std::uint32_t p, std::uint32_t hits, Rgb reflectance) {
     rows[p].hits.resize(hits);
-    rows[p].first_half_hits = rows[p].first_half_rays = rows[p].second_half_rays = hits / 2;
+    rows[p].rays = hits;
     patches.push_back({&rows[p], std::uint32_t(leaves.size()), 0, reflectance, 0});
   }
   void add_leaf(std::uint32_t p, double area, Rgb emission) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <numeric>
 #include <map>
 
 namespace alvor {
@@ -96,15 +97,25 @@ TEST(TransportRows, TwoSidedFacesAreHitOnTheSideThatIsSeen) {
   EXPECT_EQ(traced.rows[0].hits.size(), traced.rows[0].ray_count());
 }
 
-TEST(TransportRows, AppendedRowsKeepTheirHalvesApart) {
+TEST(TransportRows, AppendedRowsCountTheHitsOfEachOrigin) {
   const BaseMesh mesh(test::furnace(1, 0.5));
   TransportRow row = trace(mesh, 0, 1).rows[0];
   const TransportRow more = trace(mesh, 0, 2).rows[0], before = row;
   row.append(more);
   EXPECT_EQ(row.ray_count(), 2u * rays_per_row);
-  EXPECT_EQ(row.first_half_hits, before.first_half_hits + more.first_half_hits);
-  EXPECT_EQ(row.hits[before.first_half_hits], more.hits[0]);
-  EXPECT_EQ(row.hits.back(), more.hits.back());
+  EXPECT_EQ(row.origin_hits.size(), 2u * origins_per_patch);
+  EXPECT_EQ(row.hits.size(), std::accumulate(row.origin_hits.begin(), row.origin_hits.end(), 0u));
+  EXPECT_EQ(row.hits[before.hits.size()], more.hits[0]);
+}
+
+TEST(TransportRows, AppendedRowsLeaveOutOriginsThatAreHidden) {
+  Scene scene = test::furnace(1, 0.5);
+  test::add_box(scene, {0, 0, 0}, {1.5, 1, 4}, false);
+  const BaseMesh mesh(scene);
+  TransportRow row = trace(mesh, 0, 1).rows[0];
+  row.append(trace(mesh, 0, 2).rows[0]);
+  EXPECT_EQ(row.ray_count(), 256u);
+  EXPECT_EQ(row.hits.size(), row.ray_count());
 }
 
 TEST(DirectionSets, WeightsOfEachOriginHaveTheMeanOne) {
