@@ -59,6 +59,20 @@ void SmoothNeighbours::add(NodeIndex node) {
   if (node != PatchForest::no_node) nodes_[count_++] = node;
 }
 
+std::vector<SmoothNeighbours> NeighbourTable::of(std::span<const NodeIndex> leaves) {
+  known_.resize(forest_.node_count());
+  is_known_.resize(forest_.node_count());
+  std::vector<SmoothNeighbours> all;
+  all.reserve(leaves.size());
+  for (const NodeIndex leaf : leaves) {
+    const bool is_fresh = is_known_[leaf] && std::ranges::all_of(known_[leaf], [this](NodeIndex n) { return forest_.is_leaf(n); });
+    if (!is_fresh) known_[leaf] = SmoothNeighbours(forest_, leaf);
+    is_known_[leaf] = 1;
+    all.push_back(known_[leaf]);
+  }
+  return all;
+}
+
 LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                      std::span<const Rgb> value) {
   LeafSlope slope{{}, {}, {}, value[leaf], value[leaf]};

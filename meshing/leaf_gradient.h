@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace alvor {
 
@@ -34,6 +35,20 @@ class SmoothNeighbours {
   std::array<NodeIndex, 8> nodes_;
   std::uint8_t count_ = 0;
   bool at_crease_ = false;
+};
+
+/// Neighbours of leaves, kept from one time to the next: a leaf's are the same as long as all of them are leaves. Borrows the forest.
+/// One thread at a time.
+class NeighbourTable {
+ public:
+  explicit NeighbourTable(const PatchForest& forest) : forest_(forest) {}
+  /// In the order of `leaves`. Requires: leaves of the forest as it is now.
+  std::vector<SmoothNeighbours> of(std::span<const NodeIndex> leaves);
+
+ private:
+  const PatchForest& forest_;
+  std::vector<SmoothNeighbours> known_;  // by node
+  std::vector<std::uint8_t> is_known_;
 };
 
 /// Weighted least squares over the neighbours; those where exactly nothing arrives take no part. `centre` and `value` are indexed

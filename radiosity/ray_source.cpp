@@ -5,12 +5,7 @@ namespace alvor {
 PatchPoints sample_points(const LocalScene& scene, const PatchShape& patch, RandomStream& random) {
   const LocalRoot& root = scene.root(patch.root);
   const Uv jitter{random.next() - 0.5, random.next() - 0.5};
-  float u[origins_per_patch], v[origins_per_patch];
-  for (int o = 0; o < origins_per_patch; ++o) {
-    const Uv at = origin_in(patch, o, jitter);
-    u[o] = static_cast<float>(at.u);
-    v[o] = static_cast<float>(at.v);
-  }
+  const auto [u, v] = origins_in(patch, jitter);
   PatchPoints points;
   const auto along = [&](float origin, float edge_u, float edge_v, float twist, float normal, float* out) {
     for (int o = 0; o < origins_per_patch; ++o)

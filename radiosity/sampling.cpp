@@ -25,6 +25,21 @@ std::uint32_t sobol_second(std::uint32_t n) {
   return result;
 }
 
+/// The middles of the strata of a patch that is its whole root, and how far, with which sign, they may be moved.
+struct Strata {
+  std::array<float, origins_per_patch> u, v, sway;
+  explicit Strata(int corner_count) {
+    const PatchShape whole{0, corner_count, {0, 0}, grid_size};
+    for (int o = 0; o < origins_per_patch; ++o) {
+      const PatchShape stratum = whole.child(o >> 2).child(o & 3);
+      const Uv middle = stratum.centre();
+      u[o] = static_cast<float>(middle.u);
+      v[o] = static_cast<float>(middle.v);
+      sway[o] = static_cast<float>((is_white(o) ? 1.0 : -1.0) * stratum.size / grid_size);
+    }
+  }
+};
+
 struct Disk {
   double x, y;
 };
@@ -89,11 +104,20 @@ DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(
   }
 }
 
-Uv origin_in(const PatchShape& patch, int origin, Uv jitter) {
-  const PatchShape stratum = patch.child(origin >> 2).child(origin & 3);
-  const double sign = is_white(origin) ? 1 : -1, room = stratum.corner_count == 3 ? 0.3 : 1;  // a triangle's middle is near its edges
-  const Uv middle = stratum.centre();
-  return {middle.u + room * sign * jitter.u * stratum.size / grid_size, middle.v + room * sign * jitter.v * stratum.size / grid_size};
+OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
+  static const Strata triangle(3), quad(4);
+  const Strata& strata = patch.corner_count == 3 ? triangle : quad;
+  const double room = patch.corner_count == 3 ? 0.3 : 1;  // a triangle's middle is near its edges
+  const auto size = static_cast<float>(double(patch.size) / grid_size);
+  const auto first_u = static_cast<float>(double(patch.first.i) / grid_size);
+  const auto first_v = static_cast<float>(double(patch.first.j) / grid_size);
+  const auto move_u = static_cast<float>(room * jitter.u), move_v = static_cast<float>(room * jitter.v);
+  OriginPlaces places;
+  for (int o = 0; o < origins_per_patch; ++o) {
+    places.u[o] = first_u + size * (strata.u[o] + move_u * strata.sway[o]);
+    places.v[o] = first_v + size * (strata.v[o] + move_v * strata.sway[o]);
+  }
+  return places;
 }
 
 }  // namespace alvor

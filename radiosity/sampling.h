@@ -56,9 +56,12 @@ class DirectionSets {
 /// Strata of a patch form a chessboard. Its white fields: half of the strata, with the same mean position as the other half.
 constexpr bool is_white(int origin) { return ((origin ^ origin >> 1) & 1) == 0; }
 
-/// A point of the patch in stratum `origin` of its 16 (its grandchildren): the middle, moved by `jitter` in [-1/2, 1/2)^2 of the
-/// stratum on white fields and against it on black ones, so that the mean of all sixteen stays in the middle.
-Uv origin_in(const PatchShape& patch, int origin, Uv jitter);
+/// A point in each of the patch's 16 strata (its grandchildren): the middle, moved by `jitter` in [-1/2, 1/2)^2 of the stratum on
+/// white fields and against it on black ones, so that the mean of all sixteen stays in the middle.
+struct OriginPlaces {
+  std::array<float, origins_per_patch> u, v;
+};
+OriginPlaces origins_in(const PatchShape& patch, Uv jitter);
 
 /// Point n of the (0,2)-sequence, digits scrambled by `scramble_u`, `scramble_v`.
 Uv sobol_point(std::uint32_t n, std::uint32_t scramble_u, std::uint32_t scramble_v);

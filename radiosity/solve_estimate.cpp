@@ -49,12 +49,6 @@ std::vector<double> interpolation_errors(const Field& f, std::span<const LeafSlo
   return errors;
 }
 
-std::vector<SmoothNeighbours> find_neighbours(const PatchForest& forest, std::span<const NodeIndex> leaves) {
-  std::vector<SmoothNeighbours> neighbours(leaves.size());
-  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) { neighbours[n] = SmoothNeighbours(forest, leaves[n]); });
-  return neighbours;
-}
-
 }  // namespace
 
 /// By leaf: emitted, and reflected of what arrives, as it is shown.
@@ -90,11 +84,11 @@ RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity
 
 void SolveState::show_smoothly() {
   show();
-  if (row_neighbours_.empty()) row_neighbours_ = find_neighbours(row_forest_, patch_row_);
+  const auto row_neighbours = row_neighbours_.of(patch_row_);
   const auto leaving = radiosity();
   std::vector<RowSamples> samples(patch_row_.size());
   tbb::parallel_for(std::size_t{0}, patch_row_.size(), [&](std::size_t p) { samples[p] = samples_of(patch_row_[p], leaving); });
-  const auto fits = fit_field(row_forest_, patch_row_, row_neighbours_, samples, row_centre_);
+  const auto fits = fit_field(row_forest_, patch_row_, row_neighbours, samples, row_centre_);
   for (std::size_t p = 0; p < patch_row_.size(); ++p) row_fit_[patch_row_[p]] = fits[p];
 }
 
@@ -157,7 +151,7 @@ double SolveState::estimate_leaves(ErrorEstimate& error) {
     irradiance[leaf] = direct_[leaf].irradiance + indirect(leaf);
     power += leaf_area_[leaf] * irradiance[leaf].mean();
   }
-  const auto neighbours = find_neighbours(leaf_forest_, patch_leaves_);
+  const auto neighbours = leaf_neighbours_.of(patch_leaves_);
   const Field field{leaf_forest_, patch_leaves_, neighbours, leaf_centre_, irradiance};
   std::vector<LeafSlope> slope(leaf_forest_.node_count());
   find_slopes(field, slope);

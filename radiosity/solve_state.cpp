@@ -209,7 +209,6 @@ void SolveState::begin_exchange() {
 
 void SolveState::list_patches() {
   patches_.clear();
-  row_neighbours_.clear();
   patch_leaves_.clear();
   own_radiosity_.clear();
   patch_row_ = row_forest_.leaves();

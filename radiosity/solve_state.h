@@ -96,6 +96,7 @@ class SolveState {
   DirectionSets directions_;
   RefinementLimits limits_;
   PatchForest row_forest_, leaf_forest_;
+  NeighbourTable row_neighbours_{row_forest_}, leaf_neighbours_{leaf_forest_};
   std::vector<Emitter> emitters_;
   std::unique_ptr<LightTree> light_tree_;  ///< where there are many
   bool emission_by_rows_ = false;
@@ -121,7 +122,6 @@ class SolveState {
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> patch_row_;              // row node of each patch
   std::vector<NodeIndex> patch_leaves_;           // leaf nodes, patch after patch
-  std::vector<SmoothNeighbours> row_neighbours_;  // by patch; empty until needed
   std::vector<Rgb> own_radiosity_;                // by place of patch_leaves_
   std::unique_ptr<Exchange> exchange_;
   std::vector<Candidate> candidates_;

@@ -16,7 +16,7 @@ namespace alvor {
 namespace {
 
 constexpr double pass_unshot = 0.1;       // of the tolerance: a pass shoots down to this fraction of the emitted power
-constexpr double final_unshot = 1e-3;     // of the tolerance: the last pass goes on to this
+constexpr double final_unshot = 1e-6;     // of the emitted power
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
@@ -96,8 +96,9 @@ class Run {
     return true;
   }
 
+  /// The last pass goes on to where rounding begins: gathering is cheap.
   StopReason converge(StopReason reason) {
-    if (!exchange_down_to(final_unshot * options_.tolerance)) return stop_reason();
+    if (!exchange_down_to(final_unshot)) return stop_reason();
     state_.show_smoothly();
     error_.unshot = state_.unshot_fraction();
     publish();

@@ -3,8 +3,10 @@
 #include "radiosity/medium.h"
 #include "radiosity/ray_source.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -48,34 +50,24 @@ void start_at(RayPacket& packet, float x, float y, float z) {
 
 enum class Outcome { stored, escaped, black_back };
 
-/// Rows of a few neighbouring patches, traced together.
-class RowBatch {
+/// Traces one row after the other.
+class RowTracer {
  public:
-  RowBatch(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes)
-      : scene_(scene), medium_{scene.mesh().absorption()}, directions_(directions), shapes_(shapes) {
-    packets_.resize(shapes.size() * origins_per_patch);
-    hits_.resize(packets_.size());
-  }
+  RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget)
+      : scene_(scene), medium_{scene.mesh().absorption()}, directions_(directions), seed_(seed), budget_(budget) {}
 
-  void trace(std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
-    for (std::size_t p = 0; p < shapes_.size(); ++p) {
-      RandomStream random(seed, patches[p]);
-      const PatchPoints points = sample_points(scene_, shapes_[p], random);
-      const auto& set = directions_[random.next_below(DirectionSets::set_count)];
-      sets_.push_back(&set);
-      const TurnedFrame frame(scene_.root(shapes_[p].root), 2 * std::numbers::pi * random.next());
-      for (int o = 0; o < origins_per_patch; ++o) {
-        RayPacket& packet = packets_[p * origins_per_patch + static_cast<std::size_t>(o)];
-        start_at(packet, points.x[o], points.y[o], points.z[o]);
-        aim(packet, set, o, frame);
-      }
+  void trace(const PatchShape& shape, PatchId patch, TransportRow& row) {
+    RandomStream random(seed_, patch);
+    const PatchPoints points = sample_points(scene_, shape, random);
+    set_ = &directions_[random.next_below(DirectionSets::set_count)];
+    const TurnedFrame frame(scene_.root(shape.root), 2 * std::numbers::pi * random.next());
+    for (int o = 0; o < origins_per_patch; ++o) {
+      start_at(packets_[o], points.x[o], points.y[o], points.z[o]);
+      aim(packets_[o], *set_, o, frame);
     }
-    budget.spend(packets_.size() * RayPacket::width, [&] { scene_.visibility().closest_hits(packets_, hits_); });
-    retrace_slipped_rays(budget);
-  }
-
-  void store(std::span<TransportRow> rows) const {
-    for (std::size_t p = 0; p < shapes_.size(); ++p) store_row(p, rows[p]);
+    budget_.spend(rays_per_row, [&] { scene_.visibility().closest_hits(packets_, hits_); });
+    retrace_slipped_rays(scene_.root(shape.root).normal);
+    store(row);
   }
 
  private:
@@ -90,25 +82,24 @@ class RowBatch {
   }
 
   /// Where nearly no ray escapes, the few that do went through seams between faces: float32 traversal is not watertight.
-  void retrace_slipped_rays(RayBudget& budget) {
+  void retrace_slipped_rays(const Float3& normal) {
     std::size_t escaped = 0;
     for (const HitPacket& hit : hits_)
       for (const std::uint32_t root : hit.root) escaped += root == HitPacket::nothing;
     if (escaped == 0 || escaped * 64 > hits_.size() * RayPacket::width) return;
     for (std::size_t p = 0; p < packets_.size(); ++p)
       for (int lane = 0; lane < RayPacket::width; ++lane)
-        if (hits_[p].root[lane] == HitPacket::nothing) retrace(p, lane, budget);
+        if (hits_[p].root[lane] == HitPacket::nothing) retrace(p, lane, normal);
   }
-  void retrace(std::size_t p, int lane, RayBudget& budget) {
+  void retrace(std::size_t p, int lane, const Float3& n) {
     RayPacket again = packets_[p];
-    const Float3& n = scene_.root(shapes_[p / origins_per_patch].root).normal;
     for (int r = 0; r < RayPacket::width; ++r) {
       again.direction_x[r] = packets_[p].direction_x[lane] + nudge * static_cast<float>(r + 1) * n.x;
       again.direction_y[r] = packets_[p].direction_y[lane] + nudge * static_cast<float>(r + 1) * n.y;
       again.direction_z[r] = packets_[p].direction_z[lane] + nudge * static_cast<float>(r + 1) * n.z;
     }
     HitPacket hit;
-    budget.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&again, 1}, {&hit, 1}); });
+    budget_.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&again, 1}, {&hit, 1}); });
     for (int r = 0; r < RayPacket::width; ++r) {
       if (outcome(again, hit, r) != Outcome::stored) continue;
       hits_[p].root[lane] = hit.root[r];
@@ -119,12 +110,12 @@ class RowBatch {
     }
   }
 
-  void store_row(std::size_t patch, TransportRow& row) const {
+  void store(TransportRow& row) const {
     row.hits.reserve(rays_per_row);
     row.origin_hits.assign(origins_per_patch, TransportRow::not_sampled);
     for (int o = 0; o < origins_per_patch; ++o) {
       const std::size_t before = row.hits.size();
-      if (store_origin(patch * origins_per_patch + static_cast<std::size_t>(o), row)) {
+      if (store_origin(static_cast<std::size_t>(o), row)) {
         row.rays += rays_per_origin;
         row.origin_hits[o] = static_cast<std::uint8_t>(row.hits.size() - before);
       } else {
@@ -149,7 +140,7 @@ class RowBatch {
     for (int lane = 0; lane < RayPacket::width; ++lane)
       if (outcomes[lane] == Outcome::stored) row.hits.push_back(PatchId::finest(hit.root[lane], path[lane]));
     if (medium_.is_clear() && !directions_.has_weights()) return true;
-    const float* weight = &sets_[p / origins_per_patch]->weight[p % origins_per_patch * rays_per_origin];
+    const float* weight = &set_->weight[p * rays_per_origin];
     for (int lane = 0; lane < RayPacket::width; ++lane)
       if (outcomes[lane] == Outcome::stored)
         row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hit.t[lane] * scene_.frame().metres_per_unit)));
@@ -173,10 +164,11 @@ class RowBatch {
   const LocalScene& scene_;
   Medium medium_;
   const DirectionSets& directions_;
-  std::vector<const DirectionSets::Set*> sets_;  // of each patch
-  std::span<const PatchShape> shapes_;
-  std::vector<RayPacket> packets_;
-  std::vector<HitPacket> hits_;
+  std::uint64_t seed_;
+  RayBudget& budget_;
+  const DirectionSets::Set* set_ = nullptr;  // of the row that is being traced
+  std::array<RayPacket, origins_per_patch> packets_;
+  std::array<HitPacket, origins_per_patch> hits_;
 };
 
 }  // namespace
@@ -207,13 +199,9 @@ void TransportRow::append(const TransportRow& more) {
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
   std::vector<TransportRow> rows(patches.size());
-  const std::size_t batches = (patches.size() + patches_per_batch - 1) / patches_per_batch;
-  tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
-    if (budget.is_out()) return;
-    const std::size_t first = batch * patches_per_batch, count = std::min(patches_per_batch, patches.size() - first);
-    RowBatch rays(scene, directions, shapes.subspan(first, count));
-    rays.trace(patches.subspan(first, count), seed, budget);
-    rays.store(std::span(rows).subspan(first, count));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
+    RowTracer tracer(scene, directions, seed, budget);
+    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p) tracer.trace(shapes[p], patches[p], rows[p]);
   });
   return rows;
 }

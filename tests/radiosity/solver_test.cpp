@@ -162,7 +162,7 @@ TEST(Solver, StepsCountUpAndUnshotPowerGoesDown) {
 TEST(Solver, AmbientTermFadesAsLightIsShot) {
   const BaseMesh mesh(lit_room());
   SolutionLog with, without;
-  solve(mesh, {}, with, {});
+  solve(mesh, {.strategy = Strategy::sorted_ambient}, with, {});
   solve(mesh, {.strategy = Strategy::sorted}, without, {});
   double largest = 0;
   for (const Step& step : with.steps()) largest = std::max(largest, step.ambient_irradiance.g);
