@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t receivers_per_batch = 64;
 constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 1, packets_of_lit_rest = 4;
+constexpr double worth_a_closer_look = 0.1;  // of what arrives: weaker emitters get no more rays
 constexpr float short_of_emitter = 1 - 1e-4f;
 constexpr double stratified = 0.5;  // of the variance of independent rays
 
@@ -30,8 +31,11 @@ struct VisibleFraction {
 
   bool mixed() const { return any_blocked && any_visible; }
   double value() const { return all_ > 0 ? all_visible_ / all_ : 0; }
-  /// At an origin; where all its rays are hidden as everywhere.
-  double value(int o) const { return weight[o] > 0 ? double(visible[o]) / weight[o] : value(); }
+  /// At an origin, where enough rays tell; elsewhere as everywhere.
+  double value(int o) const {
+    const bool tells = weight[o] > 0 && (rays_per_origin > 1 || !mixed());
+    return tells ? double(visible[o]) / weight[o] : value();
+  }
   Rgb dimmed() const { return all_ > 0 ? arriving * (1 / all_) : Rgb{}; }
   double variance() const { return mixed() ? stratified * value() * (1 - value()) / (rays_per_origin * origins_per_patch) : 0; }
   /// Mean over origins of the variance of value(o).
@@ -41,7 +45,9 @@ struct VisibleFraction {
     for (int o = 0; o < origins_per_patch; ++o) sum += value(o) * (1 - value(o));
     return sum / origins_per_patch / (rays_per_origin - 1);
   }
+  /// Sums up what was counted so far.
   void finish() {
+    all_ = all_visible_ = 0;
     for (int o = 0; o < origins_per_patch; ++o) all_ += weight[o], all_visible_ += visible[o];
   }
 
@@ -132,16 +138,28 @@ class ShadowBatch {
   }
 
   void add_looked_at() {
-    std::vector<std::size_t> all(lit_.size());
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
-    trace(all, 0, 1);
-    std::erase_if(all, [this](std::size_t k) { return !lit_[k].fraction.mixed(); });
-    trace(all, 1, packets_when_mixed);
-    for (Lit& lit : lit_) add(lit);
+    std::vector<std::size_t> some(lit_.size());
+    for (std::size_t k = 0; k < some.size(); ++k) some[k] = k;
+    trace(some, 0, 1);
+    const std::vector<double> brightness = brightness_of_receivers();
+    std::erase_if(some, [&](std::size_t k) {
+      return !lit_[k].fraction.mixed() || unblocked(lit_[k]) < worth_a_closer_look * brightness[lit_[k].receiver];
+    });
+    trace(some, 1, packets_when_mixed);
+    for (Lit& lit : lit_) lit.fraction.finish(), add(lit);
+  }
+  double unblocked(const Lit& lit) const { return lit.mean_form_factor() * emitters_[lit.emitter].emission.mean(); }
+  /// What the first rays say.
+  std::vector<double> brightness_of_receivers() {
+    std::vector<double> brightness(receivers_.size());
+    for (Lit& lit : lit_) {
+      lit.fraction.finish();
+      brightness[lit.receiver] += unblocked(lit) * lit.fraction.value();
+    }
+    return brightness;
   }
 
-  void add(Lit& lit) const {
-    lit.fraction.finish();
+  void add(const Lit& lit) const {
     DirectLight& light = light_[lit.receiver];
     const Rgb& emission = emitters_[lit.emitter].emission;
     const double form_factor = lit.mean_form_factor(), visible = form_factor * lit.fraction.value();

@@ -120,8 +120,9 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
       error.misfit += by_contact;
     }
     error.sampling += noise;
-    if (noise > 0 && rows_[row].ray_count() < most_rays_per_row)
-      candidates_.push_back({Candidate::Kind::add_rays, row, noise, double(rows_[row].ray_count())});
+    const double rays = rows_[row].ray_count();
+    if (noise > 0 && rays < most_rays_per_row)
+      candidates_.push_back({Candidate::Kind::add_rays, row, noise * rays_per_row / (rays + rays_per_row), rays_per_row});
   }
   add_candidates(Candidate::Kind::split_row, patch_row_, errors, rays_per_row_split);
 }

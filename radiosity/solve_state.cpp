@@ -12,6 +12,7 @@ namespace {
 
 constexpr double start_edge = 1.0 / 6;   // of the extent: no patch of the first mesh is longer
 constexpr double start_area = 1e-3;      // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+constexpr double small_area = 2e-5;      // of the scene's: patches below begin with small rows
 constexpr double most_area_emits = 0.5;  // beyond this share rows find the emitters as well as shadow rays do
 constexpr std::size_t most_one_by_one = 12;  // emitters
 constexpr std::size_t parts_shown = 8;       // of a scene with more
@@ -43,16 +44,16 @@ SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBud
 
 // Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
 void SolveState::choose_emitters() {
-  double area = 0, emitting = 0;
+  double emitting = 0;
   for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) {
     const Rgb emission = mesh_.material_of(r).emission;
-    area += mesh_.roots()[r].area;
+    area_ += mesh_.roots()[r].area;
     if (emission.is_zero()) continue;
     emitters_.push_back({r, emission, emission.sum() * mesh_.roots()[r].area});
     emitting += mesh_.roots()[r].area;
     emitted_power_ += emitters_.back().power;
   }
-  emission_by_rows_ = emitting > most_area_emits * area;
+  emission_by_rows_ = emitting > most_area_emits * area_;
   if (emission_by_rows_) emitters_.clear();
   std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
   waiting_power_ = emitted_power_;
@@ -62,11 +63,9 @@ void SolveState::choose_emitters() {
 Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? mesh_.material_of(root).emission : Rgb{}; }
 
 void SolveState::split_to_start() {
-  double area = 0;
-  for (const RootPatch& root : mesh_.roots()) area += root.area;
   const auto is_coarse = [&](NodeIndex node) {
     const PatchId id = row_forest_.id(node);
-    const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area;
+    const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area_;
     return shows_no_curvature || longest_edge(mesh_, row_forest_.shape(node)) > start_edge * mesh_.extent();
   };
   std::vector<NodeIndex> split;
@@ -105,13 +104,15 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
   std::vector<NodeIndex> nodes;
   std::vector<PatchShape> shapes;
   std::vector<PatchId> patches;
+  std::vector<RowSize> sizes;
   for (const NodeIndex row : row_forest_.leaves()) {
     if (row_is_traced_[row]) continue;
     nodes.push_back(row);
     shapes.push_back(row_forest_.shape(row));
     patches.push_back(row_forest_.id(row));
+    sizes.push_back(area_of(mesh_, shapes.back()) < small_area * area_ ? RowSize::small : RowSize::whole);
   }
-  auto rows = trace_rows(scene_, directions_, shapes, patches, options_.seed, budget_);
+  auto rows = trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     rows_[nodes[n]] = std::move(rows[n]);
     row_is_traced_[nodes[n]] = true;
@@ -335,7 +336,8 @@ bool SolveState::add_rays(std::span<const NodeIndex> rows) {
     shapes.push_back(row_forest_.shape(row));
     patches.push_back(row_forest_.id(row));
   }
-  const auto more = trace_rows(scene_, directions_, shapes, patches, options_.seed + ++rounds_of_rays_, budget_);
+  const auto more = trace_rows(scene_, directions_, shapes, patches, std::vector(rows.size(), RowSize::whole),
+                               options_.seed + ++rounds_of_rays_, budget_);
   if (budget_.is_out()) return false;
   for (std::size_t n = 0; n < rows.size(); ++n) rows_[rows[n]].append(more[n]);
   return !rows.empty();

@@ -101,6 +101,7 @@ class SolveState {
   std::unique_ptr<LightTree> light_tree_;  ///< where there are many
   bool emission_by_rows_ = false;
   std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
+  double area_ = 0;           ///< of all roots, m2
   double emitted_power_ = 0;
   double waiting_power_ = 0;  ///< of the emitters whose light was not added yet
 

@@ -56,21 +56,33 @@ class RowTracer {
   RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget)
       : scene_(scene), medium_{scene.mesh().absorption()}, directions_(directions), seed_(seed), budget_(budget) {}
 
-  void trace(const PatchShape& shape, PatchId patch, TransportRow& row) {
+  void trace(const PatchShape& shape, PatchId patch, RowSize size, TransportRow& row) {
     RandomStream random(seed_, patch);
     const PatchPoints points = sample_points(scene_, shape, random);
     set_ = &directions_[random.next_below(DirectionSets::set_count)];
     const TurnedFrame frame(scene_.root(shape.root), 2 * std::numbers::pi * random.next());
-    for (int o = 0; o < origins_per_patch; ++o) {
-      start_at(packets_[o], points.x[o], points.y[o], points.z[o]);
-      aim(packets_[o], *set_, o, frame);
+    choose_origins(size, random);
+    for (int n = 0; n < count_; ++n) {
+      const int o = origin_[n];
+      start_at(packets_[n], points.x[o], points.y[o], points.z[o]);
+      aim(packets_[n], *set_, n, frame);
     }
-    budget_.spend(rays_per_row, [&] { scene_.visibility().closest_hits(packets_, hits_); });
+    budget_.spend(static_cast<std::uint64_t>(count_) * rays_per_origin,
+                  [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size())); });
     retrace_slipped_rays(scene_.root(shape.root).normal);
     store(row);
   }
 
  private:
+  std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
+
+  /// All, or one a quarter so that their mean is the middle.
+  void choose_origins(RowSize size, RandomStream& random) {
+    count_ = size == RowSize::whole ? origins_per_patch : 4;
+    const int turn = static_cast<int>(random.next_below(4));
+    for (int n = 0; n < count_; ++n) origin_[n] = size == RowSize::whole ? n : 4 * n + ((3 - n) ^ turn);
+  }
+
   Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {
     if (hit.root[lane] == HitPacket::nothing) return Outcome::escaped;
     return meets_front(packet, hit, lane) || scene_.root(hit.root[lane]).twin != RootPatch::no_twin ? Outcome::stored
@@ -84,10 +96,10 @@ class RowTracer {
   /// Where nearly no ray escapes, the few that do went through seams between faces: float32 traversal is not watertight.
   void retrace_slipped_rays(const Float3& normal) {
     std::size_t escaped = 0;
-    for (const HitPacket& hit : hits_)
+    for (const HitPacket& hit : std::span(hits_).first(packets().size()))
       for (const std::uint32_t root : hit.root) escaped += root == HitPacket::nothing;
-    if (escaped == 0 || escaped * 64 > hits_.size() * RayPacket::width) return;
-    for (std::size_t p = 0; p < packets_.size(); ++p)
+    if (escaped == 0 || escaped * 64 > packets().size() * RayPacket::width) return;
+    for (std::size_t p = 0; p < packets().size(); ++p)
       for (int lane = 0; lane < RayPacket::width; ++lane)
         if (hits_[p].root[lane] == HitPacket::nothing) retrace(p, lane, normal);
   }
@@ -111,15 +123,15 @@ class RowTracer {
   }
 
   void store(TransportRow& row) const {
-    row.hits.reserve(rays_per_row);
+    row.hits.reserve(packets().size() * RayPacket::width);
     row.origin_hits.assign(origins_per_patch, TransportRow::not_sampled);
-    for (int o = 0; o < origins_per_patch; ++o) {
+    for (int n = 0; n < count_; ++n) {
       const std::size_t before = row.hits.size();
-      if (store_origin(static_cast<std::size_t>(o), row)) {
+      if (store_origin(static_cast<std::size_t>(n), row)) {
         row.rays += rays_per_origin;
-        row.origin_hits[o] = static_cast<std::uint8_t>(row.hits.size() - before);
+        row.origin_hits[static_cast<std::size_t>(origin_[n])] = static_cast<std::uint8_t>(row.hits.size() - before);
       } else {
-        row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+        row.hidden_origins |= static_cast<std::uint16_t>(count_ == 4 ? 0xfu << 4 * n : 1u << n);
       }
     }
     row.hits.shrink_to_fit();
@@ -166,7 +178,10 @@ class RowTracer {
   const DirectionSets& directions_;
   std::uint64_t seed_;
   RayBudget& budget_;
-  const DirectionSets::Set* set_ = nullptr;  // of the row that is being traced
+  // Of the row that is being traced.
+  const DirectionSets::Set* set_ = nullptr;
+  int count_ = 0;
+  std::array<int, origins_per_patch> origin_{};
   std::array<RayPacket, origins_per_patch> packets_;
   std::array<HitPacket, origins_per_patch> hits_;
 };
@@ -197,11 +212,13 @@ void TransportRow::append(const TransportRow& more) {
 }
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
-                                     std::span<const PatchId> patches, std::uint64_t seed, RayBudget& budget) {
+                                     std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
+                                     RayBudget& budget) {
   std::vector<TransportRow> rows(patches.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
     RowTracer tracer(scene, directions, seed, budget);
-    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p) tracer.trace(shapes[p], patches[p], rows[p]);
+    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p) 
+      tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
   });
   return rows;
 }

@@ -30,7 +30,8 @@ Traced trace(const BaseMesh& mesh, int splits, std::uint64_t seed = 1) {
   }
   const LocalScene scene(mesh);
   RayBudget budget([] { return false; });
-  traced.rows = trace_rows(scene, DirectionSets(seed), shapes, traced.patches, seed, budget);
+  const std::vector<RowSize> sizes(shapes.size(), RowSize::whole);
+  traced.rows = trace_rows(scene, DirectionSets(seed), shapes, traced.patches, sizes, seed, budget);
   EXPECT_GE(budget.rays(), traced.patches.size() * rays_per_row);
   return traced;
 }
