@@ -15,7 +15,7 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t receivers_per_batch = 64;
-constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 1, packets_of_lit_rest = 4;
+constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
 constexpr double worth_a_closer_look = 0.1;  // of what arrives: weaker emitters get no more rays
 constexpr float short_of_emitter = 1 - 1e-4f;
 constexpr double stratified = 0.5;  // of the variance of independent rays
@@ -250,11 +250,9 @@ class ShadowBatch {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
   }
 
-  /// Emitters that bring little each: a few rays to some of them, more if any arrives.
+  /// Emitters that bring little each: a number of rays that does not depend on what they find, or the mean would be dark.
   void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
-    Samples samples;
-    sample_rest(r, choice, tree, 0, packets_of_rest, samples);
-    if (!samples.sum.is_zero()) sample_rest(r, choice, tree, packets_of_rest, packets_of_lit_rest, samples);
+    const Samples samples = sample_rest(r, choice, tree);
     if (samples.count == 0) return;
     const Rgb mean = (1 / samples.count) * samples.sum;
     light_[r].irradiance += mean;
@@ -265,16 +263,15 @@ class ShadowBatch {
     Rgb sum;
     double squares = 0, count = 0;
   };
-  void sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree, std::uint32_t first, std::uint32_t packets,
-                   Samples& samples) {
+  Samples sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Receiver& receiver = receivers_[r];
-    RandomStream place(seed_, receiver.patch), random(seed_ + 1 + first, receiver.patch);
+    RandomStream place(seed_, receiver.patch), random(seed_ + 1, receiver.patch);
     const PatchPoints from = sample_points(scene_, receiver.shape, place);
     const Sphere sphere = around(receiver.shape);
-    rays_.resize(packets);
-    weights_.resize(packets);
-    blocked_.resize(packets);
-    std::vector<Rgb> brings(packets * RayPacket::width);
+    rays_.resize(packets_of_rest);
+    weights_.resize(packets_of_rest);
+    blocked_.resize(packets_of_rest);
+    std::array<Rgb, packets_of_rest * RayPacket::width> brings{};
     for (std::size_t n = 0; n < brings.size(); ++n) {
       const auto o = n % RayPacket::width;
       const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
@@ -285,6 +282,7 @@ class ShadowBatch {
       if (o + 1 == RayPacket::width) hide(n / RayPacket::width, receiver);
     }
     budget_.spend(brings.size(), [&] { scene_.visibility().occlusions(rays_, blocked_); });
+    Samples samples;
     for (std::size_t n = 0; n < brings.size(); ++n) {
       const auto packet = n / RayPacket::width, o = n % RayPacket::width;
       if (receiver.hidden_origins >> o & 1) continue;
@@ -295,6 +293,7 @@ class ShadowBatch {
       samples.sum += arriving;
       samples.squares += arriving.mean() * arriving.mean();
     }
+    return samples;
   }
 
   const LocalScene& scene_;

@@ -6,6 +6,8 @@ namespace alvor {
 
 namespace {
 
+constexpr double least_gain = 0.01;  // of the squared residual: with less a plain step does better, and ends what stalls
+
 Gathering::Radiosity padded(const Rgb& a) {
   return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b), 0};
 }
@@ -120,17 +122,28 @@ std::size_t Gathering::sweep() {
   });
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
+  const std::vector<Rgb> plain = next.change;
   make_conjugate(next);
-  const Rgb length = ratio(product(residual_, next.change), next.norm);
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    irradiance_[p] += length * next.step[p];
-    residual_[p] -= length * next.change[p];
-  }
-  if (directions_.size() < remembered) directions_.push_back(std::move(next));
-  else directions_[steps_ % remembered] = std::move(next);
-  ++steps_;
+  const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
+  const bool helps = (length * overlap).sum() > least_gain * product(residual_, residual_).sum();
+  advance(helps ? length : Rgb{1, 1, 1}, helps ? next.step : residual_, helps ? next.change : plain);
+  if (helps) remember(std::move(next));
+  else directions_.clear();
   find_unshot();
   return patches_.size();
+}
+
+void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change) {
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    irradiance_[p] += length * step[p];
+    residual_[p] -= length * change[p];
+  }
+}
+
+void Gathering::remember(Direction direction) {
+  if (directions_.size() < remembered) directions_.push_back(std::move(direction));
+  else directions_[steps_ % remembered] = std::move(direction);
+  ++steps_;
 }
 
 std::vector<Rgb> Gathering::irradiance() const {

@@ -13,7 +13,7 @@ namespace alvor {
 
 /// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at all
 /// patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual (GCR,
-/// Eisenstat, Elman & Schultz 1983). Bands are systems of their own. It needs no transpose of the rows, and its residual, times
+/// Eisenstat, Elman & Schultz 1983). Bands are systems of their own. Where that gains nearly nothing it takes a plain step. It needs no transpose of the rows, and its residual, times
 /// the reflectance, is the unshot radiosity, of either sign. Results do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
@@ -42,6 +42,8 @@ class Gathering : public Exchange {
   void gather(std::vector<Rgb>& received);
   Rgb row_times_radiosity(std::size_t patch) const;
   void make_conjugate(Direction& next) const;
+  void advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change);
+  void remember(Direction direction);
   void find_weights();
   void find_unshot();
   Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;

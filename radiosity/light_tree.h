@@ -44,6 +44,7 @@ class LightTree {
     Vec3 low, high;
     Vec3 normal;              ///< of all its emitters, or zero
     double power = 0;         ///< E times local area, summed over bands
+    double emission = 0;      ///< largest E, summed over bands
     std::uint32_t left = 0;   ///< right is left + 1; 0: a leaf
     std::uint32_t emitter = 0;
   };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double start_edge = 1.0 / 6;   // of the extent: no patch of the first mesh is longer
 constexpr double start_area = 1e-3;      // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
-constexpr double small_area = 2e-5;      // of the scene's: patches below begin with small rows
+constexpr double small_area = 2e-5;      // of the scene's: roots below begin with small rows
 constexpr double most_area_emits = 0.5;  // beyond this share rows find the emitters as well as shadow rays do
 constexpr std::size_t most_one_by_one = 12;  // emitters
 constexpr std::size_t parts_shown = 8;       // of a scene with more
@@ -110,7 +110,8 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
     nodes.push_back(row);
     shapes.push_back(row_forest_.shape(row));
     patches.push_back(row_forest_.id(row));
-    sizes.push_back(area_of(mesh_, shapes.back()) < small_area * area_ ? RowSize::small : RowSize::whole);
+    const bool is_small = patches.back().level() == 0 && mesh_.roots()[shapes.back().root].area < small_area * area_;
+    sizes.push_back(is_small ? RowSize::small : RowSize::whole);
   }
   auto rows = trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
