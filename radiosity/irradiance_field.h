@@ -27,6 +27,11 @@ struct FieldFit {
   double squared_misfit = 0;      ///< what the row's samples differ from it beyond their noise, (W/m2)^2; by chance negative
 
   static FieldFit constant(const Rgb& value) { return {{}, {}, {}, {value}, value, value}; }
+  void add(const Rgb& irradiance) {
+    coefficient[0] += irradiance;
+    low += irradiance;
+    high += irradiance;
+  }
   /// Within the range of the samples, widened by half.
   Rgb at(Vec3 point) const;
 };

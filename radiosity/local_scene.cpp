@@ -78,6 +78,9 @@ void LocalScene::places_of_hits(const HitPacket& hits, std::uint32_t* path) cons
     });
   finest_quad_paths(u, v, path);
   if (!has_triangles_) return;
+  bool meets_triangle = false;
+  for_each_hit([&](int, const LocalRoot& root) { meets_triangle |= !root.is_quad; });
+  if (!meets_triangle) return;
   alignas(64) std::uint32_t triangle_path[RayPacket::width];
   finest_triangle_paths(u, v, triangle_path);
   for_each_hit([&](int lane, const LocalRoot& root) {

@@ -93,6 +93,15 @@ void SolveState::show_smoothly() {
   for (std::size_t p = 0; p < patch_row_.size(); ++p) row_fit_[patch_row_[p]] = fits[p];
 }
 
+void SolveState::show_what_came_since() {
+  const auto irradiance = exchange_->irradiance();
+  for (std::size_t p = 0; p < patch_row_.size(); ++p) {
+    const NodeIndex row = patch_row_[p];
+    row_fit_[row].add(irradiance[p] - row_irradiance_[row]);
+    row_irradiance_[row] = irradiance[p];
+  }
+}
+
 bool SolveState::may_split(Candidate::Kind kind, NodeIndex patch) const {
   if (kind == Candidate::Kind::split_leaf) return leaf_forest_.may_split(patch, limits_);
   const NodeIndex leaf = leaf_node_of_row(patch);
@@ -148,20 +157,23 @@ double SolveState::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const
 /// The same; returns the power that arrives, W.
 double SolveState::estimate_leaves(ErrorEstimate& error) {
   std::vector<Rgb> irradiance(leaf_forest_.node_count());
+  tbb::parallel_for(std::size_t{0}, patch_leaves_.size(), [&](std::size_t n) {
+    irradiance[patch_leaves_[n]] = direct_[patch_leaves_[n]].irradiance + indirect(patch_leaves_[n]);
+  });
   double power = 0;
-  for (const NodeIndex leaf : patch_leaves_) {
-    irradiance[leaf] = direct_[leaf].irradiance + indirect(leaf);
-    power += leaf_area_[leaf] * irradiance[leaf].mean();
-  }
+  for (const NodeIndex leaf : patch_leaves_) power += leaf_area_[leaf] * irradiance[leaf].mean();
   const auto neighbours = leaf_neighbours_.of(patch_leaves_);
   const Field field{leaf_forest_, patch_leaves_, neighbours, leaf_centre_, irradiance};
   std::vector<LeafSlope> slope(leaf_forest_.node_count());
   find_slopes(field, slope);
   auto errors = interpolation_errors(field, slope);
+  for_each_leaf(field, [&](std::size_t n) {
+    const NodeIndex leaf = patch_leaves_[n];
+    errors[n] = leaf_area_[leaf] * std::max(squared(errors[n]), squared_contrast(leaf, irradiance[leaf], slope[leaf]));
+  });
   for (std::size_t n = 0; n < patch_leaves_.size(); ++n) {
     const NodeIndex leaf = patch_leaves_[n];
-    const double within = squared_contrast(leaf, irradiance[leaf], slope[leaf]), noise = noise_in_display * leaf_area_[leaf] * direct_[leaf].variance;
-    errors[n] = leaf_area_[leaf] * std::max(errors[n] * errors[n], within);
+    const double noise = noise_in_display * leaf_area_[leaf] * direct_[leaf].variance;
     error.interpolation += unseen_detail * errors[n];
     error.sampling += noise;
     errors[n] += noise;

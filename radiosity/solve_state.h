@@ -45,6 +45,8 @@ class SolveState {
   void show() { show(exchange_->irradiance()); }
   /// The same, smooth from row to row, from what the rays of rows find: what a finished pass shows.
   void show_smoothly();
+  /// What was shown before, moved by what each row has received since.
+  void show_what_came_since();
   /// What is still unshot, summed over bands, W, whatever the stage of the pass.
   double unshot_power() const;
   /// The same, of the emitted power; 0 in the dark.

@@ -99,7 +99,7 @@ class Run {
   /// The last pass goes on to where rounding begins: gathering is cheap.
   StopReason converge(StopReason reason) {
     if (!exchange_down_to(final_unshot)) return stop_reason();
-    state_.show_smoothly();
+    state_.show_what_came_since();
     error_.unshot = state_.unshot_fraction();
     publish();
     return reason;
@@ -112,7 +112,7 @@ class Run {
       if (must_stop()) return false;
       if (unshot < publish_when * published) {
         published = unshot;
-        state_.show();
+        state_.show_what_came_since();
         publish_if_due();
       }
       shots_ += exchange.sweep();
