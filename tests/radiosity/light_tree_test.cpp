@@ -214,7 +214,7 @@ TEST(LightTree, ManyLightsByTheTreeAreAsBrightAsOneByOneForATenthOfTheRays) {
   const auto receivers = floor_patches(lamps.mesh);
   RayBudget all([] { return false; }), few([] { return false; });
   double difference = 0, squares = 0, brightness = 0;
-  constexpr int seeds = 24;
+  constexpr int seeds = 64;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     std::vector<DirectLight> one_by_one(receivers.size()), by_tree(receivers.size());
     add_direct_light(lamps.scene, lamps.emitters, receivers, seed, all, one_by_one);
