@@ -14,8 +14,8 @@ struct SceneSettings {
   std::vector<double> strategy_tolerances;  ///< of the others
   std::vector<int> fixed_mesh_cells;        ///< see FixedMeshOptions::cells
   std::vector<std::uint64_t> traced_paths;  ///< of each point, by the path tracer as a contender
-  std::size_t truth_points = 4000;
-  std::uint64_t truth_paths = 8000;  ///< of each point
+  std::size_t truth_points = 10'000;
+  std::uint64_t truth_paths = 3200;  ///< of each point
 };
 
 struct Settings {

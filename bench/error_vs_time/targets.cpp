@@ -76,16 +76,8 @@ Confidence middle_error(const RunGroup& group) {
 }
 
 Judgement judge_tolerance(const SceneContest* held, std::string_view name) {
-  const std::string aim = std::string(name) + ": error at most " + tolerance_percent(tolerance_kept) + " at that tolerance";
-  if (!held) return {aim};
-  const auto groups = of(held->groups, Contender::alvor);
-  const auto group = std::ranges::find(groups, tolerance_kept, &RunGroup::setting);
-  if (group == groups.end()) return {aim};
-  Judgement judgement = keeps(middle_error(*group), tolerance_kept);
-  judgement.aim = aim;
-  if (group->is_done()) return judgement;
-  judgement.verdict = Verdict::missed;
-  judgement.note = "out of time before its estimate was within the tolerance";
+  Judgement judgement = held ? keeps_tolerance(held->groups, tolerance_kept) : Judgement{};
+  judgement.aim = std::string(name) + ": error at most " + tolerance_percent(tolerance_kept) + " at that tolerance";
   return judgement;
 }
 
@@ -118,6 +110,22 @@ Judgement keeps(const Confidence& error, double limit) {
   judgement.measured = percent(error.value) + ", 95 %: " + plain(100 * error.low) + " to " + plain(100 * error.high);
   judgement.verdict = error.value <= limit ? Verdict::met : Verdict::missed;
   if (error.low <= limit && limit < error.high) judgement.note = "the interval holds " + tolerance_percent(limit);
+  return judgement;
+}
+
+Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance) {
+  const auto ours = of(groups, Contender::alvor);
+  const auto group = std::ranges::find(ours, tolerance, &RunGroup::setting);
+  if (group == ours.end()) {
+    if (ours.empty() || ours.back().is_done()) return {};
+    const std::string measured =
+        "out of time at " + tolerance_percent(ours.back().setting) + ", with " + percent(ours.back().nrmse().median);
+    return {"", measured, Verdict::missed};
+  }
+  Judgement judgement = keeps(middle_error(*group), tolerance);
+  if (group->is_done()) return judgement;
+  judgement.verdict = Verdict::missed;
+  judgement.note = "out of time before its estimate was within the tolerance";
   return judgement;
 }
 

@@ -22,6 +22,10 @@ Verdict at_most(const std::optional<Reached>& cost, double limit);
 /// Whether a measured error keeps `limit`, and a note where its 95 % interval does not tell.
 Judgement keeps(const Confidence& error, double limit);
 
+/// Whether the default strategy's runs at `tolerance` are that good. One that was not tried after a looser one had run out of
+/// time is a miss.
+Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance);
+
 /// All targets, in order.
 /// `machine_gain`: see Measurements::two_threads_faster, the median.
 std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain);

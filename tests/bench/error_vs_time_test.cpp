@@ -84,6 +84,15 @@ TEST(Verdict, IsNotGivenOnWhatWasNotMeasured) {
   for (const Judgement& judgement : judge({}, 0.5, 1.9)) EXPECT_EQ(judgement.verdict, Verdict::not_measured) << judgement.aim;
 }
 
+TEST(Verdict, IsAMissWhereALooserToleranceRanOutOfTime) {
+  std::vector<MeasuredRun> runs{run_of(Contender::alvor, 0.05, 1, 0.04), run_of(Contender::alvor, 0.03, 20, 0.01)};
+  EXPECT_EQ(keeps_tolerance(grouped(runs), 0.02).verdict, Verdict::not_measured);
+  runs.back().is_done = false;
+  EXPECT_EQ(keeps_tolerance(grouped(runs), 0.02).verdict, Verdict::missed);
+  runs.back().setting = 0.02;  // an error that happens to be small is not one that it knew of
+  EXPECT_EQ(keeps_tolerance(grouped(runs), 0.02).verdict, Verdict::missed);
+}
+
 TEST(Verdict, OnThreadsIsNotGivenOnABusyMachine) {
   EXPECT_EQ(judge_thread_gain(10, 5, 1.95).verdict, Verdict::met);
   EXPECT_EQ(judge_thread_gain(10, 7, 1.95).verdict, Verdict::missed);
