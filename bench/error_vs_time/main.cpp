@@ -1,0 +1,46 @@
+// error_vs_time [--help]: measures error against run time and writes docs/error-vs-time.md, all but its pictures.
+
+#include "bench/error_vs_time/curves.h"
+#include "bench/error_vs_time/page.h"
+#include "client/whole_file.h"
+
+#include <exception>
+#include <iostream>
+
+namespace {
+
+using namespace alvor;
+using namespace alvor::bench;
+
+// Between scenes, so that a machine that slows down in the meantime is found out.
+Measurements measure(const Settings& settings) {
+  const Announce announce = [](const std::string& line) { std::cerr << line << std::endl; };
+  Measurements measured;
+  for (const SceneSettings& scene : settings.scenes) {
+    measured.yardsticks.push_back(time_yardstick(settings));
+    measured.contests.push_back(contest(scene, settings, announce));
+  }
+  measured.yardsticks.push_back(time_yardstick(settings));
+  return measured;
+}
+
+void write(const Measurements& measured, const Settings& settings) {
+  std::vector<MeasuredRun> runs;
+  for (const SceneContest& held : measured.contests) runs.insert(runs.end(), held.runs.begin(), held.runs.end());
+  write_whole_file(settings.figure_folder / "runs.csv", runs_csv(runs));
+  write_curves(settings.curve_folder, measured.contests);
+  write_whole_file(settings.page, page(measured, settings, read_whole_file(settings.figure_folder / "tried.md")));
+  std::cout << "wrote " << settings.page.string() << '\n';
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const Settings settings = read_settings(count, arguments);
+  try {
+    write(measure(settings), settings);
+  } catch (const std::exception& error) {
+    std::cerr << "error_vs_time: " << error.what() << '\n';
+    return 1;
+  }
+}
