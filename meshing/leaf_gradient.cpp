@@ -65,7 +65,8 @@ std::vector<SmoothNeighbours> NeighbourTable::of(std::span<const NodeIndex> leav
   std::vector<SmoothNeighbours> all;
   all.reserve(leaves.size());
   for (const NodeIndex leaf : leaves) {
-    const bool is_fresh = is_known_[leaf] && std::ranges::all_of(known_[leaf], [this](NodeIndex n) { return forest_.is_leaf(n); });
+    const bool is_fresh =
+        is_known_[leaf] && std::ranges::all_of(known_[leaf], [this](NodeIndex n) { return forest_.is_leaf(n); });
     if (!is_fresh) known_[leaf] = SmoothNeighbours(forest_, leaf);
     is_known_[leaf] = 1;
     all.push_back(known_[leaf]);

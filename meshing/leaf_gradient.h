@@ -37,8 +37,8 @@ class SmoothNeighbours {
   bool at_crease_ = false;
 };
 
-/// Neighbours of leaves, kept from one time to the next: a leaf's are the same as long as all of them are leaves. Borrows the forest.
-/// One thread at a time.
+/// Neighbours of leaves, kept from one time to the next: a leaf's are the same as long as all of them are leaves. Borrows the
+/// forest. One thread at a time.
 class NeighbourTable {
  public:
   explicit NeighbourTable(const PatchForest& forest) : forest_(forest) {}

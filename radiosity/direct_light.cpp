@@ -3,6 +3,7 @@
 #include "radiosity/form_factor.h"
 #include "radiosity/medium.h"
 #include "radiosity/ray_source.h"
+#include "radiosity/visible_fraction.h"
 
 #include <tbb/parallel_for.h>
 
@@ -18,42 +19,8 @@ constexpr std::size_t receivers_per_batch = 64;
 constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
 constexpr double worth_a_closer_look = 0.1;  // of what arrives: weaker emitters get no more rays
 constexpr float short_of_emitter = 1 - 1e-4f;
-constexpr double stratified = 0.5;  // of the variance of independent rays
 
 using Lanes = std::array<float, RayPacket::width>;
-
-/// Kernel-weighted visibility, and what a medium lets through of it, summed over shadow rays.
-struct VisibleFraction {
-  std::array<float, origins_per_patch> weight{}, visible{};
-  std::uint32_t rays_per_origin = 0;
-  Rgb arriving;  // of `visible`, where there is a medium
-  bool any_blocked = false, any_visible = false;
-
-  bool mixed() const { return any_blocked && any_visible; }
-  double value() const { return all_ > 0 ? all_visible_ / all_ : 0; }
-  /// At an origin, where enough rays tell; elsewhere as everywhere.
-  double value(int o) const {
-    const bool tells = weight[o] > 0 && (rays_per_origin > 1 || !mixed());
-    return tells ? double(visible[o]) / weight[o] : value();
-  }
-  Rgb dimmed() const { return all_ > 0 ? arriving * (1 / all_) : Rgb{}; }
-  double variance() const { return mixed() ? stratified * value() * (1 - value()) / (rays_per_origin * origins_per_patch) : 0; }
-  /// Mean over origins of the variance of value(o).
-  double origin_variance() const {
-    if (!mixed() || rays_per_origin < 2) return 0;
-    double sum = 0;
-    for (int o = 0; o < origins_per_patch; ++o) sum += value(o) * (1 - value(o));
-    return sum / origins_per_patch / (rays_per_origin - 1);
-  }
-  /// Sums up what was counted so far.
-  void finish() {
-    all_ = all_visible_ = 0;
-    for (int o = 0; o < origins_per_patch; ++o) all_ += weight[o], all_visible_ += visible[o];
-  }
-
- private:
-  double all_ = 0, all_visible_ = 0;
-};
 
 /// A plane over the patch's strata with the means that its quarters have.
 double at_origin(const std::array<double, 4>& quarter, int o) {
@@ -193,7 +160,8 @@ class ShadowBatch {
   void aim(const Receiver& receiver, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
     RandomStream random(seed_, receiver.patch);
     const PatchPoints from = sample_points(scene_, receiver.shape, random);
-    const std::uint64_t scramble = mix_bits(seed_ ^ mix_bits(receiver.patch.bits()) ^ (emitter.root + 1ull) * 0x9e3779b97f4a7c15u);
+    const std::uint64_t scramble =
+        mix_bits(seed_ ^ mix_bits(receiver.patch.bits()) ^ (emitter.root + 1ull) * 0x9e3779b97f4a7c15u);
     const std::uint32_t turn = static_cast<std::uint32_t>(scramble >> 60) ^ (round * 5);
     for (std::uint32_t o = 0; o < origins_per_patch; ++o) {
       const Uv target = sobol_point(16 * round + (o ^ turn), static_cast<std::uint32_t>(scramble),
@@ -257,7 +225,8 @@ class ShadowBatch {
     const Rgb mean = (1 / samples.count) * samples.sum;
     light_[r].irradiance += mean;
     for (float& there : light_[r].at_origin) there += static_cast<float>(mean.mean());
-    light_[r].variance += static_cast<float>(std::max(0.0, samples.squares / samples.count - mean.mean() * mean.mean()) / samples.count);
+    light_[r].variance +=
+        static_cast<float>(std::max(0.0, samples.squares / samples.count - mean.mean() * mean.mean()) / samples.count);
   }
   struct Samples {
     Rgb sum;
@@ -277,7 +246,8 @@ class ShadowBatch {
       const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
       const Emitter& emitter = emitters_[drawn.emitter];
       const double scale = scene_.frame().metres_per_unit, area = scene_.mesh().roots()[emitter.root].area / (scale * scale);
-      set_ray(n / RayPacket::width, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root, {random.next(), random.next()});
+      set_ray(n / RayPacket::width, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root,
+              {random.next(), random.next()});
       if (drawn.probability > 0) brings[n] = (area / (std::numbers::pi * drawn.probability)) * emitter.emission;
       if (o + 1 == RayPacket::width) hide(n / RayPacket::width, receiver);
     }

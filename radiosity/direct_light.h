@@ -29,9 +29,9 @@ struct Receiver {
   std::uint16_t hidden_origins = 0;
 };
 
-/// Adds the light of every one of `emitters` to `light`, one entry per receiver: the exact form factor (Lambert's contour formula,
-/// mean over the four quarters of the patch) times the visible fraction. That fraction is the mean visibility of shadow rays
-/// between stratified points of patch and emitter, weighted by the kernel cos cos / r2; sixteen rays, and 48 more where they
+/// Adds the light of every one of `emitters` to `light`, one entry per receiver: the exact form factor (Lambert's contour
+/// formula, mean over the four quarters of the patch) times the visible fraction. That fraction is the mean visibility of shadow
+/// rays between stratified points of patch and emitter, weighted by the kernel cos cos / r2; sixteen rays, and 48 more where they
 /// disagree on an emitter that matters. In parallel; does not depend on the number of threads.
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
                       std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light);

@@ -9,8 +9,8 @@ namespace alvor {
 
 /// What linear interpolation between leaves misses, RMS over the leaf. Each smooth neighbour's value is compared with the leaf's
 /// linear prediction of it, and the other way; the larger difference is f'' h2 / 2 for a parabola, whose interpolation errs by
-/// 0.18 of that along one axis: 0.25 of the RMS over all neighbours. At a crease, up to which the leaf extrapolates, it is 0.4. Mean over
-/// bands, W/m2. The spans are indexed by node.
+/// 0.18 of that along one axis: 0.25 of the RMS over all neighbours. At a crease, up to which the leaf extrapolates, it is 0.4.
+/// Mean over bands, W/m2. The spans are indexed by node.
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                            std::span<const Rgb> value, std::span<const LeafSlope> slope);
 

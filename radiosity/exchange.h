@@ -8,8 +8,8 @@
 
 namespace alvor {
 
-/// The system x = e + rho F x on its way to its solution, where F are the transport rows, x is the radiosity that was distributed so
-/// far, and e + rho F x - x is unshot. Used by one thread at a time.
+/// The system x = e + rho F x on its way to its solution, where F are the transport rows, x is the radiosity that was distributed
+/// so far, and e + rho F x - x is unshot. Used by one thread at a time.
 class Exchange {
  public:
   virtual ~Exchange() = default;

@@ -11,10 +11,11 @@
 
 namespace alvor {
 
-/// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at all
-/// patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual (GCR,
-/// Eisenstat, Elman & Schultz 1983). Bands are systems of their own. Where that gains nearly nothing it takes a plain step. It needs no transpose of the rows, and its residual, times
-/// the reflectance, is the unshot radiosity, of either sign. Results do not depend on the number of threads.
+/// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at
+/// all patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual
+/// (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own. Where that gains nearly nothing it takes a plain step.
+/// It needs no transpose of the rows, and its residual, times the reflectance, is the unshot radiosity, of either sign. Results
+/// do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
   /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
@@ -53,10 +54,10 @@ class Gathering : public Exchange {
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const Rgb> own_radiosity_;
   std::vector<const std::uint32_t*> hit_leaf_;
-  std::vector<Radiosity> leaving_;           // by leaf: what the next gathering finds
-  std::vector<Rgb> irradiance_, residual_;   // by patch
-  std::vector<Rgb> power_weight_;            // by patch: area times reflectance
-  std::vector<Direction> directions_;        // the last ones, in a ring
+  std::vector<Radiosity> leaving_;          // by leaf: what the next gathering finds
+  std::vector<Rgb> irradiance_, residual_;  // by patch
+  std::vector<Rgb> power_weight_;           // by patch: area times reflectance
+  std::vector<Direction> directions_;       // the last ones, in a ring
   std::size_t steps_ = 0;
   double unshot_power_ = 0;
   Rgb unshot_sum_, ambient_gain_;

@@ -1,10 +1,11 @@
 #include "radiosity/irradiance_field.h"
 
+#include "radiosity/field_equations.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace alvor {
 
@@ -14,7 +15,6 @@ constexpr double narrow_window = 1.5, wide_window = 3.5;  // radius, in edges of
 constexpr double near_rows = 1.6;                         // closer than this rows count by quarters, else as a whole
 constexpr double misfit_allowed = 1.3;                    // of the noise's variance
 constexpr double residual_noise = 0.8;                    // of a sample's variance is left after a fit that knows it
-constexpr double kernel_response = 0.7;                    // mean of w2 over that of w, where the fit's centre listens
 constexpr std::size_t most_rows = 64;                     // in a window
 constexpr double same_surface = 0.9;                      // cosine between normals
 
@@ -23,11 +23,6 @@ struct Sample {
   Vec3 at;
   Rgb irradiance;
   double rays = 0;
-};
-
-/// A sample seen from a row's centre, in units of the row's edge.
-struct Seen {
-  double s, t, rays, r, g, b;
 };
 
 /// The rows of a window, each once, in the order of arrival.
@@ -62,72 +57,9 @@ struct Window {
   double noise = 0;  ///< variance of the mean over bands of one ray
 };
 
-/// Normal equations of a weighted fit: for each function of the basis its products with the basis, then with the bands.
-template <int n>
-class NormalEquations {
- public:
-  void add(const Seen& sample, double weight) {
-    const double s = sample.s, t = sample.t;
-    const double row[width] = {1, s, t, s * s, s * t, t * t, sample.r, sample.g, sample.b, 0, 0, 0};
-    for (int i = 0; i < n; ++i) {
-      const double scale = weight * row[i];
-      for (int j = 0; j < width; ++j) sums_[i][j] += scale * row[j];
-    }
-    const double mean = (sample.r + sample.g + sample.b) / 3;
-    squares_ += weight * mean * mean;
-    weight_over_rays_ += weight / sample.rays;
-    ++count_;
-  }
-
-  struct Solution {
-    std::array<Rgb, 6> coefficient{};
-    double misfit = 0;    ///< mean square residual
-    double response = 0;  ///< of the centre to one ray's variance
-    double noise = 0;     ///< that a sample has of one ray's variance
-  };
-  std::optional<Solution> solve() const {
-    if (count_ < n + n / 2) return std::nullopt;
-    double a[n][width];
-    for (int i = 0; i < n; ++i) std::copy_n(sums_[i], width, a[i]);
-    for (int i = 0; i < n; ++i) a[i][response] = i == 0;
-    for (int i = 0; i < n; ++i)
-      if (!eliminate(a, i)) return std::nullopt;
-    Solution solution;
-    double explained = 0;
-    for (int i = 0; i < n; ++i) {
-      solution.coefficient[i] = {a[i][bands], a[i][bands + 1], a[i][bands + 2]};
-      explained += solution.coefficient[i].mean() * (sums_[i][bands] + sums_[i][bands + 1] + sums_[i][bands + 2]) / 3;
-    }
-    const double freedom = 1 - double(n) / count_;
-    solution.misfit = std::max(0.0, squares_ - explained) / sums_[0][0] / freedom;
-    solution.response = kernel_response * a[0][response];
-    solution.noise = weight_over_rays_ / sums_[0][0];
-    return solution;
-  }
-
- private:
-  static constexpr int bands = 6, response = 9, width = 12;
-  /// Gauss-Jordan; the matrix is symmetric positive definite, so pivots come in order.
-  bool eliminate(double (&a)[n][width], int i) const {
-    if (!(a[i][i] > 1e-9 * sums_[i][i])) return false;
-    const double inverse = 1 / a[i][i];
-    for (int j = 0; j < width; ++j) a[i][j] *= inverse;
-    for (int k = 0; k < n; ++k) {
-      if (k == i) continue;
-      const double factor = a[k][i];
-      for (int j = 0; j < width; ++j) a[k][j] -= factor * a[i][j];
-    }
-    return true;
-  }
-
-  double sums_[n][width] = {};
-  double squares_ = 0, weight_over_rays_ = 0;
-  int count_ = 0;
-};
-
 template <int n>
 auto fit(const Window& window, double radius) {
-  NormalEquations<n> equations;
+  FieldEquations<n> equations;
   const double inverse = 1 / (radius * radius);
   for (std::size_t k = 0; k < window.count; ++k) {
     const Seen& sample = window.samples[k];
@@ -291,7 +223,9 @@ Rgb FieldFit::at(Vec3 point) const {
   const double u = dot(point - centre, s), v = dot(point - centre, t);
   const Rgb value = coefficient[0] + u * coefficient[1] + v * coefficient[2] + (u * u) * coefficient[3] +
                     (u * v) * coefficient[4] + (v * v) * coefficient[5];
-  const auto within = [](double x, double l, double h) { return std::min(std::max({x, l - (h - l) / 2, l / 4}), h + (h - l) / 2); };
+  const auto within = [](double x, double l, double h) {
+    return std::min(std::max({x, l - (h - l) / 2, l / 4}), h + (h - l) / 2);
+  };
   return {within(value.r, low.r, high.r), within(value.g, low.g, high.g), within(value.b, low.b, high.b)};
 }
 

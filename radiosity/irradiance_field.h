@@ -21,10 +21,10 @@ using RowSamples = std::array<QuarterSample, 4>;
 struct FieldFit {
   Vec3 centre, s, t;               ///< coordinates of a point are dot(point - centre, s), dot(point - centre, t)
   std::array<Rgb, 6> coefficient;  ///< of 1, s, t, s2, s t, t2
-  Rgb low, high;                  ///< of the samples it was fitted to
-  double variance = 0;            ///< of the value at the centre by noise, mean over bands, (W/m2)^2
-  double window_misfit = 0;       ///< what the samples of the window differ from it beyond their noise, (W/m2)^2
-  double squared_misfit = 0;      ///< what the row's samples differ from it beyond their noise, (W/m2)^2; by chance negative
+  Rgb low, high;                   ///< of the samples it was fitted to
+  double variance = 0;             ///< of the value at the centre by noise, mean over bands, (W/m2)^2
+  double window_misfit = 0;        ///< what the samples of the window differ from it beyond their noise, (W/m2)^2
+  double squared_misfit = 0;       ///< what the row's samples differ from it beyond their noise, (W/m2)^2; by chance negative
 
   static FieldFit constant(const Rgb& value) { return {{}, {}, {}, {value}, value, value}; }
   void add(const Rgb& irradiance) {

@@ -36,8 +36,9 @@ void LightTree::build(std::uint32_t node, std::span<std::uint32_t> emitters) {
   const Emitter& emitter = emitters_[emitters[0]];
   const auto corners = scene_.corners(emitter.root);
   const double scale = scene_.frame().metres_per_unit;
-  Node leaf{corners[0], corners[0], scene_.mesh().roots()[emitter.root].normal, emitter.power / (scale * scale), emitter.emission.sum(),
-            0, emitters[0]};
+  Node leaf{
+      corners[0], corners[0], scene_.mesh().roots()[emitter.root].normal, emitter.power / (scale * scale), emitter.emission.sum(),
+      0,          emitters[0]};
   for (const Vec3 corner : corners) leaf.low = lower(leaf.low, corner), leaf.high = upper(leaf.high, corner);
   nodes_[node] = leaf;
 }
@@ -57,8 +58,13 @@ void LightTree::split(std::uint32_t node, std::span<std::uint32_t> emitters) {
   build(left + 1, emitters.subspan(half));
   const Node &a = nodes_[left], &b = nodes_[left + 1];
   const bool is_parallel = dot(a.normal, b.normal) > 1 - 1e-9;
-  nodes_[node] = {lower(a.low, b.low), upper(a.high, b.high), is_parallel ? a.normal : Vec3{}, a.power + b.power,
-                  std::max(a.emission, b.emission), left, 0};
+  nodes_[node] = {lower(a.low, b.low),
+                  upper(a.high, b.high),
+                  is_parallel ? a.normal : Vec3{},
+                  a.power + b.power,
+                  std::max(a.emission, b.emission),
+                  left,
+                  0};
 }
 
 double LightTree::bound(std::uint32_t node, Vec3 centre, double radius, Vec3 normal) const {
@@ -71,7 +77,8 @@ double LightTree::bound(std::uint32_t node, Vec3 centre, double radius, Vec3 nor
   const double distance = std::max(0.0, length(outside) - radius), squared = distance * distance;
   const double cosines = std::min(1.0, above / std::max(distance, 1e-12)) *
                          (dot(n.normal, n.normal) > 0 ? std::min(1.0, before / std::max(distance, 1e-12)) : 1);
-  return n.power * cosines < n.emission * std::numbers::pi * squared ? n.power * cosines / (std::numbers::pi * squared) : n.emission;
+  return n.power * cosines < n.emission * std::numbers::pi * squared ? n.power * cosines / (std::numbers::pi * squared)
+                                                                     : n.emission;
 }
 
 LightChoice LightTree::choose(Vec3 centre, double radius, Vec3 normal) const {

@@ -27,12 +27,13 @@ class LightTree {
  public:
   LightTree(const LocalScene& scene, std::span<const Emitter> emitters);
 
-  /// Chooses for a patch in a sphere about `centre` (local units) with unit `normal`: strongest bounds first, until no cluster that
-  /// is left could bring more than a small share of all, or there are many. Nothing is lost: what is not single is in the rest.
+  /// Chooses for a patch in a sphere about `centre` (local units) with unit `normal`: strongest bounds first, until no cluster
+  /// that is left could bring more than a small share of all, or there are many. Nothing is lost: what is not single is in the
+  /// rest.
   LightChoice choose(Vec3 centre, double radius, Vec3 normal) const;
 
-  /// An emitter of the rest, as likely as its share of the bounds, and that probability. Nothing where no bound is left on the way
-  /// down. Requires: choice.rest_bound > 0, the same receiver.
+  /// An emitter of the rest, as likely as its share of the bounds, and that probability. Nothing where no bound is left on the
+  /// way down. Requires: choice.rest_bound > 0, the same receiver.
   struct Drawn {
     std::uint32_t emitter = 0;
     double probability = 0;
@@ -42,10 +43,10 @@ class LightTree {
  private:
   struct Node {
     Vec3 low, high;
-    Vec3 normal;              ///< of all its emitters, or zero
-    double power = 0;         ///< E times local area, summed over bands
-    double emission = 0;      ///< largest E, summed over bands
-    std::uint32_t left = 0;   ///< right is left + 1; 0: a leaf
+    Vec3 normal;             ///< of all its emitters, or zero
+    double power = 0;        ///< E times local area, summed over bands
+    double emission = 0;     ///< largest E, summed over bands
+    std::uint32_t left = 0;  ///< right is left + 1; 0: a leaf
     std::uint32_t emitter = 0;
   };
   void build(std::uint32_t node, std::span<std::uint32_t> emitters);

@@ -18,7 +18,7 @@ constexpr double unseen_detail = 2;  // of the squared error: shadows smaller th
 constexpr double noise_in_display = 0.16;  // of the variance of direct light: vertices average over the leaves around them
 constexpr double noise_of_origins = 1.7;   // of their variance, and what it may be above that by chance
 constexpr double misfit_at_centre = 0.25;  // of the squared misfit in a window, that its fit has in the middle
-constexpr double contact_error = 0.1;  // of a patch's irradiance: how much it varies where a solid's outline crosses it
+constexpr double contact_error = 0.1;      // of a patch's irradiance: how much it varies where a solid's outline crosses it
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
@@ -193,7 +193,8 @@ ErrorEstimate SolveState::estimate() {
   for (std::size_t p = 0; p < patches_.size(); ++p)
     if (!patches_[p].row->is_hidden()) area += patches_[p].area;
   const double mean = power / area;
-  for (double* part : {&error.interpolation, &error.misfit, &error.sampling}) *part = std::sqrt(std::max(0.0, *part) / area) / mean;
+  for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
+    *part = std::sqrt(std::max(0.0, *part) / area) / mean;
   error.unshot = unshot_fraction();
   if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
   return error;

@@ -19,8 +19,8 @@
 namespace alvor {
 
 /// Direct light is sharp and indirect light smooth, so they do not share a depth: rows hang on the leaves of a coarse forest,
-/// direct light on those of a finer one that contains it. One pass is: trace_new_rows, add_new_direct_light, begin_exchange, sweeps
-/// of the exchange, refine.
+/// direct light on those of a finer one that contains it. One pass is: trace_new_rows, add_new_direct_light, begin_exchange,
+/// sweeps of the exchange, refine.
 class SolveState {
  public:
   SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget);
@@ -37,8 +37,8 @@ class SolveState {
   /// Requires: begin_exchange before, not refined since.
   Exchange& exchange() { return *exchange_; }
   const Exchange& exchange() const { return *exchange_; }
-  /// The system of the current rows as if nothing had been shot: all that is unshot is direct light on its receivers. Borrows from
-  /// the state, until it is refined. Requires: begin_exchange before.
+  /// The system of the current rows as if nothing had been shot: all that is unshot is direct light on its receivers. Borrows
+  /// from the state, until it is refined. Requires: begin_exchange before.
   Shooting unshot_system();
   /// Makes irradiance by patch what leaf_values() shows.
   void show(std::span<const Rgb> irradiance);
@@ -103,7 +103,7 @@ class SolveState {
   std::unique_ptr<LightTree> light_tree_;  ///< where there are many
   bool emission_by_rows_ = false;
   std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
-  double area_ = 0;           ///< of all roots, m2
+  double area_ = 0;                   ///< of all roots, m2
   double emitted_power_ = 0;
   double waiting_power_ = 0;  ///< of the emitters whose light was not added yet
 
@@ -123,9 +123,9 @@ class SolveState {
 
   // Of the current pass.
   std::vector<ShootingPatch> patches_;
-  std::vector<NodeIndex> patch_row_;              // row node of each patch
-  std::vector<NodeIndex> patch_leaves_;           // leaf nodes, patch after patch
-  std::vector<Rgb> own_radiosity_;                // by place of patch_leaves_
+  std::vector<NodeIndex> patch_row_;     // row node of each patch
+  std::vector<NodeIndex> patch_leaves_;  // leaf nodes, patch after patch
+  std::vector<Rgb> own_radiosity_;       // by place of patch_leaves_
   std::unique_ptr<Exchange> exchange_;
   std::vector<Candidate> candidates_;
 };

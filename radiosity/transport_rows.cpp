@@ -217,7 +217,7 @@ std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSet
   std::vector<TransportRow> rows(patches.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
     RowTracer tracer(scene, directions, seed, budget);
-    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p) 
+    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
       tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
   });
   return rows;

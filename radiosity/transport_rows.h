@@ -38,10 +38,10 @@ struct TransportRow {
 /// How many rays a row begins with: 16 from each of 16 origins, or from one origin a quarter, for patches that matter little.
 enum class RowSize : std::uint8_t { whole, small };
 
-/// Traces one row for each patch: 256 (or 64) cosine-distributed rays from 16 (or 4) stratified origins. An origin most of whose rays meet backs
-/// is hidden (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance of its visible
-/// half. In a closed scene a ray that slips through a seam is sent once more beside it, so that rows sum to 1. Rows come in the
-/// order of `patches` and do not depend on the number of threads. Requires: as many shapes and sizes as patches.
+/// Traces one row for each patch: 256 (or 64) cosine-distributed rays from 16 (or 4) stratified origins. An origin most of whose
+/// rays meet backs is hidden (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance
+/// of its visible half. In a closed scene a ray that slips through a seam is sent once more beside it, so that rows sum to 1.
+/// Rows come in the order of `patches` and do not depend on the number of threads. Requires: as many shapes and sizes as patches.
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
                                      RayBudget& budget);

@@ -1,0 +1,81 @@
+#pragma once
+// Weighted least squares of a polynomial in two coordinates to samples of irradiance.
+
+#include "solution/rgb.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+namespace alvor {
+
+/// A sample seen from a row's centre, in units of the row's edge.
+struct Seen {
+  double s, t, rays, r, g, b;
+};
+
+/// Normal equations of a weighted fit: for each function of the basis its products with the basis, then with the bands.
+template <int n>
+class FieldEquations {
+ public:
+  void add(const Seen& sample, double weight) {
+    const double s = sample.s, t = sample.t;
+    const double row[width] = {1, s, t, s * s, s * t, t * t, sample.r, sample.g, sample.b, 0, 0, 0};
+    for (int i = 0; i < n; ++i) {
+      const double scale = weight * row[i];
+      for (int j = 0; j < width; ++j) sums_[i][j] += scale * row[j];
+    }
+    const double mean = (sample.r + sample.g + sample.b) / 3;
+    squares_ += weight * mean * mean;
+    weight_over_rays_ += weight / sample.rays;
+    ++count_;
+  }
+
+  struct Solution {
+    std::array<Rgb, 6> coefficient{};
+    double misfit = 0;    ///< mean square residual
+    double response = 0;  ///< of the centre to one ray's variance
+    double noise = 0;     ///< that a sample has of one ray's variance
+  };
+  std::optional<Solution> solve() const {
+    if (count_ < n + n / 2) return std::nullopt;
+    double a[n][width];
+    for (int i = 0; i < n; ++i) std::copy_n(sums_[i], width, a[i]);
+    for (int i = 0; i < n; ++i) a[i][response] = i == 0;
+    for (int i = 0; i < n; ++i)
+      if (!eliminate(a, i)) return std::nullopt;
+    Solution solution;
+    double explained = 0;
+    for (int i = 0; i < n; ++i) {
+      solution.coefficient[i] = {a[i][bands], a[i][bands + 1], a[i][bands + 2]};
+      explained += solution.coefficient[i].mean() * (sums_[i][bands] + sums_[i][bands + 1] + sums_[i][bands + 2]) / 3;
+    }
+    const double freedom = 1 - double(n) / count_;
+    solution.misfit = std::max(0.0, squares_ - explained) / sums_[0][0] / freedom;
+    solution.response = kernel_response * a[0][response];
+    solution.noise = weight_over_rays_ / sums_[0][0];
+    return solution;
+  }
+
+ private:
+  static constexpr double kernel_response = 0.7;  // mean of w2 over that of w, where the fit's centre listens
+  static constexpr int bands = 6, response = 9, width = 12;
+  /// Gauss-Jordan; the matrix is symmetric positive definite, so pivots come in order.
+  bool eliminate(double (&a)[n][width], int i) const {
+    if (!(a[i][i] > 1e-9 * sums_[i][i])) return false;
+    const double inverse = 1 / a[i][i];
+    for (int j = 0; j < width; ++j) a[i][j] *= inverse;
+    for (int k = 0; k < n; ++k) {
+      if (k == i) continue;
+      const double factor = a[k][i];
+      for (int j = 0; j < width; ++j) a[k][j] -= factor * a[i][j];
+    }
+    return true;
+  }
+
+  double sums_[n][width] = {};
+  double squares_ = 0, weight_over_rays_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace alvor
