@@ -14,11 +14,12 @@ namespace {
 constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-constexpr double unseen_detail = 2;  // of the squared error: shadows smaller than what sixteen origins tell, from many scenes
-constexpr double noise_in_display = 0.16;  // of the variance of direct light: vertices average over the leaves around them
-constexpr double noise_of_origins = 1.7;   // of their variance, and what it may be above that by chance
-constexpr double misfit_at_centre = 0.25;  // of the squared misfit in a window, that its fit has in the middle
-constexpr double contact_error = 0.1;      // of a patch's irradiance: how much it varies where a solid's outline crosses it
+constexpr double unseen_detail = 2.5;  // of the squared error: shadows smaller than what sixteen origins tell, from many scenes
+constexpr double noise_in_display = 0.16;      // of the variance of direct light: vertices average over the leaves around them
+constexpr double noise_in_differences = 0.25;  // of that variance: what noise adds to a squared interpolation error
+constexpr double noise_of_origins = 1.7;       // of their variance, and what it may be above that by chance
+constexpr double misfit_at_centre = 0.25;      // of the squared misfit in a window, that its fit has in the middle
+constexpr double contact_error = 0.1;          // of a patch's irradiance: how much it varies where a solid's outline crosses it
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
@@ -169,14 +170,16 @@ double SolveState::estimate_leaves(ErrorEstimate& error) {
   auto errors = interpolation_errors(field, slope);
   for_each_leaf(field, [&](std::size_t n) {
     const NodeIndex leaf = patch_leaves_[n];
-    errors[n] = leaf_area_[leaf] * std::max(squared(errors[n]), squared_contrast(leaf, irradiance[leaf], slope[leaf]));
+    const double smooth = squared(errors[n]) - noise_in_differences * direct_[leaf].variance;
+    const double contrast = squared_contrast(leaf, irradiance[leaf], slope[leaf]);
+    errors[n] = leaf_area_[leaf] * (contrast > 0 ? std::max(smooth, contrast) : smooth);
   });
   for (std::size_t n = 0; n < patch_leaves_.size(); ++n) {
     const NodeIndex leaf = patch_leaves_[n];
     const double noise = noise_in_display * leaf_area_[leaf] * direct_[leaf].variance;
     error.interpolation += unseen_detail * errors[n];
     error.sampling += noise;
-    errors[n] += noise;
+    errors[n] = std::max(0.0, errors[n]) + noise;
   }
   add_candidates(Candidate::Kind::split_leaf, patch_leaves_, errors, rays_per_leaf_split);
   return power;

@@ -23,7 +23,8 @@ double error(const ComparedPoint& p) { return p.solution - p.truth; }
 double squared_error(const ComparedPoint& p) { return error(p) * error(p) - p.truth_variance; }
 double truth(const ComparedPoint& p) { return p.truth; }
 
-double positive_root(double square) { return std::sqrt(std::max(0.0, square)); }
+/// Not a number stays what it is: a solution of such values is not a good one.
+double positive_root(double square) { return square < 0 ? 0 : std::sqrt(square); }
 
 /// Of a mean over points of `influence`, whose mean is 0.
 template <class Influence>

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -82,6 +83,11 @@ TEST(ErrorStatistics, LessErrorThanNoiseIsNone) {
   const std::vector<ComparedPoint> points{{1, 1.01, 1e-3}, {1, 0.99, 1e-3}};
   EXPECT_EQ(error_statistics(points).nrmse.value, 0);
   EXPECT_EQ(error_statistics({}).nrmse.high, 0);
+}
+
+TEST(ErrorStatistics, AValueThatIsNotANumberIsNoSmallError) {
+  const ComparedPoint points[] = {{.solution = 1, .truth = 1}, {.solution = std::numeric_limits<double>::quiet_NaN(), .truth = 1}};
+  EXPECT_FALSE(error_statistics(points).nrmse.value <= 1e9);
 }
 
 TEST(ErrorStatistics, LightInTheDarkIsAnInfiniteError) {
