@@ -2,6 +2,7 @@
 
 #include "radiosity/form_factor.h"
 #include "radiosity/medium.h"
+#include "radiosity/quarter_plane.h"
 #include "radiosity/ray_source.h"
 #include "radiosity/visible_fraction.h"
 
@@ -21,15 +22,6 @@ constexpr double worth_a_closer_look = 0.1;  // of what arrives: weaker emitters
 constexpr float short_of_emitter = 1 - 1e-4f;
 
 using Lanes = std::array<float, RayPacket::width>;
-
-/// A plane over the patch's strata with the means that its quarters have.
-double at_origin(const std::array<double, 4>& quarter, int o) {
-  const double u = (2 * (o >> 2 & 1) + (o & 1)) / 4.0 + 0.125 - 0.5, v = (2 * (o >> 3) + (o >> 1 & 1)) / 4.0 + 0.125 - 0.5;
-  const double mean = (quarter[0] + quarter[1] + quarter[2] + quarter[3]) / 4;
-  const double along_u = quarter[1] + quarter[3] - quarter[0] - quarter[2];
-  const double along_v = quarter[2] + quarter[3] - quarter[0] - quarter[1];
-  return std::max(0.0, mean + u * along_u + v * along_v);
-}
 
 /// The shadow rays of a batch of receivers.
 class ShadowBatch {
@@ -134,11 +126,9 @@ class ShadowBatch {
     const Rgb arriving = medium_.is_clear() ? visible * emission : form_factor * (lit.fraction.dimmed() * emission);
     light.irradiance += arriving;
     const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / form_factor;
-    const bool is_quad = scene_.root(receivers_[lit.receiver].shape.root).is_quad;
-    for (int o = 0; o < origins_per_patch; ++o) {
-      const double here = is_quad ? at_origin(lit.form_factor, o) : lit.form_factor[o / 4];
-      light.at_origin[o] += static_cast<float>(scale * here * lit.fraction.value(o));
-    }
+    const QuarterPlane unblocked(lit.form_factor, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
+    for (int o = 0; o < origins_per_patch; ++o)
+      light.at_origin[o] += static_cast<float>(scale * unblocked.at_origin(o) * lit.fraction.value(o));
     light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());
     light.origin_variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.origin_variance());
   }
