@@ -1,19 +1,12 @@
 #include "meshing/leaf_gradient.h"
 
+#include "meshing/tangent_frame.h"
+
 #include <algorithm>
 
 namespace alvor {
 
 namespace {
-
-struct TangentFrame {
-  Vec3 s, t;
-  explicit TangentFrame(Vec3 n) {
-    const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    s = normalized(cross(axis, n));
-    t = cross(n, s);
-  }
-};
 
 /// Accumulates sum w (d d^T) g = sum w d dv for each band.
 struct NormalEquations {

@@ -34,7 +34,12 @@ class ShadowBatch {
         receivers_(receivers),
         seed_(seed),
         budget_(budget),
-        light_(light) {}
+        light_(light) {
+    for (const Receiver& receiver : receivers) {
+      RandomStream random(seed, receiver.patch);
+      points_.push_back(sample_points(scene, receiver.shape, random));
+    }
+  }
 
   void add_all() {
     for (std::size_t r = 0; r < receivers_.size(); ++r)
@@ -139,7 +144,7 @@ class ShadowBatch {
     blocked_.resize(rays_.size());
     for (std::size_t n = 0; n < rays_.size(); ++n) {
       const Lit& pair = lit_[lit[n / rounds]];
-      aim(receivers_[pair.receiver], emitters_[pair.emitter], first_round + static_cast<std::uint32_t>(n % rounds), n);
+      aim(pair.receiver, emitters_[pair.emitter], first_round + static_cast<std::uint32_t>(n % rounds), n);
     }
     if (rays_.empty()) return;
     budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
@@ -147,9 +152,9 @@ class ShadowBatch {
   }
 
   /// Ray o goes from origin o to a point of the emitter; `round` counts the packets of one pair.
-  void aim(const Receiver& receiver, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
-    RandomStream random(seed_, receiver.patch);
-    const PatchPoints from = sample_points(scene_, receiver.shape, random);
+  void aim(std::size_t r, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
+    const Receiver& receiver = receivers_[r];
+    const PatchPoints& from = points_[r];
     const std::uint64_t scramble =
         mix_bits(seed_ ^ mix_bits(receiver.patch.bits()) ^ (emitter.root + 1ull) * 0x9e3779b97f4a7c15u);
     const std::uint32_t turn = static_cast<std::uint32_t>(scramble >> 60) ^ (round * 5);
@@ -224,8 +229,8 @@ class ShadowBatch {
   };
   Samples sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Receiver& receiver = receivers_[r];
-    RandomStream place(seed_, receiver.patch), random(seed_ + 1, receiver.patch);
-    const PatchPoints from = sample_points(scene_, receiver.shape, place);
+    const PatchPoints& from = points_[r];
+    RandomStream random(seed_ + 1, receiver.patch);
     const Sphere sphere = around(receiver.shape);
     rays_.resize(packets_of_rest);
     weights_.resize(packets_of_rest);
@@ -263,6 +268,7 @@ class ShadowBatch {
   std::uint64_t seed_;
   RayBudget& budget_;
   std::span<DirectLight> light_;
+  std::vector<PatchPoints> points_;  // by receiver
   std::vector<Lit> lit_;
   std::vector<RayPacket> rays_;
   std::vector<Lanes> weights_;

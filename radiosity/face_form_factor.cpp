@@ -1,5 +1,6 @@
 #include "radiosity/face_form_factor.h"
 
+#include "meshing/tangent_frame.h"
 #include "radiosity/hemicube.h"
 #include "radiosity/sampling.h"
 
@@ -57,9 +58,8 @@ class FacePoints {
 struct Frame {
   Vec3 s, t, n;
   Frame(Vec3 normal, double angle) : n(normal) {
-    const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 a = normalized(cross(axis, n)), b = cross(n, a);
-    s = std::cos(angle) * a + std::sin(angle) * b;
+    const TangentFrame plane(n);
+    s = std::cos(angle) * plane.s + std::sin(angle) * plane.t;
     t = cross(n, s);
   }
   Vec3 out(Vec3 local) const { return local.x * s + local.y * t + local.z * n; }

@@ -39,34 +39,28 @@ Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std
       leaving_(leaf_count),
       irradiance_(std::move(irradiance)),
       residual_(patches.size()) {
-  find_weights();
+  for (const ShootingPatch& patch : patches_) power_weight_.push_back(patch.area * patch.reflectance);
+  ambient_gain_ = ambient_gain(patches_);
   leaving_ = radiosity();
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
   find_unshot();
 }
 
-void Gathering::find_weights() {
-  Rgb reflected, kept;
-  double area = 0;
-  for (const ShootingPatch& patch : patches_) {
-    area += patch.area;
-    reflected += power_weight_.emplace_back(patch.area * patch.reflectance);
-    if (patch.row->rays > 0) kept += (patch.area / patch.row->rays) * patch.row->stored_weight();
-  }
-  if (area == 0) return;
-  const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
-  ambient_gain_ = {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
+template <class Leaving>
+void Gathering::spread(std::span<Radiosity> by_leaf, Leaving&& leaving) const {
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      by_leaf[leaf_of_place_[k]] = padded(leaving(p, k));
+  });
 }
 
 std::vector<Gathering::Radiosity> Gathering::radiosity() const {
-  std::vector<Radiosity> leaving(leaving_.size());
-  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    const Rgb reflected = patches_[p].reflectance * (irradiance_[p] + residual_[p]);
-    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      leaving[leaf_of_place_[k]] = padded(own_radiosity_[k] + reflected);
+  std::vector<Radiosity> by_leaf(leaving_.size());
+  spread(by_leaf, [this](std::size_t p, std::uint32_t place) {
+    return own_radiosity_[place] + patches_[p].reflectance * (irradiance_[p] + residual_[p]);
   });
-  return leaving;
+  return by_leaf;
 }
 
 Rgb Gathering::row_times_radiosity(std::size_t p) const {
@@ -115,11 +109,7 @@ void Gathering::make_conjugate(Direction& next) const {
 std::size_t Gathering::sweep() {
   if (unshot_power_ == 0) return 0;
   Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
-  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    const Radiosity reflected = padded(patches_[p].reflectance * residual_[p]);
-    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      leaving_[leaf_of_place_[k]] = reflected;
-  });
+  spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
   const std::vector<Rgb> plain = next.change;

@@ -45,7 +45,9 @@ class Gathering : public Exchange {
   void make_conjugate(Direction& next) const;
   void advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change);
   void remember(Direction direction);
-  void find_weights();
+  /// Sets what leaves each leaf to leaving(patch, place). In parallel.
+  template <class Leaving>
+  void spread(std::span<Radiosity> by_leaf, Leaving&& leaving) const;
   void find_unshot();
   Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
 

@@ -1,5 +1,6 @@
 #include "radiosity/irradiance_field.h"
 
+#include "meshing/tangent_frame.h"
 #include "radiosity/field_equations.h"
 
 #include <tbb/parallel_for.h>
@@ -28,14 +29,13 @@ struct Sample {
 /// The rows of a window, each once, in the order of arrival.
 class RowSet {
  public:
-  bool add(std::uint32_t row) {
+  void add(std::uint32_t row) {
     std::size_t slot = (row * 0x9e3779b1u >> 23) % slots;
     for (; table_[slot] != 0; slot = (slot + 1) % slots)
-      if (table_[slot] == row + 1) return false;
-    if (count_ == most_rows) return false;
+      if (table_[slot] == row + 1) return;
+    if (count_ == most_rows) return;
     table_[slot] = row + 1;
     rows_[count_++] = row;
-    return true;
   }
   std::size_t size() const { return count_; }
   std::uint32_t operator[](std::size_t n) const { return rows_[n]; }
@@ -47,11 +47,8 @@ class RowSet {
   std::size_t count_ = 0;
 };
 
-/// Samples around one row, as far as it has been looked.
+/// Samples around one row.
 struct Window {
-  RowSet rows;
-  std::size_t looked_at = 0;  ///< of the rows
-  double noisy = 0;           ///< of the rows: their noise is known
   std::array<Seen, 2 * most_rows + 64> samples;
   std::size_t count = 0;
   double noise = 0;  ///< variance of the mean over bands of one ray
@@ -84,9 +81,7 @@ class Fitter {
     FieldFit field = frame_of(n);
     if (known_[n].is_dark) return field;
     Window window;
-    window.rows.add(static_cast<std::uint32_t>(n));
-    field.low = field.high = known_[n].whole.irradiance;
-    look_around(n, wide_window, field, window);
+    look_around(n, field, window);
     choose_fit(n, window, field);
     field.squared_misfit = misfit_of(n, window, field);
     return field;
@@ -129,36 +124,35 @@ class Fitter {
   }
 
   FieldFit frame_of(std::size_t n) const {
-    const Vec3 normal = known_[n].normal, axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 s = normalized(cross(axis, normal));
+    const TangentFrame plane(known_[n].normal);
     FieldFit field;
     field.centre = centre_[rows_[n]];
-    field.s = s / known_[n].edge;
-    field.t = cross(normal, s) / known_[n].edge;
+    field.s = plane.s / known_[n].edge;
+    field.t = plane.t / known_[n].edge;
     return field;
   }
 
-  /// Breadth first over smooth neighbours, on from where it ended.
-  void look_around(std::size_t n, double radius, FieldFit& field, Window& window) const {
+  /// Breadth first over smooth neighbours.
+  void look_around(std::size_t n, FieldFit& field, Window& window) const {
     const Known& own = known_[n];
-    const double squared_reach = radius * radius * own.edge * own.edge;
-    double noise = window.noise * window.noisy;
-    for (std::size_t next = 0; next < window.rows.size(); ++next) {
-      const Known& row = known_[window.rows[next]];
-      if (next >= window.looked_at) {
-        const Vec3 d = row.whole.at - field.centre;
-        add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
-        if (row.noise >= 0) noise += row.noise, window.noisy += 1;
-      }
-      for (const NodeIndex other : neighbours_[window.rows[next]]) {
+    const double squared_reach = wide_window * wide_window * own.edge * own.edge;
+    RowSet rows;
+    rows.add(static_cast<std::uint32_t>(n));
+    field.low = field.high = own.whole.irradiance;
+    double noise = 0, noisy = 0;
+    for (std::size_t next = 0; next < rows.size(); ++next) {
+      const Known& row = known_[rows[next]];
+      const Vec3 d = row.whole.at - field.centre;
+      add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
+      if (row.noise >= 0) noise += row.noise, noisy += 1;
+      for (const NodeIndex other : neighbours_[rows[next]]) {
         const Known& candidate = known_[place_[other]];
         const Vec3 away = centre_[other] - field.centre;
         if (dot(away, away) < squared_reach && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface)
-          window.rows.add(place_[other]);
+          rows.add(place_[other]);
       }
     }
-    window.looked_at = window.rows.size();
-    if (window.noisy > 0) window.noise = noise / window.noisy;
+    if (noisy > 0) window.noise = noise / noisy;
   }
   static void add_samples(const Known& row, bool is_near, FieldFit& field, Window& window) {
     if (!is_near) return add_sample(row.whole, field, window);

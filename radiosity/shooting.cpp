@@ -6,6 +6,19 @@
 
 namespace alvor {
 
+Rgb ambient_gain(std::span<const ShootingPatch> patches) {
+  Rgb reflected, kept;
+  double area = 0;
+  for (const ShootingPatch& patch : patches) {
+    area += patch.area;
+    reflected += patch.area * patch.reflectance;
+    if (!patch.row->is_hidden()) kept += (patch.area / patch.row->ray_count()) * patch.row->stored_weight();
+  }
+  if (area == 0) return {};
+  const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
+  return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
+}
+
 Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
     : patches_(patches),
       leaves_(std::move(leaves)),
@@ -23,7 +36,7 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
     for (std::uint32_t k = 0; k < patch.leaf_count; ++k) patch_of_leaf_[patch.first_leaf + k] = p;
   }
   transpose();
-  find_ambient_gain();
+  ambient_gain_ = ambient_gain(patches_);
 }
 
 // Counting sort of all hits by the patch that was hit.
@@ -59,21 +72,6 @@ Rgb Shooting::row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last
     for (std::uint64_t h = first; h < last; ++h) sum += widen(weight[h - first_hit_[patch]]) * radiosity(hit_leaf_[h]);
   }
   return sum;
-}
-
-void Shooting::find_ambient_gain() {
-  Rgb reflected;
-  double area = 0;
-  Rgb kept;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    area += patches_[p].area;
-    reflected += patches_[p].area * patches_[p].reflectance;
-    const Rgb arriving = row_sum(p, first_hit_[p], first_hit_[p + 1], [](std::uint32_t) { return Rgb{1, 1, 1}; });
-    kept += (patches_[p].area * receivers_[p].weight) * arriving;
-  }
-  if (area == 0) return;
-  const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
-  ambient_gain_ = {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
 }
 
 void Shooting::find_unshot() {

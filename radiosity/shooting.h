@@ -19,6 +19,9 @@ struct ShootingPatch {
   double area = 0;  ///< m2
 };
 
+/// Ambient irradiance (see Exchange) of one unit of unshot power, 1/m2.
+Rgb ambient_gain(std::span<const ShootingPatch> patches);
+
 /// A leaf's share of the residual.
 struct ShootingLeaf {
   double area = 0;  ///< m2
@@ -91,7 +94,6 @@ class Shooting {
   };
   void transpose();
   void transpose_weights();
-  void find_ambient_gain();
   /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, weighted.
   template <class Radiosity>
   Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;

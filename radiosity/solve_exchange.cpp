@@ -10,7 +10,7 @@
 namespace alvor {
 
 // Leaves only ever get finer, so each look-up starts where the last one ended.
-const std::vector<NodeIndex>& SolveState::find_hit_leaves(NodeIndex row) {
+void SolveState::find_hit_leaves(NodeIndex row) {
   const auto& hits = rows_[row].hits;
   auto& found = hit_leaves_[row];
   if (found.size() != hits.size()) {
@@ -18,7 +18,6 @@ const std::vector<NodeIndex>& SolveState::find_hit_leaves(NodeIndex row) {
     for (const PatchId hit : hits) found.push_back(hit.root_face());
   }
   for (std::size_t h = 0; h < hits.size(); ++h) found[h] = leaf_forest_.leaf_at(hits[h], found[h]);
-  return found;
 }
 
 void SolveState::begin_exchange() {

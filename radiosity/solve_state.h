@@ -80,7 +80,7 @@ class SolveState {
   NodeIndex leaf_node_of_row(NodeIndex row) const;
   Rgb row_emission(std::uint32_t root) const;
   bool add_rays(std::span<const NodeIndex> rows);
-  const std::vector<NodeIndex>& find_hit_leaves(NodeIndex row);
+  void find_hit_leaves(NodeIndex row);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
   RowSamples samples_of(NodeIndex row, std::span<const Rgb> radiosity) const;
   std::vector<Rgb> radiosity() const;
