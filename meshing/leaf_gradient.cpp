@@ -2,6 +2,8 @@
 
 #include "meshing/tangent_frame.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace alvor {
@@ -55,15 +57,15 @@ void SmoothNeighbours::add(NodeIndex node) {
 std::vector<SmoothNeighbours> NeighbourTable::of(std::span<const NodeIndex> leaves) {
   known_.resize(forest_.node_count());
   is_known_.resize(forest_.node_count());
-  std::vector<SmoothNeighbours> all;
-  all.reserve(leaves.size());
-  for (const NodeIndex leaf : leaves) {
+  std::vector<SmoothNeighbours> all(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    const NodeIndex leaf = leaves[n];
     const bool is_fresh =
-        is_known_[leaf] && std::ranges::all_of(known_[leaf], [this](NodeIndex n) { return forest_.is_leaf(n); });
+        is_known_[leaf] && std::ranges::all_of(known_[leaf], [this](NodeIndex other) { return forest_.is_leaf(other); });
     if (!is_fresh) known_[leaf] = SmoothNeighbours(forest_, leaf);
     is_known_[leaf] = 1;
-    all.push_back(known_[leaf]);
-  }
+    all[n] = known_[leaf];
+  });
   return all;
 }
 

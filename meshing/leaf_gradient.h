@@ -42,7 +42,7 @@ class SmoothNeighbours {
 class NeighbourTable {
  public:
   explicit NeighbourTable(const PatchForest& forest) : forest_(forest) {}
-  /// In the order of `leaves`. Requires: leaves of the forest as it is now.
+  /// In the order of `leaves`. Requires: leaves of the forest as it is now, each once. In parallel.
   std::vector<SmoothNeighbours> of(std::span<const NodeIndex> leaves);
 
  private:

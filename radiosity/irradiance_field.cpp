@@ -196,7 +196,7 @@ class Fitter {
   static void take(const Solution& solution, const Window& window, FieldFit& field) {
     field.coefficient = solution.coefficient;
     field.variance = solution.response * window.noise;
-    field.window_misfit = std::max(0.0, solution.misfit - solution.noise * window.noise);
+    field.window_misfit = std::max(0.0, solution.misfit - misfit_allowed * solution.noise * window.noise);
   }
   void take_own_mean(std::size_t n, const Window& window, FieldFit& field) const {
     field.coefficient = {known_[n].whole.irradiance};

@@ -23,7 +23,7 @@ struct FieldFit {
   std::array<Rgb, 6> coefficient;  ///< of 1, s, t, s2, s t, t2
   Rgb low, high;                   ///< of the samples it was fitted to
   double variance = 0;             ///< of the value at the centre by noise, mean over bands, (W/m2)^2
-  double window_misfit = 0;        ///< what the samples of the window differ from it beyond their noise, (W/m2)^2
+  double window_misfit = 0;        ///< what the samples of the window differ from it beyond what noise may, (W/m2)^2
   double squared_misfit = 0;       ///< what the row's samples differ from it beyond their noise, (W/m2)^2; by chance negative
 
   static FieldFit constant(const Rgb& value) { return {{}, {}, {}, {value}, value, value}; }

@@ -246,6 +246,8 @@ bool SolveState::split_row(NodeIndex row) {
       row_fit_[child] = row_fit_[parent];
       row_irradiance_[child] = row_fit_[parent].at(row_centre_[child]);
     }
+    rows_[parent] = {};
+    hit_leaves_[parent] = {};
   }
   return done;
 }
