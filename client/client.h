@@ -49,9 +49,11 @@ class Client {
   struct Watch {
     std::string epoch;
     SolutionMirror mirror;
+    Detail detail = Detail::exact;
   };
   /// Follows the solve into `watch.mirror` until it has ended, and returns it. Acknowledges each frame before `on_frame` is
-  /// called, so that a slow callback does not hold the stream. Starts afresh when the server's epoch changed. When `stop` is
+  /// called, so that a slow callback does not hold the stream. Starts afresh when the server does not know
+  /// the mirror's state. When `stop` is
   /// requested the watch ends and the last known state is returned; the solve goes on.
   v1::Solve watch_solve(const std::string& name, Watch& watch, const std::function<void(const Watch&)>& on_frame,
                         std::stop_token stop = {});

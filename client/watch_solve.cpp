@@ -14,15 +14,19 @@ v1::WatchSolveRequest request_for(const std::string& name, const Client::Watch& 
   request.set_name(name);
   request.set_epoch(watch.epoch);
   request.set_base_revision(watch.mirror.revision());
+  request.set_detail(watch.detail == Detail::display ? v1::DETAIL_DISPLAY : v1::DETAIL_EXACT);
   return request;
 }
 
-// Revisions of another epoch say nothing: the server then begins at 0, and so does the mirror.
 void apply(const v1::WatchSolveResponse& frame, Client::Watch& watch) {
-  if (frame.epoch() != watch.epoch) watch = {frame.epoch(), {}};
+  if (frame.reset()) watch.mirror = {};
+  watch.epoch = frame.epoch();
   Delta delta;
   if (const auto fault = decode(frame, delta)) lost(fault->text());
-  if (const auto fault = watch.mirror.apply(delta)) lost(*fault);
+  if (const auto fault = watch.mirror.apply(delta)) {
+    watch.mirror = {};
+    lost(*fault);
+  }
 }
 
 // NOT_FOUND means that the watch has just ended, which is no harm.
@@ -55,7 +59,7 @@ v1::Solve Client::watch_solve(const std::string& name, Watch& watch, const std::
   for (v1::WatchSolveResponse frame; !stop.stop_requested() && reader->Read(&frame);) {
     apply(frame, watch);
     ++frames;
-    if (!frame.ended()) acknowledge(*solves_, frame, frames);
+    if (!frame.ended() && !frame.has_closing()) acknowledge(*solves_, frame, frames);
     on_frame(watch);
     if (!frame.ended()) continue;
     (void)reader->Finish();  // everything has arrived: how the call ends does not matter any more

@@ -14,8 +14,15 @@ PatchForest::PatchForest(const BaseMesh& mesh) : mesh_(&mesh), leaf_count_(mesh.
 std::vector<NodeIndex> PatchForest::leaves() const {
   std::vector<NodeIndex> all;
   all.reserve(leaf_count_);
-  for (NodeIndex node = 0; node < ids_.size(); ++node)
-    if (is_leaf(node)) all.push_back(node);
+  std::vector<NodeIndex> open;
+  for (NodeIndex root = 0; root < mesh_->roots().size(); ++root)
+    for (open.push_back(root); !open.empty();) {
+      const NodeIndex node = open.back();
+      open.pop_back();
+      if (is_leaf(node)) all.push_back(node);
+      else
+        for (int k = 3; k >= 0; --k) open.push_back(child(node, k));
+    }
   return all;
 }
 

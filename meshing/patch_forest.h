@@ -33,6 +33,7 @@ class PatchForest {
   /// Requires: !is_leaf(node), 0 <= k < 4.
   NodeIndex child(NodeIndex node, int k) const { return first_child_[node] + k; }
   PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, ids_[node]); }
+  /// In the order of their ids.
   std::vector<NodeIndex> leaves() const;
 
   /// The leaf that contains `place`, or is it, or lies below it at its first corner. O(levels).

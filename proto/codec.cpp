@@ -1,5 +1,7 @@
 #include "proto/codec.h"
 
+#include "proto/leaf_codec.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,6 +85,7 @@ v1::Step encode(const Step& step) {
   message.set_unshot_fraction(step.unshot_fraction);
   message.set_estimated_error(step.estimated_error);
   *message.mutable_ambient_irradiance() = encode(step.ambient_irradiance);
+  message.set_displayed_error(step.displayed_error);
   return message;
 }
 
@@ -97,6 +100,7 @@ Step decode(const v1::Step& message) {
   step.unshot_fraction = message.unshot_fraction();
   step.estimated_error = message.estimated_error();
   step.ambient_irradiance = decode(message.ambient_irradiance());
+  step.displayed_error = message.displayed_error();
   return step;
 }
 
@@ -104,31 +108,20 @@ void encode(const Delta& delta, v1::WatchSolveResponse& message) {
   message.set_from_revision(delta.from_revision);
   message.set_to_revision(delta.to_revision);
   message.set_head_revision(delta.head);
-  message.mutable_patches()->Reserve(static_cast<int>(delta.values.size()));
-  message.mutable_irradiance()->Reserve(static_cast<int>(3 * delta.values.size()));
-  for (const LeafValue& value : delta.values) {
-    message.add_patches(value.patch.bits());
-    for (const float band : {value.irradiance.r, value.irradiance.g, value.irradiance.b}) message.add_irradiance(band);
-  }
+  if (delta.state_hash) message.set_state_hash(*delta.state_hash);
+  *message.mutable_leaves() = encode_leaves(delta.values, delta.detail, delta.coding);
   for (const Step& step : delta.steps) *message.add_steps() = encode(step);
 }
 
 std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta) {
-  const auto patches = static_cast<std::uint64_t>(message.patches_size());
-  const auto bands = static_cast<std::uint64_t>(message.irradiance_size());
-  if (bands != 3 * patches)
-    return Fault{"irradiance", "has " + count_of(bands, "numbers for ") + count_of(patches, "patches, needs three each")};
   delta = {};
   delta.from_revision = message.from_revision();
   delta.to_revision = message.to_revision();
   delta.head = message.head_revision();
-  delta.values.reserve(patches);
-  const float* band = message.irradiance().data();
-  for (const std::uint64_t bits : message.patches()) {
-    delta.values.push_back({PatchId::from_bits(bits), {band[0], band[1], band[2]}});
-    if (!delta.values.back().irradiance.is_finite()) return Fault{"patch " + std::to_string(bits), "irradiance is not finite"};
-    band += 3;
-  }
+  if (message.has_state_hash()) delta.state_hash = message.state_hash();
+  delta.detail = message.leaves().detail() == v1::DETAIL_DISPLAY ? Detail::display : Detail::exact;
+  if (auto fault = decode_leaves(message.leaves(), delta.values)) return Fault{"leaves: " + fault->place, fault->reason};
+  if (delta.values.size() > 0) delta.coding = SharedExponent(message.leaves().scale());
   for (const v1::Step& step : message.steps()) delta.steps.push_back(decode(step));
   return std::nullopt;
 }

@@ -218,7 +218,7 @@ Rgb FieldFit::at(Vec3 point) const {
   const Rgb value = coefficient[0] + u * coefficient[1] + v * coefficient[2] + (u * u) * coefficient[3] +
                     (u * v) * coefficient[4] + (v * v) * coefficient[5];
   const auto within = [](double x, double l, double h) {
-    return std::min(std::max({x, l - (h - l) / 2, l / 4}), h + (h - l) / 2);
+    return std::max(0.0, std::min(std::max({x, l - (h - l) / 2, l / 4}), h + (h - l) / 2));
   };
   return {within(value.r, low.r, high.r), within(value.g, low.g, high.g), within(value.b, low.b, high.b)};
 }

@@ -32,7 +32,7 @@ struct FieldFit {
     low += irradiance;
     high += irradiance;
   }
-  /// Within the range of the samples, widened by half.
+  /// Within the range of the samples, widened by half, and not negative.
   Rgb at(Vec3 point) const;
 };
 

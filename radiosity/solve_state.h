@@ -54,7 +54,7 @@ class SolveState {
   /// Display only, see Shooting::ambient_irradiance. Zero before the first shots.
   Rgb ambient_irradiance() const { return exchange_ ? exchange_->ambient_irradiance() : Rgb{}; }
 
-  /// Irradiance of every leaf. Before the first shots this is direct light alone.
+  /// Irradiance of every leaf, in the order of their ids. Before the first shots this is direct light alone.
   std::vector<LeafValue> leaf_values() const;
   ErrorEstimate estimate();
   /// Splits patches and adds rays where that pays most; ends the exchange. False if nothing was done: the limits forbid every

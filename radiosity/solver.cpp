@@ -17,6 +17,7 @@ namespace {
 
 constexpr double pass_unshot = 0.1;       // of the tolerance: a pass shoots down to this fraction of the emitted power
 constexpr double final_unshot = 1e-6;     // of the emitted power
+constexpr double displayed_error = 0.5;  // of the estimated error: how far a display may lag behind
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
@@ -135,6 +136,7 @@ class Run {
     step.leaves = state_.leaf_count();
     step.unshot_fraction = state_.unshot_fraction();
     step.estimated_error = error_.total();
+    step.displayed_error = displayed_error * std::min(1.0, error_.total());
     if (shows_ambient(options_.strategy)) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();

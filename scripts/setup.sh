@@ -6,9 +6,11 @@ packages=(
   g++ cmake ninja-build ccache mold pkg-config
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
+  libzstd-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev
   gnuplot-nox
+  python3-grpcio python3-zstandard python3-protobuf
 )
 # Node.js may come from elsewhere, with npm inside.
 command -v node > /dev/null || packages+=(nodejs)

@@ -12,9 +12,10 @@
 
 namespace alvor {
 
-/// One WatchSolveResponse, all but its watch_id, as it goes over the wire.
+/// One WatchSolveResponse, all but what is a watcher's own, as it goes over the wire.
 struct Frame {
   grpc::Slice bytes;
+  Detail detail = Detail::exact;
   Cursor from, next;
   std::uint64_t to_revision = 0;
   std::uint64_t head = 0;
@@ -24,18 +25,20 @@ struct Frame {
 /// Thread-safe.
 class FrameSource {
  public:
-  static constexpr std::size_t default_leaves = 50'000;  ///< of 20 bytes: about 1 MB, well below gRPC's 4 MB for a message
-
-  FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves = default_leaves);
+  /// `max_leaves` to a frame, if that is less than what a frame holds.
+  FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves = SolutionLog::unlimited);
 
   StoredSolve& solve() const { return *solve_; }
+  const std::string& epoch() const { return epoch_; }
   /// Whether frame_after(cursor) would say anything that `cursor` does not know.
   bool has_news(const Cursor& cursor) const;
   /// The same frame to all who ask from the same place, for as long as any of them keeps it.
-  std::shared_ptr<const Frame> frame_after(const Cursor& cursor);
+  std::shared_ptr<const Frame> frame_after(const Cursor& cursor, Detail detail);
+  /// Says nothing but that the server stops.
+  std::shared_ptr<const Frame> closing_frame(const Cursor& cursor, const v1::Closing& closing) const;
 
  private:
-  std::shared_ptr<const Frame> encode_frame(const Cursor& cursor, bool ended) const;
+  std::shared_ptr<const Frame> encode_frame(const Cursor& cursor, Detail detail, bool ended) const;
 
   const std::shared_ptr<StoredSolve> solve_;
   const std::string epoch_;

@@ -44,8 +44,8 @@ SolveService::Reactor* SolveService::DeleteSolve(Context* context, const v1::Del
   return answer(context, logger_, "DeleteSolve", [&] { solves_.remove(request->name()); });
 }
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context*, const grpc::ByteBuffer* request) {
-  auto* call = new WatchCall(watches_, logger_);  // deletes itself
+grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context* context, const grpc::ByteBuffer* request) {
+  auto* call = new WatchCall(*context, watches_, logger_);  // deletes itself
   const grpc::Status status = attempt(logger_, "WatchSolve", [&] {
     const v1::WatchSolveRequest watch = parse(*request);
     call->start(solves_.find(watch.name()), watch);

@@ -2,46 +2,72 @@
 
 #include "server/status_error.h"
 
+#include <algorithm>
+
 namespace alvor {
 
-Watch::Watch(std::shared_ptr<FrameSource> frames, Cursor start, Clock::duration min_interval, FrameSink& sink)
-    : frames_(std::move(frames)), min_interval_(min_interval), sink_(sink), cursor_(start), sent_revision_(start.revision) {}
+Watch::Watch(std::shared_ptr<FrameSource> frames, const WatchPlan& plan, FrameSink& sink)
+    : frames_(std::move(frames)), plan_(plan), sink_(sink), cursor_(plan.start), sent_revision_(plan.start.base) {}
 
 std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) {
   turn_asked_ = false;  // before anything is looked at: what happens from here on asks again
   std::scoped_lock hold(lock_);
   if (timer_ && now >= *timer_) timer_.reset();
-  if (finished_ || under_way_) return std::nullopt;
+  if (finished_) return std::nullopt;
+  if (under_way_) return see_to_write(now);
+  if (end_ && closing_) {
+    write(frames_->closing_frame(cursor_, *closing_), now);
+    closing_.reset();
+    return std::nullopt;
+  }
   if (end_) {
     finish(*end_);
     return std::nullopt;
   }
-  if (!may_send()) return std::nullopt;
-  if (now < next_frame_) return wait_until(next_frame_);
+  if (!is_window_open()) return std::nullopt;
+  if (now < next_due()) return wait_until(next_due());
   send(now);
+  return see_to_write(now);
+}
+
+Watch::Clock::time_point Watch::next_due() const {
+  if (sent_ == 0) return Clock::time_point::min();
+  return frames_->has_news(cursor_) ? next_frame_ : std::max(next_frame_, last_write_ + bookmark_interval);
+}
+
+std::optional<Watch::Clock::time_point> Watch::see_to_write(Clock::time_point now) {
+  if (!under_way_) return std::nullopt;
+  if (now < last_write_ + patience) return wait_until(last_write_ + patience);
+  sink_.give_up();
   return std::nullopt;
 }
 
-bool Watch::may_send() const { return sent_ - acknowledged_ < window && (sent_ == 0 || frames_->has_news(cursor_)); }
-
-// One pending timer is enough: later turns for the same wait ask for none.
+// An earlier turn asks again for what is due later.
 std::optional<Watch::Clock::time_point> Watch::wait_until(Clock::time_point due) {
-  if (timer_) return std::nullopt;
+  if (timer_ && *timer_ <= due) return std::nullopt;
   return timer_ = due;
 }
 
 void Watch::send(Clock::time_point now) {
+  std::shared_ptr<const Frame> frame;
   try {
-    under_way_ = frames_->frame_after(cursor_);
+    frame = frames_->frame_after(cursor_, plan_.detail);
   } catch (const std::exception& fault) {
     finish({grpc::INTERNAL, std::string("cannot encode a frame: ") + fault.what()});
     return;
   }
   ++sent_;
-  cursor_ = under_way_->next;
-  sent_revision_ = under_way_->to_revision;
-  next_frame_ = now + min_interval_;
-  if (under_way_->last) end_ = grpc::Status::OK;
+  cursor_ = frame->next;
+  sent_revision_ = frame->to_revision;
+  const std::chrono::duration<double> by_bytes(static_cast<double>(frame->bytes.size()) / plan_.max_bytes_per_s);
+  next_frame_ = now + std::max(plan_.min_interval, std::chrono::duration_cast<Clock::duration>(by_bytes));
+  if (frame->last) end_ = grpc::Status::OK;
+  write(std::move(frame), now);
+}
+
+void Watch::write(std::shared_ptr<const Frame> frame, Clock::time_point now) {
+  under_way_ = std::move(frame);
+  last_write_ = now;
   sink_.write(*under_way_);
 }
 
@@ -53,7 +79,9 @@ void Watch::finish(const grpc::Status& status) {
 void Watch::written(bool ok) {
   std::scoped_lock hold(lock_);
   under_way_.reset();
-  if (!ok) end_ = grpc::Status(grpc::CANCELLED, "the watcher has gone");
+  if (ok) return;
+  end_ = grpc::Status(grpc::CANCELLED, "the watcher has gone");
+  closing_.reset();
 }
 
 void Watch::acknowledge(std::uint64_t frame_count, std::uint64_t revision) {
@@ -70,6 +98,13 @@ void Watch::acknowledge(std::uint64_t frame_count, std::uint64_t revision) {
 void Watch::stop(const grpc::Status& reason) {
   std::scoped_lock hold(lock_);
   if (!end_) end_ = reason;
+}
+
+void Watch::close(const v1::Closing& closing) {
+  std::scoped_lock hold(lock_);
+  if (end_) return;
+  closing_ = closing;
+  end_ = grpc::Status(grpc::UNAVAILABLE, closing.reason());
 }
 
 std::uint64_t Watch::frames_sent() const {

@@ -12,10 +12,12 @@ namespace alvor {
 namespace {
 
 constexpr double default_rate_hz = 60, least_rate_hz = 0.01;
+constexpr std::uint64_t least_bytes_per_s = 1000;
 
-grpc::Slice id_field(const std::string& id) {
+template <class Set>
+grpc::Slice field(Set&& set) {
   v1::WatchSolveResponse message;
-  message.set_watch_id(id);
+  set(message);
   return grpc::Slice(message.SerializeAsString());
 }
 
@@ -25,37 +27,49 @@ Watch::Clock::duration interval_of(double rate_hz) {
   return std::chrono::duration_cast<Watch::Clock::duration>(std::chrono::duration<double>(1 / rate_hz));
 }
 
-// A revision of another epoch says nothing here.
-Cursor start_of(const v1::WatchSolveRequest& request, const std::string& epoch, const SolutionLog& log) {
-  if (request.epoch() != epoch) return {};
-  const Cursor start{.revision = request.base_revision()};
-  if (const std::uint64_t head = log.head(); start.revision > head)
-    throw StatusError(grpc::OUT_OF_RANGE,
-                      "base_revision: " + std::to_string(start.revision) + " is beyond the newest, " + std::to_string(head));
-  return start;
+WatchPlan plan_of(const v1::WatchSolveRequest& request) {
+  WatchPlan plan;
+  if (!v1::Detail_IsValid(request.detail())) throw invalid_argument("detail: is not one");
+  plan.detail = request.detail() == v1::DETAIL_DISPLAY ? Detail::display : Detail::exact;
+  plan.min_interval = interval_of(request.max_rate_hertz());
+  if (const std::uint64_t bytes = request.max_bytes_per_second(); bytes > 0) {
+    if (bytes < least_bytes_per_s) throw invalid_argument("max_bytes_per_second: must be 0 or at least 1000");
+    plan.max_bytes_per_s = static_cast<double>(bytes);
+  }
+  return plan;
+}
+
+bool is_known(const v1::WatchSolveRequest& request, const std::string& epoch, const SolutionLog& log) {
+  return request.epoch() == epoch && request.base_revision() <= log.head();
 }
 
 }  // namespace
 
-WatchCall::WatchCall(Watches& watches, spdlog::logger& logger)
-    : watches_(watches), logger_(logger), id_(random_id('w')), id_field_(id_field(id_)) {}
+WatchCall::WatchCall(grpc::CallbackServerContext& context, Watches& watches, spdlog::logger& logger)
+    : context_(context),
+      watches_(watches),
+      logger_(logger),
+      id_(random_id('w')),
+      id_field_(field([this](auto& message) { message.set_watch_id(id_); })) {}
 
 void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request) {
-  const Cursor start = start_of(request, watches_.epoch(), solve->log);
-  const auto interval = interval_of(request.max_rate_hertz());
-  auto watch = std::make_shared<Watch>(watches_.frames_of(solve), start, interval, *this);
+  WatchPlan plan = plan_of(request);
+  if (is_known(request, watches_.epoch(), solve->log)) plan.start.base = request.base_revision();
+  else if (request.base_revision() > 0) reset_field_ = field([](auto& message) { message.set_reset(true); });
+  auto watch = std::make_shared<Watch>(watches_.frames_of(solve), plan, *this);
   // Known by its id before its first frame can be acknowledged.
   watches_.add(id_, watch);
   solve_ = solve;
   watch_ = watch;
   listener_ = solve->log.listen([&watches = watches_, watch] { watches.ask_for_turn(watch); });
   watches_.ask_for_turn(watch_);
-  logger_.info("watcher {} of {} joined at revision {}", id_, solve->name, start.revision);
+  logger_.info("watcher {} of {} joined at revision {}", id_, solve->name, plan.start.base);
 }
 
 void WatchCall::write(const Frame& frame) {
-  const grpc::Slice parts[] = {frame.bytes, id_field_};
-  bytes_ = grpc::ByteBuffer(parts, 2);
+  const grpc::Slice parts[] = {frame.bytes, id_field_, reset_field_};
+  bytes_ = grpc::ByteBuffer(parts, 3);
+  reset_field_ = {};
   StartWrite(&bytes_);
 }
 

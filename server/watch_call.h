@@ -15,28 +15,31 @@ class logger;
 namespace alvor {
 
 /// Deletes itself when gRPC is done with it, which is never before it was finished: by its watch once that was started, by its
-/// maker if starting failed. Raw bytes, because a frame is encoded once for all watchers; the watch's id is appended, as protobuf
-/// allows.
+/// maker if starting failed. Raw bytes, because a frame is encoded once for all watchers; what is this watcher's own is appended,
+/// as protobuf allows.
 class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public FrameSink {
  public:
   /// `watches` and `logger` must outlive the server's calls.
-  WatchCall(Watches& watches, spdlog::logger& logger);
+  WatchCall(grpc::CallbackServerContext& context, Watches& watches, spdlog::logger& logger);
 
   /// Throws StatusError: the call must then be finished by the caller.
   void start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request);
 
  private:
   void write(const Frame& frame) override;
+  void give_up() override { context_.TryCancel(); }
   void finish(const grpc::Status& status) override { Finish(status); }
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
   void OnDone() override;
 
+  grpc::CallbackServerContext& context_;
   Watches& watches_;
   spdlog::logger& logger_;
   const std::string id_;
   const grpc::Slice id_field_;
+  grpc::Slice reset_field_;  ///< of the first frame, if the base is not known
   std::shared_ptr<StoredSolve> solve_;
   std::shared_ptr<Watch> watch_;  ///< set once it was started
   std::uint64_t listener_ = 0;

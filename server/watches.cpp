@@ -46,7 +46,10 @@ void Watches::stop_all() {
     for (const auto& [id, watch] : watches_) all.push_back(watch);
   }
   for (const auto& watch : all) {
-    watch->stop({grpc::UNAVAILABLE, "the server is stopping"});
+    v1::Closing closing;
+    closing.set_reason("the server is stopping");
+    closing.mutable_retry_after()->set_seconds(1);
+    watch->close(closing);
     ask_for_turn(watch);
   }
 }

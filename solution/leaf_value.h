@@ -26,7 +26,9 @@ struct Step {
   std::uint64_t leaves = 0;    ///< leaves now
   double unshot_fraction = 1;  ///< sum |unshot power| / emitted power
   double estimated_error = 1;  ///< estimate of nRMSE of the irradiance against truth
-  Rgb ambient_irradiance;      ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
+  /// What is displayed may differ from the solution by this share of itself, or of an eighth of the mean where that is more.
+  double displayed_error = 0;
+  Rgb ambient_irradiance;  ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
   friend bool operator==(const Step&, const Step&) = default;
 };
 

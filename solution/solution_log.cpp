@@ -1,23 +1,39 @@
 #include "solution/solution_log.h"
 
+#include "solution/leaf_merge.h"
+
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 
 namespace alvor {
+
+namespace {
+
+constexpr std::size_t leaves_per_block = 512;
+constexpr double darkest = 0.125;  // of the mean: what is darker may be off by as much as if it were this bright
+
+/// Of nine: as many as stay below the displayed error, since a mantissa is 256 or more.
+int dropped_bits(double displayed_error) { return displayed_error > 0 ? std::clamp(std::ilogb(512 * displayed_error), 0, 4) : 0; }
+
+std::size_t blocks_of(std::size_t leaves) { return (leaves + leaves_per_block - 1) / leaves_per_block; }
+
+}  // namespace
 
 void SolutionLog::publish(std::span<const LeafValue> changed, Step step) {
   {
     std::scoped_lock hold(lock_);
+    assert(head_ < std::numeric_limits<Revision>::max());
+    assert(std::ranges::is_sorted(changed, {}, &LeafValue::patch));
     ++head_;
-    for (const LeafValue& value : changed) {
-      const auto found = slot_of_.find(value.patch);
-      if (found != slot_of_.end()) {
-        slots_[found->second] = {value, head_};
-        continue;
-      }
-      replace_ancestor(value.patch);
-      slot_of_.emplace(value.patch, slots_.size());
-      slots_.push_back({value, head_});
+    make_room_for(changed);
+    std::vector<std::size_t> places;
+    if (!find_places(leaves_.patch, changed, places)) {
+      split_for(changed);
+      find_places(leaves_.patch, changed, places);
     }
+    const double mean = leaves_.patch.empty() ? 0 : sum_ / static_cast<double>(leaves_.patch.size());
+    for (std::size_t n = 0; n < changed.size(); ++n) set(places[n], changed[n].irradiance, step.displayed_error, mean);
     step.revision = head_;
     step.step = steps_.size();
     steps_.push_back(step);
@@ -26,20 +42,83 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step) {
   wake_listeners();
 }
 
-void SolutionLog::replace_ancestor(PatchId patch) {
-  while (!patch.is_root()) {
-    patch = patch.parent();
-    const auto found = slot_of_.find(patch);
-    if (found == slot_of_.end()) continue;
-    const std::size_t hole = found->second;
-    slot_of_.erase(found);
-    if (hole + 1 != slots_.size()) {
-      slots_[hole] = slots_.back();
-      slot_of_[slots_[hole].value.patch] = hole;
+/// Leaves that are new belong to the revision being made, whatever their values are; those implied are as old as what they
+/// inherit.
+void SolutionLog::split_for(std::span<const LeafValue> changed) {
+  Leaves next;
+  const auto append = [&](PatchId patch, std::size_t from, bool is_new) {
+    const bool known = from != no_leaf;
+    next.patch.push_back(patch);
+    next.irradiance.push_back(known ? leaves_.irradiance[from] : RgbF{});
+    next.shown.push_back(known ? leaves_.shown[from] : 0);
+    const auto now = static_cast<Revision>(head_);
+    next.display.changed_at.push_back(is_new ? now : leaves_.display.changed_at[from]);
+    next.exact.changed_at.push_back(is_new ? now : leaves_.exact.changed_at[from]);
+  };
+  const auto keep = [&](std::size_t i) { append(leaves_.patch[i], i, false); };
+  const auto set = [&](std::size_t from, std::size_t j) {
+    append(changed[j].patch, from, from == no_leaf || leaves_.patch[from] != changed[j].patch);
+  };
+  const auto inherit = [&](std::size_t from, PatchId patch) { append(patch, from, from == no_leaf); };
+  LeafMerge(std::span<const PatchId>(leaves_.patch), changed, keep, set, inherit).run();
+  leaves_ = std::move(next);
+  sum_up();
+}
+
+void SolutionLog::sum_up() {
+  sum_ = 0;
+  for (const RgbF& irradiance : leaves_.irradiance) sum_ += irradiance.mean();
+  for (const Detail detail : {Detail::display, Detail::exact}) {
+    Tier& all = detail == Detail::display ? leaves_.display : leaves_.exact;
+    all.hash = {};
+    all.newest.assign(blocks_of(leaves_.patch.size()), 0);
+    for (std::size_t leaf = 0; leaf < leaves_.patch.size(); ++leaf) {
+      all.hash.add(value(leaf, detail));
+      Revision& newest = all.newest[leaf / leaves_per_block];
+      newest = std::max(newest, all.changed_at[leaf]);
     }
-    slots_.pop_back();
-    return;
   }
+}
+
+/// The scale follows the brightest value; when it has to change, all that is shown does.
+void SolutionLog::make_room_for(std::span<const LeafValue> changed) {
+  float largest = 0;
+  for (const LeafValue& value : changed) largest = std::max(largest, value.irradiance.max());
+  if (largest == 0 || (has_coding_ && largest <= coding_.largest())) return;
+  coding_ = SharedExponent::for_values_up_to(largest);
+  has_coding_ = true;
+  for (std::size_t leaf = 0; leaf < leaves_.patch.size(); ++leaf) {
+    leaves_.shown[leaf] = coding_.pack(leaves_.irradiance[leaf]);
+    leaves_.display.changed_at[leaf] = static_cast<Revision>(head_);
+  }
+  sum_up();
+}
+
+void SolutionLog::set(std::size_t leaf, const RgbF& irradiance, double displayed_error, double mean) {
+  RgbF& held = leaves_.irradiance[leaf];
+  if (held != irradiance) {
+    sum_ += double(irradiance.mean()) - held.mean();
+    leaves_.exact.hash.remove(value(leaf, Detail::exact));
+    held = irradiance;
+    leaves_.exact.hash.add(value(leaf, Detail::exact));
+    note_change(leaves_.exact, leaf);
+  }
+  const bool is_new = leaves_.display.changed_at[leaf] == head_;
+  const double off = absolute(irradiance - coding_.unpack(leaves_.shown[leaf])).max();
+  if (is_new || off > displayed_error * std::max<double>(irradiance.max(), darkest * mean))
+    show(leaf, coding_.pack(irradiance, dropped_bits(displayed_error)));
+}
+
+void SolutionLog::show(std::size_t leaf, std::uint32_t word) {
+  if (word == leaves_.shown[leaf]) return;
+  leaves_.display.hash.remove(value(leaf, Detail::display));
+  leaves_.shown[leaf] = word;
+  leaves_.display.hash.add(value(leaf, Detail::display));
+  note_change(leaves_.display, leaf);
+}
+
+void SolutionLog::note_change(Tier& tier, std::size_t leaf) {
+  tier.changed_at[leaf] = tier.newest[leaf / leaves_per_block] = static_cast<Revision>(head_);
 }
 
 void SolutionLog::close() {
@@ -51,25 +130,37 @@ void SolutionLog::close() {
   wake_listeners();
 }
 
-Delta SolutionLog::since(Cursor cursor, std::size_t max_values) const {
+Delta SolutionLog::since(const Cursor& cursor, Detail detail, std::size_t max_values) const {
   std::scoped_lock hold(lock_);
-  const auto place = [](const Slot& slot) { return Cursor{slot.revision, slot.value.patch}; };
-  std::vector<const Slot*> newer;
-  for (const Slot& slot : slots_)
-    if (place(slot) > cursor) newer.push_back(&slot);
-  std::ranges::sort(newer, {}, [&](const Slot* slot) { return place(*slot); });
-
+  const std::uint64_t goal = cursor.is_inside_round() ? cursor.goal : head_;
   Delta delta;
-  delta.from_revision = cursor.patch == Cursor{}.patch ? cursor.revision : cursor.revision - 1;
+  delta.detail = detail;
+  delta.coding = coding_;
+  delta.from_revision = cursor.base;
   delta.head = head_;
-  const bool cut = newer.size() > max_values;
-  if (cut) newer.resize(max_values);
-  for (const Slot* slot : newer) delta.values.push_back(slot->value);
-  delta.next = cut ? place(*newer.back()) : Cursor{head_};
-  delta.to_revision = cut ? delta.next.revision - 1 : head_;
-  for (const Step& step : steps_)
-    if (step.revision > delta.from_revision && step.revision <= delta.to_revision) delta.steps.push_back(step);
+  const bool done = collect(delta, cursor.base, cursor.told, max_values);
+  delta.next = done ? Cursor{.base = goal} : Cursor{cursor.base, goal, delta.values.back().patch.bits()};
+  delta.to_revision = done ? goal : cursor.base;
+  if (delta.whole()) delta.state_hash = tier(detail).hash.bits();
+  delta.steps.assign(steps_.begin() + static_cast<std::ptrdiff_t>(delta.from_revision),
+                     steps_.begin() + static_cast<std::ptrdiff_t>(delta.to_revision));
   return delta;
+}
+
+/// True if nothing is left.
+bool SolutionLog::collect(Delta& delta, std::uint64_t base, std::uint64_t told, std::size_t max_values) const {
+  const Tier& all = tier(delta.detail);
+  const auto first = std::ranges::upper_bound(leaves_.patch, PatchId::from_bits(told)) - leaves_.patch.begin();
+  for (auto leaf = static_cast<std::size_t>(first); leaf < leaves_.patch.size(); ++leaf) {
+    if (all.newest[leaf / leaves_per_block] <= base) {
+      leaf = (leaf / leaves_per_block + 1) * leaves_per_block - 1;
+      continue;
+    }
+    if (all.changed_at[leaf] <= base) continue;
+    if (delta.values.size() == max_values) return false;
+    delta.values.push_back(value(leaf, delta.detail));
+  }
+  return true;
 }
 
 std::uint64_t SolutionLog::head() const {
@@ -92,14 +183,11 @@ std::vector<Step> SolutionLog::steps() const {
   return steps_;
 }
 
-std::vector<LeafValue> SolutionLog::leaves() const {
+std::vector<LeafValue> SolutionLog::leaves(Detail detail) const {
+  std::scoped_lock hold(lock_);
   std::vector<LeafValue> all;
-  {
-    std::scoped_lock hold(lock_);
-    all.reserve(slots_.size());
-    for (const Slot& slot : slots_) all.push_back(slot.value);
-  }
-  std::ranges::sort(all, {}, &LeafValue::patch);
+  all.reserve(leaves_.patch.size());
+  for (std::size_t leaf = 0; leaf < leaves_.patch.size(); ++leaf) all.push_back(value(leaf, detail));
   return all;
 }
 

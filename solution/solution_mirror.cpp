@@ -1,15 +1,29 @@
 #include "solution/solution_mirror.h"
 
+#include "solution/leaf_merge.h"
+
 #include <algorithm>
 
 namespace alvor {
 
 std::optional<std::string> SolutionMirror::apply(const Delta& delta) {
   if (auto fault = fault_in(delta)) return fault;
-  for (const LeafValue& value : delta.values) set(value);
+  std::vector<std::size_t> places;
+  if (!find_places(patches_, delta.values, places)) {
+    split_for(delta.values);
+    find_places(patches_, delta.values, places);
+  }
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    RgbF& held = irradiance_[places[n]];
+    hash_.remove({delta.values[n].patch, held});
+    held = delta.values[n].irradiance;
+    hash_.add(delta.values[n]);
+  }
   steps_.insert(steps_.end(), delta.steps.begin(), delta.steps.end());
   revision_ = delta.to_revision;
   head_ = delta.head;
+  if (delta.state_hash && *delta.state_hash != hash_.bits())
+    return "the state at revision " + std::to_string(revision_) + " has another hash than the server's";
   return std::nullopt;
 }
 
@@ -18,45 +32,48 @@ std::optional<std::string> SolutionMirror::fault_in(const Delta& delta) const {
     return "the delta starts at revision " + std::to_string(delta.from_revision) + " but the mirror is at " +
            std::to_string(revision_);
   if (delta.to_revision < revision_ || delta.head < delta.to_revision) return "the delta goes backwards";
-  std::vector<PatchId> patches;
-  patches.reserve(delta.values.size());
-  for (const LeafValue& value : delta.values) patches.push_back(value.patch);
-  std::ranges::sort(patches, {}, &PatchId::range_min);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (!patches[i].is_valid()) return "patch id " + std::to_string(patches[i].bits()) + " is not one";
-    const bool overlaps = i > 0 && patches[i].range_min() <= patches[i - 1].range_max();
-    if (overlaps || inner_.contains(patches[i]))
-      return "patch " + std::to_string(patches[i].bits()) + " is split further elsewhere";
+  return fault_in_patches(delta.values);
+}
+
+std::optional<std::string> SolutionMirror::fault_in_patches(const std::vector<LeafValue>& values) const {
+  std::size_t i = 0;
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const PatchId patch = values[n].patch;
+    const auto name = [&] { return "patch " + std::to_string(patch.bits()); };
+    if (!patch.is_valid()) return "patch id " + std::to_string(patch.bits()) + " is not one";
+    if (n > 0 && patch.range_min() <= values[n - 1].patch.range_max()) return name() + " overlaps the one before it";
+    i = static_cast<std::size_t>(
+        std::lower_bound(patches_.begin() + static_cast<std::ptrdiff_t>(i), patches_.end(), patch.range_min()) -
+        patches_.begin());
+    if (i < patches_.size() && patches_[i] != patch && patch.contains(patches_[i])) return name() + " is split further here";
   }
   return std::nullopt;
 }
 
-void SolutionMirror::set(const LeafValue& value) {
-  const auto found = leaves_.find(value.patch);
-  if (found == leaves_.end()) split_down_to(value.patch);
-  leaves_[value.patch] = value.irradiance;
-}
-
-// The siblings met on the way down inherit what their parent had, until their own values arrive.
-void SolutionMirror::split_down_to(PatchId patch) {
-  PatchId holder = patch;
-  while (!holder.is_root() && !leaves_.contains(holder)) holder = holder.parent();
-  const auto found = leaves_.find(holder);
-  const RgbF inherited = found == leaves_.end() ? RgbF{} : found->second;
-  if (found != leaves_.end()) leaves_.erase(found);
-  for (int level = holder.level(); level < patch.level(); ++level) {
-    const PatchId at = patch.ancestor(level);
-    inner_.insert(at);
-    for (int k = 0; k < 4; ++k)
-      if (at.child(k) != patch.ancestor(level + 1)) leaves_[at.child(k)] = inherited;
-  }
+void SolutionMirror::split_for(const std::vector<LeafValue>& values) {
+  std::vector<PatchId> patches;
+  std::vector<RgbF> irradiance;
+  patches.reserve(patches_.size() + values.size());
+  irradiance.reserve(patches_.size() + values.size());
+  const auto append = [&](PatchId patch, std::size_t from) {
+    patches.push_back(patch);
+    irradiance.push_back(from == no_leaf ? RgbF{} : irradiance_[from]);
+  };
+  LeafMerge(
+      std::span<const PatchId>(patches_), std::span(values), [&](std::size_t i) { append(patches_[i], i); },
+      [&](std::size_t from, std::size_t j) { append(values[j].patch, from); },
+      [&](std::size_t from, PatchId patch) { append(patch, from); })
+      .run();
+  patches_ = std::move(patches);
+  irradiance_ = std::move(irradiance);
+  hash_ = {};
+  for (std::size_t n = 0; n < patches_.size(); ++n) hash_.add({patches_[n], irradiance_[n]});
 }
 
 std::vector<LeafValue> SolutionMirror::leaves() const {
   std::vector<LeafValue> all;
-  all.reserve(leaves_.size());
-  for (const auto& [patch, irradiance] : leaves_) all.push_back({patch, irradiance});
-  std::ranges::sort(all, {}, &LeafValue::patch);
+  all.reserve(patches_.size());
+  for (std::size_t n = 0; n < patches_.size(); ++n) all.push_back({patches_[n], irradiance_[n]});
   return all;
 }
 

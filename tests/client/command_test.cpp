@@ -153,7 +153,11 @@ SolutionMirror mirror_at(std::uint64_t revision) {
   SolutionMirror mirror;
   Step step;
   step.revision = revision;
-  EXPECT_FALSE(mirror.apply({0, revision, revision, {}, {{PatchId::root(0), {1, 1, 1}}}, {step}}));
+  Delta delta;
+  delta.to_revision = delta.head = revision;
+  delta.values = {{PatchId::root(0), {1, 1, 1}}};
+  delta.steps = {step};
+  EXPECT_FALSE(mirror.apply(delta));
   return mirror;
 }
 

@@ -1,4 +1,5 @@
 #include "proto/codec.h"
+#include "proto/leaf_codec.h"
 
 #include "tests/server/sample_scenes.h"
 
@@ -80,8 +81,8 @@ Delta sample_delta() {
   delta.head = 9;
   delta.values = {{PatchId::root(0).child(2), {1, 0.1f, 0}}, {PatchId::root(7), {3e-30f, 2, 1e30f}}};
   delta.steps.resize(2);
-  delta.steps[0] = {4, 0.1, 3, 5, 1'000'000'000'000, 8, 0.5, 0.25, {}};
-  delta.steps[1] = {5, 1.9999999999, 4, 6, 1'000'000'000'001, 9, 0.3, 0.2, {1, 2, 3}};
+  delta.steps[0] = {4, 0.1, 3, 5, 1'000'000'000'000, 8, 0.5, 0.25, 0, {}};
+  delta.steps[1] = {5, 1.9999999999, 4, 6, 1'000'000'000'001, 9, 0.3, 0.2, 0.05, {1, 2, 3}};
   return delta;
 }
 
@@ -99,11 +100,27 @@ TEST(DeltaCodec, FramesThatContradictThemselvesAreRefused) {
   v1::WatchSolveResponse message;
   encode(sample_delta(), message);
   Delta decoded;
-  message.add_irradiance(1);
-  EXPECT_EQ(decode(message, decoded)->text(), "irradiance: has 7 numbers for 2 patches, needs three each");
-  message.mutable_irradiance()->RemoveLast();
-  message.set_irradiance(4, NAN);
-  EXPECT_EQ(decode(message, decoded)->reason, "irradiance is not finite");
+  const v1::WatchSolveResponse good = message;
+  const auto refusal = [&](auto&& spoil) {
+    message = good;
+    spoil(*message.mutable_leaves());
+    const auto fault = decode(message, decoded);
+    return fault ? fault->text() : "none";
+  };
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.set_count(3); }), "leaves: raw_size: 26 bytes cannot be 3 leaves");
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.set_count(1u << 31); }), "leaves: count: 2147483648 leaves, at most 52428");
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.set_raw_size(1u << 31); }), "leaves: raw_size: 2147483648 bytes, at most 262144");
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.set_raw_size(28); }), "leaves: zstd: is not 28 bytes compressed");
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.mutable_zstd()->pop_back(); }), "leaves: zstd: is not 26 bytes compressed");
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.set_detail(static_cast<v1::Detail>(9)); }), "leaves: detail: is not one");
+  EXPECT_EQ(refusal([](auto& leaves) { leaves.set_scale(1000); }), "leaves: scale: is not between -200 and 200");
+  const auto with_value = [&](float value) {
+    return refusal([value](auto& leaves) {
+      leaves = encode_leaves(std::vector<LeafValue>{{PatchId::root(0), {value, 0, 0}}}, Detail::exact, SharedExponent(0));
+    });
+  };
+  EXPECT_EQ(with_value(1), "none");
+  for (const float bad : {NAN, INFINITY, -1.0f}) EXPECT_NE(with_value(bad).find("irradiance"), std::string::npos);
 }
 
 TEST(DurationCodec, TakesAnyNumber) {

@@ -25,6 +25,7 @@ struct Recorder final : FrameSink {
     frames.push_back(parse(frame));
     starts.push_back(frame.bytes.begin());
   }
+  void give_up() override { given_up = true; }
   void finish(const grpc::Status& reason) override {
     EXPECT_FALSE(status) << "finished twice";
     status = reason;
@@ -32,6 +33,7 @@ struct Recorder final : FrameSink {
   std::vector<v1::WatchSolveResponse> frames;
   std::vector<const std::uint8_t*> starts;
   std::optional<grpc::Status> status;
+  bool given_up = false;
 };
 
 class WatchTest : public testing::Test {
@@ -61,11 +63,11 @@ class WatchTest : public testing::Test {
   GrowingLeaves leaves{4, 1};
   Watch::Clock::time_point now{1h};
   Recorder sink;
-  Watch watch{frames, {}, 100ms, sink};
+  Watch watch{frames, {.min_interval = 100ms}, sink};
 };
 
 TEST_F(WatchTest, FirstFrameGoesOutAtOnceEvenIfEmpty) {
-  EXPECT_FALSE(watch.take_turn(now));
+  watch.take_turn(now);
   ASSERT_EQ(sink.frames.size(), 1u);
   EXPECT_EQ(sink.frames[0].head_revision(), 0u);
   EXPECT_EQ(sink.frames[0].epoch(), "e1");
@@ -102,8 +104,75 @@ TEST_F(WatchTest, KeepsItsPaceWithOneTimer) {
   EXPECT_EQ(watch.take_turn(now + 30ms), now + 100ms);
   EXPECT_EQ(watch.take_turn(now + 60ms), std::nullopt) << "the turn asked for before will do";
   EXPECT_EQ(sink.frames.size(), 1u);
-  EXPECT_EQ(watch.take_turn(now + 100ms), std::nullopt);
+  watch.take_turn(now + 100ms);
   EXPECT_EQ(sink.frames.size(), 2u);
+}
+
+TEST_F(WatchTest, KeepsToItsBytesPerSecond) {
+  Recorder slow_sink;
+  Watch slow(frames, {.max_bytes_per_s = 10}, slow_sink);
+  publish();
+  slow.take_turn(now);
+  slow.written(true);
+  publish();
+  const auto due = slow.take_turn(now);
+  ASSERT_TRUE(due);
+  EXPECT_GT(*due, now + 5s);
+  EXPECT_EQ(slow_sink.frames.size(), 1u);
+  slow.take_turn(*due);
+  EXPECT_EQ(slow_sink.frames.size(), 2u);
+}
+
+TEST_F(WatchTest, SilenceIsBrokenByBookmarks) {
+  publish();
+  watch.take_turn(now);
+  deliver();
+  EXPECT_EQ(watch.take_turn(now + 1s), now + Watch::bookmark_interval);
+  watch.take_turn(now + Watch::bookmark_interval);
+  ASSERT_EQ(sink.frames.size(), 2u);
+  EXPECT_EQ(sink.frames[1].leaves().count(), 0u);
+  EXPECT_EQ(sink.frames[1].to_revision(), 1u);
+  EXPECT_TRUE(sink.frames[1].has_state_hash());
+}
+
+TEST_F(WatchTest, WriteThatDoesNotEndIsGivenUp) {
+  publish();
+  EXPECT_EQ(watch.take_turn(now), now + Watch::patience);
+  watch.take_turn(now + Watch::patience - 1s);
+  EXPECT_FALSE(sink.given_up);
+  watch.take_turn(now + Watch::patience);
+  EXPECT_TRUE(sink.given_up);
+  watch.written(false);
+  watch.take_turn(now + Watch::patience);
+  EXPECT_EQ(sink.status->error_code(), grpc::CANCELLED);
+}
+
+TEST_F(WatchTest, ClosingIsSaidBeforeTheEnd) {
+  publish();
+  watch.take_turn(now);
+  v1::Closing closing;
+  closing.set_reason("tea");
+  watch.close(closing);
+  watch.take_turn(now);
+  EXPECT_EQ(sink.frames.size(), 1u) << "a write is under way";
+  watch.written(true);
+  watch.take_turn(now);
+  ASSERT_EQ(sink.frames.size(), 2u);
+  EXPECT_EQ(sink.frames[1].closing().reason(), "tea");
+  EXPECT_FALSE(sink.status);
+  watch.written(true);
+  watch.take_turn(now);
+  EXPECT_EQ(sink.status->error_code(), grpc::UNAVAILABLE);
+}
+
+TEST_F(WatchTest, DetailsAreFramesOfTheirOwn) {
+  Recorder other_sink;
+  Watch other(frames, {.detail = Detail::display}, other_sink);
+  publish();
+  watch.take_turn(now);
+  other.take_turn(now);
+  EXPECT_EQ(sink.frames[0].leaves().detail(), v1::DETAIL_EXACT);
+  EXPECT_EQ(other_sink.frames[0].leaves().detail(), v1::DETAIL_DISPLAY);
 }
 
 TEST_F(WatchTest, SlowWatcherGetsNewestValuesOnly) {
@@ -112,8 +181,9 @@ TEST_F(WatchTest, SlowWatcherGetsNewestValuesOnly) {
   deliver();
   for (int i = 0; i < 100; ++i) solve->log.publish(std::vector<LeafValue>{{PatchId::root(0), {float(i), 0, 0}}}, {});
   watch.take_turn(now + 1s);
-  ASSERT_EQ(sink.frames[1].patches_size(), 1);
-  EXPECT_EQ(sink.frames[1].irradiance(0), 99);
+  Delta delta;
+  ASSERT_FALSE(decode(sink.frames[1], delta));
+  EXPECT_EQ(delta.values, (std::vector<LeafValue>{{PatchId::root(0), {99, 0, 0}}}));
   EXPECT_EQ(sink.frames[1].steps_size(), 100);
 }
 
@@ -124,7 +194,7 @@ TEST_F(WatchTest, PagesOfAGrowingSolutionMakeTheMirrorEqual) {
     const std::size_t before = sink.frames.size();
     watch.take_turn(now);
     if (sink.frames.size() == before) continue;
-    EXPECT_LE(sink.frames.back().patches_size(), static_cast<int>(page));
+    EXPECT_LE(sink.frames.back().leaves().count(), page);
     deliver(&mirror);
   }
   end();
@@ -173,7 +243,7 @@ TEST_F(WatchTest, FinishesOnceAndOnlyWhenNothingIsUnderWay) {
 
 TEST_F(WatchTest, WatchersInStepShareTheBytesOfAFrame) {
   Recorder other_sink;
-  Watch other(frames, {}, 100ms, other_sink);
+  Watch other(frames, {.min_interval = 100ms}, other_sink);
   publish();
   watch.take_turn(now);
   other.take_turn(now);

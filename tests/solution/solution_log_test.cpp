@@ -34,18 +34,18 @@ TEST(SolutionLog, SinceGivesOnlyWhatChanged) {
   SolutionLog log;
   log.publish(children(root, 1), {});
   log.publish(std::vector{value(root.child(2), 5)}, {});
-  const Delta delta = log.since({1});
+  const Delta delta = log.since({.base = 1});
   EXPECT_EQ(delta.values, std::vector{value(root.child(2), 5)});
   EXPECT_EQ(delta.from_revision, 1u);
   EXPECT_EQ(delta.to_revision, 2u);
   EXPECT_TRUE(delta.whole());
-  EXPECT_TRUE(log.since({2}).values.empty());
+  EXPECT_TRUE(log.since({.base = 2}).values.empty());
 }
 
 TEST(SolutionLog, SinceCarriesEveryStepOfTheSpan) {
   SolutionLog log;
   for (int n = 1; n <= 5; ++n) log.publish(std::vector{value(root, float(n))}, {.shots = std::uint64_t(n)});
-  const Delta delta = log.since({2});
+  const Delta delta = log.since({.base = 2});
   ASSERT_EQ(delta.steps.size(), 3u);
   EXPECT_EQ(delta.steps.front().revision, 3u);
   EXPECT_EQ(delta.steps.front().step, 2u);
@@ -60,7 +60,7 @@ TEST(SolutionLog, PagesWithinOneRevisionAddUpToTheWhole) {
   log.publish(all, {});
   std::vector<LeafValue> got;
   Cursor cursor;
-  for (Delta delta = log.since(cursor, 7);; delta = log.since(cursor, 7)) {
+  for (Delta delta = log.since(cursor, Detail::exact, 7);; delta = log.since(cursor, Detail::exact, 7)) {
     EXPECT_EQ(delta.from_revision, 0u);
     got.insert(got.end(), delta.values.begin(), delta.values.end());
     cursor = delta.next;
@@ -92,6 +92,49 @@ TEST(SolutionLog, WaitersWakeOnPublishAndClose) {
   EXPECT_GE(log.head(), 1u);
   log.wait_beyond(100);
   EXPECT_TRUE(log.closed());
+}
+
+TEST(SolutionLog, ValuesThatDoNotChangeAreNotToldAgain) {
+  SolutionLog log;
+  log.publish(children(root, 1), {});
+  log.publish(children(root, 1), {});
+  EXPECT_TRUE(log.since({.base = 1}).values.empty());
+  EXPECT_TRUE(log.since({.base = 1}).whole());
+}
+
+TEST(SolutionLog, DisplayIsToldAgainWhenItIsOffByMoreThanAllowed) {
+  SolutionLog log;
+  const Step step{.displayed_error = 0.1};
+  const auto told = [&](float x) {
+    const std::uint64_t before = log.head();
+    log.publish(std::vector{value(root, x)}, step);
+    return !log.since({.base = before}, Detail::display).values.empty();
+  };
+  EXPECT_TRUE(told(1));
+  EXPECT_FALSE(told(1.06f));
+  EXPECT_FALSE(told(1.1f));
+  EXPECT_TRUE(told(1.2f)) << "it has crept away from what was told";
+  EXPECT_FALSE(told(1.25f));
+  EXPECT_EQ(log.leaves(), std::vector{value(root, 1.25f)});
+  EXPECT_NEAR(log.leaves(Detail::display)[0].irradiance.b, 3.75, 0.1 * 3.75);
+}
+
+TEST(SolutionLog, DisplayHoldsWhatBecomesTooBrightForItsScale) {
+  SolutionLog log;
+  log.publish(children(root, 1e-20f), {});
+  log.publish(std::vector{value(root.child(3), 1e20f)}, {});
+  const auto shown = log.leaves(Detail::display);
+  EXPECT_NEAR(shown[3].irradiance.b / 3e20, 1, 0.002);
+  EXPECT_EQ(log.since({.base = 1}, Detail::display).values.size(), 4u) << "the scale is another";
+}
+
+TEST(SolutionLog, OneNewLeafSplitsAndItsSiblingsInherit) {
+  SolutionLog log;
+  log.publish(std::vector{value(root, 1)}, {});
+  log.publish(std::vector{value(root.child(2), 7)}, {});
+  EXPECT_EQ(log.leaves(),
+            (std::vector{value(root.child(0), 1), value(root.child(1), 1), value(root.child(2), 7), value(root.child(3), 1)}));
+  EXPECT_EQ(log.since({.base = 1}).values.size(), 1u) << "a mirror implies the others by itself";
 }
 
 }  // namespace

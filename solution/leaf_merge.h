@@ -1,0 +1,82 @@
+#pragma once
+// Sorted leaves, and newer values laid over them.
+
+#include "solution/leaf_value.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+inline constexpr std::size_t no_leaf = ~std::size_t{0};
+
+/// Where each of `changed` is in `held`; false if one is not there. Both ascend.
+inline bool find_places(std::span<const PatchId> held, std::span<const LeafValue> changed, std::vector<std::size_t>& places) {
+  places.clear();
+  places.reserve(changed.size());
+  std::size_t at = 0;
+  for (const LeafValue& value : changed) {
+    for (std::size_t stride = 1; at < held.size() && held[at] < value.patch; stride *= 2) {
+      const std::size_t far = std::min(at + stride, held.size() - 1);
+      if (held[far] < value.patch) {
+        at = far + 1;
+        continue;
+      }
+      at = static_cast<std::size_t>(std::lower_bound(held.begin() + at, held.begin() + far, value.patch) - held.begin());
+      break;
+    }
+    if (at == held.size() || held[at] != value.patch) return false;
+    places.push_back(at++);
+  }
+  return true;
+}
+
+/// Calls, in ascending order, keep(i) for held leaves with nothing below them, set(holder, j) for changed[j], and
+/// inherit(holder, patch) for the siblings that changed leaves imply; `holder` is the place in `held` of the leaf that was split
+/// or replaced, or `no_leaf` where nothing was known of the root. Requires: both ascend, none overlaps another of its own list,
+/// and no changed patch contains a smaller held one.
+template <class Keep, class Set, class Inherit>
+class LeafMerge {
+ public:
+  LeafMerge(std::span<const PatchId> held, std::span<const LeafValue> changed, Keep keep, Set set, Inherit inherit)
+      : held_(held), changed_(changed), keep_(keep), set_(set), inherit_(inherit) {}
+
+  void run() {
+    std::size_t i = 0;
+    for (std::size_t j = 0; j < changed_.size();) {
+      for (; i < held_.size() && held_[i].range_max() < changed_[j].patch; ++i) keep_(i);
+      const bool is_held = i < held_.size() && held_[i].contains(changed_[j].patch);
+      const PatchId whole = is_held ? held_[i] : PatchId::root(changed_[j].patch.root_face());
+      const std::size_t end = end_within(whole, j, changed_.size());
+      fill(whole, is_held ? i : no_leaf, j, end);
+      i += is_held;
+      j = end;
+    }
+    for (; i < held_.size(); ++i) keep_(i);
+  }
+
+ private:
+  std::size_t end_within(PatchId patch, std::size_t j, std::size_t end) const {
+    while (j < end && changed_[j].patch <= patch.range_max()) ++j;
+    return j;
+  }
+  void fill(PatchId patch, std::size_t holder, std::size_t j, std::size_t end) {
+    if (j == end) return inherit_(holder, patch);
+    if (changed_[j].patch == patch) return set_(holder, j);
+    for (int k = 0; k < 4; ++k) {
+      const std::size_t next = end_within(patch.child(k), j, end);
+      fill(patch.child(k), holder, j, next);
+      j = next;
+    }
+  }
+
+  std::span<const PatchId> held_;
+  std::span<const LeafValue> changed_;
+  Keep keep_;
+  Set set_;
+  Inherit inherit_;
+};
+
+}  // namespace alvor
