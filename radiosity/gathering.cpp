@@ -8,9 +8,7 @@ namespace {
 
 constexpr double least_gain = 0.01;  // of the squared residual: with less a plain step does better, and ends what stalls
 
-Gathering::Radiosity padded(const Rgb& a) {
-  return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b), 0};
-}
+Gathering::Radiosity padded(const Rgb& a) { return {a.r, a.g, a.b, 0}; }
 
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
@@ -22,7 +20,7 @@ Rgb sum_of(std::span<const Gathering::Radiosity> radiosity, const std::uint32_t*
   double sum[4] = {};
   for (std::size_t h = 0; h < count; ++h) {
     const Gathering::Radiosity& hit = radiosity[leaf[h]];
-    const float lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
+    const double lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
     for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
   }
   return {sum[0], sum[1], sum[2]};
@@ -40,7 +38,9 @@ Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std
       irradiance_(std::move(irradiance)),
       residual_(patches.size()) {
   for (const ShootingPatch& patch : patches_) power_weight_.push_back(patch.area * patch.reflectance);
+  find_own_power();
   ambient_gain_ = ambient_gain(patches_);
+  amplification_ = alvor::amplification(patches_, reflectance_seen());
   leaving_ = radiosity();
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
@@ -79,18 +79,31 @@ void Gathering::gather(std::vector<Rgb>& received) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
 }
 
+std::vector<Rgb> Gathering::reflectance_seen() {
+  std::vector<Rgb> seen(patches_.size());
+  spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance; });
+  gather(seen);
+  return seen;
+}
+
 Rgb Gathering::product(std::span<const Rgb> a, std::span<const Rgb> b) const {
   Rgb sum;
   for (std::size_t p = 0; p < a.size(); ++p) sum += patches_[p].area * (a[p] * b[p]);
   return sum;
 }
 
+// As if all leaves of a patch had the same area: it only says how much light there is.
+void Gathering::find_own_power() {
+  for (const ShootingPatch& patch : patches_)
+    for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k)
+      own_power_ += (patch.area / patch.leaf_count) * own_radiosity_[k];
+}
+
 void Gathering::find_unshot() {
-  unshot_power_ = 0;
-  unshot_sum_ = {};
+  unshot_ = unshot_sum_ = {};
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const Rgb unshot = power_weight_[p] * residual_[p];
-    unshot_power_ += absolute(unshot).sum();
+    unshot_ += absolute(unshot);
     unshot_sum_ += unshot;
   }
 }
@@ -107,7 +120,7 @@ void Gathering::make_conjugate(Direction& next) const {
 }
 
 std::size_t Gathering::sweep() {
-  if (unshot_power_ == 0) return 0;
+  if (unshot_.is_zero()) return 0;
   Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
   spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
   gather(next.change);
@@ -115,12 +128,18 @@ std::size_t Gathering::sweep() {
   const std::vector<Rgb> plain = next.change;
   make_conjugate(next);
   const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
-  const bool helps = (length * overlap).sum() > least_gain * product(residual_, residual_).sum();
-  advance(helps ? length : Rgb{1, 1, 1}, helps ? next.step : residual_, helps ? next.change : plain);
-  if (helps) remember(std::move(next));
-  else directions_.clear();
+  const Rgb taken = helps(length, overlap), left = Rgb{1, 1, 1} - taken;
+  const std::vector<Rgb> residual = residual_;
+  advance(taken * length, next.step, next.change);
+  if (!left.is_zero()) advance(left, residual, plain);
+  remember(std::move(next), taken);
   find_unshot();
   return patches_.size();
+}
+
+Rgb Gathering::helps(const Rgb& length, const Rgb& overlap) const {
+  const Rgb gain = length * overlap, least = least_gain * product(residual_, residual_);
+  return {double(gain.r > least.r), double(gain.g > least.g), double(gain.b > least.b)};
 }
 
 void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change) {
@@ -130,10 +149,19 @@ void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<
   }
 }
 
-void Gathering::remember(Direction direction) {
+// A band that took a plain step starts anew: what it remembers no longer counts.
+void Gathering::remember(Direction direction, const Rgb& in_bands) {
+  for (Direction& other : directions_) other.norm = in_bands * other.norm;
+  direction.norm = in_bands * direction.norm;
   if (directions_.size() < remembered) directions_.push_back(std::move(direction));
   else directions_[steps_ % remembered] = std::move(direction);
   ++steps_;
+}
+
+Rgb Gathering::radiant_power() const {
+  Rgb power;
+  for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
+  return own_power_ + power;
 }
 
 std::vector<Rgb> Gathering::irradiance() const {

@@ -19,6 +19,16 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches) {
   return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
 }
 
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen) {
+  Rgb largest, most_seen;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    largest = upper(largest, patches[p].reflectance);
+    most_seen = upper(most_seen, reflectance_seen[p]);
+  }
+  const Rgb fading = lower(largest, most_seen);
+  return {1 / (1 - fading.r), 1 / (1 - fading.g), 1 / (1 - fading.b)};
+}
+
 Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
     : patches_(patches),
       leaves_(std::move(leaves)),
@@ -37,6 +47,17 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
   }
   transpose();
   ambient_gain_ = ambient_gain(patches_);
+  amplification_ = alvor::amplification(patches_, reflectance_seen());
+}
+
+std::vector<Rgb> Shooting::reflectance_seen() const {
+  std::vector<Rgb> seen(patches_.size());
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) {
+                return patches_[patch_of_leaf_[leaf]].reflectance;
+              });
+  });
+  return seen;
 }
 
 // Counting sort of all hits by the patch that was hit.
@@ -133,9 +154,24 @@ void Shooting::gather(std::uint32_t receiver) {
   leaf_power_[receiver] = 0;
 }
 
-double Shooting::unshot_power() const {
-  double power = 0;
-  for (std::uint32_t p = 0; p < patches_.size(); ++p) power += unshot_power_of(p);
+Rgb Shooting::unshot() const {
+  Rgb power;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const ShootingPatch& patch = patches_[p];
+    power += patch.area * absolute(patch.reflectance * receivers_[p].unshot);
+    for (std::uint32_t k = patch.first_leaf; leaf_power_[p] > 0 && k < patch.first_leaf + patch.leaf_count; ++k)
+      power += leaves_[k].area * absolute(leaves_[k].unshot);
+  }
+  return power;
+}
+
+Rgb Shooting::radiant_power() const {
+  Rgb power;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Rgb reflected = patches_[p].reflectance * (shot_irradiance_[p] + receivers_[p].unshot);
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      power += leaves_[k].area * absolute(leaves_[k].shot + leaves_[k].unshot + reflected);
+  }
   return power;
 }
 
@@ -222,7 +258,7 @@ std::vector<Rgb> Shooting::shot() const {
   return all;
 }
 
-std::vector<Rgb> Shooting::unshot() const {
+std::vector<Rgb> Shooting::unshot_by_leaf() const {
   std::vector<Rgb> all;
   all.reserve(leaves_.size());
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {

@@ -22,6 +22,10 @@ struct ShootingPatch {
 /// Ambient irradiance (see Exchange) of one unit of unshot power, 1/m2.
 Rgb ambient_gain(std::span<const ShootingPatch> patches);
 
+/// See Exchange: light fades in no norm by less than the largest mean reflectance that any row sees, `reflectance_seen` by patch.
+/// That bounds the solution's maximum, and by reciprocity its power.
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen);
+
 /// A leaf's share of the residual.
 struct ShootingLeaf {
   double area = 0;  ///< m2
@@ -58,8 +62,12 @@ class Shooting {
   double leaf_area(std::uint32_t leaf) const { return leaves_[leaf].area; }  ///< m2
   /// |unshot power| of a patch, W, summed over bands; with what it would shoot of `advance`.
   double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
-  /// sum over patches, W.
-  double unshot_power() const;
+  /// |unshot power| by band, W.
+  Rgb unshot() const;
+  double unshot_power() const { return unshot().sum(); }
+  /// |shot and unshot radiosity| times area, W.
+  Rgb radiant_power() const;
+  const Rgb& amplification() const { return amplification_; }  ///< see Exchange
   /// Ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance), each
   /// reflection weakened by what escapes from an open scene.
   Rgb ambient_irradiance() const;
@@ -76,7 +84,7 @@ class Shooting {
   /// What was distributed so far, by leaf.
   std::vector<Rgb> shot() const;
   /// What is not, by leaf.
-  std::vector<Rgb> unshot() const;
+  std::vector<Rgb> unshot_by_leaf() const;
 
  private:
   struct Entry {
@@ -94,6 +102,7 @@ class Shooting {
   };
   void transpose();
   void transpose_weights();
+  std::vector<Rgb> reflectance_seen() const;
   /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, weighted.
   template <class Radiosity>
   Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;
@@ -120,6 +129,7 @@ class Shooting {
   std::vector<Rgb> shot_irradiance_;  // by patch: reflected already, not yet in ShootingLeaf::shot
   std::vector<double> leaf_power_;    // by patch: sum of area |unshot| over its leaves
   Rgb ambient_gain_;                  // ambient irradiance of one unit of unshot power, 1/m2
+  Rgb amplification_;
   std::optional<Account> account_;
 };
 

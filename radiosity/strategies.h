@@ -50,9 +50,12 @@ class ShotExchange : public Exchange {
   ShotExchange& operator=(const ShotExchange&) = delete;
 
   std::size_t sweep() override { return stepper_->sweep(); }
-  double unshot_power() const override { return system_.unshot_power(); }
+  Rgb unshot() const override { return system_.unshot(); }
+  Rgb radiant_power() const override { return system_.radiant_power(); }
+  Rgb amplification() const override { return system_.amplification(); }
   std::vector<Rgb> irradiance() const override { return system_.irradiance(); }
   Rgb ambient_irradiance() const override { return system_.ambient_irradiance(); }
+  std::size_t patch_count() const override { return system_.patch_count(); }
   const Shooting& system() const { return system_; }
 
  private:
