@@ -60,6 +60,11 @@ class Shooting {
   std::span<const ShootingPatch> patches() const { return patches_; }
   std::size_t patch_count() const { return patches_.size(); }
   double leaf_area(std::uint32_t leaf) const { return leaves_[leaf].area; }  ///< m2
+  std::uint32_t patch_of(std::uint32_t leaf) const { return patch_of_leaf_[leaf]; }
+  /// What the hits of the patch's row found.
+  std::span<const std::uint32_t> leaves_hit(std::uint32_t patch) const {
+    return std::span(hit_leaf_).subspan(first_hit_[patch], first_hit_[patch + 1] - first_hit_[patch]);
+  }
   /// |unshot power| of a patch, W, summed over bands; with what it would shoot of `advance`.
   double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
   /// |unshot power| by band, W.

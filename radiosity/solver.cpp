@@ -71,7 +71,7 @@ class Run {
     for (bool first = true;; first = false) {
       if (!pass(first)) return stop_reason();
       if (error_.total() <= options_.tolerance) return converge(StopReason::tolerance);
-      if (has_stalled_) return StopReason::stalled;
+      if (is_stuck()) return StopReason::stalled;
       const bool is_better = state_.refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
@@ -103,7 +103,7 @@ class Run {
     state_.show_what_came_since();
     error_.unshot = state_.exchange().remaining_error();
     publish();
-    return error_.unshot > options_.tolerance ? StopReason::stalled : reason;
+    return is_stuck() ? StopReason::stalled : reason;
   }
 
   /// False if it was stopped.
@@ -145,6 +145,7 @@ class Run {
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, stop_);
   }
 
+  bool is_stuck() const { return has_stalled_ && error_.unshot > pass_remaining * options_.tolerance; }
   bool is_cheap() const { return options_.strategy == Strategy::automatic; }
   bool must_stop() const { return stop_.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
   StopReason stop_reason() const { return stop_.stop_requested() ? StopReason::cancelled : StopReason::time_limit; }
