@@ -16,12 +16,13 @@ class Exchange {
   virtual ~Exchange() = default;
   /// Many steps; returns their number. 0: there is nothing left to do.
   virtual std::size_t sweep() = 0;
-  /// |unshot radiosity| times area, W.
-  virtual Rgb unshot() const = 0;
-  double unshot_power() const { return unshot().sum(); }
-  /// |radiosity| by rows so far times area, W: emitted and reflected, but for what direct light does not bring to rows.
-  virtual Rgb radiant_power() const = 0;
-  /// What a unit of unshot power comes to at most, itself included, before it is absorbed: see alvor::amplification.
+  /// |unshot radiosity| times area, summed over bands, W.
+  virtual double unshot_power() const = 0;
+  /// Root of the mean square of unshot radiosity over the area, W/m2.
+  virtual Rgb unshot_rms() const = 0;
+  /// Mean of radiosity as far as rows know it, distributed and unshot, over the area, W/m2.
+  virtual Rgb mean_radiosity() const = 0;
+  /// What unshot radiosity may come to before it is absorbed, itself included: see alvor::amplification.
   virtual Rgb amplification() const = 0;
   /// By patch: received by rows so far, W/m2.
   virtual std::vector<Rgb> irradiance() const = 0;
@@ -30,9 +31,9 @@ class Exchange {
   virtual Rgb ambient_irradiance() const = 0;
   virtual std::size_t patch_count() const = 0;
 
-  /// Bound on the radiosity that is still to come, of all there is, in the band where it is worst. Where nearly all is reflected
-  /// it is far more than what is unshot: a small residual is no small error. It holds up to the noise of rows, as columns of the
-  /// system sum to what rows do by reciprocity.
+  /// Bound on what is still to come: RMS over the mean radiosity, in the band where it is worst. Where nearly all is reflected it
+  /// is far more than what is unshot: a small residual is no small error. It holds as far as rows are reciprocal, so up to their
+  /// noise.
   double remaining_error() const;
 };
 

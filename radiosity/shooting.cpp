@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace alvor {
 
@@ -25,8 +26,8 @@ Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> r
     largest = upper(largest, patches[p].reflectance);
     most_seen = upper(most_seen, reflectance_seen[p]);
   }
-  const Rgb fading = lower(largest, most_seen);
-  return {1 / (1 - fading.r), 1 / (1 - fading.g), 1 / (1 - fading.b)};
+  const auto band = [](double reflected, double seen) { return 1 / (1 - std::sqrt(reflected * std::min(reflected, seen))); };
+  return {band(largest.r, most_seen.r), band(largest.g, most_seen.g), band(largest.b, most_seen.b)};
 }
 
 Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
@@ -154,25 +155,40 @@ void Shooting::gather(std::uint32_t receiver) {
   leaf_power_[receiver] = 0;
 }
 
-Rgb Shooting::unshot() const {
-  Rgb power;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const ShootingPatch& patch = patches_[p];
-    power += patch.area * absolute(patch.reflectance * receivers_[p].unshot);
-    for (std::uint32_t k = patch.first_leaf; leaf_power_[p] > 0 && k < patch.first_leaf + patch.leaf_count; ++k)
-      power += leaves_[k].area * absolute(leaves_[k].unshot);
-  }
+double Shooting::unshot_power() const {
+  double power = 0;
+  for (std::uint32_t p = 0; p < patches_.size(); ++p) power += unshot_power_of(p);
   return power;
 }
 
-Rgb Shooting::radiant_power() const {
-  Rgb power;
+template <class Body>
+void Shooting::for_each_leaf(Body&& body) const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const Rgb reflected = patches_[p].reflectance * (shot_irradiance_[p] + receivers_[p].unshot);
+    const Rgb& rho = patches_[p].reflectance;
+    const Rgb unshot = rho * receivers_[p].unshot, shot = rho * shot_irradiance_[p];
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      power += leaves_[k].area * absolute(leaves_[k].shot + leaves_[k].unshot + reflected);
+      body(leaves_[k].area, leaves_[k].shot + shot, leaves_[k].unshot + unshot);
   }
-  return power;
+}
+
+Rgb Shooting::unshot_rms() const {
+  Rgb squares;
+  double area = 0;
+  for_each_leaf([&](double leaf_area, const Rgb&, const Rgb& unshot) {
+    squares += leaf_area * (unshot * unshot);
+    area += leaf_area;
+  });
+  return {std::sqrt(squares.r / area), std::sqrt(squares.g / area), std::sqrt(squares.b / area)};
+}
+
+Rgb Shooting::mean_radiosity() const {
+  Rgb power;
+  double area = 0;
+  for_each_leaf([&](double leaf_area, const Rgb& shot, const Rgb& unshot) {
+    power += leaf_area * absolute(shot + unshot);
+    area += leaf_area;
+  });
+  return (1 / area) * power;
 }
 
 // The two loops differ in what they read: weights that are not there cost nothing.

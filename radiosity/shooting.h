@@ -22,8 +22,9 @@ struct ShootingPatch {
 /// Ambient irradiance (see Exchange) of one unit of unshot power, 1/m2.
 Rgb ambient_gain(std::span<const ShootingPatch> patches);
 
-/// See Exchange: light fades in no norm by less than the largest mean reflectance that any row sees, `reflectance_seen` by patch.
-/// That bounds the solution's maximum, and by reciprocity its power.
+/// See Exchange: 1 / (1 - fading), of the RMS. A reflection leaves of the maximum what is reflected of what the rows see at most
+/// (`reflectance_seen`, by patch), of the power at most the largest reflectance, as rows are reciprocal; so of the RMS the
+/// geometric mean (Riesz & Thorin).
 Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen);
 
 /// A leaf's share of the residual.
@@ -67,12 +68,11 @@ class Shooting {
   }
   /// |unshot power| of a patch, W, summed over bands; with what it would shoot of `advance`.
   double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
-  /// |unshot power| by band, W.
-  Rgb unshot() const;
-  double unshot_power() const { return unshot().sum(); }
-  /// |shot and unshot radiosity| times area, W.
-  Rgb radiant_power() const;
-  const Rgb& amplification() const { return amplification_; }  ///< see Exchange
+  /// sum over patches, W.
+  double unshot_power() const;
+  Rgb unshot_rms() const;                                      ///< these three: see Exchange
+  Rgb mean_radiosity() const;
+  const Rgb& amplification() const { return amplification_; }
   /// Ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance), each
   /// reflection weakened by what escapes from an open scene.
   Rgb ambient_irradiance() const;
@@ -108,6 +108,9 @@ class Shooting {
   void transpose();
   void transpose_weights();
   std::vector<Rgb> reflectance_seen() const;
+  /// body(area, shot radiosity, unshot radiosity).
+  template <class Body>
+  void for_each_leaf(Body&& body) const;
   /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, weighted.
   template <class Radiosity>
   Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;

@@ -50,8 +50,9 @@ class ShotExchange : public Exchange {
   ShotExchange& operator=(const ShotExchange&) = delete;
 
   std::size_t sweep() override { return stepper_->sweep(); }
-  Rgb unshot() const override { return system_.unshot(); }
-  Rgb radiant_power() const override { return system_.radiant_power(); }
+  double unshot_power() const override { return system_.unshot_power(); }
+  Rgb unshot_rms() const override { return system_.unshot_rms(); }
+  Rgb mean_radiosity() const override { return system_.mean_radiosity(); }
   Rgb amplification() const override { return system_.amplification(); }
   std::vector<Rgb> irradiance() const override { return system_.irradiance(); }
   Rgb ambient_irradiance() const override { return system_.ambient_irradiance(); }

@@ -35,7 +35,7 @@ Case by_strategy(Strategy strategy, double reflectance) {
   return {"chain of " + std::to_string(rooms) + " rooms, `" + std::string(text(strategy)) + "`", rho(reflectance),
           "within 1 % of the dense solution, or an estimate that tells", one_percent, [=] {
             RowSystem system(chain_of_rooms(rooms, reflectance), 0, strategy);
-            system.settle(one_percent);
+            system.settle(one_percent / 10);
             Measured measured = system.measured("off by " + percent(system.error()), system.error());
             if (measured.error <= measured.estimate) measured.error = std::min(measured.error, one_percent);
             return measured;

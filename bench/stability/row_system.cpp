@@ -9,12 +9,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace alvor::bench {
 
 namespace {
-
-constexpr int steps_before_sweeps = 2;  // a patch: direct light, and what is unshot at first
 
 const char* text(Settling end) {
   switch (end) {
@@ -44,9 +43,27 @@ RowSystem::RowSystem(const Scene& scene, int max_depth, Strategy strategy)
     state.begin_exchange();
     const Shooting system = state.unshot_system();
     dense_ = dense_irradiance(system);
-    for (const ShootingPatch& patch : system.patches()) area_.push_back(patch.area);
+    read(system);
   });
+  for (std::uint32_t r = 0; r < parts_->mesh.roots().size(); ++r)
+    if (!parts_->mesh.material_of(r).emission.is_zero()) emitting_share_ += parts_->mesh.roots()[r].area / area();
 }
+
+void RowSystem::read(const Shooting& system) {
+  const auto own = system.unshot_by_leaf();
+  double power = 0;
+  for (std::size_t p = 0; p < dense_.size(); ++p) {
+    const ShootingPatch& patch = system.patches()[p];
+    area_.push_back(patch.area);
+    reflectance_.push_back(patch.reflectance.g);
+    power += patch.area * patch.reflectance.g * dense_[p];
+    for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf)
+      power += system.leaf_area(leaf) * own[leaf].g;
+  }
+  mean_radiosity_ = power / area();
+}
+
+double RowSystem::area() const { return std::accumulate(area_.begin(), area_.end(), 0.0); }
 
 RowSystem::~RowSystem() = default;
 
@@ -63,7 +80,7 @@ void RowSystem::settle(double enough) {
 
 double RowSystem::steps_down_to(double error) {
   constexpr double most = 1000;
-  const auto per_patch = [&] { return steps_before_sweeps + static_cast<double>(steps_) / static_cast<double>(size()); };
+  const auto per_patch = [&] { return 1 + emitting_share_ + static_cast<double>(steps_) / static_cast<double>(size()); };
   const Stopwatch watch;
   parts_->one_thread.execute([&] {
     while (this->error() > error && per_patch() < most) steps_ += parts_->state.exchange().sweep();
@@ -74,13 +91,9 @@ double RowSystem::steps_down_to(double error) {
 
 double RowSystem::error() const {
   const auto swept = parts_->state.exchange().irradiance();
-  double squares = 0, mean = 0, area = 0;
-  for (std::size_t p = 0; p < dense_.size(); ++p) {
-    squares += area_[p] * std::pow(swept[p].g - dense_[p], 2);
-    mean += area_[p] * dense_[p];
-    area += area_[p];
-  }
-  return std::sqrt(squares * area) / mean;
+  double squares = 0;
+  for (std::size_t p = 0; p < dense_.size(); ++p) squares += area_[p] * std::pow(reflectance_[p] * (swept[p].g - dense_[p]), 2);
+  return std::sqrt(squares / area()) / mean_radiosity_;
 }
 
 double RowSystem::worst_relative_error() const {
@@ -89,13 +102,6 @@ double RowSystem::worst_relative_error() const {
   for (std::size_t p = 0; p < dense_.size(); ++p)
     if (dense_[p] > 0) worst = std::max(worst, std::abs(swept[p].g - dense_[p]) / dense_[p]);
   return worst;
-}
-
-double RowSystem::mean_irradiance() const {
-  const auto swept = parts_->state.exchange().irradiance();
-  double power = 0, area = 0;
-  for (std::size_t p = 0; p < swept.size(); ++p) power += area_[p] * swept[p].g, area += area_[p];
-  return power / area;
 }
 
 Measured RowSystem::measured(std::string obtained, double error) const {

@@ -2,6 +2,7 @@
 // The rows of a scene on its first mesh, solved by sweeps and by a dense matrix.
 
 #include "bench/stability/case.h"
+#include "radiosity/shooting.h"
 #include "radiosity/solver.h"
 
 #include <memory>
@@ -17,21 +18,24 @@ class RowSystem {
   std::size_t size() const { return dense_.size(); }
   /// Sweeps down to `enough` of Exchange::remaining_error, for most_seconds at most.
   void settle(double enough);
-  /// Sweeps until error() is at most this; the number of rows multiplied per patch, with those before the first sweep.
+  /// Sweeps until error() is at most this; the number of steps of one row or column a patch, with those before the first sweep:
+  /// direct light of the patches that emit, and what is unshot at first.
   double steps_down_to(double error);
 
-  /// RMS difference of the irradiance by rows from the dense solution, over the latter's mean, by area.
+  /// RMS difference of radiosity from the dense solution over the latter's mean, by area.
   double error() const;
-  /// Of the patch where it is largest.
+  /// Of irradiance by rows, on the patch where it is largest.
   double worst_relative_error() const;
-  double mean_irradiance() const;
   /// With the steps and seconds of sweeps so far, and the remaining error as the exchange knows it.
   Measured measured(std::string obtained, double error) const;
 
  private:
+  void read(const Shooting& system);
+  double area() const;
   struct Parts;
   std::unique_ptr<Parts> parts_;
-  std::vector<double> dense_, area_;  // by patch: irradiance, m2
+  std::vector<double> dense_, area_, reflectance_;  // by patch: irradiance, m2, -
+  double mean_radiosity_ = 0, emitting_share_ = 0;
   std::size_t steps_ = 0;
   double seconds_ = 0;
   std::string end_;
