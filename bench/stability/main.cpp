@@ -8,6 +8,8 @@ int main(int n, char** a) {
   for (int k = 1; k < n; ++k) {
     if (!strcmp(a[k], "c")) all.push_back(closed_form_cases());
     if (!strcmp(a[k], "d")) all.push_back(dense_cases());
+    if (!strcmp(a[k], "g")) all.push_back(geometry_cases());
+    if (!strcmp(a[k], "l")) all.push_back(light_cases());
     if (!strcmp(a[k], "s")) all.push_back(step_cases());
   }
   for (const auto& cs : all) for (const Case& c : cs) {

@@ -32,6 +32,22 @@ double SolvedScene::worst_error(const Rgb& expected) const {
   return worst;
 }
 
+double SolvedScene::worst_error_where_lit(const Rgb& expected) const {
+  double worst = 0;
+  for (const LeafValue& leaf : leaves_)
+    if (!leaf.irradiance.is_zero()) worst = std::max(worst, relative_error(widen(leaf.irradiance), expected));
+  return worst;
+}
+
+double SolvedScene::lit_share() const {
+  double lit = 0, area = 0;
+  for (const LeafValue& leaf : leaves_) {
+    area += area_of(leaf);
+    if (!leaf.irradiance.is_zero()) lit += area_of(leaf);
+  }
+  return lit / area;
+}
+
 Rgb SolvedScene::mean_irradiance(const std::function<bool(std::uint32_t root)>& is_chosen) const {
   Rgb power;
   double area = 0;

@@ -24,6 +24,10 @@ class SolvedScene {
 
   /// Largest relative difference of a leaf's irradiance, in any band, from what is expected of all.
   double worst_error(const Rgb& expected) const;
+  /// The same, of leaves that are not exactly dark.
+  double worst_error_where_lit(const Rgb& expected) const;
+  /// Of the area, on leaves that are not exactly dark.
+  double lit_share() const;
   /// Irradiance over the area of the roots that are chosen.
   Rgb mean_irradiance(const std::function<bool(std::uint32_t root)>& is_chosen) const;
   Rgb mean_irradiance() const;
