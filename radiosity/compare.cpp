@@ -156,7 +156,7 @@ class Comparer {
     course.error = course.curve.back().error;
     state_.show(system.irradiance());
     course.leaves = sorted_leaves();
-    if (shows_ambient(course.strategy)) course.ambient_irradiance = system.ambient_irradiance();
+    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.emission_unit() * system.ambient_irradiance();
   }
 
   std::uint64_t next_look(std::uint64_t steps) const {
