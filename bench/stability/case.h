@@ -20,7 +20,8 @@ struct Case {
   std::string name, condition, expected;
   double limit = 0;  ///< the error may be this large
   std::function<Measured()> measure;
-  bool is_quick = true;  ///< a test runs it
+  bool is_quick = true;   ///< a test runs it
+  std::string remark = {};  ///< what is known about why
 
   bool holds(const Measured& measured) const { return measured.error <= limit; }
 };

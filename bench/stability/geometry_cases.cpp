@@ -199,6 +199,15 @@ Scene cones() {
   return scene;
 }
 
+Case many_at_one_vertex() {
+  Case cones_case = in_furnace("two cones", "a vertex of 10 000 faces", cones);
+  cones_case.is_quick = false;
+  cones_case.remark =
+      "bounding boxes of slivers that meet in a point overlap, so a ray looks at a good part of them: a ray costs 0.7 microseconds "
+      "with 500 faces a cone, 2.8 with 2 000. What was found until then is published, with an estimated error of 100 %.";
+  return cones_case;
+}
+
 /// A furnace one of whose corners is moved, with the three faces that meet there.
 Scene bent(double by) {
   Scene scene = furnace();
@@ -276,7 +285,7 @@ std::vector<Case> geometry_cases() {
           touching(),
           in_furnace("two blocks", "crossing", crossing_blocks),
           in_furnace("a fan of 20 faces", "on one edge, two-sided", fan_on_one_edge),
-          in_furnace("two cones", "a vertex of 10 000 faces", cones),
+          many_at_one_vertex(),
           in_furnace("quads not quite planar", "bent by 2e-5 of the scene", hardly_bent),
           in_furnace("quads not planar", "bent by 2 %", clearly_bent),
           in_furnace("degenerate faces", "a point, a line, two edges", with_degenerate_faces),

@@ -1,20 +1,25 @@
-#include "bench/error_vs_time/figures.h"
-#include "bench/stability/case.h"
+// stability [PAGE]: measures stiff and extreme scenes and writes docs/stability.md.
+
+#include "bench/stability/page.h"
+
+#include <fstream>
 #include <iostream>
-#include <cstring>
-int main(int n, char** a) {
+
+int main(int count, char** arguments) {
   using namespace alvor::bench;
-  std::vector<std::vector<Case>> all;
-  for (int k = 1; k < n; ++k) {
-    if (!strcmp(a[k], "c")) all.push_back(closed_form_cases());
-    if (!strcmp(a[k], "d")) all.push_back(dense_cases());
-    if (!strcmp(a[k], "g")) all.push_back(geometry_cases());
-    if (!strcmp(a[k], "l")) all.push_back(light_cases());
-    if (!strcmp(a[k], "s")) all.push_back(step_cases());
+  if (count > 2) return std::cerr << "usage: stability [PAGE]\n", 2;
+  const std::string path = count == 2 ? arguments[1] : "docs/stability.md";
+  const auto sections = all_sections();
+  Findings findings;
+  for (const Section& section : sections) {
+    findings.emplace_back();
+    for (const Case& looked_at : section.cases) {
+      std::cerr << looked_at.name << ", " << looked_at.condition << std::endl;
+      findings.back().push_back(looked_at.measure());
+    }
   }
-  for (const auto& cs : all) for (const Case& c : cs) {
-    const Measured m = c.measure();
-    std::cout << c.name << " | " << c.condition << " | " << c.expected << " | " << m.obtained << " | " << figure(m.error, 3) << " est " << figure(m.estimate,3) << " | "
-              << m.steps << " | " << plain(m.seconds) << " | " << m.end << " | " << (c.holds(m) ? "holds" : "FAILS") << std::endl;
-  }
+  std::ofstream file(path);
+  file << page(sections, findings);
+  if (!file.flush()) return std::cerr << "stability: " << path << " cannot be written\n", 1;
+  std::cout << "wrote " << path << '\n';
 }
