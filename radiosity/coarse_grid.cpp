@@ -5,7 +5,7 @@
 namespace alvor {
 
 std::array<CoarseGrid::Matrix, 3> CoarseGrid::matrices(const CoarseUnits& units, const RowHits& hits,
-                                                    std::span<const double> weight) {
+                                                       std::span<const double> weight) {
   std::array<Matrix, 3> bands;
   for (Matrix& band : bands) band.assign(units.count, std::vector<double>(units.count));
   const auto members = units.members();

@@ -14,7 +14,8 @@ class CoarseGrid {
  public:
   CoarseGrid(CoarseUnits units, const RowHits& hits);
 
-  /// Replaces in `step`, which begins as the residual, its mean over each unit by the irradiance that would take it away. By patch.
+  /// Replaces in `step`, which begins as the residual, its mean over each unit by the irradiance that would take it away. By
+  /// patch.
   void correct(std::span<const Rgb> residual, std::span<Rgb> step) const;
 
  private:

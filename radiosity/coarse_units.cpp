@@ -31,7 +31,12 @@ CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
 class PairFinder {
  public:
   PairFinder(const CoarseUnits& units, const RowHits& hits)
-      : units_(units), hits_(hits), members_(units.members()), area_(units.count), flux_(units.count), partner_(units.count, none) {
+      : units_(units),
+        hits_(hits),
+        members_(units.members()),
+        area_(units.count),
+        flux_(units.count),
+        partner_(units.count, none) {
     for (std::size_t p = 0; p < units.of_patch.size(); ++p) area_[units.of_patch[p]] += hits.patches[p].area;
   }
 

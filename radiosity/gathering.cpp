@@ -8,11 +8,11 @@ namespace alvor {
 
 namespace {
 
-constexpr double least_gain = 0.01;           // of the squared residual: with less a plain step does better, and ends what stalls
-constexpr std::size_t few_units = 128;         // of a coarse grid that costs next to nothing
-constexpr std::size_t many_units = 400;       // of one for light that goes round slowly
-constexpr std::size_t sweeps_looked_at = 4;   // to see whether it does
-constexpr double slow = 0.004;                // of the squared residual: more is left after these, half in each
+constexpr double least_gain = 0.01;          // of the squared residual: with less a plain step does better, and ends what stalls
+constexpr std::size_t few_units = 128;       // of a coarse grid that costs next to nothing
+constexpr std::size_t many_units = 400;      // of one for light that goes round slowly
+constexpr std::size_t sweeps_looked_at = 4;  // to see whether it does
+constexpr double slow = 0.004;               // of the squared residual: more is left after these, half in each
 
 Gathering::Radiosity padded(const Rgb& a) { return {a.r, a.g, a.b, 0}; }
 

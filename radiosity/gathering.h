@@ -17,8 +17,8 @@ namespace alvor {
 /// all patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual
 /// (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own. One that gains nearly nothing takes a plain step.
 /// Before that each step is completed by what a coarse grid makes of the residual, a finer one where light was seen to go round
-/// slowly. It needs no transpose of the rows, and its residual, times the reflectance, is the unshot radiosity, of either sign. Results
-/// do not depend on the number of threads.
+/// slowly. It needs no transpose of the rows, and its residual, times the reflectance, is the unshot radiosity, of either sign.
+/// Results do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
   /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,

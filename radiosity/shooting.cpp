@@ -54,9 +54,8 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
 std::vector<Rgb> Shooting::reflectance_seen() const {
   std::vector<Rgb> seen(patches_.size());
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) {
-                return patches_[patch_of_leaf_[leaf]].reflectance;
-              });
+    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1],
+                                             [this](std::uint32_t leaf) { return patches_[patch_of_leaf_[leaf]].reflectance; });
   });
   return seen;
 }

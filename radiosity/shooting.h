@@ -70,7 +70,7 @@ class Shooting {
   double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
   /// sum over patches, W.
   double unshot_power() const;
-  Rgb unshot_rms() const;                                      ///< these three: see Exchange
+  Rgb unshot_rms() const;  ///< these three: see Exchange
   Rgb mean_radiosity() const;
   const Rgb& amplification() const { return amplification_; }
   /// Ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance), each

@@ -20,7 +20,7 @@ struct Case {
   std::string name, condition, expected;
   double limit = 0;  ///< the error may be this large
   std::function<Measured()> measure;
-  bool is_quick = true;   ///< a test runs it
+  bool is_quick = true;     ///< a test runs it
   std::string remark = {};  ///< what is known about why
 
   bool holds(const Measured& measured) const { return measured.error <= limit; }
@@ -28,6 +28,8 @@ struct Case {
 
 /// Rooms of high reflectance against closed forms.
 std::vector<Case> closed_form_cases();
+/// Boxes, squares and spheres against their known face means.
+std::vector<Case> reference_cases();
 /// Slow diffusion of light against a dense solve of the same rows.
 std::vector<Case> dense_cases();
 /// How many multiplications by the system a solution takes.

@@ -10,9 +10,9 @@ namespace alvor::bench {
 namespace {
 
 constexpr double high_reflectances[]{0.9, 0.99, 0.999, 0.999999};
-constexpr double exact = 1e-6;             // where rows that sum to 1 are the whole truth: float32 of what is published
+constexpr double exact = 1e-6;  // where rows that sum to 1 are the whole truth: float32 of what is published
 constexpr double exact_when_stiffest = 1e-4;
-constexpr double tolerance = 0.02;         // of a solve, by default
+constexpr double tolerance = 0.02;  // of a solve, by default
 
 double furnace_limit(double reflectance) { return reflectance > 0.999 ? exact_when_stiffest : exact; }
 
@@ -42,14 +42,17 @@ Case furnace(double reflectance) {
 }
 
 Case isothermal(double reflectance) {
-  return {"isothermal, E = 1-rho", "room " + rho(reflectance) + ", block 0.3", "H = 1 on every leaf", furnace_limit(reflectance), [=] {
+  return {"isothermal, E = 1-rho", "room " + rho(reflectance) + ", block 0.3", "H = 1 on every leaf", furnace_limit(reflectance),
+          [=] {
             return worst_leaf(furnished_furnace(grey(1 - reflectance, reflectance), grey(0.7, 0.3)), {1, 1, 1});
           }};
 }
 
 Case dark_face_isothermal(double reflectance) {
   return {"one black face in a white box, E = 1-rho", rho(reflectance) + " and 0", "H = 1 on every leaf",
-          furnace_limit(reflectance), [=] { return worst_leaf(unit_cube(grey(1, 0), grey(1 - reflectance, reflectance)), {1, 1, 1}); }};
+          furnace_limit(reflectance), [=] {
+            return worst_leaf(unit_cube(grey(1, 0), grey(1 - reflectance, reflectance)), {1, 1, 1});
+          }};
 }
 
 /// What the others emit ends on the black face, but for what they absorb themselves: 5 E - (1 - rho) 5 H.
@@ -78,17 +81,20 @@ Case contrast() {
             const Material wall{"coloured", {1, 1, 1}, reflectance, false};
             const SolvedScene solved(furnished_furnace(wall, wall));
             const Rgb mean = solved.mean_irradiance();
-            return solved.measured(figure(mean.r, 9) + ", " + figure(mean.g, 9) + ", " + figure(mean.b, 9), solved.worst_error(expected));
+            return solved.measured(figure(mean.r, 9) + ", " + figure(mean.g, 9) + ", " + figure(mean.b, 9),
+                                   solved.worst_error(expected));
           }};
 }
 
 Case contrast_with_lamp() {
   const Rgb reflectance{0.999999, 0.5, 0.01}, one{1, 1, 1};
   const Rgb expected{1.0 / 6 / (1 - reflectance.r), 1.0 / 6 / (1 - reflectance.g), 1.0 / 6 / (1 - reflectance.b)};
-  return {"cube, one face emits 1, unequal bands", "rho 0.999999, 0.5, 0.01", "mean B = mean E/(1-rho) in each band", tolerance, [=] {
+  return {"cube, one face emits 1, unequal bands", "rho 0.999999, 0.5, 0.01", "mean B = mean E/(1-rho) in each band", tolerance,
+          [=] {
             const SolvedScene solved(unit_cube({"floor", one, reflectance, false}, {"rest", {}, reflectance, false}));
             const Rgb mean = solved.mean_radiosity();
-            return solved.measured(figure(mean.r, 6) + ", " + figure(mean.g, 6) + ", " + figure(mean.b, 6), relative_error(mean, expected));
+            return solved.measured(figure(mean.r, 6) + ", " + figure(mean.g, 6) + ", " + figure(mean.b, 6),
+                                   relative_error(mean, expected));
           }};
 }
 

@@ -12,8 +12,8 @@ namespace alvor::bench {
 
 namespace {
 
-constexpr double exact = 1e-6;      // where rows that sum to 1 are the whole truth
-constexpr double tolerance = 0.02;  // of a solve, by default
+constexpr double exact = 1e-6;                               // where rows that sum to 1 are the whole truth
+constexpr double tolerance = 0.02;                           // of a solve, by default
 constexpr double reflectance = 0.5, furnace_irradiance = 2;  // E = 1
 
 constexpr double far_off = std::numeric_limits<double>::infinity();
@@ -105,7 +105,8 @@ Case area_ratio() {
   const double expected = 1.0 / 6 / (1 - reflectance);
   return {"a lamp in mid-air", "area ratio 1e12", "mean B = mean E/(1-rho) = " + figure(expected), tolerance, [=] {
             const SolvedScene solved(small_lamp_in_large_room());
-            const double mean = reflectance * solved.mean_irradiance([](std::uint32_t root) { return root < 6; }).g + expected * (1 - reflectance);
+            const double mean = reflectance * solved.mean_irradiance([](std::uint32_t root) { return root < 6; }).g +
+                                expected * (1 - reflectance);
             return solved.measured("mean B " + figure(mean), std::abs(mean - expected) / expected);
           }};
 }
@@ -203,7 +204,8 @@ Case many_at_one_vertex() {
   Case cones_case = in_furnace("two cones", "a vertex of 10 000 faces", cones);
   cones_case.is_quick = false;
   cones_case.remark =
-      "bounding boxes of slivers that meet in a point overlap, so a ray looks at a good part of them: a ray costs 0.7 microseconds "
+      "bounding boxes of slivers that meet in a point overlap, so a ray looks at a good part of them: a ray costs 0.7 "
+      "microseconds "
       "with 500 faces a cone, 2.8 with 2 000. What was found until then is published, with an estimated error of 100 %.";
   return cones_case;
 }

@@ -39,8 +39,7 @@ Case next_to(double bright, double dim) {
           "mean B = mean E/(1-rho) in both", tolerance, [=] {
             const SolvedScene solved(two_cubes(bright, dim, reflectance));
             const auto in = [&](std::uint32_t first, double emission) {
-              return 6 * reflectance / emission *
-                     solved.mean_irradiance([=](std::uint32_t root) { return root / 6 == first; }).g;
+              return 6 * reflectance / emission * solved.mean_irradiance([=](std::uint32_t root) { return root / 6 == first; }).g;
             };
             const double here = in(0, bright), there = in(1, dim);
             return solved.measured("mean rho H / mean E " + figure(here) + ", " + figure(there),
@@ -50,8 +49,8 @@ Case next_to(double bright, double dim) {
 
 Case in_one_room(double bright, double dim) {
   const double expected = bright / 6 / (1 - reflectance);
-  return {"cube, two faces emit", figure(bright) + " and " + figure(dim) + " W/m2", "mean B = mean E/(1-rho) = " + figure(expected),
-          tolerance, [=] {
+  return {"cube, two faces emit", figure(bright) + " and " + figure(dim) + " W/m2",
+          "mean B = mean E/(1-rho) = " + figure(expected), tolerance, [=] {
             Scene scene = unit_cube(grey(bright, reflectance), grey(0, reflectance));
             scene.materials.push_back(grey(dim, reflectance));
             scene.faces[1].material = 2;
@@ -72,7 +71,8 @@ Scene shadowed_room(double emission) {
 }
 
 Case in_proportion(double emission) {
-  return {"a lit room with shadows", figure(emission) + " W/m2", "mean H / E as for E = 1, to the tolerance, with as many shots to 20 %", tolerance, [=] {
+  return {"a lit room with shadows", figure(emission) + " W/m2",
+          "mean H / E as for E = 1, to the tolerance, with as many shots to 20 %", tolerance, [=] {
             const SolvedScene once(shadowed_room(1)), solved(shadowed_room(emission));
             const Rgb expected = once.mean_irradiance(), obtained = (1 / emission) * solved.mean_irradiance();
             const double shots = std::abs(solved.measured("", 0).steps / once.measured("", 0).steps - 1);
@@ -84,8 +84,11 @@ Case in_proportion(double emission) {
 /// The floor of a cube in n x n tiles that all emit.
 Case many_emitters(int n) {
   const double expected = 1.0 / 6 / (1 - reflectance);
-  return {"cube, the floor in tiles that emit", std::to_string(n * n) + " emitters", "mean B = mean E/(1-rho) = " + figure(expected),
-          tolerance, [=] {
+  return {"cube, the floor in tiles that emit",
+          std::to_string(n * n) + " emitters",
+          "mean B = mean E/(1-rho) = " + figure(expected),
+          tolerance,
+          [=] {
             Scene scene = unit_cube(grey(1, reflectance), grey(0, reflectance));
             scene.faces.erase(scene.faces.begin());
             for (int i = 0; i < n; ++i)
@@ -96,7 +99,9 @@ Case many_emitters(int n) {
             const SolvedScene solved(scene);
             const Rgb mean = solved.mean_radiosity();
             return solved.measured("mean B " + figure(mean.g), relative_error(mean, {expected, expected, expected}));
-          }, n < 100, n < 100 ? "" : "the mean is right in the first pass; going on to the tolerance takes longer than the limit."};
+          },
+          n < 100,
+          n < 100 ? "" : "the mean is right in the first pass; going on to the tolerance takes longer than the limit."};
 }
 
 Case no_light() {
@@ -117,9 +122,17 @@ Case refused(const std::string& condition, const Material& floor) {
 }  // namespace
 
 std::vector<Case> light_cases() {
-  return {lone_emission(1e-30), lone_emission(1e30), in_proportion(1e-30), in_proportion(1e30), next_to(1e30, 1e-30), in_one_room(1e30, 1e-30),
-          many_emitters(32), many_emitters(317), no_light(),
-          refused("emission 1e31 W/m2", grey(1e31, 0.5)), refused("emission -1 W/m2", grey(-1, 0.5)),
+  return {lone_emission(1e-30),
+          lone_emission(1e30),
+          in_proportion(1e-30),
+          in_proportion(1e30),
+          next_to(1e30, 1e-30),
+          in_one_room(1e30, 1e-30),
+          many_emitters(32),
+          many_emitters(317),
+          no_light(),
+          refused("emission 1e31 W/m2", grey(1e31, 0.5)),
+          refused("emission -1 W/m2", grey(-1, 0.5)),
           refused("reflectance 1", grey(1, 1))};
 }
 

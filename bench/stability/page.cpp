@@ -35,7 +35,8 @@ std::string failures(std::span<const Section> sections, const Findings& findings
     for (std::size_t n = 0; n < findings[s].size(); ++n) {
       const Case& looked_at = sections[s].cases[n];
       if (looked_at.holds(findings[s][n]) && looked_at.remark.empty()) continue;
-      text += "- " + looked_at.name + ", " + looked_at.condition + (looked_at.remark.empty() ? "" : ": " + looked_at.remark) + '\n';
+      text +=
+          "- " + looked_at.name + ", " + looked_at.condition + (looked_at.remark.empty() ? "" : ": " + looked_at.remark) + '\n';
     }
   return text;
 }
@@ -45,13 +46,17 @@ std::string head(const Findings& findings, std::span<const Section> sections) {
   for (std::size_t s = 0; s < sections.size(); ++s)
     for (std::size_t n = 0; n < findings[s].size(); ++n, ++all) held += sections[s].cases[n].holds(findings[s][n]);
   return "# Stiff and extreme scenes\n\n"
-         "What the solver makes of scenes in which light is hardly absorbed, and of scenes at the ends of what a file may hold. Each "
-         "line is measured\nagainst a closed form, an invariant or a dense solution; `scripts/stability.sh` measures all of them again "
+         "What the solver makes of scenes in which light is hardly absorbed, and of scenes at the ends of what a file may hold. "
+         "Each "
+         "line is measured\nagainst a closed form, an invariant or a dense solution; `scripts/stability.sh` measures all of them "
+         "again "
          "and writes this page. The quick ones are\ntests too. " +
          std::to_string(held) + " of " + std::to_string(all) +
          " cases hold.\n\n"
-         "*Error* is relative to what is expected, in the worst band; on \"every leaf\", of the worst leaf. *Estimate* is what the "
-         "solve itself says: the\nestimated nRMSE, or for bare systems of rows the bound on what is still to come. *Shots* are rows "
+         "*Error* is relative to what is expected, in the worst band; on \"every leaf\", of the worst leaf. *Estimate* is what "
+         "the "
+         "solve itself says: the\nestimated nRMSE, or for bare systems of rows the bound on what is still to come. *Shots* are "
+         "rows "
          "gathered or patches shot. All on one thread.\n";
 }
 
@@ -60,13 +65,17 @@ std::string head(const Findings& findings, std::span<const Section> sections) {
 std::vector<Section> all_sections() {
   return {{"Closed forms", "A solve with default options. Where surfaces emit all over, rows that sum to 1 are the whole truth.",
            closed_form_cases()},
+          {"Known means", "A solve with tolerance 1 %, against solutions of the continuous equation.", reference_cases()},
           {"Slow diffusion",
-           "Bare systems of rows against Gaussian elimination of the same rows in 80 bits. The error is that of radiosity, RMS over the "
+           "Bare systems of rows against Gaussian elimination of the same rows in 80 bits. The error is that of radiosity, RMS "
+           "over the "
            "mean.",
            dense_cases()},
           {"Steps to an error of 1e-6",
-           "Of one row or column each, counted per patch: direct light, what is unshot at first, and the sweeps. Records are those of "
-           "exact form factors on\nthe same scenes. The coarse grid and the bound on what is still to come read all rows once more each, "
+           "Of one row or column each, counted per patch: direct light, what is unshot at first, and the sweeps. Records are "
+           "those of "
+           "exact form factors on\nthe same scenes. The coarse grid and the bound on what is still to come read all rows once "
+           "more each, "
            "which is not counted.",
            step_cases()},
           {"Geometry", "Right, or a refusal that names the place.", geometry_cases()},

@@ -78,7 +78,11 @@ Measured SolvedScene::measured(std::string obtained, double error) const {
   if (fault_) return {"refused: " + fault_->text(), std::numeric_limits<double>::infinity()};
   for (const LeafValue& leaf : leaves_)
     if (!leaf.irradiance.is_finite() || leaf.irradiance.min() < 0) error = std::numeric_limits<double>::infinity();
-  return {std::move(obtained), error, last_.estimated_error, static_cast<double>(last_.shots), seconds_,
+  return {std::move(obtained),
+          error,
+          last_.estimated_error,
+          static_cast<double>(last_.shots),
+          seconds_,
           std::string(text(outcome_.reason))};
 }
 

@@ -30,13 +30,15 @@ Scene corridor(double reflectance) {
 std::vector<Case> step_cases() {
   std::vector<Case> cases;
   const auto cube = [](double reflectance) { return unit_cube(grey(1, reflectance), grey(0, reflectance)); };
-  cases.push_back(steps("cube 8 x 8, one face emits", 0.95, 6.7, "overshooting, 6.7 (sorted 135, conjugate gradients 10)", cube(0.95)));
+  cases.push_back(
+      steps("cube 8 x 8, one face emits", 0.95, 6.7, "overshooting, 6.7 (sorted 135, conjugate gradients 10)", cube(0.95)));
   cases.push_back(steps("corridor 1 x 1 x 10, the end emits", 0.95, 19, "conjugate gradients, 19 (sorted 125, overshooting 62)",
                         corridor(0.95)));
   for (const double reflectance : {0.999, 0.999999}) {
-    cases.push_back(steps("cube 8 x 8, one face emits", reflectance, 10, "conjugate gradients at rho 0.95, 10", cube(reflectance)));
     cases.push_back(
-        steps("corridor 1 x 1 x 10, the end emits", reflectance, 19, "conjugate gradients at rho 0.95, 19", corridor(reflectance)));
+        steps("cube 8 x 8, one face emits", reflectance, 10, "conjugate gradients at rho 0.95, 10", cube(reflectance)));
+    cases.push_back(steps("corridor 1 x 1 x 10, the end emits", reflectance, 19, "conjugate gradients at rho 0.95, 19",
+                          corridor(reflectance)));
   }
   return cases;
 }

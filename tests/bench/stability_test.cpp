@@ -10,8 +10,7 @@ namespace {
 
 std::vector<Case> quick_cases() {
   std::vector<Case> quick;
-  for (const Section& section : all_sections())
-    std::ranges::copy_if(section.cases, std::back_inserter(quick), &Case::is_quick);
+  for (const Section& section : all_sections()) std::ranges::copy_if(section.cases, std::back_inserter(quick), &Case::is_quick);
   return quick;
 }
 
