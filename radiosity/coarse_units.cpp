@@ -31,14 +31,7 @@ CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
 class PairFinder {
  public:
   PairFinder(const CoarseUnits& units, const RowHits& hits)
-      : units_(units),
-        hits_(hits),
-        members_(units.members()),
-        area_(units.count),
-        flux_(units.count),
-        partner_(units.count, none) {
-    for (std::size_t p = 0; p < units.of_patch.size(); ++p) area_[units.of_patch[p]] += hits.patches[p].area;
-  }
+      : units_(units), hits_(hits), members_(units.members()), flux_(units.count), partner_(units.count, none) {}
 
   std::vector<std::uint32_t> pairs() {
     for (std::uint32_t unit = 0; unit < units_.count; ++unit) {
@@ -62,7 +55,7 @@ class PairFinder {
       });
     std::uint32_t best = none;
     for (const std::uint32_t there : seen)
-      if (best == none || flux_[there] * area_[best] > flux_[best] * area_[there]) best = there;
+      if (best == none || flux_[there] > flux_[best]) best = there;
     for (const std::uint32_t there : seen) flux_[there] = 0;
     return best;
   }
@@ -70,7 +63,7 @@ class PairFinder {
   const CoarseUnits& units_;
   const RowHits& hits_;
   std::vector<std::vector<std::uint32_t>> members_;
-  std::vector<double> area_, flux_;  // by unit; the latter from the unit that looks, else 0
+  std::vector<double> flux_;  // by unit, from the unit that looks; else 0
   std::vector<std::uint32_t> partner_;
 };
 

@@ -20,7 +20,7 @@ struct CoarseUnits {
 /// The ancestors of patches in their quadtrees, as deep as no more than `most` are reached; the roots, if they are more.
 CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most);
 
-/// Joins units to pairs that see most of each other, for their size, and again, until they are at most `most` (pairwise
+/// Joins units to pairs, each with the one that it sees most of and that is still alone, and again, until they are at most `most` (pairwise
 /// aggregation, Notay 2010) or none see each other.
 void join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most);
 

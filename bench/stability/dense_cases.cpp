@@ -3,8 +3,6 @@
 #include "bench/stability/enclosures.h"
 #include "bench/stability/row_system.h"
 
-#include <algorithm>
-
 namespace alvor::bench {
 
 namespace {
@@ -29,17 +27,17 @@ Case plates(double distance, double reflectance) {
           "within 1 % of the dense solution", one_percent, [=] { return settled(facing_plates(distance, reflectance), 4); }};
 }
 
-/// One that cannot do it must say so: the error counts where it is above both 1 % and what the strategy admits.
+/// One that cannot do it must say so.
 Case by_strategy(Strategy strategy, double reflectance) {
   constexpr int rooms = 10;
-  return {"chain of " + std::to_string(rooms) + " rooms, `" + std::string(text(strategy)) + "`", rho(reflectance),
-          "within 1 % of the dense solution, or an estimate that tells", one_percent, [=] {
-            RowSystem system(chain_of_rooms(rooms, reflectance), 0, strategy);
-            system.settle(one_percent / 10);
-            Measured measured = system.measured("off by " + percent(system.error()), system.error());
-            if (measured.error <= measured.estimate) measured.error = std::min(measured.error, one_percent);
-            return measured;
-          }};
+  Case strategy_case{"chain of " + std::to_string(rooms) + " rooms, `" + std::string(text(strategy)) + "`", rho(reflectance),
+                     "within 1 % of the dense solution, or an estimate that tells", one_percent, [=] {
+                       RowSystem system(chain_of_rooms(rooms, reflectance), 0, strategy);
+                       system.settle(one_percent / 10);
+                       return system.measured("off by " + percent(system.error()), system.error());
+                     }};
+  strategy_case.may_admit = true;
+  return strategy_case;
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ Scene lit_room() {
 
 /// A furnace stays one, whatever is put into it; what is hidden is exactly dark.
 Case in_furnace(const std::string& name, const std::string& condition, Scene (*scene)(), double lit = 0.9) {
-  return {name, condition, "H = 2 on every leaf but " + percent(1 - lit) + " that may be hidden", exact, [=] {
+  return {name, condition, "H = 2 on every leaf but " + tolerance_percent(1 - lit) + " that may be hidden", exact, [=] {
             const SolvedScene solved(scene());
             const Rgb expected{furnace_irradiance, furnace_irradiance, furnace_irradiance};
             return solved.measured(percent(solved.lit_share()) + " of the area lit",
