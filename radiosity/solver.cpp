@@ -16,7 +16,8 @@ namespace alvor {
 namespace {
 
 constexpr double pass_remaining = 0.1;    // of the tolerance: a pass goes on until what is still to come is less
-constexpr double final_remaining = 1e-6;  // the same, of the last pass, and of all where gathering makes it cheap
+constexpr double final_remaining = 1e-6;  // the same, of a pass that may be the last
+constexpr double near_the_end = 1.5;      // times the tolerance: the next pass is likely the last
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
@@ -91,7 +92,7 @@ class Run {
     });
     if (must_stop()) return false;
     state_.begin_exchange();
-    if (!exchange_down_to(is_cheap() ? final_remaining : pass_remaining * options_.tolerance)) return false;
+    if (!exchange_down_to(may_be_last(first) ? final_remaining : pass_remaining * options_.tolerance)) return false;
     error_ = state_.estimate();
     publish();
     return true;
@@ -146,7 +147,10 @@ class Run {
   }
 
   bool is_stuck() const { return has_stalled_ && error_.unshot > pass_remaining * options_.tolerance; }
-  bool is_cheap() const { return options_.strategy == Strategy::automatic; }
+  /// A pass that may be the last goes on to the end where that is cheap: what it shows is then smoothed as a whole.
+  bool may_be_last(bool first) const {
+    return options_.strategy == Strategy::automatic && (first || error_.total() < near_the_end * options_.tolerance);
+  }
   bool must_stop() const { return stop_.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
   StopReason stop_reason() const { return stop_.stop_requested() ? StopReason::cancelled : StopReason::time_limit; }
   StopReason limit_reached() const {
