@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 namespace alvor {
@@ -64,6 +65,14 @@ RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, con
   root.area = 0.5 * length(area);
   if (root.area > 0) root.normal = normalized(area);
   return root;
+}
+
+/// Gives the back the corners of the front, the other way round.
+void turn_round(const RootPatch& front, RootPatch& back) {
+  back.corners = front.corners;
+  back.vertex = front.vertex;
+  std::reverse(back.corners.begin() + 1, back.corners.begin() + back.corner_count);
+  std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
 }
 
 /// Joins roots into a half-edge mesh. A face that OpenMesh cannot attach, for an edge already has two faces or one of the other
@@ -151,8 +160,28 @@ BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials), absorption
   centre_ = lerp(box.low, box.high, 0.5);
   extent_ = box.longest_side();
 
+  pair_back_to_back();
   find_neighbours();
   add_backs();
+}
+
+// Two faces in one place that look away from each other: rays could meet either, so they are told apart by where rays come from.
+void BaseMesh::pair_back_to_back() {
+  std::map<std::array<std::uint32_t, 4>, std::uint32_t> root_of;  // by sorted vertices
+  for (std::uint32_t r = 0; r < roots_.size(); ++r) {
+    RootPatch& root = roots_[r];
+    if (material_of(r).two_sided) continue;
+    auto key = root.vertex;
+    if (root.corner_count == 3) key[3] = no_corner;
+    std::ranges::sort(key);
+    const auto [found, is_new] = root_of.try_emplace(key, r);
+    RootPatch& other = roots_[found->second];
+    if (is_new || other.twin != RootPatch::no_twin || dot(root.normal, other.normal) > 0) continue;
+    turn_round(other, root);
+    root.is_behind = true;
+    root.twin = found->second;
+    other.twin = r;
+  }
 }
 
 void BaseMesh::find_neighbours() {
@@ -169,10 +198,9 @@ void BaseMesh::add_backs() {
   for (std::uint32_t front = 0; front < fronts; ++front) {
     if (!material_of(front).two_sided) continue;
     RootPatch back = roots_[front];
-    std::reverse(back.corners.begin() + 1, back.corners.begin() + back.corner_count);
-    std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
+    turn_round(roots_[front], back);
     back.normal = -back.normal;
-    back.is_back = true;
+    back.is_back = back.is_behind = true;
     back.twin = front;
     roots_[front].twin = static_cast<std::uint32_t>(roots_.size());
     roots_.push_back(back);

@@ -22,9 +22,11 @@ struct RootPatch {
   double area = 0;               ///< m2
 
   static constexpr std::uint32_t no_twin = ~0u;
-  std::uint32_t twin =
-      no_twin;  ///< the other side of a two-sided face; its corners are ours in the order 0, n-1, ..., 1, so (u, v) is (v, u)
-  bool is_back = false;  ///< the twin that looks against the face's orientation
+  /// The other side of a two-sided face, or another face with the same corners the other way round. Its corners are ours in the
+  /// order 0, n-1, ..., 1, so (u, v) is (v, u).
+  std::uint32_t twin = no_twin;
+  bool is_back = false;    ///< the twin that looks against the face's orientation
+  bool is_behind = false;  ///< rays meet its twin in its place
 
   /// Position at (u, v): bilinear for a quad with (0,0), (1,0), (1,1), (0,1) at corners 0..3; for a triangle
   /// corner0 + u (corner1 - corner0) + v (corner2 - corner0).
@@ -64,6 +66,7 @@ class BaseMesh {
   double extent() const { return extent_; }  ///< longest side of that box, metres; > 0 unless there are no roots
 
  private:
+  void pair_back_to_back();
   void find_neighbours();
   void add_backs();
 

@@ -9,7 +9,8 @@ namespace {
 
 /// Planarity and convexity at the four corners: every corner turns left about the normal, and no corner leaves the plane.
 bool is_planar_convex_quad(std::span<const Vec3> p, Vec3 normal) {
-  constexpr double planar = 1e-4, strictly_convex = 1e-6;
+  // Rays see two triangles, points of the patch lie on the bilinear surface: these may differ by less than rays start above it.
+  constexpr double planar = 4e-6, strictly_convex = 1e-6;
   const double size = std::max(length(p[2] - p[0]), length(p[3] - p[1]));
   if (std::abs(dot(p[2] - p[0], normal)) > planar * size || std::abs(dot(p[3] - p[1], normal)) > planar * size) return false;
   if (std::abs(dot((p[0] + p[2]) - (p[1] + p[3]), normal)) > planar * size) return false;

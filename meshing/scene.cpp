@@ -8,6 +8,7 @@ namespace alvor {
 namespace {
 
 constexpr double max_coordinate = 1e9;
+constexpr double max_emission = 1e30;  // W/m2: what comes of it after a million reflections is still a float
 
 std::string number(double value) {
   char text[32];
@@ -20,6 +21,8 @@ std::optional<std::string> fault_in(const Material& material) {
                               {material.reflectance.r, material.reflectance.g, material.reflectance.b}};
   for (const double emission : bands[0])
     if (!std::isfinite(emission) || emission < 0) return "emission " + number(emission) + " is not a finite value >= 0";
+  for (const double emission : bands[0])
+    if (emission > max_emission) return "emission " + number(emission) + " is beyond 1e30 W/m2";
   for (const double reflectance : bands[1])
     if (!(reflectance >= 0 && reflectance < 1)) return "reflectance " + number(reflectance) + " is outside [0, 1)";
   return std::nullopt;

@@ -53,8 +53,8 @@ struct Fault {
 
 /// The first fault, looking at counts, then materials, vertices and faces in order. Linear in the size of the scene; never reads
 /// out of bounds, whatever the scene. A scene without fault has at least one face, finite coordinates within 1e9 m, indices in
-/// range, faces of three corners or more, finite emission and absorption >= 0 and reflectance in [0, 1). Degenerate faces are no
-/// fault.
+/// range, faces of three corners or more, emission in [0, 1e30] W/m2, finite absorption >= 0 and reflectance in [0, 1).
+/// Degenerate faces are no fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

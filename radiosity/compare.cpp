@@ -47,7 +47,7 @@ class Reference {
   Reference() = default;
   /// The irradiance that solves a system of which nothing is shot.
   Reference(const Shooting& unshot_system, std::vector<Rgb> irradiance) : irradiance_(std::move(irradiance)) {
-    const auto own = unshot_system.unshot();
+    const auto own = unshot_system.unshot_by_leaf();
     for (std::size_t p = 0; p < irradiance_.size(); ++p) {
       const ShootingPatch& patch = unshot_system.patches()[p];
       for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf)
@@ -156,7 +156,7 @@ class Comparer {
     course.error = course.curve.back().error;
     state_.show(system.irradiance());
     course.leaves = sorted_leaves();
-    if (shows_ambient(course.strategy)) course.ambient_irradiance = system.ambient_irradiance();
+    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.emission_unit() * system.ambient_irradiance();
   }
 
   std::uint64_t next_look(std::uint64_t steps) const {

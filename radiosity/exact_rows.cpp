@@ -23,6 +23,15 @@ std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
 /// rest.
 double visible_share(const TransportRow& row) { return 1 - std::popcount(row.hidden_origins) / double(origins_per_patch); }
 
+/// What makes the factors of a row sum to 1 where no ray escaped, and to no more elsewhere: where nearly all is reflected an
+/// excess of 1e-4 would never end.
+double scale_to_closure(std::span<const MatrixEntry> entries, double visible_share, bool is_closed) {
+  double sum = 0;
+  for (const MatrixEntry& entry : entries) sum += entry.value;
+  if (sum <= 0) return 0;
+  return is_closed ? 1 / sum : std::min(1 / visible_share, 1 / sum);
+}
+
 }  // namespace
 
 // Rays were sent all the same, to tell what is hidden. A patch's form factor is spread over its leaves by area. The row is known
@@ -42,16 +51,18 @@ void SolveState::make_rows_exact() {
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     TransportRow& row = rows_[rows[n]];
     if (row.is_hidden() || budget_.is_out()) return;
+    const auto entries = form_factors.row(static_cast<std::uint32_t>(n));
+    const double scale = scale_to_closure(entries, visible_share(row), row.hits.size() == row.rays);
     row.hits.clear();
     row.hit_weight.clear();
     row.origin_hits.clear();
     row.rays = 1;
-    for (const MatrixEntry& entry : form_factors.row(static_cast<std::uint32_t>(n)))
+    for (const MatrixEntry& entry : entries)
       for (const NodeIndex leaf : leaves[entry.to]) {
-        const double share = leaf_area_[leaf] / patches.area(entry.to) / visible_share(row);
+        const double share = scale * leaf_area_[leaf] / patches.area(entry.to);
         const Rgb dimmed = medium.transmittance(length(leaf_centre_[leaf] - row_centre_[rows[n]]));
         row.hits.push_back(leaf_forest_.id(leaf));
-        row.hit_weight.push_back(narrow(std::min(1.0, entry.value) * share * dimmed));
+        row.hit_weight.push_back(narrow(entry.value * share * dimmed));
       }
     hit_leaves_[rows[n]].clear();
   });

@@ -2,15 +2,19 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 namespace alvor {
 
 namespace {
 
-constexpr double least_gain = 0.01;  // of the squared residual: with less a plain step does better, and ends what stalls
+constexpr double least_gain = 0.01;          // of the squared residual: with less a plain step does better, and ends what stalls
+constexpr std::size_t few_units = 128;       // of a coarse grid that costs next to nothing
+constexpr std::size_t many_units = 400;      // of one for light that goes round slowly
+constexpr std::size_t sweeps_looked_at = 4;  // to see whether it does
+constexpr double slow = 0.004;               // of the squared residual: more is left after these, half in each
 
-Gathering::Radiosity padded(const Rgb& a) {
-  return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b), 0};
-}
+Gathering::Radiosity padded(const Rgb& a) { return {a.r, a.g, a.b, 0}; }
 
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
@@ -22,7 +26,7 @@ Rgb sum_of(std::span<const Gathering::Radiosity> radiosity, const std::uint32_t*
   double sum[4] = {};
   for (std::size_t h = 0; h < count; ++h) {
     const Gathering::Radiosity& hit = radiosity[leaf[h]];
-    const float lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
+    const double lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
     for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
   }
   return {sum[0], sum[1], sum[2]};
@@ -31,20 +35,48 @@ Rgb sum_of(std::span<const Gathering::Radiosity> radiosity, const std::uint32_t*
 }  // namespace
 
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
-                     std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance)
+                     std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
+                     std::vector<PatchId> ids)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
       hit_leaf_(std::move(hit_leaf)),
       leaving_(leaf_count),
       irradiance_(std::move(irradiance)),
-      residual_(patches.size()) {
-  for (const ShootingPatch& patch : patches_) power_weight_.push_back(patch.area * patch.reflectance);
+      residual_(patches.size()),
+      ids_(std::move(ids)) {
+  for (const ShootingPatch& patch : patches_) {
+    power_weight_.push_back(patch.area * patch.reflectance);
+    area_ += patch.area;
+  }
+  find_own_power();
   ambient_gain_ = ambient_gain(patches_);
+  amplification_ = alvor::amplification(patches_, reflectance_seen());
   leaving_ = radiosity();
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
   find_unshot();
+  squares_before_ = product(residual_, residual_);
+  if (CoarseUnits units = ancestors(ids_, few_units); units.count > 1 && units.count <= few_units) coarsen(std::move(units));
+}
+
+void Gathering::coarsen(CoarseUnits units) {
+  patch_of_leaf_.resize(leaving_.size());
+  for (std::uint32_t p = 0; p < patches_.size(); ++p)
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      patch_of_leaf_[leaf_of_place_[k]] = p;
+  const RowHits hits{patches_, hit_leaf_, patch_of_leaf_};
+  join_pairs(units, hits, many_units);
+  if (units.count <= many_units) coarse_.emplace(std::move(units), hits);
+}
+
+void Gathering::watch_decrease() {
+  if (++sweeps_ % sweeps_looked_at != 0 || is_finest_ || ids_.empty()) return;
+  const Rgb squares = product(residual_, residual_), limit = slow * squares_before_;
+  squares_before_ = squares;
+  if (squares.r <= limit.r && squares.g <= limit.g && squares.b <= limit.b) return;
+  coarsen(ancestors(ids_, many_units));
+  is_finest_ = true;
 }
 
 template <class Leaving>
@@ -79,20 +111,37 @@ void Gathering::gather(std::vector<Rgb>& received) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
 }
 
+std::vector<Rgb> Gathering::reflectance_seen() {
+  std::vector<Rgb> seen(patches_.size());
+  spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance; });
+  gather(seen);
+  return seen;
+}
+
 Rgb Gathering::product(std::span<const Rgb> a, std::span<const Rgb> b) const {
   Rgb sum;
   for (std::size_t p = 0; p < a.size(); ++p) sum += patches_[p].area * (a[p] * b[p]);
   return sum;
 }
 
+// As if all leaves of a patch had the same area: it only says how much light there is.
+void Gathering::find_own_power() {
+  for (const ShootingPatch& patch : patches_)
+    for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k)
+      own_power_ += (patch.area / patch.leaf_count) * own_radiosity_[k];
+}
+
 void Gathering::find_unshot() {
   unshot_power_ = 0;
   unshot_sum_ = {};
+  Rgb squares;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const Rgb unshot = power_weight_[p] * residual_[p];
     unshot_power_ += absolute(unshot).sum();
     unshot_sum_ += unshot;
+    if (patches_[p].area > 0) squares += (1 / patches_[p].area) * (unshot * unshot);
   }
+  unshot_rms_ = {std::sqrt(squares.r / area_), std::sqrt(squares.g / area_), std::sqrt(squares.b / area_)};
 }
 
 void Gathering::make_conjugate(Direction& next) const {
@@ -108,19 +157,26 @@ void Gathering::make_conjugate(Direction& next) const {
 
 std::size_t Gathering::sweep() {
   if (unshot_power_ == 0) return 0;
+  watch_decrease();
   Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
-  spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
+  if (coarse_) coarse_->correct(residual_, next.step);
+  spread(leaving_, [&](std::size_t p, std::uint32_t) { return patches_[p].reflectance * next.step[p]; });
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
-  const std::vector<Rgb> plain = next.change;
+  const Direction plain = next;
   make_conjugate(next);
   const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
-  const bool helps = (length * overlap).sum() > least_gain * product(residual_, residual_).sum();
-  advance(helps ? length : Rgb{1, 1, 1}, helps ? next.step : residual_, helps ? next.change : plain);
-  if (helps) remember(std::move(next));
-  else directions_.clear();
+  const Rgb taken = helps(length, overlap), left = Rgb{1, 1, 1} - taken;
+  advance(taken * length, next.step, next.change);
+  if (!left.is_zero()) advance(left, plain.step, plain.change);
+  remember(std::move(next), taken);
   find_unshot();
   return patches_.size();
+}
+
+Rgb Gathering::helps(const Rgb& length, const Rgb& overlap) const {
+  const Rgb gain = length * overlap, least = least_gain * product(residual_, residual_);
+  return {double(gain.r > least.r), double(gain.g > least.g), double(gain.b > least.b)};
 }
 
 void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change) {
@@ -130,15 +186,24 @@ void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<
   }
 }
 
-void Gathering::remember(Direction direction) {
+// A band that took a plain step starts anew: what it remembers no longer counts.
+void Gathering::remember(Direction direction, const Rgb& in_bands) {
+  for (Direction& other : directions_) other.norm = in_bands * other.norm;
+  direction.norm = in_bands * direction.norm;
   if (directions_.size() < remembered) directions_.push_back(std::move(direction));
   else directions_[steps_ % remembered] = std::move(direction);
   ++steps_;
 }
 
+Rgb Gathering::mean_radiosity() const {
+  Rgb power = own_power_;
+  for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
+  return (1 / area_) * power;
+}
+
 std::vector<Rgb> Gathering::irradiance() const {
   std::vector<Rgb> all(patches_.size());
-  for (std::size_t p = 0; p < patches_.size(); ++p) all[p] = irradiance_[p] + residual_[p];
+  for (std::size_t p = 0; p < patches_.size(); ++p) all[p] = upper(irradiance_[p] + residual_[p], {});
   return all;
 }
 

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace alvor {
 
@@ -17,6 +18,16 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches) {
   if (area == 0) return {};
   const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
   return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
+}
+
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen) {
+  Rgb largest, most_seen;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    largest = upper(largest, patches[p].reflectance);
+    most_seen = upper(most_seen, reflectance_seen[p]);
+  }
+  const auto band = [](double reflected, double seen) { return 1 / (1 - std::sqrt(reflected * std::min(reflected, seen))); };
+  return {band(largest.r, most_seen.r), band(largest.g, most_seen.g), band(largest.b, most_seen.b)};
 }
 
 Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
@@ -37,6 +48,16 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
   }
   transpose();
   ambient_gain_ = ambient_gain(patches_);
+  amplification_ = alvor::amplification(patches_, reflectance_seen());
+}
+
+std::vector<Rgb> Shooting::reflectance_seen() const {
+  std::vector<Rgb> seen(patches_.size());
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1],
+                                             [this](std::uint32_t leaf) { return patches_[patch_of_leaf_[leaf]].reflectance; });
+  });
+  return seen;
 }
 
 // Counting sort of all hits by the patch that was hit.
@@ -139,6 +160,36 @@ double Shooting::unshot_power() const {
   return power;
 }
 
+template <class Body>
+void Shooting::for_each_leaf(Body&& body) const {
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Rgb& rho = patches_[p].reflectance;
+    const Rgb unshot = rho * receivers_[p].unshot, shot = rho * shot_irradiance_[p];
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      body(leaves_[k].area, leaves_[k].shot + shot, leaves_[k].unshot + unshot);
+  }
+}
+
+Rgb Shooting::unshot_rms() const {
+  Rgb squares;
+  double area = 0;
+  for_each_leaf([&](double leaf_area, const Rgb&, const Rgb& unshot) {
+    squares += leaf_area * (unshot * unshot);
+    area += leaf_area;
+  });
+  return {std::sqrt(squares.r / area), std::sqrt(squares.g / area), std::sqrt(squares.b / area)};
+}
+
+Rgb Shooting::mean_radiosity() const {
+  Rgb power;
+  double area = 0;
+  for_each_leaf([&](double leaf_area, const Rgb& shot, const Rgb& unshot) {
+    power += leaf_area * absolute(shot + unshot);
+    area += leaf_area;
+  });
+  return (1 / area) * power;
+}
+
 // The two loops differ in what they read: weights that are not there cost nothing.
 template <class Leaving>
 void Shooting::send(std::uint32_t shooter, Leaving&& leaving) {
@@ -222,7 +273,7 @@ std::vector<Rgb> Shooting::shot() const {
   return all;
 }
 
-std::vector<Rgb> Shooting::unshot() const {
+std::vector<Rgb> Shooting::unshot_by_leaf() const {
   std::vector<Rgb> all;
   all.reserve(leaves_.size());
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {

@@ -22,6 +22,11 @@ struct ShootingPatch {
 /// Ambient irradiance (see Exchange) of one unit of unshot power, 1/m2.
 Rgb ambient_gain(std::span<const ShootingPatch> patches);
 
+/// See Exchange: 1 / (1 - fading), of the RMS. A reflection leaves of the maximum what is reflected of what the rows see at most
+/// (`reflectance_seen`, by patch), of the power at most the largest reflectance, as rows are reciprocal; so of the RMS the
+/// geometric mean (Riesz & Thorin).
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen);
+
 /// A leaf's share of the residual.
 struct ShootingLeaf {
   double area = 0;  ///< m2
@@ -56,10 +61,18 @@ class Shooting {
   std::span<const ShootingPatch> patches() const { return patches_; }
   std::size_t patch_count() const { return patches_.size(); }
   double leaf_area(std::uint32_t leaf) const { return leaves_[leaf].area; }  ///< m2
+  std::uint32_t patch_of(std::uint32_t leaf) const { return patch_of_leaf_[leaf]; }
+  /// What the hits of the patch's row found.
+  std::span<const std::uint32_t> leaves_hit(std::uint32_t patch) const {
+    return std::span(hit_leaf_).subspan(first_hit_[patch], first_hit_[patch + 1] - first_hit_[patch]);
+  }
   /// |unshot power| of a patch, W, summed over bands; with what it would shoot of `advance`.
   double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
   /// sum over patches, W.
   double unshot_power() const;
+  Rgb unshot_rms() const;  ///< these three: see Exchange
+  Rgb mean_radiosity() const;
+  const Rgb& amplification() const { return amplification_; }
   /// Ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance), each
   /// reflection weakened by what escapes from an open scene.
   Rgb ambient_irradiance() const;
@@ -76,7 +89,7 @@ class Shooting {
   /// What was distributed so far, by leaf.
   std::vector<Rgb> shot() const;
   /// What is not, by leaf.
-  std::vector<Rgb> unshot() const;
+  std::vector<Rgb> unshot_by_leaf() const;
 
  private:
   struct Entry {
@@ -94,6 +107,10 @@ class Shooting {
   };
   void transpose();
   void transpose_weights();
+  std::vector<Rgb> reflectance_seen() const;
+  /// body(area, shot radiosity, unshot radiosity).
+  template <class Body>
+  void for_each_leaf(Body&& body) const;
   /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, weighted.
   template <class Radiosity>
   Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;
@@ -120,6 +137,7 @@ class Shooting {
   std::vector<Rgb> shot_irradiance_;  // by patch: reflected already, not yet in ShootingLeaf::shot
   std::vector<double> leaf_power_;    // by patch: sum of area |unshot| over its leaves
   Rgb ambient_gain_;                  // ambient irradiance of one unit of unshot power, 1/m2
+  Rgb amplification_;
   std::optional<Account> account_;
 };
 

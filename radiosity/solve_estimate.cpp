@@ -198,7 +198,7 @@ ErrorEstimate SolveState::estimate() {
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;
-  error.unshot = unshot_fraction();
+  error.unshot = exchange_->remaining_error();
   if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
   return error;
 }

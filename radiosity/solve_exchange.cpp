@@ -49,12 +49,14 @@ void SolveState::list_patches() {
 std::unique_ptr<Exchange> SolveState::begin_gathering() {
   std::vector<const NodeIndex*> hit_leaf;
   std::vector<Rgb> irradiance;
+  std::vector<PatchId> ids;
   for (const NodeIndex row : patch_row_) {
+    ids.push_back(row_forest_.id(row));
     hit_leaf.push_back(hit_leaves_[row].data());
     irradiance.push_back(row_irradiance_[row]);
   }
   return std::make_unique<Gathering>(patches_, patch_leaves_, leaf_forest_.node_count(), own_radiosity_, std::move(hit_leaf),
-                                     std::move(irradiance));
+                                     std::move(irradiance), std::move(ids));
 }
 
 Shooting SolveState::begin_shooting() {

@@ -42,9 +42,11 @@ SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBud
 
 // Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
 void SolveState::choose_emitters() {
-  double emitting = 0;
+  double emitting = 0, brightest = 0;
+  for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) brightest = std::max(brightest, mesh_.material_of(r).emission.max());
+  if (brightest > 0) emission_unit_ = brightest;
   for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) {
-    const Rgb emission = mesh_.material_of(r).emission;
+    const Rgb emission = emission_of(r);
     area_ += mesh_.roots()[r].area;
     if (emission.is_zero()) continue;
     emitters_.push_back({r, emission, emission.sum() * mesh_.roots()[r].area});
@@ -58,7 +60,8 @@ void SolveState::choose_emitters() {
   if (emitters_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(scene_, emitters_);
 }
 
-Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? mesh_.material_of(root).emission : Rgb{}; }
+Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? emission_of(root) : Rgb{}; }
+Rgb SolveState::emission_of(std::uint32_t root) const { return (1 / emission_unit_) * mesh_.material_of(root).emission; }
 
 void SolveState::split_to_start() {
   const auto is_coarse = [&](NodeIndex node) {
@@ -203,7 +206,7 @@ std::vector<LeafValue> SolveState::leaf_values() const {
   values.reserve(leaf_forest_.leaf_count());
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
     const PatchId id = leaf_forest_.id(leaf);
-    values.push_back({id, narrow(direct_[leaf].irradiance + indirect(leaf))});
+    values.push_back({id, narrow(emission_unit_ * (direct_[leaf].irradiance + indirect(leaf)))});
   }
   return values;
 }

@@ -52,9 +52,12 @@ class SolveState {
   /// The same, of the emitted power; 0 in the dark.
   double unshot_fraction() const { return emitted_power_ > 0 ? unshot_power() / emitted_power_ : 0; }
   /// Display only, see Shooting::ambient_irradiance. Zero before the first shots.
-  Rgb ambient_irradiance() const { return exchange_ ? exchange_->ambient_irradiance() : Rgb{}; }
+  Rgb ambient_irradiance() const { return exchange_ ? emission_unit_ * exchange_->ambient_irradiance() : Rgb{}; }
+  /// W/m2. All else that is asked of the state and its exchange is light and power in this unit, so that squares stay numbers
+  /// however bright or dim a scene is.
+  double emission_unit() const { return emission_unit_; }
 
-  /// Irradiance of every leaf, in the order of their ids. Before the first shots this is direct light alone.
+  /// Irradiance of every leaf, W/m2, in the order of their ids. Before the first shots this is direct light alone.
   std::vector<LeafValue> leaf_values() const;
   ErrorEstimate estimate();
   /// Splits patches and adds rays where that pays most; ends the exchange. False if nothing was done: the limits forbid every
@@ -78,6 +81,7 @@ class SolveState {
   void inherit(std::span<const NodeIndex> split);
   void collect_leaves(NodeIndex node, std::vector<NodeIndex>& leaves) const;
   NodeIndex leaf_node_of_row(NodeIndex row) const;
+  Rgb emission_of(std::uint32_t root) const;
   Rgb row_emission(std::uint32_t root) const;
   bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
@@ -104,6 +108,7 @@ class SolveState {
   bool emission_by_rows_ = false;
   std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
   double area_ = 0;                   ///< of all roots, m2
+  double emission_unit_ = 1;          ///< the brightest emission, W/m2
   double emitted_power_ = 0;
   double waiting_power_ = 0;  ///< of the emitters whose light was not added yet
 

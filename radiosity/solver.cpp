@@ -15,9 +15,10 @@ namespace alvor {
 
 namespace {
 
-constexpr double pass_unshot = 0.1;       // of the tolerance: a pass shoots down to this fraction of the emitted power
-constexpr double final_unshot = 1e-6;     // of the emitted power
-constexpr double displayed_error = 0.5;  // of the estimated error: how far a display may lag behind
+constexpr double pass_remaining = 0.1;    // of the tolerance: a pass goes on until what is still to come is less
+constexpr double final_remaining = 1e-6;  // the same, of a pass that may be the last
+constexpr double near_the_end = 1.5;      // times the tolerance: the next pass is likely the last
+constexpr double displayed_error = 0.5;   // of the estimated error: how far a display may lag behind
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
@@ -72,6 +73,7 @@ class Run {
     for (bool first = true;; first = false) {
       if (!pass(first)) return stop_reason();
       if (error_.total() <= options_.tolerance) return converge(StopReason::tolerance);
+      if (is_stuck()) return StopReason::stalled;
       const bool is_better = state_.refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
@@ -91,34 +93,36 @@ class Run {
     });
     if (must_stop()) return false;
     state_.begin_exchange();
-    if (!exchange_down_to(pass_unshot * options_.tolerance)) return false;
+    if (!exchange_down_to(may_be_last(first) ? final_remaining : pass_remaining * options_.tolerance)) return false;
     error_ = state_.estimate();
     publish();
     return true;
   }
 
-  /// The last pass goes on to where rounding begins: gathering is cheap.
+  /// The last pass goes on to where rounding begins, if it gets there: gathering is cheap.
   StopReason converge(StopReason reason) {
-    if (!exchange_down_to(final_unshot)) return stop_reason();
+    if (!exchange_down_to(final_remaining)) return stop_reason();
     state_.show_what_came_since();
-    error_.unshot = state_.unshot_fraction();
+    error_.unshot = state_.exchange().remaining_error();
     publish();
-    return reason;
+    return is_stuck() ? StopReason::stalled : reason;
   }
 
-  bool exchange_down_to(double fraction) {
+  /// False if it was stopped.
+  bool exchange_down_to(double remaining_error) {
     Exchange& exchange = state_.exchange();
     double published = exchange.unshot_power();
-    for (double unshot = published; unshot > fraction * state_.emitted_power(); unshot = exchange.unshot_power()) {
+    const Settling end = settle(exchange, remaining_error, [&](std::size_t steps) {
+      shots_ += steps;
       if (must_stop()) return false;
-      if (unshot < publish_when * published) {
-        published = unshot;
-        state_.show_what_came_since();
-        publish_if_due();
-      }
-      shots_ += exchange.sweep();
-    }
-    return true;
+      if (exchange.unshot_power() >= publish_when * published) return true;
+      published = exchange.unshot_power();
+      state_.show_what_came_since();
+      publish_if_due();
+      return true;
+    });
+    has_stalled_ = end == Settling::stalled;
+    return end != Settling::stopped;
   }
 
   /// Steps that only show progress may cost a small share of the time; the first ones always appear.
@@ -144,6 +148,11 @@ class Run {
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, stop_);
   }
 
+  bool is_stuck() const { return has_stalled_ && error_.unshot > pass_remaining * options_.tolerance; }
+  /// A pass that may be the last goes on to the end where that is cheap: what it shows is then smoothed as a whole.
+  bool may_be_last(bool first) const {
+    return options_.strategy == Strategy::automatic && (first || error_.total() < near_the_end * options_.tolerance);
+  }
   bool must_stop() const { return stop_.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
   StopReason stop_reason() const { return stop_.stop_requested() ? StopReason::cancelled : StopReason::time_limit; }
   StopReason limit_reached() const {
@@ -158,6 +167,7 @@ class Run {
   RayBudget budget_;
   SolveState state_;
   std::uint64_t shots_ = 0;
+  bool has_stalled_ = false;  // light was still going round when the last exchange ended
   ErrorEstimate error_{.unshot = 1};
   double published_at_ = 0, publishing_s_ = 0;
 };
@@ -172,6 +182,7 @@ std::string_view text(StopReason reason) {
     case StopReason::time_limit: return "time limit reached";
     case StopReason::cancelled: return "cancelled";
     case StopReason::dark: return "no light";
+    case StopReason::stalled: return "light goes round too slowly";
   }
   return "unknown";
 }

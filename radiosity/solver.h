@@ -34,7 +34,9 @@ struct SolveOptions {
   double step_pause_s = 0;  ///< waits this long after each published step, for people who watch; not counted as solving time
 };
 
-enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled, dark };
+/// `stalled`: light went round so slowly, or rounding so far, that what is left unshot exceeds the tolerance; the estimated error
+/// says by how much.
+enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled, dark, stalled };
 /// "tolerance", "leaf limit", ... for people.
 std::string_view text(StopReason reason);
 

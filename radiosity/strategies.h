@@ -51,8 +51,12 @@ class ShotExchange : public Exchange {
 
   std::size_t sweep() override { return stepper_->sweep(); }
   double unshot_power() const override { return system_.unshot_power(); }
+  Rgb unshot_rms() const override { return system_.unshot_rms(); }
+  Rgb mean_radiosity() const override { return system_.mean_radiosity(); }
+  Rgb amplification() const override { return system_.amplification(); }
   std::vector<Rgb> irradiance() const override { return system_.irradiance(); }
   Rgb ambient_irradiance() const override { return system_.ambient_irradiance(); }
+  std::size_t patch_count() const override { return system_.patch_count(); }
   const Shooting& system() const { return system_; }
 
  private:

@@ -112,7 +112,7 @@ Visibility::Visibility(std::span<const RootPatch> roots, const LocalFrame& frame
   for (std::uint32_t root = 0; root < roots.size(); ++root) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     const int corners = roots[root].corner_count;
-    if (roots[root].is_back) continue;
+    if (roots[root].is_behind) continue;
     for (int c = 0; c < corners; ++c) vertices.push_back(to_float(frame.to_local(roots[root].corners[c])));
     handles_->root_of[corners == 4 ? Handles::quads : Handles::triangles].push_back(root);
     if (corners == 4) quads.push_back({first, first + 1, first + 2, first + 3});

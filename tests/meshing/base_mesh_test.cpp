@@ -83,6 +83,25 @@ TEST(BaseMesh, TwoSidedFacesHaveTwinsThatAreNeighboursWhereTheFrontsAre) {
   }
 }
 
+TEST(BaseMesh, FacesBackToBackInOnePlaceAreTwinsAndRaysMeetOneOfThem) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0.2)};
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 0);
+  test::add_polygon(scene, {{1, 2, 0}, {1, 0, 0}, {0, 0, 0}, {0, 2, 0}}, 1);
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 1);  // the same side again: nobody's twin
+  const BaseMesh mesh(scene);
+  ASSERT_EQ(mesh.roots().size(), 3u);
+  const RootPatch &front = mesh.roots()[0], &other = mesh.roots()[1];
+  EXPECT_EQ(front.twin, 1u);
+  EXPECT_EQ(other.twin, 0u);
+  EXPECT_EQ(other.material, 1u);
+  EXPECT_FALSE(front.is_behind || other.is_back);
+  EXPECT_TRUE(other.is_behind);
+  EXPECT_EQ(other.normal, -front.normal);
+  EXPECT_EQ(other.at(0.25, 0.75), front.at(0.75, 0.25));
+  EXPECT_EQ(mesh.roots()[2].twin, RootPatch::no_twin);
+}
+
 TEST(BaseMesh, PolygonsBecomeSeveralRootsOfOneFace) {
   Scene scene;
   scene.materials.emplace_back();

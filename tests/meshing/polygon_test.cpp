@@ -26,6 +26,15 @@ TEST(Polygon, TwistedQuadIsTheFanAboutItsFirstCorner) {
   EXPECT_EQ(pieces_of(quad), (std::vector<Piece>{{0, 1, 2, no_corner}, {0, 2, 3, no_corner}}));
 }
 
+TEST(Polygon, QuadIsCutWhereItIsBentByMoreThanRaysStartAboveIt) {
+  const auto bent_by = [](double height) {
+    const Vec3 quad[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, height}, {0, 1, 0}};
+    return pieces_of(quad).size();
+  };
+  EXPECT_EQ(bent_by(1e-6), 1u);
+  EXPECT_EQ(bent_by(2e-5), 2u);
+}
+
 TEST(Polygon, ConcavePolygonsKeepTheirArea) {
   const Vec3 dart[] = {{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}};
   EXPECT_NEAR(area_of_pieces(dart), 1, 1e-12);

@@ -35,6 +35,8 @@ TEST(Scene, FaultsNameThePlaceAndTheReason) {
             "material 0 'grey': reflectance nan is outside [0, 1)");
   EXPECT_EQ(fault_after([](Scene& s) { s.materials[0].emission.b = -1; }),
             "material 0 'grey': emission -1 is not a finite value >= 0");
+  EXPECT_EQ(fault_after([](Scene& s) { s.materials[0].emission.b = 1e31; }),
+            "material 0 'grey': emission 1e+31 is beyond 1e30 W/m2");
 }
 
 }  // namespace

@@ -126,6 +126,20 @@ TEST(Solver, RoomWithoutLightIsBlackAndDone) {
   for (const LeafValue& leaf : log.leaves()) EXPECT_TRUE(leaf.irradiance.is_zero());
 }
 
+TEST(Solver, StrategyThatCannotBringTheLightRoundSaysSo) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.999999), test::grey(1, 0.999999)};
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, true, {0, 1, 0, 0, 0, 0});
+  const BaseMesh mesh(scene);
+  for (const Strategy strategy : {Strategy::gather, Strategy::shoot, Strategy::sorted}) {
+    SolutionLog log;
+    EXPECT_EQ(solve(mesh, {.strategy = strategy}, log, {}).reason, StopReason::stalled) << text(strategy);
+    EXPECT_GT(log.last_step().estimated_error, 0.9) << text(strategy);
+  }
+  SolutionLog log;
+  EXPECT_EQ(solve(mesh, {}, log, {}).reason, StopReason::tolerance);
+}
+
 TEST(Solver, StopRequestLeavesAUsableSolution) {
   const BaseMesh mesh(lit_room());
   SolutionLog log;

@@ -1,0 +1,93 @@
+#include "bench/stability/page.h"
+
+#include "bench/error_vs_time/figures.h"
+
+#include <cmath>
+
+namespace alvor::bench {
+
+namespace {
+
+std::string known(double number) { return std::isfinite(number) ? figure(number, 2) : "-"; }
+
+std::string verdict(const Case& looked_at, const Measured& measured) {
+  return (looked_at.holds(measured) ? "holds" : "**fails**") + (measured.end.empty() ? "" : ", " + measured.end);
+}
+
+std::string row(const Case& looked_at, const Measured& measured) {
+  const bool was_solved = measured.seconds > 0;
+  return table_row({looked_at.name, looked_at.condition, looked_at.expected, measured.obtained, known(measured.error),
+                    was_solved ? known(measured.estimate) : "-", was_solved ? figure(measured.steps, 7) : "-",
+                    was_solved ? plain(measured.seconds) : "-", verdict(looked_at, measured)});
+}
+
+std::string table(const Section& section, const std::vector<Measured>& measured) {
+  std::string text =
+      table_head({"case", "condition", "expected", "obtained", "error", "estimate", "shots", "seconds", "verdict"});
+  for (std::size_t n = 0; n < measured.size(); ++n) text += row(section.cases[n], measured[n]);
+  return text;
+}
+
+/// Each that does not hold, and why, where that is known.
+std::string failures(std::span<const Section> sections, const Findings& findings) {
+  std::string text;
+  for (std::size_t s = 0; s < sections.size(); ++s)
+    for (std::size_t n = 0; n < findings[s].size(); ++n) {
+      const Case& looked_at = sections[s].cases[n];
+      if (looked_at.holds(findings[s][n]) && looked_at.remark.empty()) continue;
+      text +=
+          "- " + looked_at.name + ", " + looked_at.condition + (looked_at.remark.empty() ? "" : ": " + looked_at.remark) + '\n';
+    }
+  return text;
+}
+
+std::string head(const Findings& findings, std::span<const Section> sections) {
+  std::size_t held = 0, all = 0;
+  for (std::size_t s = 0; s < sections.size(); ++s)
+    for (std::size_t n = 0; n < findings[s].size(); ++n, ++all) held += sections[s].cases[n].holds(findings[s][n]);
+  return "# Stiff and extreme scenes\n\n"
+         "What the solver makes of scenes in which light is hardly absorbed, and of scenes at the ends of what a file may hold. "
+         "Each "
+         "line is measured\nagainst a closed form, an invariant or a dense solution; `scripts/stability.sh` measures all of them "
+         "again "
+         "and writes this page. The quick ones are\ntests too. " +
+         std::to_string(held) + " of " + std::to_string(all) +
+         " cases hold.\n\n"
+         "*Error* is relative to what is expected, in the worst band; on \"every leaf\", of the worst leaf. *Estimate* is what "
+         "the "
+         "solve itself says: the\nestimated nRMSE, or for bare systems of rows the bound on what is still to come. *Shots* are "
+         "rows "
+         "gathered or patches shot. All on one thread.\n";
+}
+
+}  // namespace
+
+std::vector<Section> all_sections() {
+  return {{"Closed forms", "A solve with default options. Where surfaces emit all over, rows that sum to 1 are the whole truth.",
+           closed_form_cases()},
+          {"Known means", "A solve with tolerance 1 %, against solutions of the continuous equation.", reference_cases()},
+          {"Slow diffusion",
+           "Bare systems of rows against Gaussian elimination of the same rows in 80 bits. The error is that of radiosity, RMS "
+           "over the "
+           "mean.",
+           dense_cases()},
+          {"Steps to an error of 1e-6",
+           "Of one row or column each, counted per patch: direct light, what is unshot at first, and the sweeps. Records are "
+           "those of "
+           "exact form factors on\nthe same scenes. The coarse grid and the bound on what is still to come read all rows once "
+           "more each, "
+           "which is not counted.",
+           step_cases()},
+          {"Geometry", "Right, or a refusal that names the place.", geometry_cases()},
+          {"Light", "The same.", light_cases()}};
+}
+
+std::string page(std::span<const Section> sections, const Findings& findings) {
+  std::string text = head(findings, sections);
+  for (std::size_t s = 0; s < sections.size(); ++s)
+    text += "\n## " + sections[s].title + "\n\n" + sections[s].text + "\n\n" + table(sections[s], findings[s]);
+  const std::string remarks = failures(sections, findings);
+  return text + (remarks.empty() ? "" : "\n## Remarks\n\n" + remarks);
+}
+
+}  // namespace alvor::bench

@@ -1,0 +1,37 @@
+#include "bench/stability/page.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace alvor::bench {
+namespace {
+
+std::vector<Case> quick_cases() {
+  std::vector<Case> quick;
+  for (const Section& section : all_sections()) std::ranges::copy_if(section.cases, std::back_inserter(quick), &Case::is_quick);
+  return quick;
+}
+
+class Stability : public testing::TestWithParam<Case> {};
+
+TEST_P(Stability, Holds) {
+  const Case& looked_at = GetParam();
+  const Measured measured = looked_at.measure();
+  EXPECT_TRUE(looked_at.holds(measured)) << looked_at.name << ", " << looked_at.condition << "\nexpected: " << looked_at.expected
+                                         << "\nobtained: " << measured.obtained << "\nerror " << measured.error << ", allowed "
+                                         << looked_at.limit << ' ' << measured.end;
+}
+
+std::string test_name(const testing::TestParamInfo<Case>& info) {
+  std::string name = std::to_string(info.index) + '_' + info.param.name + '_' + info.param.condition;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(QuickCases, Stability, testing::ValuesIn(quick_cases()), test_name);
+
+}  // namespace
+}  // namespace alvor::bench

@@ -1,0 +1,78 @@
+#include "radiosity/exchange.h"
+
+#include "radiosity/strategies.h"
+#include "tests/radiosity/systems.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace alvor {
+namespace {
+
+using test::System;
+
+constexpr double rounding = 1e-14;
+constexpr Strategy all[]{Strategy::gather, Strategy::shoot, Strategy::sorted, Strategy::overshoot};
+
+bool always(std::size_t) { return true; }
+
+/// RMS difference of the irradiance by rows from the solution, in the first band, over the mean radiosity.
+double true_error(const System& system, std::span<const Rgb> solution, const Exchange& exchange) {
+  const auto irradiance = exchange.irradiance(), expected = system.gathered(solution);
+  double squares = 0, power = 0, area = 0;
+  for (std::size_t p = 0; p < irradiance.size(); ++p) {
+    const ShootingPatch& patch = system.patches[p];
+    squares += patch.area * std::pow(patch.reflectance.r * (irradiance[p].r - expected[p].r), 2);
+    power += patch.area * solution[patch.first_leaf].r;
+    area += patch.area;
+  }
+  return std::sqrt(squares / area) / (power / area);
+}
+
+TEST(Exchange, RemainingErrorIsNeverLessThanTheErrorOfReciprocalRows) {
+  for (const double reflectance : {0.5, 0.95, 0.99}) {
+    const System system = System::reciprocal(2, 60, reflectance, 3);
+    const auto solution = system.solved();
+    for (const Strategy strategy : all) {
+      ShotExchange exchange(system.begun(), strategy);
+      for (int n = 0; n < 30; ++n, exchange.sweep())
+        EXPECT_LE(true_error(system, solution, exchange), exchange.remaining_error() + rounding)
+            << text(strategy) << ", rho " << reflectance << ", after " << n << " sweeps";
+    }
+  }
+}
+
+TEST(Exchange, ResidualOfAStiffSystemIsFarFromItsError) {
+  // One patch in sixty emits and nearly all is reflected: after a round trip of light a hundredth of it has come.
+  const System system = System::reciprocal(3, 60, 0.99, 1);
+  ShotExchange exchange(system.begun(), Strategy::shoot);
+  EXPECT_EQ(settle(exchange, 1e-3, always), Settling::settled);
+  EXPECT_LE(true_error(system, system.solved(), exchange), 1e-3);
+}
+
+TEST(Exchange, StrategyThatCannotArriveStallsAndSaysHowFarItIs) {
+  const System system = System::reciprocal(4, 20, 1 - 1e-9, 1);
+  for (const Strategy strategy : {Strategy::gather, Strategy::shoot}) {
+    ShotExchange exchange(system.begun(), strategy);
+    EXPECT_EQ(settle(exchange, 0.01, always), Settling::stalled) << text(strategy);
+    EXPECT_GT(exchange.remaining_error(), 0.99) << text(strategy);
+  }
+}
+
+TEST(Exchange, StopsWhenAsked) {
+  const System system = System::reciprocal(5, 60, 0.99, 1);
+  ShotExchange exchange(system.begun(), Strategy::shoot);
+  int sweeps = 0;
+  EXPECT_EQ(settle(exchange, 1e-9, [&](std::size_t) { return ++sweeps < 3; }), Settling::stopped);
+  EXPECT_EQ(sweeps, 3);
+}
+
+TEST(Exchange, NothingRemainsWhereNothingIsReflected) {
+  const System system = System::reciprocal(6, 20, 0, 20);
+  ShotExchange exchange(system.begun(), Strategy::sorted);
+  EXPECT_EQ(settle(exchange, 1e-9, always), Settling::settled);
+}
+
+}  // namespace
+}  // namespace alvor
