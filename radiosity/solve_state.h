@@ -60,6 +60,8 @@ class SolveState {
   /// Irradiance of every leaf, W/m2. Before the first shots this is direct light alone. Never negative, and never more than where
   /// all surfaces were like the brightest.
   std::vector<LeafValue> leaf_values() const;
+  /// Of what the current pass has distributed, in W.
+  PowerBalance balance() const;
   ErrorEstimate estimate();
   /// Splits patches and adds rays where that pays most; ends the exchange. False if nothing was done: the limits forbid every
   /// split and rows are not what errs most. Requires: estimate() just before.
