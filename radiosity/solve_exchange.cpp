@@ -80,32 +80,6 @@ Shooting SolveState::unshot_system() {
   return begin_shooting();
 }
 
-// What leaves a patch is lost as far as its row does not find a front. Where a solid stands on it nothing arrives, and what it
-// emits there is lost too.
-PowerBalance SolveState::balance() const {
-  PowerBalance balance{.emitted = emission_unit_ * emitted_power_};
-  if (!exchange_) return balance;
-  const auto irradiance = exchange_->irradiance();
-  Rgb absorbed, lost;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const ShootingPatch& patch = patches_[p];
-    const TransportRow& row = *patch.row;
-    const std::uint32_t root = row_forest_.id(patch_row_[p]).root_face();
-    const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * row.stored_weight();
-    const double open = row.visible_share();
-    for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k) {
-      const double area = leaf_area_[patch_leaves_[k]], seen = open * area;
-      const Rgb arriving = irradiance[p] + direct_[patch_leaves_[k]].irradiance, emission = emission_of(root);
-      absorbed += seen * ((white - patch.reflectance) * arriving);
-      lost += seen * ((white - found) * (emission + patch.reflectance * arriving)) + (area - seen) * emission;
-    }
-  }
-  balance.absorbed = emission_unit_ * absorbed.sum();
-  balance.lost = emission_unit_ * lost.sum();
-  balance.unshot = emission_unit_ * exchange_->unshot_power();
-  return balance;
-}
-
 void SolveState::show(std::span<const Rgb> irradiance) {
   for (std::size_t p = 0; p < patch_row_.size(); ++p) {
     const NodeIndex row = patch_row_[p];

@@ -63,17 +63,6 @@ void SolveState::choose_emitters() {
 Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? emission_of(root) : Rgb{}; }
 Rgb SolveState::emission_of(std::uint32_t root) const { return (1 / emission_unit_) * mesh_.material_of(root).emission; }
 
-// Where every surface emitted like the brightest and reflected like the lightest, B would be this everywhere, and H no larger.
-// What rays estimate may lie beyond, the truth does not.
-Rgb SolveState::largest_irradiance() const {
-  Rgb emission, reflectance;
-  for (const RootPatch& root : mesh_.roots()) {
-    emission = upper(emission, mesh_.materials()[root.material].emission);
-    reflectance = upper(reflectance, mesh_.materials()[root.material].reflectance);
-  }
-  return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
-}
-
 void SolveState::split_to_start() {
   const auto is_coarse = [&](NodeIndex node) {
     const PatchId id = row_forest_.id(node);
