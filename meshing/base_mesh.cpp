@@ -75,42 +75,51 @@ void turn_round(const RootPatch& front, RootPatch& back) {
   std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
 }
 
-/// Joins roots into a half-edge mesh. A face that OpenMesh cannot attach, for an edge already has two faces or one of the other
-/// orientation, gets vertices of its own, and so no neighbours.
+/// Joins roots, but those behind others, into a half-edge mesh. A face that OpenMesh cannot attach, for an edge already has two
+/// faces or one of the other orientation, gets vertices of its own, and so no neighbours.
 class NeighbourFinder {
  public:
-  explicit NeighbourFinder(std::span<const RootPatch> roots) : roots_(roots) { omerr().disable(); }
+  explicit NeighbourFinder(std::span<const RootPatch> roots)
+      : roots_(roots), first_corner_(roots.size()), face_of_root_(roots.size()) {
+    omerr().disable();
+  }
 
   std::size_t add_all() {
     std::uint32_t vertex_count = 0;
     for (const RootPatch& root : roots_)
       for (int c = 0; c < root.corner_count; ++c) vertex_count = std::max(vertex_count, root.vertex[c] + 1);
     for (std::uint32_t v = 0; v < vertex_count; ++v) mesh_.add_vertex({});
-    return static_cast<std::size_t>(std::ranges::count_if(roots_, [this](const RootPatch& root) { return !add(root); }));
+    std::size_t alone = 0;
+    for (std::uint32_t root = 0; root < roots_.size(); ++root)
+      if (!roots_[root].is_behind) alone += !add(root);
+    return alone;
   }
 
   std::optional<Neighbour> across(std::uint32_t root, int edge) const {
     const auto mine = halfedge(root, edge);
     const auto other = mesh_.opposite_halfedge_handle(mine);
     if (mesh_.is_boundary(other)) return std::nullopt;
-    const auto there = static_cast<std::uint32_t>(mesh_.face_handle(other).idx());
+    const std::uint32_t there = root_of_face_[static_cast<std::size_t>(mesh_.face_handle(other).idx())];
     return Neighbour{there, edge_of(there, other), dot(roots_[root].normal, roots_[there].normal) > smooth_cosine};
   }
 
  private:
-  bool add(const RootPatch& root) {
+  bool add(std::uint32_t root) {
     std::vector<HalfedgeMesh::VertexHandle> ring;
-    for (int c = 0; c < root.corner_count; ++c) ring.emplace_back(static_cast<int>(root.vertex[c]));
-    const bool joined = mesh_.add_face(ring).is_valid();
+    for (int c = 0; c < roots_[root].corner_count; ++c) ring.emplace_back(static_cast<int>(roots_[root].vertex[c]));
+    HalfedgeMesh::FaceHandle face = mesh_.add_face(ring);
+    const bool joined = face.is_valid();
     if (!joined) {
       for (auto& vertex : ring) vertex = mesh_.add_vertex({});
-      mesh_.add_face(ring);
+      face = mesh_.add_face(ring);
     }
-    first_corner_.push_back(ring[0]);
+    first_corner_[root] = ring[0];
+    face_of_root_[root] = face;
+    root_of_face_.push_back(root);
     return joined;
   }
   HalfedgeMesh::HalfedgeHandle halfedge(std::uint32_t root, int edge) const {
-    auto at = mesh_.halfedge_handle(HalfedgeMesh::FaceHandle(static_cast<int>(root)));
+    auto at = mesh_.halfedge_handle(face_of_root_[root]);
     while (mesh_.from_vertex_handle(at) != first_corner_[root]) at = mesh_.next_halfedge_handle(at);
     for (int e = 0; e < edge; ++e) at = mesh_.next_halfedge_handle(at);
     return at;
@@ -123,7 +132,9 @@ class NeighbourFinder {
 
   std::span<const RootPatch> roots_;
   HalfedgeMesh mesh_;
-  std::vector<HalfedgeMesh::VertexHandle> first_corner_;
+  std::vector<HalfedgeMesh::VertexHandle> first_corner_;  // by root, as the next
+  std::vector<HalfedgeMesh::FaceHandle> face_of_root_;
+  std::vector<std::uint32_t> root_of_face_;
 };
 
 }  // namespace
@@ -134,9 +145,10 @@ Vec3 RootPatch::at(double u, double v) const {
 }
 
 BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials), absorption_(scene.absorption) {
-  Box all;
-  for (const Vec3& vertex : scene.vertices) all.add(vertex);
-  const auto first = weld(scene.vertices, std::max(weld_tolerance * all.longest_side(), 1e-300));
+  Box used;
+  for (const Face& face : scene.faces)
+    for (const std::uint32_t vertex : scene.corners_of(face)) used.add(scene.vertices[vertex]);
+  const auto first = weld(scene.vertices, std::max(weld_tolerance * used.longest_side(), 1e-300));
   for (std::uint32_t v = 0; v < first.size(); ++v) report_.welded_vertices += first[v] != v;
 
   Box box;
@@ -189,7 +201,7 @@ void BaseMesh::find_neighbours() {
   report_.non_manifold_faces = finder.add_all();
   neighbours_.resize(roots_.size());
   for (std::uint32_t root = 0; root < roots_.size(); ++root)
-    for (int e = 0; e < roots_[root].corner_count; ++e) neighbours_[root][e] = finder.across(root, e);
+    for (int e = 0; e < roots_[root].corner_count && !roots_[root].is_behind; ++e) neighbours_[root][e] = finder.across(root, e);
 }
 
 // Backs are neighbours where their fronts are: edge e of a front is edge n - 1 - e of its back.
@@ -206,7 +218,8 @@ void BaseMesh::add_backs() {
     roots_.push_back(back);
   }
   neighbours_.resize(roots_.size());
-  for (std::uint32_t back = fronts; back < roots_.size(); ++back) {
+  for (std::uint32_t back = 0; back < roots_.size(); ++back) {
+    if (!roots_[back].is_behind) continue;
     const std::uint32_t front = roots_[back].twin;
     const int n = roots_[back].corner_count;
     for (int e = 0; e < n; ++e) {

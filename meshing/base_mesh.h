@@ -51,8 +51,9 @@ struct WeldReport {
 /// Immutable once built; safe to read from any thread.
 class BaseMesh {
  public:
-  /// Requires: !find_fault(scene). Vertices closer than 1e-9 of the scene's extent are welded. The mesh may have no roots, if
-  /// all faces are degenerate. Roots keep the order of the faces; a two-sided face becomes two roots, the backs after all fronts.
+  /// Requires: !find_fault(scene). Vertices closer than 1e-9 of the extent of all faces are welded. The mesh may have no roots,
+  /// if all faces are degenerate. Roots keep the order of the faces; a two-sided face becomes two roots, the backs after all
+  /// fronts.
   explicit BaseMesh(const Scene& scene);
 
   std::span<const RootPatch> roots() const { return roots_; }

@@ -14,8 +14,11 @@ constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
+/// Within [0, most], also of what is not a number: lanes in which no ray met anything hold any bits. Unlike std::clamp.
+float bounded(float x, float most) { return std::max(0.0f, std::min(x, most)); }
+
 std::uint32_t quad_path(float u, float v) {
-  const auto cell = [](float x) { return static_cast<std::int32_t>(std::clamp(x * grid_size, 0.0f, grid_size - 1.0f)); };
+  const auto cell = [](float x) { return static_cast<std::int32_t>(bounded(x * grid_size, grid_size - 1.0f)); };
   return spread_bits(static_cast<std::uint32_t>(cell(u))) | spread_bits(static_cast<std::uint32_t>(cell(v))) << 1;
 }
 
@@ -27,7 +30,7 @@ void triangle_paths(const float* us, const float* vs, std::uint32_t* path) {
   constexpr auto just_below_one = static_cast<float>(one - 256);  // float rounding stays within the 256
   alignas(64) std::uint32_t as[count], bs[count], paths[count];
   for (int n = 0; n < count; ++n) {
-    const float u = std::clamp(us[n], 0.0f, 1.0f), v = std::clamp(vs[n], 0.0f, 1.0f);
+    const float u = bounded(us[n], 1), v = bounded(vs[n], 1);
     const float excess = std::max(0.0f, u + v - 1) / 2;
     as[n] = static_cast<std::uint32_t>(static_cast<std::int32_t>((u - excess) * just_below_one));
     bs[n] = static_cast<std::uint32_t>(static_cast<std::int32_t>((v - excess) * just_below_one));

@@ -2,6 +2,7 @@
 
 #include "solution/patch_id.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <unordered_map>
@@ -30,9 +31,14 @@ class VertexGrid {
   using Cell = std::array<std::int64_t, 3>;
   static constexpr std::uint32_t none = ~0u;
 
+  /// Counted from the first vertex, and within what an integer holds: a vertex that no face uses may be any distance away.
   Cell cell(Vec3 p) const {
-    const double width = 8 * tolerance_;
-    return {std::llround(std::floor(p.x / width)), std::llround(std::floor(p.y / width)), std::llround(std::floor(p.z / width))};
+    constexpr double most = 0x1p62;
+    const Vec3 from = p - vertices_[0];
+    const auto along = [&](double x) {
+      return static_cast<std::int64_t>(std::floor(std::clamp(x / (8 * tolerance_), -most, most)));
+    };
+    return {along(from.x), along(from.y), along(from.z)};
   }
   static std::uint64_t key(const Cell& c) {
     return mix_bits(mix_bits(mix_bits(static_cast<std::uint64_t>(c[0])) + static_cast<std::uint64_t>(c[1])) +

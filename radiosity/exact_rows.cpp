@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <bit>
+#include <algorithm>
 
 namespace alvor {
 
@@ -19,12 +19,9 @@ std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
   return {corners.begin(), corners.begin() + shape.corner_count};
 }
 
-/// The part of the patch that no solid stands on, as its rays found it: what is hidden receives nothing and must not darken the
-/// rest.
-double visible_share(const TransportRow& row) { return 1 - std::popcount(row.hidden_origins) / double(origins_per_patch); }
-
-/// What makes the factors of a row sum to 1 where no ray escaped, and to no more elsewhere: where nearly all is reflected an
-/// excess of 1e-4 would never end.
+/// What keeps the part of a patch that no solid stands on as bright as it is though the rest receives nothing, and makes the
+/// factors of a row sum to 1 where no ray escaped, and to no more elsewhere: where nearly all is reflected an excess of 1e-4
+/// would never end.
 double scale_to_closure(std::span<const MatrixEntry> entries, double visible_share, bool is_closed) {
   double sum = 0;
   for (const MatrixEntry& entry : entries) sum += entry.value;
@@ -52,7 +49,7 @@ void SolveState::make_rows_exact() {
     TransportRow& row = rows_[rows[n]];
     if (row.is_hidden() || budget_.is_out()) return;
     const auto entries = form_factors.row(static_cast<std::uint32_t>(n));
-    const double scale = scale_to_closure(entries, visible_share(row), row.hits.size() == row.rays);
+    const double scale = scale_to_closure(entries, row.visible_share(), row.hits.size() == row.rays);
     row.hits.clear();
     row.hit_weight.clear();
     row.origin_hits.clear();

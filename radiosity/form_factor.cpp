@@ -8,9 +8,9 @@ namespace alvor {
 
 namespace {
 
-/// A polygon of up to four corners has at most five above a plane.
+/// A plane convex polygon of up to four corners has at most five above a horizon; seen edge on, where rounding bends it, six.
 struct ClippedPolygon {
-  std::array<Vec3, 5> corner;
+  std::array<Vec3, 6> corner;
   int count = 0;
   void add(Vec3 p) { corner[count++] = p; }
 };

@@ -202,11 +202,13 @@ double SolveState::unshot_power() const {
 }
 
 std::vector<LeafValue> SolveState::leaf_values() const {
+  const Rgb most = largest_irradiance();
   std::vector<LeafValue> values;
   values.reserve(leaf_forest_.leaf_count());
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
     const PatchId id = leaf_forest_.id(leaf);
-    values.push_back({id, narrow(emission_unit_ * (direct_[leaf].irradiance + indirect(leaf)))});
+    const Rgb irradiance = emission_unit_ * (direct_[leaf].irradiance + indirect(leaf));
+    values.push_back({id, narrow(lower(upper(irradiance, {}), most))});
   }
   return values;
 }

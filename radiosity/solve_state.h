@@ -57,8 +57,11 @@ class SolveState {
   /// however bright or dim a scene is.
   double emission_unit() const { return emission_unit_; }
 
-  /// Irradiance of every leaf, W/m2, in the order of their ids. Before the first shots this is direct light alone.
+  /// Irradiance of every leaf, W/m2, in the order of their ids. Before the first shots this is direct light alone. Never negative,
+  /// and never more than where all surfaces were like the brightest.
   std::vector<LeafValue> leaf_values() const;
+  /// Of what the current pass has distributed, in W.
+  PowerBalance balance() const;
   ErrorEstimate estimate();
   /// Splits patches and adds rays where that pays most; ends the exchange. False if nothing was done: the limits forbid every
   /// split and rows are not what errs most. Requires: estimate() just before.
@@ -83,6 +86,7 @@ class SolveState {
   NodeIndex leaf_node_of_row(NodeIndex row) const;
   Rgb emission_of(std::uint32_t root) const;
   Rgb row_emission(std::uint32_t root) const;
+  Rgb largest_irradiance() const;
   bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;

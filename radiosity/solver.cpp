@@ -65,7 +65,7 @@ class Run {
     publish();
     const StopReason reason = is_lit ? pass_until_done() : StopReason::dark;
     const double cpu = cpu_.seconds();
-    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0};
+    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, balance_};
   }
 
  private:
@@ -95,6 +95,7 @@ class Run {
     state_.begin_exchange();
     if (!exchange_down_to(may_be_last(first) ? final_remaining : pass_remaining * options_.tolerance)) return false;
     error_ = state_.estimate();
+    balance_ = state_.balance();
     publish();
     return true;
   }
@@ -104,6 +105,7 @@ class Run {
     if (!exchange_down_to(final_remaining)) return stop_reason();
     state_.show_what_came_since();
     error_.unshot = state_.exchange().remaining_error();
+    balance_ = state_.balance();
     publish();
     return is_stuck() ? StopReason::stalled : reason;
   }
@@ -169,6 +171,7 @@ class Run {
   std::uint64_t shots_ = 0;
   bool has_stalled_ = false;  // light was still going round when the last exchange ended
   ErrorEstimate error_{.unshot = 1};
+  PowerBalance balance_;
   double published_at_ = 0, publishing_s_ = 0;
 };
 

@@ -40,11 +40,23 @@ enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled,
 /// "tolerance", "leaf limit", ... for people.
 std::string_view text(StopReason reason);
 
+/// Where the emitted power went, W, bands together. Rows are samples, each receiver's its own: what arrives is not exactly what
+/// was sent, and the difference tells how good they are, whatever the estimate of the error says.
+struct PowerBalance {
+  double emitted = 0;
+  double absorbed = 0;  ///< by fronts
+  double lost = 0;      ///< left the scene, met black backs, or faded in the medium
+  double unshot = 0;    ///< not distributed yet
+  /// What is not accounted for, of the emitted power; negative: more came than was sent. 0 in the dark.
+  double gap() const { return emitted > 0 ? (emitted - absorbed - lost - unshot) / emitted : 0; }
+};
+
 struct SolveOutcome {
   StopReason reason = StopReason::tolerance;
   double solve_s = 0;          ///< wall seconds
   double cpu_s = 0;            ///< of the threads that worked on it
   double traversal_share = 0;  ///< of that time, spent in ray traversal
+  PowerBalance balance;        ///< of the last pass that light went round; all 0 if it was stopped before
 };
 
 /// Solves on the calling thread and its worker threads; publishes every step to `log` and closes it. Step 1 is published before

@@ -6,6 +6,7 @@
 #include "radiosity/sampling.h"
 #include "solution/rgb.h"
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,6 +30,8 @@ struct TransportRow {
   bool is_hidden() const { return rays == 0; }
   /// The outline of a solid that stands on the patch runs through it.
   bool crosses_contact() const { return hidden_origins != 0 && !is_hidden(); }
+  /// The part of the patch that no solid stands on.
+  double visible_share() const { return 1 - std::popcount(hidden_origins) / double(origins_per_patch); }
   /// Sum of what the hits weigh, times ray_count().
   Rgb stored_weight() const;
   /// Adds another round of rays of the same patch. The hidden origins stay those of the first.

@@ -151,7 +151,10 @@ std::vector<ConvexPolygon> cut_at_events(const ConvexPolygon& from, const Convex
 class SurfaceIntegral {
  public:
   SurfaceIntegral(const ConvexPolygon& from, const ConvexPolygon& to, std::span<const ConvexPolygon> blockers)
-      : normal_(plane_of(from.corners()).normal), to_(to), blockers_(blockers) {
+      : normal_(plane_of(from.corners()).normal),
+        to_(to),
+        blockers_(blockers),
+        negligible_(1e-15 * length(area_vector(from.corners()))) {
     for (const ConvexPolygon& part : cut_at_events(from, to, blockers)) {
       const auto corners = part.corners();
       for (std::size_t c = 2; c < corners.size(); ++c) {
@@ -163,7 +166,7 @@ class SurfaceIntegral {
   }
 
   void refine(double accuracy, std::uint64_t most_points) {
-    while (error_ > accuracy * value_ && error_ > 1e-15 && points_ + 28 <= most_points) refine_worst();
+    while (error_ > accuracy * value_ && error_ > negligible_ && points_ + 28 <= most_points) refine_worst();
   }
 
   double value() const { return value_; }  ///< power per unit of radiance: not yet divided by the area
@@ -206,6 +209,7 @@ class SurfaceIntegral {
   Vec3 normal_;
   const ConvexPolygon& to_;
   std::span<const ConvexPolygon> blockers_;
+  double negligible_;  // error
   std::priority_queue<Cell> cells_;
   double value_ = 0, error_ = 0;
   std::uint64_t points_ = 0;

@@ -116,5 +116,29 @@ TEST(BaseMesh, PolygonsBecomeSeveralRootsOfOneFace) {
   EXPECT_EQ(mesh.weld_report().split_faces, 1u);
 }
 
+TEST(BaseMesh, VerticesThatNoFaceUsesDoNotMatter) {
+  Scene scene;
+  scene.materials.emplace_back();
+  test::add_polygon(scene, {{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}});
+  scene.vertices.push_back({1e9, -1e9, 1e9});
+  const BaseMesh mesh(scene);
+  ASSERT_EQ(mesh.roots().size(), 1u);
+  EXPECT_EQ(mesh.extent(), 1e-3);
+}
+
+TEST(BaseMesh, FacesBackToBackAreNeighboursWhereTheFrontsAre) {
+  Scene scene;
+  scene.materials.emplace_back();
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}});
+  test::add_polygon(scene, {{1, 1, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{2, 1, 0}, {2, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+  const BaseMesh mesh(scene);
+  EXPECT_EQ(mesh.weld_report().non_manifold_faces, 0u);
+  ASSERT_TRUE(mesh.across(2, 2));
+  EXPECT_EQ(mesh.across(2, 2)->root, 3u);
+  EXPECT_TRUE(mesh.across(2, 2)->smooth);
+}
+
 }  // namespace
 }  // namespace alvor

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace alvor {
@@ -73,6 +74,20 @@ TEST(PatchPlace, PlaceAcrossTouchesTheEdgeFromTheOtherSide) {
       }
   }
   EXPECT_GT(across_roots, 0);
+}
+
+TEST(PatchPlace, CoordinatesThatAreNoNumbersHavePlacesToo) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  float u[places_at_once], v[places_at_once];
+  for (int n = 0; n < places_at_once; ++n) u[n] = n % 2 == 0 ? nan : infinity, v[n] = n % 3 == 0 ? -infinity : nan;
+  std::uint32_t quad[places_at_once], triangle[places_at_once];
+  finest_quad_paths(u, v, quad);
+  finest_triangle_paths(u, v, triangle);
+  for (int n = 0; n < places_at_once; ++n) {
+    EXPECT_TRUE(PatchId::finest(0, quad[n]).is_valid());
+    EXPECT_LT(quad[n], 1u << 30);
+    EXPECT_LT(triangle[n], 1u << 30);
+  }
 }
 
 }  // namespace

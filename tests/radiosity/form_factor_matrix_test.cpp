@@ -113,5 +113,33 @@ TEST(Hemicube, DeltaFormFactorsSumToOneAtAnyResolution) {
   }
 }
 
+TEST(FormFactorMatrix, ShadowsAreAsExactInMicrometres) {
+  const auto factor = [](double size) {
+    const auto square = [size](double half, double y, bool looks_up) {
+      const double h = half * size;
+      const std::array<Vec3, 4> up{{{-h, y * size, -h}, {-h, y * size, h}, {h, y * size, h}, {h, y * size, -h}}};
+      const std::array<Vec3, 4> down{up[3], up[2], up[1], up[0]};
+      return ConvexPolygon(looks_up ? up : down);
+    };
+    const ConvexPolygon floor = square(1, 0, true), ceiling = square(1, 1, false), between = square(0.3, 0.4, true);
+    const ConvexPolygon* const blockers[] = {&between};
+    return visible_form_factor(floor, ceiling, blockers, 1e-5).value;
+  };
+  EXPECT_NEAR(factor(1e-6), factor(1), 1e-9);  // logarithms of lengths round differently
+}
+
+TEST(FormFactorMatrix, FacesBackToBackKeepTheirPolygons) {
+  Scene scene;
+  scene.materials.push_back(test::grey(0, 0.5));
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}});
+  const BaseMesh mesh(scene);
+  const FacePolygons faces(scene, mesh);
+  for (const std::uint32_t face : {0u, 1u}) {
+    EXPECT_EQ(faces.pieces(face).size(), 1u);
+    EXPECT_EQ(faces.area(face), 1);
+  }
+}
+
 }  // namespace
 }  // namespace alvor

@@ -50,5 +50,12 @@ TEST(FormFactor, FacesOfAClosedRoomSumToOne) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
+// Its corners lie above and below the horizon by turns, as rounding leaves them: six corners are above it when it is cut.
+TEST(FormFactor, QuadSeenEdgeOnGivesNothing) {
+  constexpr double h = 1e-17;
+  const Vec3 edge_on[] = {{1, -1, h}, {2, -1, -h}, {2, 1, h}, {1, 1, -h}};
+  EXPECT_NEAR(point_to_polygon({0, 0, 0}, {0, 0, 1}, edge_on), 0, 10 * h);
+}
+
 }  // namespace
 }  // namespace alvor

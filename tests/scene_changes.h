@@ -1,0 +1,79 @@
+#pragma once
+// Scenes that must have the same solution, or a known multiple of it.
+
+#include "meshing/scene.h"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace alvor::test {
+
+inline Scene with_emission_times(Scene scene, double factor) {
+  for (Material& material : scene.materials) material.emission *= factor;
+  return scene;
+}
+
+/// As if its unit of length were another: the medium absorbs as much from wall to wall.
+inline Scene with_lengths_times(Scene scene, double factor) {
+  for (Vec3& vertex : scene.vertices) vertex = factor * vertex;
+  scene.absorption = (1 / factor) * scene.absorption;
+  return scene;
+}
+
+template <class T>
+RgbOf<T> red_and_green_swapped(const RgbOf<T>& bands) {
+  return {bands.g, bands.r, bands.b};
+}
+
+inline Scene with_red_and_green_swapped(Scene scene) {
+  for (Material& material : scene.materials) {
+    material.emission = red_and_green_swapped(material.emission);
+    material.reflectance = red_and_green_swapped(material.reflectance);
+  }
+  scene.absorption = red_and_green_swapped(scene.absorption);
+  return scene;
+}
+
+/// Face n is face order[n] of `scene`.
+inline Scene with_faces_in_order(const Scene& scene, std::span<const std::uint32_t> order) {
+  Scene changed = scene;
+  changed.corners.clear(), changed.faces.clear();
+  for (const std::uint32_t face : order) changed.add_face(scene.corners_of(scene.faces[face]), scene.faces[face].material);
+  return changed;
+}
+
+/// Each two-sided face as two one-sided ones with the same corners, the backs after all fronts.
+inline Scene with_backs_as_faces(const Scene& scene) {
+  Scene changed = scene;
+  for (Material& material : changed.materials) material.two_sided = false;
+  for (const Face& face : scene.faces) {
+    if (!scene.materials[face.material].two_sided) continue;
+    std::vector<std::uint32_t> ring(scene.corners_of(face).begin(), scene.corners_of(face).end());
+    std::reverse(ring.begin() + 1, ring.end());
+    changed.add_face(ring, face.material);
+  }
+  return changed;
+}
+
+/// A triangle or quad cut by a line from its first corner to the middle of its second edge, the cut-off triangle last.
+inline Scene with_face_cut(const Scene& scene, std::uint32_t face) {
+  Scene changed = scene;
+  changed.corners.clear(), changed.faces.clear();
+  for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
+    const auto corners = scene.corners_of(scene.faces[f]);
+    std::vector<std::uint32_t> ring(corners.begin(), corners.end());
+    if (f == face) {
+      changed.vertices.push_back(lerp(scene.vertices[ring[1]], scene.vertices[ring[2]], 0.5));
+      ring[1] = static_cast<std::uint32_t>(scene.vertices.size());
+    }
+    changed.add_face(ring, scene.faces[f].material);
+  }
+  const auto corners = scene.corners_of(scene.faces[face]);
+  changed.add_face(std::vector{corners[0], corners[1], static_cast<std::uint32_t>(scene.vertices.size())},
+                   scene.faces[face].material);
+  return changed;
+}
+
+}  // namespace alvor::test
