@@ -11,7 +11,6 @@ namespace {
 constexpr double start_edge = 1.0 / 6;       // of the extent: no patch of the first mesh is longer
 constexpr double start_area = 1e-3;          // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
 constexpr double small_area = 2e-5;          // of the scene's: roots below begin with small rows
-constexpr double most_area_emits = 0.5;      // beyond this share rows find the emitters as well as shadow rays do
 constexpr std::size_t most_one_by_one = 12;  // emitters
 constexpr std::size_t parts_shown = 8;       // of a scene with more
 constexpr double marked_share = 0.9;         // of the squared error, per pass
@@ -26,8 +25,9 @@ double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
 
 }  // namespace
 
-SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget)
+SolveState::SolveState(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, RayBudget& budget)
     : mesh_(mesh),
+      plan_(plan),
       options_(options),
       budget_(budget),
       scene_(mesh),
@@ -42,23 +42,22 @@ SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBud
 
 // Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
 void SolveState::choose_emitters() {
-  double emitting = 0;
   for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) {
     const Rgb emission = mesh_.material_of(r).emission;
     area_ += mesh_.roots()[r].area;
     if (emission.is_zero()) continue;
     emitters_.push_back({r, emission, emission.sum() * mesh_.roots()[r].area});
-    emitting += mesh_.roots()[r].area;
     emitted_power_ += emitters_.back().power;
   }
-  emission_by_rows_ = emitting > most_area_emits * area_;
-  if (emission_by_rows_) emitters_.clear();
+  if (plan_.emission_by_rows()) emitters_.clear();
   std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
   waiting_power_ = emitted_power_;
   if (emitters_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(scene_, emitters_);
 }
 
-Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? mesh_.material_of(root).emission : Rgb{}; }
+Rgb SolveState::row_emission(std::uint32_t root) const {
+  return plan_.emission_by_rows() ? mesh_.material_of(root).emission : Rgb{};
+}
 
 void SolveState::split_to_start() {
   const auto is_coarse = [&](NodeIndex node) {

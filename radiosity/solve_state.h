@@ -23,7 +23,9 @@ namespace alvor {
 /// sweeps of the exchange, refine.
 class SolveState {
  public:
-  SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget);
+  SolveState(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, RayBudget& budget);
+  SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget)
+      : SolveState(mesh, Plan(mesh, options), options, budget) {}
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
   double emitted_power() const { return emitted_power_; }
@@ -92,6 +94,7 @@ class SolveState {
   Rgb indirect(NodeIndex leaf) const { return row_fit_[row_of(leaf_forest_.id(leaf))].at(leaf_centre_[leaf]); }
 
   const BaseMesh& mesh_;
+  Plan plan_;
   SolveOptions options_;
   RayBudget& budget_;
   LocalScene scene_;
@@ -101,9 +104,8 @@ class SolveState {
   NeighbourTable row_neighbours_{row_forest_}, leaf_neighbours_{leaf_forest_};
   std::vector<Emitter> emitters_;
   std::unique_ptr<LightTree> light_tree_;  ///< where there are many
-  bool emission_by_rows_ = false;
-  std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
-  double area_ = 0;                   ///< of all roots, m2
+  std::uint64_t rounds_of_rays_ = 0;       ///< each adds independent rays
+  double area_ = 0;                        ///< of all roots, m2
   double emitted_power_ = 0;
   double waiting_power_ = 0;  ///< of the emitters whose light was not added yet
 

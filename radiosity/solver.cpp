@@ -50,13 +50,14 @@ class SolveClock {
 
 class Run {
  public:
-  Run(const BaseMesh& mesh, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log, std::stop_token stop)
+  Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
+      std::stop_token stop)
       : options_(options),
         log_(log),
         stop_(std::move(stop)),
         cpu_(cpu),
         budget_([this] { return must_stop(); }),
-        state_(mesh, options, budget_) {}
+        state_(mesh, plan, options, budget_) {}
 
   SolveOutcome run() {
     const bool is_lit = state_.emitted_power() > 0;
@@ -176,14 +177,19 @@ std::string_view text(StopReason reason) {
   return "unknown";
 }
 
-SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
+SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                              std::stop_token stop) {
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   tbb::task_arena arena(threads);
   const CpuClock cpu(arena);
   return arena.execute([&] {
     const CloseAtEnd close{log};
-    return Run(mesh, options, cpu, log, std::move(stop)).run();
+    return Run(mesh, plan, options, cpu, log, std::move(stop)).run();
   });
+}
+
+SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
+  return solve_as_planned(mesh, Plan(mesh, options), options, log, std::move(stop));
 }
 
 }  // namespace alvor
