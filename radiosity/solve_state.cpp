@@ -146,6 +146,7 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
   std::vector<NodeIndex> nodes;
   const std::vector<Receiver> receivers = unlit_receivers(nodes);
   std::vector<DirectLight> light(nodes.size());
+  const ShadowNeeds needs{plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)};
   const auto show = [&](std::size_t first, std::size_t count, double power) {
     for (std::size_t n = first; n < first + count; ++n) direct_[nodes[n]] = light[n];
     waiting_power_ = std::max(0.0, waiting_power_ - power);
@@ -156,12 +157,12 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     for (std::size_t first = 0; first < receivers.size(); first += step) {
       const std::size_t count = std::min(step, receivers.size() - first);
       add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
-                       std::span(light).subspan(first, count));
+                       std::span(light).subspan(first, count), needs);
       show(first, count, emitted_power_ * static_cast<double>(count) / static_cast<double>(receivers.size()));
     }
   } else {
     for (const Emitter& emitter : emitters_) {
-      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light);
+      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light, needs);
       show(0, nodes.size(), emitter.power);
     }
   }
