@@ -194,7 +194,7 @@ ErrorEstimate SolveState::estimate() {
   if (power <= 0) return {};
   double area = 0;
   for (std::size_t p = 0; p < patches_.size(); ++p)
-    if (!patches_[p].row->is_hidden()) area += patches_[p].area;
+    if (!patches_[p].row->is_hidden() || !may_be_lit(patch_row_[p])) area += patches_[p].area;
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;

@@ -62,6 +62,7 @@ Rgb SolveState::row_emission(std::uint32_t root) const {
 void SolveState::split_to_start() {
   const auto is_coarse = [&](NodeIndex node) {
     const PatchId id = row_forest_.id(node);
+    if (!may_be_lit(node)) return false;
     const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area_;
     return shows_no_curvature || longest_edge(mesh_, row_forest_.shape(node)) > start_edge * mesh_.extent();
   };
@@ -103,7 +104,7 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
   std::vector<PatchId> patches;
   std::vector<RowSize> sizes;
   for (const NodeIndex row : row_forest_.leaves()) {
-    if (row_is_traced_[row]) continue;
+    if (row_is_traced_[row] || !may_be_lit(row)) continue;
     nodes.push_back(row);
     shapes.push_back(row_forest_.shape(row));
     patches.push_back(row_forest_.id(row));
@@ -131,7 +132,7 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
 std::vector<Receiver> SolveState::unlit_receivers(std::vector<NodeIndex>& nodes) const {
   std::vector<Receiver> receivers;
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
-    if (direct_is_known_[leaf]) continue;
+    if (direct_is_known_[leaf] || !plan_.may_be_lit(leaf_forest_.id(leaf).root_face())) continue;
     const NodeIndex row = row_of(leaf_forest_.id(leaf));
     const bool same = row_forest_.id(row) == leaf_forest_.id(leaf);
     const auto none = static_cast<std::uint16_t>(rows_[row].is_hidden() ? 0xffff : 0);

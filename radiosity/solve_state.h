@@ -86,6 +86,7 @@ class SolveState {
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
   RowSamples samples_of(NodeIndex row, std::span<const Rgb> radiosity) const;
   std::vector<Rgb> radiosity() const;
+  bool may_be_lit(NodeIndex row) const { return plan_.may_be_lit(row_forest_.id(row).root_face()); }
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   void estimate_rows(ErrorEstimate& error);

@@ -48,6 +48,17 @@ class SolveClock {
   Clock::duration paused_{};
 };
 
+/// One step: every face, and no light on any.
+SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
+  std::vector<LeafValue> values;
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) values.push_back({PatchId::root(root), {}});
+  Step step;
+  step.leaves = values.size();
+  log.publish(values, step);
+  return {.reason = StopReason::dark, .cpu_s = cpu.seconds()};
+}
+
+/// Of a scene with light.
 class Run {
  public:
   Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
@@ -60,10 +71,8 @@ class Run {
         state_(mesh, plan, options, budget_) {}
 
   SolveOutcome run() {
-    const bool is_lit = state_.emitted_power() > 0;
-    if (!is_lit) error_ = {};
     publish();
-    const StopReason reason = is_lit ? pass_until_done() : StopReason::dark;
+    const StopReason reason = pass_until_done();
     const double cpu = cpu_.seconds();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0};
   }
@@ -184,6 +193,7 @@ SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const Solv
   const CpuClock cpu(arena);
   return arena.execute([&] {
     const CloseAtEnd close{log};
+    if (!plan.has_light()) return show_darkness(mesh, cpu, log);
     return Run(mesh, plan, options, cpu, log, std::move(stop)).run();
   });
 }

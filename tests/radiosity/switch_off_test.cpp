@@ -6,21 +6,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <random>
 
 namespace alvor {
 namespace {
 
 struct Solved {
-  std::vector<LeafValue> leaves;  ///< in the order of ids
-  std::uint64_t rays = 0;
+  std::vector<LeafValue> leaves;  ///< that receive light, in the order of ids
+  std::uint64_t rays = 0, all_leaves = 0;
 };
 
 Solved solved(const Scene& scene, const SolveOptions& options) {
   const BaseMesh mesh(scene);
   SolutionLog log;
   solve(mesh, options, log, {});
-  Solved all{log.leaves(), log.last_step().rays};
+  Solved all{log.leaves(), log.last_step().rays, log.last_step().leaves};
+  std::erase_if(all.leaves, [](const LeafValue& leaf) { return leaf.irradiance.is_zero(); });
   std::ranges::sort(all.leaves, {}, &LeafValue::patch);
   return all;
 }
@@ -88,6 +89,59 @@ TEST(SwitchedOff, OcclusionUnderManyLampsSavesAllShadowRays) {
   const Pair pair = solved_both_ways(scene, Feature::occlusion, {.tolerance = 0.1, .max_leaves = 2000});
   EXPECT_LT(pair.difference(), rounding);
   EXPECT_LT(pair.as_planned.rays, pair.forced.rays);
+}
+
+TEST(SwitchedOff, DarkFacesBehindClosedWallsSaveTheirRows) {
+  Scene scene = convex_room();
+  test::add_box(scene, {4.5, 0, 0}, {9.5, 3, 5}, true);
+  const Pair pair = solved_both_ways(scene, Feature::dark_faces);
+  EXPECT_LT(pair.difference(), rounding);
+  EXPECT_LT(pair.as_planned.rays, pair.forced.rays);
+  EXPECT_LT(pair.as_planned.all_leaves, pair.forced.all_leaves);
+}
+
+TEST(SwitchedOff, DarkOuterWallsSaveTheirRows) {
+  Scene scene = convex_room();
+  test::add_box(scene, {-0.1, -0.1, -0.1}, {4.1, 3.1, 5.1}, false);
+  const Pair pair = solved_both_ways(scene, Feature::dark_faces);
+  EXPECT_LT(pair.difference(), rounding);
+  EXPECT_LT(pair.as_planned.rays, pair.forced.rays);
+}
+
+TEST(SwitchedOff, NoLightMeansNoWork) {
+  Scene scene = convex_room();
+  scene.materials[1].emission = {};
+  const Solved dark = solved(scene, {});
+  EXPECT_TRUE(dark.leaves.empty());
+  EXPECT_EQ(dark.rays, 0u);
+  EXPECT_EQ(dark.all_leaves, 6u);
+}
+
+/// A lit room, and boxes of random size and place in and around it, shut and open, standing through walls or on the floor.
+Scene boxes_about_a_room(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto whole = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
+  Scene scene = convex_room();
+  for (int box = 0; box < 5; ++box) {
+    const double x = whole(-4, 6), y = whole(-1, 2), z = whole(-4, 6);
+    test::add_box(scene, {x, y, z}, {x + whole(1, 4), y + whole(1, 2), z + whole(1, 4)}, whole(0, 1) == 1);
+    if (whole(0, 2) == 0) scene.faces.erase(scene.faces.end() - whole(1, 6));
+  }
+  return scene;
+}
+
+TEST(SwitchedOff, NoFaceThatLightReachesIsDark) {
+  std::size_t dark_faces = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const Scene scene = boxes_about_a_room(seed);
+    const BaseMesh mesh(scene);
+    const Plan plan(mesh, {});
+    for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) dark_faces += !plan.may_be_lit(root);
+    const Solved forced = solved(scene, {.tolerance = 0.5, .max_depth = 1, .threads = 1, .forced_on = {Feature::dark_faces}});
+    for (const LeafValue& leaf : forced.leaves)
+      EXPECT_TRUE(plan.may_be_lit(leaf.patch.root_face())) << "seed " << seed << ", root " << leaf.patch.root_face();
+  }
+  EXPECT_GT(dark_faces, 500u);
 }
 
 }  // namespace
