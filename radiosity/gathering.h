@@ -18,6 +18,8 @@ namespace alvor {
 /// do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
+  /// Between no patches.
+  Gathering() = default;
   /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
   /// `own_radiosity` by place what they emit and reflect of direct light; `hit_leaf` of each patch is by hit of its row.
   /// `irradiance` by patch is where to begin. Borrows all but that.

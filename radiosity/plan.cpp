@@ -40,16 +40,23 @@ std::vector<Vec3> corners_about_centre(const BaseMesh& mesh, const std::vector<b
   return corners;
 }
 
-/// A face that has lit points on both sides of its plane; the number of roots if there is none. Between points of one side of a
-/// plane nothing on that plane stands.
-std::uint32_t find_blocker(const BaseMesh& mesh, const PointTree& lit) {
-  std::uint32_t root = 0;
-  for (; root < mesh.roots().size(); ++root) {
-    const RootPatch& face = mesh.roots()[root];
+/// What stands where, from the places of all that may be lit.
+struct Standing {
+  std::uint32_t blocker = 0;    ///< a face that has lit points on both sides of its plane; the number of roots: there is none
+  bool backs_are_seen = false;  ///< a face has lit points behind its plane
+};
+
+/// Between points of one side of a plane nothing on that plane stands.
+Standing look_from(const PointTree& lit, const BaseMesh& mesh) {
+  Standing standing;
+  for (; standing.blocker < mesh.roots().size(); ++standing.blocker) {
+    const RootPatch& face = mesh.roots()[standing.blocker];
     const double height = dot(face.normal, face.corners[0] - mesh.centre()), margin = behind * mesh.extent();
-    if (lit.any_above(face.normal, height + margin) && lit.any_above(-face.normal, -height + margin)) break;
+    const bool is_seen_from_behind = lit.any_above(-face.normal, -height + margin);
+    standing.backs_are_seen |= is_seen_from_behind;
+    if (is_seen_from_behind && lit.any_above(face.normal, height + margin)) break;
   }
-  return root;
+  return standing;
 }
 
 /// Decides feature by feature.
@@ -58,6 +65,7 @@ class Planner {
   Planner(const BaseMesh& mesh, const SolveOptions& options)
       : mesh_(mesh), options_(options), census_(mesh), reach_(mesh, PointTree(corners_about_centre(mesh, nobody()))) {
     emission_by_rows_ = census_.emitting_share > most_area_emits;
+    if (census_.is_lit()) standing_ = look_from(PointTree(corners_about_centre(mesh, left_dark())), mesh);
   }
 
   PlannedFeature decide(Feature feature) const {
@@ -69,8 +77,10 @@ class Planner {
   }
 
   const SceneCensus& census() const { return census_; }
-  const std::vector<bool>& dark() const { return reach_.is_dark; }
+  /// Faces that get no light because none is looked for; others must not be taken for them.
+  std::vector<bool> left_dark() const { return options_.forced_on.contains(Feature::dark_faces) ? nobody() : reach_.is_dark; }
   bool emission_by_rows() const { return emission_by_rows_; }
+  bool backs_are_seen() const { return standing_.backs_are_seen; }
 
  private:
   static PlannedFeature on(std::string reason) { return {{}, true, std::move(reason), {}}; }
@@ -107,10 +117,9 @@ class Planner {
 
   PlannedFeature occlusion() const {
     if (emission_by_rows_) return off(sentence(by_rows(), ", so no shadow rays are sent"));
-    const std::uint32_t blocker = find_blocker(mesh_, PointTree(corners_about_centre(mesh_, dark())));
-    if (blocker < mesh_.roots().size())
-      return on(
-          sentence("face ", mesh_.roots()[blocker].scene_face, " has lit faces before and behind it, of ", faces(census_.faces)));
+    if (standing_.blocker < mesh_.roots().size())
+      return on(sentence("face ", mesh_.roots()[standing_.blocker].scene_face, " has lit faces before and behind it, of ",
+                         faces(census_.faces)));
     return off(sentence("no face stands between others: each of ", faces(census_.faces),
                         " has all that is lit on one side of its plane"));
   }
@@ -182,6 +191,7 @@ class Planner {
   const SolveOptions& options_;
   SceneCensus census_;
   LightReach reach_;
+  Standing standing_;
   bool emission_by_rows_ = false;
 };
 
@@ -192,7 +202,8 @@ Plan::Plan(const BaseMesh& mesh, const SolveOptions& options) {
   for (const Feature feature : all_features) features_.push_back(planner.decide(feature));
   has_light_ = planner.census().is_lit();
   emission_by_rows_ = planner.emission_by_rows();
-  if (!needs(Feature::dark_faces)) is_dark_ = planner.dark();
+  backs_are_seen_ = planner.backs_are_seen();
+  if (!needs(Feature::dark_faces)) is_dark_ = planner.left_dark();
 }
 
 }  // namespace alvor

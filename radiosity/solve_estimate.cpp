@@ -21,6 +21,8 @@ constexpr double noise_of_origins = 1.7;       // of their variance, and what it
 constexpr double misfit_at_centre = 0.25;      // of the squared misfit in a window, that its fit has in the middle
 constexpr double contact_error = 0.1;          // of a patch's irradiance: how much it varies where a solid's outline crosses it
 
+const FieldFit no_field{};
+
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
 double squared(double x) { return x * x; }
@@ -85,6 +87,7 @@ RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity
 }
 
 void SolveState::show_smoothly() {
+  if (!has_rows()) return;
   show();
   const auto row_neighbours = row_neighbours_.of(patch_row_);
   const auto leaving = radiosity();
@@ -95,6 +98,7 @@ void SolveState::show_smoothly() {
 }
 
 void SolveState::show_what_came_since() {
+  if (!has_rows()) return;
   const auto irradiance = exchange_->irradiance();
   for (std::size_t p = 0; p < patch_row_.size(); ++p) {
     const NodeIndex row = patch_row_[p];
@@ -120,13 +124,13 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
   std::vector<double> errors(patches_.size());
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const NodeIndex row = patch_row_[p];
-    const FieldFit& fit = row_fit_[row];
+    const FieldFit& fit = has_rows() ? row_fit_[row] : no_field;
     const double area = patches_[p].area, noise = area * fit.variance;
     error.misfit += area * fit.squared_misfit;
     errors[p] = area * misfit_at_centre * fit.window_misfit;
     if (rows_[row].crosses_contact()) {
       const Rgb direct = direct_[patch_leaves_[patches_[p].first_leaf]].irradiance;
-      const double by_contact = area * squared(contact_error * (row_irradiance_[row] + direct).mean());
+      const double by_contact = area * squared(contact_error * ((has_rows() ? row_irradiance_[row] : Rgb{}) + direct).mean());
       errors[p] += by_contact;
       error.misfit += by_contact;
     }
@@ -141,15 +145,14 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
 /// Mean square of what arrives at the origins of a leaf beyond its slope and the noise of their shadow rays.
 double SolveState::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
   const PatchShape shape = leaf_forest_.shape(leaf);
-  const FieldFit& fit = row_fit_[row_of(leaf_forest_.id(leaf))];
   const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
   double squares = 0;
   for (int k = 0; k < 4; ++k) {
     const PatchShape quarter = shape.child(k);
-    const double indirect = fit.at(centre_of(mesh_, quarter)).mean();
+    const double by_rows = indirect(leaf, centre_of(mesh_, quarter)).mean();
     for (int o = 0; o < 4; ++o) {
       const Vec3 offset = centre_of(mesh_, quarter.child(o)) - leaf_centre_[leaf];
-      squares += squared(direct_[leaf].at_origin[4 * k + o] + indirect - irradiance.mean() - dot(steepest, offset));
+      squares += squared(direct_[leaf].at_origin[4 * k + o] + by_rows - irradiance.mean() - dot(steepest, offset));
     }
   }
   return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct_[leaf].origin_variance);

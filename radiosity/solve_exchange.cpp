@@ -22,6 +22,10 @@ void SolveState::find_hit_leaves(NodeIndex row) {
 
 void SolveState::begin_exchange() {
   list_patches();
+  if (!has_rows()) {
+    exchange_ = std::make_unique<Gathering>();
+    return;
+  }
   tbb::parallel_for(std::size_t{0}, patch_row_.size(), [this](std::size_t p) { find_hit_leaves(patch_row_[p]); });
   if (options_.strategy == Strategy::automatic) exchange_ = begin_gathering();
   else exchange_ = std::make_unique<ShotExchange>(begin_shooting(), options_.strategy);

@@ -77,9 +77,11 @@ void SolveState::fit_to_nodes() {
   const std::size_t rows = row_forest_.node_count(), leaves = leaf_forest_.node_count();
   rows_.resize(rows);
   row_is_traced_.resize(rows);
-  row_irradiance_.resize(rows);
-  row_fit_.resize(rows);
-  hit_leaves_.resize(rows);
+  if (has_rows()) {
+    row_irradiance_.resize(rows);
+    row_fit_.resize(rows);
+    hit_leaves_.resize(rows);
+  }
   direct_.resize(leaves);
   direct_is_known_.resize(leaves);
   shot_.resize(leaves);
@@ -95,7 +97,7 @@ void SolveState::fit_to_nodes() {
 void SolveState::trace_new_rows() {
   for (auto traced = trace_untraced(); !traced.empty(); traced = trace_untraced())
     for (const NodeIndex row : traced) heed_hidden_origins(row);
-  if (options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
+  if (has_rows() && options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
 }
 
 std::vector<NodeIndex> SolveState::trace_untraced() {
@@ -108,15 +110,22 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
     nodes.push_back(row);
     shapes.push_back(row_forest_.shape(row));
     patches.push_back(row_forest_.id(row));
-    const bool is_small = patches.back().level() == 0 && mesh_.roots()[shapes.back().root].area < small_area * area_;
-    sizes.push_back(is_small ? RowSize::small : RowSize::whole);
+    sizes.push_back(size_of(patches.back()));
   }
-  auto rows = trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_);
+  const bool nothing_to_find = !has_rows() && !plan_.backs_are_seen();
+  auto rows = nothing_to_find ? std::vector(nodes.size(), TransportRow{.rays = rays_per_row})
+                              : trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     rows_[nodes[n]] = std::move(rows[n]);
     row_is_traced_[nodes[n]] = true;
   }
   return nodes;
+}
+
+RowSize SolveState::size_of(PatchId patch) const {
+  if (!has_rows()) return RowSize::hidden_only;
+  const bool is_small = patch.level() == 0 && mesh_.roots()[patch.root_face()].area < small_area * area_;
+  return is_small ? RowSize::small : RowSize::whole;
 }
 
 // Which points are hidden under a solid is known from rows only: along contacts leaves must not be finer than rows, and direct
@@ -243,12 +252,13 @@ bool SolveState::split_row(NodeIndex row) {
   for (const NodeIndex parent : split) {
     split_leaf(leaf_node_of_row(parent));
     for (int k = 0; k < 4; ++k) {
+      if (!has_rows()) break;
       const NodeIndex child = row_forest_.child(parent, k);
       row_fit_[child] = row_fit_[parent];
       row_irradiance_[child] = row_fit_[parent].at(row_centre_[child]);
     }
     rows_[parent] = {};
-    hit_leaves_[parent] = {};
+    if (has_rows()) hit_leaves_[parent] = {};
   }
   return done;
 }

@@ -75,6 +75,7 @@ class SolveState {
   bool split_row(NodeIndex row);
   void follow_contact(NodeIndex split_leaf);
   std::vector<NodeIndex> trace_untraced();
+  RowSize size_of(PatchId patch) const;
   void make_rows_exact();
   void heed_hidden_origins(NodeIndex row);
   void inherit(std::span<const NodeIndex> split);
@@ -86,13 +87,16 @@ class SolveState {
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
   RowSamples samples_of(NodeIndex row, std::span<const Rgb> radiosity) const;
   std::vector<Rgb> radiosity() const;
+  /// Otherwise rows are there to tell what is hidden, and no light goes along them.
+  bool has_rows() const { return plan_.needs(Feature::indirect_rows); }
   bool may_be_lit(NodeIndex row) const { return plan_.may_be_lit(row_forest_.id(row).root_face()); }
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   void estimate_rows(ErrorEstimate& error);
   double estimate_leaves(ErrorEstimate& error);
   double squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const;
-  Rgb indirect(NodeIndex leaf) const { return row_fit_[row_of(leaf_forest_.id(leaf))].at(leaf_centre_[leaf]); }
+  Rgb indirect(NodeIndex leaf) const { return indirect(leaf, leaf_centre_[leaf]); }
+  Rgb indirect(NodeIndex leaf, Vec3 at) const { return has_rows() ? row_fit_[row_of(leaf_forest_.id(leaf))].at(at) : Rgb{}; }
 
   const BaseMesh& mesh_;
   Plan plan_;

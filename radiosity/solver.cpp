@@ -63,7 +63,8 @@ class Run {
  public:
   Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
       std::stop_token stop)
-      : options_(options),
+      : plan_(plan),
+        options_(options),
         log_(log),
         stop_(std::move(stop)),
         cpu_(cpu),
@@ -147,7 +148,7 @@ class Run {
     step.unshot_fraction = state_.unshot_fraction();
     step.estimated_error = error_.total();
     step.displayed_error = displayed_error * std::min(1.0, error_.total());
-    if (shows_ambient(options_.strategy)) step.ambient_irradiance = state_.ambient_irradiance();
+    if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
@@ -160,6 +161,7 @@ class Run {
     return state_.leaf_count() + 3 > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
   }
 
+  const Plan& plan_;
   SolveOptions options_;
   SolutionLog& log_;
   std::stop_token stop_;

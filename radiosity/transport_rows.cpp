@@ -62,6 +62,10 @@ class RowTracer {
     set_ = &directions_[random.next_below(DirectionSets::set_count)];
     const TurnedFrame frame(scene_.root(shape.root), 2 * std::numbers::pi * random.next());
     choose_origins(size, random);
+    if (size == RowSize::hidden_only && !any_back(points, frame)) {
+      row.rays = rays_per_row;
+      return;
+    }
     for (int n = 0; n < count_; ++n) {
       const int o = origin_[n];
       start_at(packets_[n], points.x[o], points.y[o], points.z[o]);
@@ -69,6 +73,7 @@ class RowTracer {
     }
     budget_.spend(static_cast<std::uint64_t>(count_) * rays_per_origin,
                   [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size())); });
+    if (size == RowSize::hidden_only) return store_hidden(row);
     retrace_slipped_rays(scene_.root(shape.root).normal);
     store(row);
   }
@@ -76,11 +81,43 @@ class RowTracer {
  private:
   std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
 
+  /// Whether one ray of each origin, each in another direction of the hemisphere, meets a back.
+  bool any_back(const PatchPoints& points, const TurnedFrame& frame) {
+    RayPacket& some = packets_[0];
+    for (int o = 0; o < origins_per_patch; ++o) {
+      start_at(packets_[1], points.x[o], points.y[o], points.z[o]);
+      aim(packets_[1], *set_, o, frame);
+      copy_ray(packets_[1], some, o);
+    }
+    budget_.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&some, 1}, {hits_.data(), 1}); });
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcome(some, hits_[0], lane) == Outcome::black_back) return true;
+    return false;
+  }
+  static void copy_ray(const RayPacket& from, RayPacket& to, int lane) {
+    to.origin_x[lane] = from.origin_x[lane], to.direction_x[lane] = from.direction_x[lane];
+    to.origin_y[lane] = from.origin_y[lane], to.direction_y[lane] = from.direction_y[lane];
+    to.origin_z[lane] = from.origin_z[lane], to.direction_z[lane] = from.direction_z[lane];
+    to.t_min[lane] = from.t_min[lane], to.t_max[lane] = from.t_max[lane];
+  }
+
+  void store_hidden(TransportRow& row) const {
+    for (std::size_t o = 0; o < origins_per_patch; ++o) {
+      if (is_hidden(o)) row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+      else row.rays += rays_per_origin;
+    }
+  }
+  bool is_hidden(std::size_t p) const {
+    int backs = 0;
+    for (int lane = 0; lane < RayPacket::width; ++lane) backs += outcome(packets_[p], hits_[p], lane) == Outcome::black_back;
+    return 2 * backs > RayPacket::width;
+  }
+
   /// All, or one a quarter so that their mean is the middle.
   void choose_origins(RowSize size, RandomStream& random) {
-    count_ = size == RowSize::whole ? origins_per_patch : 4;
+    count_ = size == RowSize::small ? 4 : origins_per_patch;
     const int turn = static_cast<int>(random.next_below(4));
-    for (int n = 0; n < count_; ++n) origin_[n] = size == RowSize::whole ? n : 4 * n + ((3 - n) ^ turn);
+    for (int n = 0; n < count_; ++n) origin_[n] = size == RowSize::small ? 4 * n + ((3 - n) ^ turn) : n;
   }
 
   Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {

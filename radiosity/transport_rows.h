@@ -36,7 +36,9 @@ struct TransportRow {
 };
 
 /// How many rays a row begins with: 16 from each of 16 origins, or from one origin a quarter, for patches that matter little.
-enum class RowSize : std::uint8_t { whole, small };
+/// `hidden_only` stores no hits: it looks with one ray an origin, and where any meets a back as a whole row does, for what is
+/// hidden.
+enum class RowSize : std::uint8_t { whole, small, hidden_only };
 
 /// Traces one row for each patch: 256 (or 64) cosine-distributed rays from 16 (or 4) stratified origins. An origin most of whose
 /// rays meet backs is hidden (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance
