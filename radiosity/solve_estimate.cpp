@@ -115,6 +115,7 @@ bool SolveState::may_split(Candidate::Kind kind, NodeIndex patch) const {
 
 void SolveState::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
                                 double rays) {
+  if (!plan_.needs(Feature::refinement)) return;
   for (std::size_t n = 0; n < patches.size(); ++n)
     if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
 }

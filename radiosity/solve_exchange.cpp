@@ -17,6 +17,7 @@ void SolveState::find_hit_leaves(NodeIndex row) {
     found.clear();
     for (const PatchId hit : hits) found.push_back(hit.root_face());
   }
+  if (!plan_.needs(Feature::refinement)) return;
   for (std::size_t h = 0; h < hits.size(); ++h) found[h] = leaf_forest_.leaf_at(hits[h], found[h]);
 }
 

@@ -114,7 +114,7 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
   }
   const bool nothing_to_find = !has_rows() && !plan_.backs_are_seen();
   auto rows = nothing_to_find ? std::vector(nodes.size(), TransportRow{.rays = rays_per_row})
-                              : trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_);
+                              : trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_, row_needs());
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     rows_[nodes[n]] = std::move(rows[n]);
     row_is_traced_[nodes[n]] = true;
@@ -271,7 +271,7 @@ bool SolveState::add_rays(std::span<const NodeIndex> rows) {
     patches.push_back(row_forest_.id(row));
   }
   const auto more = trace_rows(scene_, directions_, shapes, patches, std::vector(rows.size(), RowSize::whole),
-                               options_.seed + ++rounds_of_rays_, budget_);
+                               options_.seed + ++rounds_of_rays_, budget_, row_needs());
   if (budget_.is_out()) return false;
   for (std::size_t n = 0; n < rows.size(); ++n) rows_[rows[n]].append(more[n]);
   return !rows.empty();

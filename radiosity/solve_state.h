@@ -89,6 +89,7 @@ class SolveState {
   std::vector<Rgb> radiosity() const;
   /// Otherwise rows are there to tell what is hidden, and no light goes along them.
   bool has_rows() const { return plan_.needs(Feature::indirect_rows); }
+  RowNeeds row_needs() const { return {plan_.needs(Feature::back_sides), plan_.needs(Feature::refinement)}; }
   bool may_be_lit(NodeIndex row) const { return plan_.may_be_lit(row_forest_.id(row).root_face()); }
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);

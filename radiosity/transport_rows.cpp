@@ -51,6 +51,7 @@ void start_at(RayPacket& packet, float x, float y, float z) {
 enum class Outcome { stored, escaped, black_back };
 
 /// Traces one row after the other.
+template <bool back_sides, bool places>
 class RowTracer {
  public:
   RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget)
@@ -122,8 +123,10 @@ class RowTracer {
 
   Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {
     if (hit.root[lane] == HitPacket::nothing) return Outcome::escaped;
-    return meets_front(packet, hit, lane) || scene_.root(hit.root[lane]).twin != RootPatch::no_twin ? Outcome::stored
-                                                                                                    : Outcome::black_back;
+    if (meets_front(packet, hit, lane)) return Outcome::stored;
+    if constexpr (back_sides)
+      if (scene_.root(hit.root[lane]).twin != RootPatch::no_twin) return Outcome::stored;
+    return Outcome::black_back;
   }
   bool meets_front(const RayPacket& packet, const HitPacket& hit, int lane) const {
     const Float3& n = scene_.root(hit.root[lane]).normal;
@@ -183,23 +186,27 @@ class RowTracer {
       backs += outcomes[lane] == Outcome::black_back;
     }
     if (2 * backs > RayPacket::width) return false;
-    const HitPacket hit = turned_to_front(p);
-    alignas(64) std::uint32_t path[RayPacket::width];
-    scene_.places_of_hits(hit, path);
-    for (int lane = 0; lane < RayPacket::width; ++lane)
-      if (outcomes[lane] == Outcome::stored) row.hits.push_back(PatchId::finest(hit.root[lane], path[lane]));
+    if constexpr (back_sides) store_hits(turned_to_front(p), outcomes, row);
+    else store_hits(hits_[p], outcomes, row);
     if (medium_.is_clear() && !directions_.has_weights()) return true;
     const float* weight = &set_->weight[p * rays_per_origin];
     for (int lane = 0; lane < RayPacket::width; ++lane)
       if (outcomes[lane] == Outcome::stored)
-        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hit.t[lane] * scene_.frame().metres_per_unit)));
+        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hits_[p].t[lane] * scene_.frame().metres_per_unit)));
     return true;
+  }
+
+  void store_hits(const HitPacket& hit, const Outcome* outcomes, TransportRow& row) const {
+    alignas(64) std::uint32_t path[RayPacket::width];
+    if constexpr (places) scene_.places_of_hits(hit, path);
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcomes[lane] == Outcome::stored)
+        row.hits.push_back(places ? PatchId::finest(hit.root[lane], path[lane]) : PatchId::root(hit.root[lane]));
   }
 
   /// Hits from behind as hits of the twin, where there is one.
   HitPacket turned_to_front(std::size_t p) const {
     HitPacket hit = hits_[p];
-    if (!scene_.has_twins()) return hit;
     for (int lane = 0; lane < RayPacket::width; ++lane) {
       if (hit.root[lane] == HitPacket::nothing || meets_front(packets_[p], hits_[p], lane)) continue;
       const std::uint32_t twin = scene_.root(hit.root[lane]).twin;
@@ -250,14 +257,18 @@ void TransportRow::append(const TransportRow& more) {
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
-                                     RayBudget& budget) {
-  std::vector<TransportRow> rows(patches.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
-    RowTracer tracer(scene, directions, seed, budget);
-    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
-      tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
-  });
-  return rows;
+                                     RayBudget& budget, RowNeeds needs) {
+  const auto trace = [&]<bool back_sides, bool places>() {
+    std::vector<TransportRow> rows(patches.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
+      RowTracer<back_sides, places> tracer(scene, directions, seed, budget);
+      for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
+        tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
+    });
+    return rows;
+  };
+  if (needs.back_sides) return needs.places ? trace.template operator()<true, true>() : trace.template operator()<true, false>();
+  return needs.places ? trace.template operator()<false, true>() : trace.template operator()<false, false>();
 }
 
 }  // namespace alvor

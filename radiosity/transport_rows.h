@@ -40,12 +40,18 @@ struct TransportRow {
 /// hidden.
 enum class RowSize : std::uint8_t { whole, small, hidden_only };
 
+/// What rows have to find out. What they have not takes no time.
+struct RowNeeds {
+  bool back_sides = true;  ///< false: no face has a twin
+  bool places = true;      ///< where on a face a hit is; false: patches are never split, and each hit is the id of its root
+};
+
 /// Traces one row for each patch: 256 (or 64) cosine-distributed rays from 16 (or 4) stratified origins. An origin most of whose
 /// rays meet backs is hidden (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance
 /// of its visible half. In a closed scene a ray that slips through a seam is sent once more beside it, so that rows sum to 1.
 /// Rows come in the order of `patches` and do not depend on the number of threads. Requires: as many shapes and sizes as patches.
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
-                                     RayBudget& budget);
+                                     RayBudget& budget, RowNeeds needs = {});
 
 }  // namespace alvor

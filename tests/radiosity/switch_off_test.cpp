@@ -142,6 +142,25 @@ TEST(SwitchedOff, RowsOfABlackRoomAreNotMissedByAnyStrategy) {
               solved(black_room(), {.tolerance = 0.1}).leaves);
 }
 
+TEST(SwitchedOff, BackSidesOfOneSidedFacesAreNotMissed) {
+  const Pair pair = solved_both_ways(test::coloured_room(), Feature::back_sides, {.tolerance = 0.05});
+  EXPECT_EQ(pair.as_planned.leaves, pair.forced.leaves);
+}
+
+TEST(SwitchedOff, ClearAirIsNotMissed) {
+  const Pair pair = solved_both_ways(test::coloured_room(), Feature::medium, {.tolerance = 0.05});
+  EXPECT_LT(pair.difference(), rounding);
+}
+
+TEST(SwitchedOff, PlacesOfHitsAreNotMissedAtDepthZero) {
+  for (const Strategy strategy : {Strategy::automatic, Strategy::sorted}) {
+    const Pair pair =
+        solved_both_ways(test::coloured_room(), Feature::refinement, {.tolerance = 1e-3, .max_depth = 0, .strategy = strategy});
+    EXPECT_EQ(pair.as_planned.leaves, pair.forced.leaves);
+    EXPECT_EQ(pair.as_planned.all_leaves, 13u);
+  }
+}
+
 TEST(SwitchedOff, NoLightMeansNoWork) {
   Scene scene = convex_room();
   scene.materials[1].emission = {};
