@@ -8,71 +8,44 @@ namespace {
 
 constexpr double least_gain = 0.01;  // of the squared residual: with less a plain step does better, and ends what stalls
 
-Gathering::Radiosity padded(const Rgb& a) {
-  return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b), 0};
-}
-
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
   return {band(a.r, b.r), band(a.g, b.g), band(a.b, b.b)};
 }
 
-/// Four lanes at a time: one load and one addition a hit.
-Rgb sum_of(std::span<const Gathering::Radiosity> radiosity, const std::uint32_t* leaf, std::size_t count) {
-  double sum[4] = {};
-  for (std::size_t h = 0; h < count; ++h) {
-    const Gathering::Radiosity& hit = radiosity[leaf[h]];
-    const float lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
-    for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
-  }
-  return {sum[0], sum[1], sum[2]};
-}
-
 }  // namespace
 
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
-                     std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance)
+                     std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
+                     bool three_bands)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
       hit_leaf_(std::move(hit_leaf)),
-      leaving_(leaf_count),
+      leaving_(leaf_count, three_bands),
       irradiance_(std::move(irradiance)),
       residual_(patches.size()) {
   for (const ShootingPatch& patch : patches_) power_weight_.push_back(patch.area * patch.reflectance);
   ambient_gain_ = ambient_gain(patches_);
-  leaving_ = radiosity();
+  spread([this](std::size_t p, std::uint32_t place) { return own_radiosity_[place] + patches_[p].reflectance * irradiance_[p]; });
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
   find_unshot();
 }
 
-template <class Leaving>
-void Gathering::spread(std::span<Radiosity> by_leaf, Leaving&& leaving) const {
+template <class Light>
+void Gathering::spread(Light&& light) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      by_leaf[leaf_of_place_[k]] = padded(leaving(p, k));
+      leaving_.set(leaf_of_place_[k], light(p, k));
   });
-}
-
-std::vector<Gathering::Radiosity> Gathering::radiosity() const {
-  std::vector<Radiosity> by_leaf(leaving_.size());
-  spread(by_leaf, [this](std::size_t p, std::uint32_t place) {
-    return own_radiosity_[place] + patches_[p].reflectance * (irradiance_[p] + residual_[p]);
-  });
-  return by_leaf;
 }
 
 Rgb Gathering::row_times_radiosity(std::size_t p) const {
   const TransportRow& row = *patches_[p].row;
   if (row.rays == 0) return {};
-  if (row.hit_weight.empty()) return (1.0 / row.rays) * sum_of(leaving_, hit_leaf_[p], row.hits.size());
-  Rgb sum;
-  for (std::size_t h = 0; h < row.hits.size(); ++h) {
-    const Radiosity& hit = leaving_[hit_leaf_[p][h]];
-    sum += widen(row.hit_weight[h]) * Rgb{hit.r, hit.g, hit.b};
-  }
-  return (1.0 / row.rays) * sum;
+  const std::span leaf(hit_leaf_[p], row.hits.size());
+  return (1.0 / row.rays) * (row.hit_weight.empty() ? leaving_.sum(leaf) : leaving_.weighted_sum(leaf, row.hit_weight));
 }
 
 void Gathering::gather(std::vector<Rgb>& received) {
@@ -109,7 +82,7 @@ void Gathering::make_conjugate(Direction& next) const {
 std::size_t Gathering::sweep() {
   if (unshot_power_ == 0) return 0;
   Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
-  spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
   const std::vector<Rgb> plain = next.change;

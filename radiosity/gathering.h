@@ -2,6 +2,7 @@
 // Light exchange by gathering everywhere at once, accelerated by generalised conjugate residuals.
 
 #include "radiosity/exchange.h"
+#include "radiosity/light_by_leaf.h"
 #include "radiosity/shooting.h"
 
 #include <array>
@@ -22,20 +23,15 @@ class Gathering : public Exchange {
   Gathering() = default;
   /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
   /// `own_radiosity` by place what they emit and reflect of direct light; `hit_leaf` of each patch is by hit of its row.
-  /// `irradiance` by patch is where to begin. Borrows all but that.
+  /// `irradiance` by patch is where to begin. `three_bands` unless all are equal. Borrows all but the vectors.
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
-            std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance);
+            std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
+            bool three_bands = true);
 
   std::size_t sweep() override;
   double unshot_power() const override { return unshot_power_; }
   std::vector<Rgb> irradiance() const override;
   Rgb ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
-
-  /// By leaf, for rays that hit it: own radiosity and reflected irradiance().
-  struct alignas(16) Radiosity {
-    float r = 0, g = 0, b = 0, unused = 0;
-  };
-  std::vector<Radiosity> radiosity() const;
 
  private:
   struct Direction {
@@ -47,9 +43,9 @@ class Gathering : public Exchange {
   void make_conjugate(Direction& next) const;
   void advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change);
   void remember(Direction direction);
-  /// Sets what leaves each leaf to leaving(patch, place). In parallel.
-  template <class Leaving>
-  void spread(std::span<Radiosity> by_leaf, Leaving&& leaving) const;
+  /// Sets what leaves each leaf to light(patch, place). In parallel.
+  template <class Light>
+  void spread(Light&& light);
   void find_unshot();
   Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
 
@@ -58,7 +54,7 @@ class Gathering : public Exchange {
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const Rgb> own_radiosity_;
   std::vector<const std::uint32_t*> hit_leaf_;
-  std::vector<Radiosity> leaving_;          // by leaf: what the next gathering finds
+  LightByLeaf leaving_{0, true};            // what the next gathering finds
   std::vector<Rgb> irradiance_, residual_;  // by patch
   std::vector<Rgb> power_weight_;           // by patch: area times reflectance
   std::vector<Direction> directions_;       // the last ones, in a ring

@@ -56,15 +56,15 @@ std::vector<double> interpolation_errors(const Field& f, std::span<const LeafSlo
 }  // namespace
 
 /// By leaf: emitted, and reflected of what arrives, as it is shown.
-std::vector<Rgb> SolveState::radiosity() const {
-  std::vector<Rgb> radiosity(leaf_forest_.node_count());
+LightByLeaf SolveState::radiosity() const {
+  LightByLeaf radiosity(leaf_forest_.node_count(), plan_.needs(Feature::three_bands));
   for (std::size_t p = 0; p < patches_.size(); ++p)
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      radiosity[patch_leaves_[k]] = own_radiosity_[k] + patches_[p].reflectance * row_irradiance_[patch_row_[p]];
+      radiosity.set(patch_leaves_[k], own_radiosity_[k] + patches_[p].reflectance * row_irradiance_[patch_row_[p]]);
   return radiosity;
 }
 
-RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity) const {
+RowSamples SolveState::samples_of(NodeIndex node, const LightByLeaf& radiosity) const {
   const TransportRow& row = rows_[node];
   RowSamples quarters;
   if (row.origin_hits.empty()) {
@@ -76,10 +76,10 @@ RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity
     if (row.origin_hits[o] == TransportRow::not_sampled) continue;
     QuarterSample& quarter = quarters[o % origins_per_patch / 4];
     quarter.rays += rays_per_origin;
-    for (const std::size_t end = hit + row.origin_hits[o]; hit < end; ++hit) {
-      const Rgb& leaving = radiosity[hit_leaves_[node][hit]];
-      quarter.irradiance += row.hit_weight.empty() ? leaving : widen(row.hit_weight[hit]) * leaving;
-    }
+    const std::span found = std::span(hit_leaves_[node]).subspan(hit, row.origin_hits[o]);
+    quarter.irradiance +=
+        row.hit_weight.empty() ? radiosity.sum(found) : radiosity.weighted_sum(found, std::span(row.hit_weight).subspan(hit));
+    hit += found.size();
   }
   for (QuarterSample& quarter : quarters)
     if (quarter.rays > 0) quarter.irradiance *= 1 / quarter.rays;

@@ -6,6 +6,7 @@
 #include "radiosity/error_estimate.h"
 #include "radiosity/exchange.h"
 #include "radiosity/irradiance_field.h"
+#include "radiosity/light_by_leaf.h"
 #include "radiosity/marking.h"
 #include "radiosity/shooting.h"
 #include "radiosity/solver.h"
@@ -85,8 +86,8 @@ class SolveState {
   bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
-  RowSamples samples_of(NodeIndex row, std::span<const Rgb> radiosity) const;
-  std::vector<Rgb> radiosity() const;
+  RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
+  LightByLeaf radiosity() const;
   /// Otherwise rows are there to tell what is hidden, and no light goes along them.
   bool has_rows() const { return plan_.needs(Feature::indirect_rows); }
   RowNeeds row_needs() const { return {plan_.needs(Feature::back_sides), plan_.needs(Feature::refinement)}; }

@@ -142,6 +142,17 @@ TEST(SwitchedOff, RowsOfABlackRoomAreNotMissedByAnyStrategy) {
               solved(black_room(), {.tolerance = 0.1}).leaves);
 }
 
+TEST(SwitchedOff, TwoBandsOfThreeAreNotMissedInAGreyRoom) {
+  for (const double absorption : {0.0, 0.05}) {
+    Scene scene = test::coloured_room();
+    scene.materials[2] = test::grey(0, 0.4);
+    scene.absorption = {absorption, absorption, absorption};
+    const Pair pair = solved_both_ways(scene, Feature::three_bands, {.tolerance = 0.05, .max_leaves = 3000});
+    EXPECT_LT(pair.difference(), rounding);
+    for (const LeafValue& leaf : pair.as_planned.leaves) EXPECT_TRUE(leaf.irradiance.is_grey());
+  }
+}
+
 TEST(SwitchedOff, BackSidesOfOneSidedFacesAreNotMissed) {
   const Pair pair = solved_both_ways(test::coloured_room(), Feature::back_sides, {.tolerance = 0.05});
   EXPECT_EQ(pair.as_planned.leaves, pair.forced.leaves);
