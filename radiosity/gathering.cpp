@@ -17,12 +17,13 @@ Rgb ratio(const Rgb& a, const Rgb& b) {
 
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
                      std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
-                     bool three_bands)
+                     GatheringNeeds needs)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
       hit_leaf_(std::move(hit_leaf)),
-      leaving_(leaf_count, three_bands),
+      is_accelerated_(needs.acceleration),
+      leaving_(leaf_count, needs.three_bands),
       irradiance_(std::move(irradiance)),
       residual_(patches.size()) {
   for (const ShootingPatch& patch : patches_) power_weight_.push_back(patch.area * patch.reflectance);
@@ -81,6 +82,19 @@ void Gathering::make_conjugate(Direction& next) const {
 
 std::size_t Gathering::sweep() {
   if (unshot_power_ == 0) return 0;
+  is_accelerated_ ? conjugate_step() : plain_step();
+  find_unshot();
+  return patches_.size();
+}
+
+/// y := F (e + rho y).
+void Gathering::plain_step() {
+  for (std::size_t p = 0; p < patches_.size(); ++p) irradiance_[p] += residual_[p];
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
+  gather(residual_);
+}
+
+void Gathering::conjugate_step() {
   Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
   spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
   gather(next.change);
@@ -92,8 +106,6 @@ std::size_t Gathering::sweep() {
   advance(helps ? length : Rgb{1, 1, 1}, helps ? next.step : residual_, helps ? next.change : plain);
   if (helps) remember(std::move(next));
   else directions_.clear();
-  find_unshot();
-  return patches_.size();
 }
 
 void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change) {

@@ -12,6 +12,12 @@
 
 namespace alvor {
 
+/// What a system needs. What it does not need takes no time and no memory.
+struct GatheringNeeds {
+  bool three_bands = true;   ///< false: all bands are equal
+  bool acceleration = true;  ///< false: few plain steps do
+};
+
 /// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at
 /// all patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual
 /// (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own. Where that gains nearly nothing it takes a plain step.
@@ -23,10 +29,10 @@ class Gathering : public Exchange {
   Gathering() = default;
   /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
   /// `own_radiosity` by place what they emit and reflect of direct light; `hit_leaf` of each patch is by hit of its row.
-  /// `irradiance` by patch is where to begin. `three_bands` unless all are equal. Borrows all but the vectors.
+  /// `irradiance` by patch is where to begin. Borrows all but the vectors.
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
             std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
-            bool three_bands = true);
+            GatheringNeeds needs = {});
 
   std::size_t sweep() override;
   double unshot_power() const override { return unshot_power_; }
@@ -40,6 +46,8 @@ class Gathering : public Exchange {
   };
   void gather(std::vector<Rgb>& received);
   Rgb row_times_radiosity(std::size_t patch) const;
+  void plain_step();
+  void conjugate_step();
   void make_conjugate(Direction& next) const;
   void advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change);
   void remember(Direction direction);
@@ -54,6 +62,7 @@ class Gathering : public Exchange {
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const Rgb> own_radiosity_;
   std::vector<const std::uint32_t*> hit_leaf_;
+  bool is_accelerated_ = true;
   LightByLeaf leaving_{0, true};            // what the next gathering finds
   std::vector<Rgb> irradiance_, residual_;  // by patch
   std::vector<Rgb> power_weight_;           // by patch: area times reflectance

@@ -59,7 +59,8 @@ std::unique_ptr<Exchange> SolveState::begin_gathering() {
     irradiance.push_back(row_irradiance_[row]);
   }
   return std::make_unique<Gathering>(patches_, patch_leaves_, leaf_forest_.node_count(), own_radiosity_, std::move(hit_leaf),
-                                     std::move(irradiance), plan_.needs(Feature::three_bands));
+                                     std::move(irradiance),
+                                     GatheringNeeds{plan_.needs(Feature::three_bands), plan_.needs(Feature::acceleration)});
 }
 
 Shooting SolveState::begin_shooting() {

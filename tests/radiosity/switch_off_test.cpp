@@ -153,6 +153,13 @@ TEST(SwitchedOff, TwoBandsOfThreeAreNotMissedInAGreyRoom) {
   }
 }
 
+TEST(SwitchedOff, AccelerationIsNotMissedWhereLittleIsReflected) {
+  Scene scene = test::coloured_room();
+  for (Material& material : scene.materials) material.reflectance *= 0.2;
+  const Pair pair = solved_both_ways(scene, Feature::acceleration, {.tolerance = 0.02});
+  EXPECT_LT(pair.difference(), rounding);
+}
+
 TEST(SwitchedOff, BackSidesOfOneSidedFacesAreNotMissed) {
   const Pair pair = solved_both_ways(test::coloured_room(), Feature::back_sides, {.tolerance = 0.05});
   EXPECT_EQ(pair.as_planned.leaves, pair.forced.leaves);
