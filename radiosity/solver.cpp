@@ -54,6 +54,7 @@ SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLo
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) values.push_back({PatchId::root(root), {}});
   Step step;
   step.leaves = values.size();
+  step.unshot_fraction = step.estimated_error = 0;
   log.publish(values, step);
   return {.reason = StopReason::dark, .cpu_s = cpu.seconds()};
 }
