@@ -18,8 +18,8 @@ class LightByLeaf {
 
   /// Requires: light.is_grey() but for rounding, where there is one band.
   void set(std::uint32_t leaf, const Rgb& light) {
-    if (has_three_) three_[leaf] = {static_cast<float>(light.r), static_cast<float>(light.g), static_cast<float>(light.b), 0};
-    else one_[leaf] = static_cast<float>(light.g);
+    if (has_three_) three_[leaf] = {static_cast<Stored>(light.r), static_cast<Stored>(light.g), static_cast<Stored>(light.b), 0};
+    else one_[leaf] = static_cast<Stored>(light.g);
   }
 
   /// Over the leaves of some hits.
@@ -28,15 +28,16 @@ class LightByLeaf {
   Rgb weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
 
  private:
-  struct alignas(16) Padded {
-    float r = 0, g = 0, b = 0, unused = 0;
+  using Stored = float;
+  struct alignas(4 * sizeof(Stored)) Padded {
+    Stored r = 0, g = 0, b = 0, unused = 0;
   };
   /// Four lanes at a time: one load and one addition a hit.
   Rgb sum_of_three(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     for (const std::uint32_t l : leaf) {
       const Padded& hit = three_[l];
-      const float lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
+      const Stored lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
       for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
     }
     return {sum[0], sum[1], sum[2]};
@@ -53,7 +54,7 @@ class LightByLeaf {
   }
 
   std::vector<Padded> three_;
-  std::vector<float> one_;
+  std::vector<Stored> one_;
   bool has_three_;
 };
 

@@ -139,9 +139,9 @@ class Planner {
   }
 
   PlannedFeature back_sides() const {
-    if (census_.two_sided_faces == 0) return off(sentence("none of ", materials(census_.materials), " is two-sided"));
-    return on(sentence(census_.two_sided_materials, " of ", materials(census_.materials), " are two-sided, with ",
-                       faces(census_.two_sided_faces)));
+    if (census_.two_sided_faces > 0)
+      return on(sentence(census_.two_sided_faces, " of ", faces(census_.faces), " have a back side"));
+    return off(sentence("none of ", faces(census_.faces), " has a back side"));
   }
 
   PlannedFeature medium() const {

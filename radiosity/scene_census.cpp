@@ -23,7 +23,7 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     if (root.is_back) continue;
     ++faces;
     emitting_faces += emits;
-    two_sided_faces += material.two_sided;
+    two_sided_faces += root.twin != RootPatch::no_twin;
   }
   emitting_share = area > 0 ? emitting_area / area : 0;
   for (std::size_t m = 0; m < is_used.size(); ++m) {
@@ -31,7 +31,6 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     const Material& material = mesh.materials()[m];
     ++materials;
     reflecting_materials += !material.reflectance.is_zero();
-    two_sided_materials += material.two_sided;
     grey_materials += is_grey(material);
     if (!is_grey(material) && !coloured) coloured = &material;
     largest_reflectance = std::max(largest_reflectance, material.reflectance.max());

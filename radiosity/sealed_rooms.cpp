@@ -39,7 +39,6 @@ class RoomFinder {
     bool is_closed = true;
     for (std::size_t n = 0; n < part.size(); ++n) {
       const RootPatch& root = mesh_.roots()[part[n]];
-      is_closed &= root.twin == RootPatch::no_twin;
       for (int e = 0; e < root.corner_count; ++e) {
         const auto neighbour = mesh_.across(part[n], e);
         is_closed &= neighbour.has_value();

@@ -147,7 +147,7 @@ TEST(Plan, TwoSidedMaterialsNeedBackSides) {
   Scene scene = convex_room();
   EXPECT_FALSE(plan_of(scene).needs(Feature::back_sides));
   scene.materials[0].two_sided = true;
-  EXPECT_TRUE(says(plan_of(scene), Feature::back_sides, "1 of 2 materials are two-sided, with 5 faces"));
+  EXPECT_TRUE(says(plan_of(scene), Feature::back_sides, "5 of 6 faces have a back side"));
 }
 
 TEST(Plan, DepthZeroNeedsNoRefinement) {
@@ -172,6 +172,12 @@ TEST(Plan, OnlyTheUndersideOfABlockOnTheFloorIsDark) { EXPECT_EQ(dark_count(room
 TEST(Plan, RoomsBehindClosedWallsAreDark) {
   EXPECT_EQ(dark_count(two_rooms()), 6u);
   EXPECT_EQ(dark_count(two_rooms(0.5)), 6u);
+}
+
+TEST(Plan, TwoSidedWallsAreClosedToo) {
+  Scene scene = two_rooms(0.5);
+  scene.materials[0].two_sided = true;
+  EXPECT_EQ(dark_count(scene), 5u + 12u);  // the backs of the first room, all of the other
 }
 
 TEST(Plan, FurnitureOfADarkRoomIsDarkToo) {
