@@ -104,6 +104,39 @@ Step decode(const v1::Step& message) {
   return step;
 }
 
+namespace {
+
+constexpr std::pair<Feature, v1::PlannedFeature::Kind> kinds_of_features[]{
+    {Feature::three_bands, v1::PlannedFeature::THREE_BANDS},        {Feature::occlusion, v1::PlannedFeature::OCCLUSION},
+    {Feature::indirect_rows, v1::PlannedFeature::INDIRECT_ROWS},    {Feature::dark_faces, v1::PlannedFeature::DARK_FACES},
+    {Feature::back_sides, v1::PlannedFeature::BACK_SIDES},          {Feature::medium, v1::PlannedFeature::MEDIUM},
+    {Feature::refinement, v1::PlannedFeature::REFINEMENT},          {Feature::acceleration, v1::PlannedFeature::ACCELERATION},
+    {Feature::ambient_display, v1::PlannedFeature::AMBIENT_DISPLAY}};
+static_assert(std::size(kinds_of_features) == all_features.size());
+
+}  // namespace
+
+v1::Plan encode(std::span<const PlannedFeature> plan) {
+  v1::Plan message;
+  for (const PlannedFeature& planned : plan) {
+    v1::PlannedFeature& feature = *message.add_features();
+    for (const auto& [known, kind] : kinds_of_features)
+      if (known == planned.feature) feature.set_kind(kind);
+    feature.set_on(planned.is_on);
+    feature.set_reason(as_utf8(planned.reason));
+    feature.set_cost(as_utf8(planned.cost));
+  }
+  return message;
+}
+
+std::vector<PlannedFeature> decode(const v1::Plan& message) {
+  std::vector<PlannedFeature> plan;
+  for (const v1::PlannedFeature& feature : message.features())
+    for (const auto& [known, kind] : kinds_of_features)
+      if (kind == feature.kind()) plan.push_back({known, feature.on(), feature.reason(), feature.cost()});
+  return plan;
+}
+
 void encode(const Delta& delta, v1::WatchSolveResponse& message) {
   message.set_from_revision(delta.from_revision);
   message.set_to_revision(delta.to_revision);

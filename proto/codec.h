@@ -4,14 +4,17 @@
 #include "alvor/v1/scene_service.pb.h"
 #include "alvor/v1/solve_service.pb.h"
 #include "meshing/scene.h"
+#include "solution/feature.h"
 #include "solution/solution_log.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace alvor {
 
@@ -25,6 +28,10 @@ v1::Rgb encode(const Rgb& value);
 Rgb decode(const v1::Rgb& message);
 v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
+
+v1::Plan encode(std::span<const PlannedFeature> plan);
+/// Features that this build does not know are left out.
+std::vector<PlannedFeature> decode(const v1::Plan& message);
 
 /// Fills in revisions, patches, irradiance and steps; leaves the other fields alone.
 void encode(const Delta& delta, v1::WatchSolveResponse& message);

@@ -78,7 +78,7 @@ class Comparer {
       : options_(options),
         stop_(std::move(stop)),
         budget_([this] { return stop_.stop_requested(); }),
-        state_(mesh, {.tolerance = options.tolerance, .seed = options.seed}, budget_) {}
+        state_(mesh, {.tolerance = options.tolerance, .seed = options.seed, .forced_on = {Feature::indirect_rows}}, budget_) {}
 
   Comparison run() {
     if (state_.emitted_power() <= 0) return {};

@@ -24,6 +24,7 @@ constexpr float short_of_emitter = 1 - 1e-4f;
 using Lanes = std::array<float, RayPacket::width>;
 
 /// The shadow rays of a batch of receivers.
+template <bool occlusion, bool medium>
 class ShadowBatch {
  public:
   ShadowBatch(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers, std::uint64_t seed,
@@ -34,20 +35,17 @@ class ShadowBatch {
         receivers_(receivers),
         seed_(seed),
         budget_(budget),
-        light_(light) {
-    for (const Receiver& receiver : receivers) {
-      RandomStream random(seed, receiver.patch);
-      points_.push_back(sample_points(scene, receiver.shape, random));
-    }
-  }
+        light_(light) {}
 
   void add_all() {
+    if (occlusion || medium) place_points();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       for (std::uint32_t e = 0; e < emitters_.size(); ++e) look_at(r, e);
     add_looked_at();
   }
 
   void add_chosen(const LightTree& tree) {
+    place_points();
     std::vector<LightChoice> choices(receivers_.size());
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       if (receivers_[r].hidden_origins == 0xffff) continue;
@@ -75,6 +73,12 @@ class ShadowBatch {
     double radius;
   };
 
+  void place_points() {
+    for (const Receiver& receiver : receivers_) {
+      RandomStream random(seed_, receiver.patch);
+      points_.push_back(sample_points(scene_, receiver.shape, random));
+    }
+  }
   Vec3 normal_of(const Receiver& receiver) const { return scene_.mesh().roots()[receiver.shape.root].normal; }
   Vec3 local_point(Uv at, std::uint32_t root) const {
     return scene_.frame().to_local(scene_.mesh().roots()[root].at(at.u, at.v));
@@ -102,6 +106,12 @@ class ShadowBatch {
   }
 
   void add_looked_at() {
+    if constexpr (occlusion || medium) trace_looked_at();
+    else
+      for (Lit& lit : lit_) lit.fraction = VisibleFraction::all();
+    for (const Lit& lit : lit_) add(lit);
+  }
+  void trace_looked_at() {
     std::vector<std::size_t> some(lit_.size());
     for (std::size_t k = 0; k < some.size(); ++k) some[k] = k;
     trace(some, 0, 1);
@@ -110,7 +120,7 @@ class ShadowBatch {
       return !lit_[k].fraction.mixed() || unblocked(lit_[k]) < worth_a_closer_look * brightness[lit_[k].receiver];
     });
     trace(some, 1, packets_when_mixed);
-    for (Lit& lit : lit_) lit.fraction.finish(), add(lit);
+    for (Lit& lit : lit_) lit.fraction.finish();
   }
   double unblocked(const Lit& lit) const { return lit.mean_form_factor() * emitters_[lit.emitter].emission.mean(); }
   /// What the first rays say.
@@ -128,7 +138,7 @@ class ShadowBatch {
     const Rgb& emission = emitters_[lit.emitter].emission;
     const double form_factor = lit.mean_form_factor(), visible = form_factor * lit.fraction.value();
     if (visible <= 0) return;
-    const Rgb arriving = medium_.is_clear() ? visible * emission : form_factor * (lit.fraction.dimmed() * emission);
+    const Rgb arriving = medium ? form_factor * (lit.fraction.dimmed() * emission) : visible * emission;
     light.irradiance += arriving;
     const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / form_factor;
     const QuarterPlane unblocked(lit.form_factor, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
@@ -147,8 +157,13 @@ class ShadowBatch {
       aim(pair.receiver, emitters_[pair.emitter], first_round + static_cast<std::uint32_t>(n % rounds), n);
     }
     if (rays_.empty()) return;
-    budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
+    find_blocked();
     for (std::size_t n = 0; n < rays_.size(); ++n) count(lit_[lit[n / rounds]].fraction, n);
+  }
+
+  void find_blocked() {
+    if constexpr (occlusion)
+      budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
   }
 
   /// Ray o goes from origin o to a point of the emitter; `round` counts the packets of one pair.
@@ -206,7 +221,7 @@ class ShadowBatch {
       (is_blocked ? fraction.any_blocked : fraction.any_visible) = true;
       if (is_blocked) continue;
       fraction.visible[o] += weight;
-      if (!medium_.is_clear()) fraction.arriving += double(weight) * medium_.transmittance(distance(rays_[packet], o));
+      if constexpr (medium) fraction.arriving += double(weight) * medium_.transmittance(distance(rays_[packet], o));
     }
   }
   double distance(const RayPacket& rays, int o) const {
@@ -246,7 +261,7 @@ class ShadowBatch {
       if (drawn.probability > 0) brings[n] = (area / (std::numbers::pi * drawn.probability)) * emitter.emission;
       if (o + 1 == RayPacket::width) hide(n / RayPacket::width, receiver);
     }
-    budget_.spend(brings.size(), [&] { scene_.visibility().occlusions(rays_, blocked_); });
+    find_blocked();
     Samples samples;
     for (std::size_t n = 0; n < brings.size(); ++n) {
       const auto packet = n / RayPacket::width, o = n % RayPacket::width;
@@ -254,7 +269,7 @@ class ShadowBatch {
       samples.count += 1;
       if (blocked_[packet] >> o & 1) continue;
       Rgb arriving = double(weights_[packet][o]) * brings[n];
-      if (!medium_.is_clear()) arriving = medium_.transmittance(distance(rays_[packet], static_cast<int>(o))) * arriving;
+      if constexpr (medium) arriving = medium_.transmittance(distance(rays_[packet], static_cast<int>(o))) * arriving;
       samples.sum += arriving;
       samples.squares += arriving.mean() * arriving.mean();
     }
@@ -276,30 +291,39 @@ class ShadowBatch {
   std::array<Float3, RayPacket::width> there_;
 };
 
-template <class Work>
-void in_batches(std::span<const Receiver> receivers, const RayBudget& budget, Work&& work) {
+/// Calls work(batch) for each batch of receivers, in parallel.
+template <bool occlusion, bool medium, class Work>
+void in_batches(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
+                std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, Work&& work) {
   const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
-    const std::size_t first = batch * receivers_per_batch;
-    work(first, std::min(receivers_per_batch, receivers.size() - first));
+    const std::size_t first = batch * receivers_per_batch, count = std::min(receivers_per_batch, receivers.size() - first);
+    work(ShadowBatch<occlusion, medium>(scene, emitters, receivers.subspan(first, count), seed, budget,
+                                        light.subspan(first, count)));
   });
+}
+
+/// Calls in_batches with these arguments, compiled for what is needed.
+template <class... Arguments>
+void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
+  if (needs.occlusion && needs.medium) return in_batches<true, true>(arguments...);
+  if (needs.occlusion) return in_batches<true, false>(arguments...);
+  if (needs.medium) return in_batches<false, true>(arguments...);
+  in_batches<false, false>(arguments...);
 }
 
 }  // namespace
 
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
-                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light) {
-  in_batches(receivers, budget, [&](std::size_t first, std::size_t count) {
-    ShadowBatch(scene, emitters, receivers.subspan(first, count), seed, budget, light.subspan(first, count)).add_all();
-  });
+                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs) {
+  in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [](auto&& batch) { batch.add_all(); });
 }
 
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
-                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light) {
-  in_batches(receivers, budget, [&](std::size_t first, std::size_t count) {
-    ShadowBatch(scene, emitters, receivers.subspan(first, count), seed, budget, light.subspan(first, count)).add_chosen(tree);
-  });
+                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light,
+                      ShadowNeeds needs) {
+  in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [&](auto&& batch) { batch.add_chosen(tree); });
 }
 
 }  // namespace alvor

@@ -29,16 +29,23 @@ struct Receiver {
   std::uint16_t hidden_origins = 0;
 };
 
+/// What light needs on its way from emitters. Where it is not needed it takes no time.
+struct ShadowNeeds {
+  bool occlusion = true;  ///< false: nothing stands between any receiver and emitter, so no rays are sent
+  bool medium = true;     ///< false: the medium is clear
+};
+
 /// Adds the light of every one of `emitters` to `light`, one entry per receiver: the exact form factor (Lambert's contour
 /// formula, mean over the four quarters of the patch) times the visible fraction. That fraction is the mean visibility of shadow
 /// rays between stratified points of patch and emitter, weighted by the kernel cos cos / r2; sixteen rays, and 48 more where they
 /// disagree on an emitter that matters. In parallel; does not depend on the number of threads.
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
-                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light);
+                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs = {});
 
 /// The same for many emitters: those that may matter to a receiver as above, the rest of the tree by sampling emitters in
 /// proportion to bounds on what they give (no bias: nothing is skipped). Requires: a tree of these emitters.
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
-                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light);
+                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light,
+                      ShadowNeeds needs = {});
 
 }  // namespace alvor

@@ -14,34 +14,22 @@ constexpr std::size_t many_units = 400;      // of one for light that goes round
 constexpr std::size_t sweeps_looked_at = 4;  // to see whether it does
 constexpr double slow = 0.004;               // of the squared residual: more is left after these, half in each
 
-Gathering::Radiosity padded(const Rgb& a) { return {a.r, a.g, a.b, 0}; }
-
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
   return {band(a.r, b.r), band(a.g, b.g), band(a.b, b.b)};
-}
-
-/// Four lanes at a time: one load and one addition a hit.
-Rgb sum_of(std::span<const Gathering::Radiosity> radiosity, const std::uint32_t* leaf, std::size_t count) {
-  double sum[4] = {};
-  for (std::size_t h = 0; h < count; ++h) {
-    const Gathering::Radiosity& hit = radiosity[leaf[h]];
-    const double lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
-    for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
-  }
-  return {sum[0], sum[1], sum[2]};
 }
 
 }  // namespace
 
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
                      std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
-                     std::vector<PatchId> ids)
+                     std::vector<PatchId> ids, GatheringNeeds needs)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
       hit_leaf_(std::move(hit_leaf)),
-      leaving_(leaf_count),
+      is_accelerated_(needs.acceleration),
+      leaving_(leaf_count, needs.three_bands),
       irradiance_(std::move(irradiance)),
       residual_(patches.size()),
       ids_(std::move(ids)) {
@@ -52,11 +40,12 @@ Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std
   find_own_power();
   ambient_gain_ = ambient_gain(patches_);
   amplification_ = alvor::amplification(patches_, reflectance_seen());
-  leaving_ = radiosity();
+  spread([this](std::size_t p, std::uint32_t place) { return own_radiosity_[place] + patches_[p].reflectance * irradiance_[p]; });
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
   find_unshot();
   squares_before_ = product(residual_, residual_);
+  if (!is_accelerated_) return;
   if (CoarseUnits units = ancestors(ids_, few_units); units.count > 1 && units.count <= few_units) coarsen(std::move(units));
 }
 
@@ -79,32 +68,19 @@ void Gathering::watch_decrease() {
   is_finest_ = true;
 }
 
-template <class Leaving>
-void Gathering::spread(std::span<Radiosity> by_leaf, Leaving&& leaving) const {
+template <class Light>
+void Gathering::spread(Light&& light) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      by_leaf[leaf_of_place_[k]] = padded(leaving(p, k));
+      leaving_.set(leaf_of_place_[k], light(p, k));
   });
-}
-
-std::vector<Gathering::Radiosity> Gathering::radiosity() const {
-  std::vector<Radiosity> by_leaf(leaving_.size());
-  spread(by_leaf, [this](std::size_t p, std::uint32_t place) {
-    return own_radiosity_[place] + patches_[p].reflectance * (irradiance_[p] + residual_[p]);
-  });
-  return by_leaf;
 }
 
 Rgb Gathering::row_times_radiosity(std::size_t p) const {
   const TransportRow& row = *patches_[p].row;
   if (row.rays == 0) return {};
-  if (row.hit_weight.empty()) return (1.0 / row.rays) * sum_of(leaving_, hit_leaf_[p], row.hits.size());
-  Rgb sum;
-  for (std::size_t h = 0; h < row.hits.size(); ++h) {
-    const Radiosity& hit = leaving_[hit_leaf_[p][h]];
-    sum += widen(row.hit_weight[h]) * Rgb{hit.r, hit.g, hit.b};
-  }
-  return (1.0 / row.rays) * sum;
+  const std::span leaf(hit_leaf_[p], row.hits.size());
+  return (1.0 / row.rays) * (row.hit_weight.empty() ? leaving_.sum(leaf) : leaving_.weighted_sum(leaf, row.hit_weight));
 }
 
 void Gathering::gather(std::vector<Rgb>& received) {
@@ -113,7 +89,7 @@ void Gathering::gather(std::vector<Rgb>& received) {
 
 std::vector<Rgb> Gathering::reflectance_seen() {
   std::vector<Rgb> seen(patches_.size());
-  spread(leaving_, [this](std::size_t p, std::uint32_t) { return patches_[p].reflectance; });
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance; });
   gather(seen);
   return seen;
 }
@@ -157,10 +133,23 @@ void Gathering::make_conjugate(Direction& next) const {
 
 std::size_t Gathering::sweep() {
   if (unshot_power_ == 0) return 0;
+  is_accelerated_ ? conjugate_step() : plain_step();
+  find_unshot();
+  return patches_.size();
+}
+
+/// y := F (e + rho y).
+void Gathering::plain_step() {
+  for (std::size_t p = 0; p < patches_.size(); ++p) irradiance_[p] += residual_[p];
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
+  gather(residual_);
+}
+
+void Gathering::conjugate_step() {
   watch_decrease();
   Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
   if (coarse_) coarse_->correct(residual_, next.step);
-  spread(leaving_, [&](std::size_t p, std::uint32_t) { return patches_[p].reflectance * next.step[p]; });
+  spread([&](std::size_t p, std::uint32_t) { return patches_[p].reflectance * next.step[p]; });
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
   const Direction plain = next;
@@ -170,8 +159,6 @@ std::size_t Gathering::sweep() {
   advance(taken * length, next.step, next.change);
   if (!left.is_zero()) advance(left, plain.step, plain.change);
   remember(std::move(next), taken);
-  find_unshot();
-  return patches_.size();
 }
 
 Rgb Gathering::helps(const Rgb& length, const Rgb& overlap) const {
@@ -198,7 +185,7 @@ void Gathering::remember(Direction direction, const Rgb& in_bands) {
 Rgb Gathering::mean_radiosity() const {
   Rgb power = own_power_;
   for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
-  return (1 / area_) * power;
+  return area_ > 0 ? (1 / area_) * power : Rgb{};
 }
 
 std::vector<Rgb> Gathering::irradiance() const {

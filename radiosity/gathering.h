@@ -3,6 +3,7 @@
 
 #include "radiosity/coarse_grid.h"
 #include "radiosity/exchange.h"
+#include "radiosity/light_by_leaf.h"
 #include "radiosity/shooting.h"
 
 #include <array>
@@ -13,6 +14,12 @@
 
 namespace alvor {
 
+/// What a system needs. What it does not need takes no time and no memory.
+struct GatheringNeeds {
+  bool three_bands = true;   ///< false: all bands are equal
+  bool acceleration = true;  ///< false: few plain steps do
+};
+
 /// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at
 /// all patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual
 /// (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own. One that gains nearly nothing takes a plain step.
@@ -21,12 +28,14 @@ namespace alvor {
 /// Results do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
+  /// Between no patches.
+  Gathering() = default;
   /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
   /// `own_radiosity` by place what they emit and reflect of direct light; `hit_leaf` of each patch is by hit of its row.
   /// `irradiance` by patch is where to begin. `ids` by patch; without them there is no coarse grid. Borrows all but the vectors.
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
             std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
-            std::vector<PatchId> ids = {});
+            std::vector<PatchId> ids = {}, GatheringNeeds needs = {});
 
   std::size_t sweep() override;
   double unshot_power() const override { return unshot_power_; }
@@ -37,13 +46,6 @@ class Gathering : public Exchange {
   Rgb ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
   std::size_t patch_count() const override { return patches_.size(); }
 
-  /// By leaf, for rays that hit it: own radiosity and reflected irradiance(). In double precision: where the reflectance is
-  /// 0.999999, one part in 10^7 of what goes round once is a tenth of the solution.
-  struct alignas(32) Radiosity {
-    double r = 0, g = 0, b = 0, unused = 0;
-  };
-  std::vector<Radiosity> radiosity() const;
-
  private:
   struct Direction {
     std::vector<Rgb> step, change;  // by patch: of the irradiance, and what that takes from the residual
@@ -51,6 +53,8 @@ class Gathering : public Exchange {
   };
   void gather(std::vector<Rgb>& received);
   Rgb row_times_radiosity(std::size_t patch) const;
+  void plain_step();
+  void conjugate_step();
   void make_conjugate(Direction& next) const;
   /// By band 1 where the step shortens the residual well enough, else 0.
   Rgb helps(const Rgb& length, const Rgb& overlap) const;
@@ -60,9 +64,9 @@ class Gathering : public Exchange {
   void coarsen(CoarseUnits units);
   /// Takes a finer coarse grid where the residual falls slowly.
   void watch_decrease();
-  /// Sets what leaves each leaf to leaving(patch, place). In parallel.
-  template <class Leaving>
-  void spread(std::span<Radiosity> by_leaf, Leaving&& leaving) const;
+  /// Sets what leaves each leaf to light(patch, place). In parallel.
+  template <class Light>
+  void spread(Light&& light);
   void find_own_power();
   void find_unshot();
   Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
@@ -72,7 +76,8 @@ class Gathering : public Exchange {
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const Rgb> own_radiosity_;
   std::vector<const std::uint32_t*> hit_leaf_;
-  std::vector<Radiosity> leaving_;          // by leaf: what the next gathering finds
+  bool is_accelerated_ = true;
+  LightByLeaf leaving_{0, true};            // what the next gathering finds
   std::vector<Rgb> irradiance_, residual_;  // by patch
   std::vector<Rgb> power_weight_;           // by patch: area times reflectance
   std::vector<Direction> directions_;       // the last ones, in a ring

@@ -55,7 +55,6 @@ LocalScene::LocalScene(const BaseMesh& mesh)
     for (int c = 0; c < root.corner_count; ++c) corners[c] = frame_.to_local(root.corners[c]);
     corners_.push_back(corners);
     const LocalRoot& local = roots_.emplace_back(make_local(root, corners));
-    has_twins_ |= local.twin != RootPatch::no_twin;
     has_triangles_ |= !local.is_quad;
     has_twisted_quads_ |= local.twist_u != 0 || local.twist_v != 0;
   }

@@ -38,8 +38,6 @@ class LocalScene {
     return std::span(corners_[r]).first(static_cast<std::size_t>(mesh_->roots()[r].corner_count));
   }
 
-  bool has_twins() const { return has_twins_; }
-
   /// Paths (see PatchId::finest) of the finest patches at Embree's coordinates; arbitrary where nothing was hit.
   void places_of_hits(const HitPacket& hits, std::uint32_t* path) const;
 
@@ -48,7 +46,7 @@ class LocalScene {
   LocalFrame frame_;
   Visibility visibility_;
   std::vector<LocalRoot> roots_;
-  bool has_twisted_quads_ = false, has_triangles_ = false, has_twins_ = false;
+  bool has_twisted_quads_ = false, has_triangles_ = false;
   std::vector<std::array<Vec3, 4>> corners_;
 };
 

@@ -21,6 +21,8 @@ constexpr double noise_of_origins = 1.7;       // of their variance, and what it
 constexpr double misfit_at_centre = 0.25;      // of the squared misfit in a window, that its fit has in the middle
 constexpr double contact_error = 0.1;          // of a patch's irradiance: how much it varies where a solid's outline crosses it
 
+const FieldFit no_field{};
+
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
 double squared(double x) { return x * x; }
@@ -54,15 +56,15 @@ std::vector<double> interpolation_errors(const Field& f, std::span<const LeafSlo
 }  // namespace
 
 /// By leaf: emitted, and reflected of what arrives, as it is shown.
-std::vector<Rgb> SolveState::radiosity() const {
-  std::vector<Rgb> radiosity(leaf_forest_.node_count());
+LightByLeaf SolveState::radiosity() const {
+  LightByLeaf radiosity(leaf_forest_.node_count(), plan_.needs(Feature::three_bands));
   for (std::size_t p = 0; p < patches_.size(); ++p)
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      radiosity[patch_leaves_[k]] = own_radiosity_[k] + patches_[p].reflectance * row_irradiance_[patch_row_[p]];
+      radiosity.set(patch_leaves_[k], own_radiosity_[k] + patches_[p].reflectance * row_irradiance_[patch_row_[p]]);
   return radiosity;
 }
 
-RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity) const {
+RowSamples SolveState::samples_of(NodeIndex node, const LightByLeaf& radiosity) const {
   const TransportRow& row = rows_[node];
   RowSamples quarters;
   if (row.origin_hits.empty()) {
@@ -74,10 +76,10 @@ RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity
     if (row.origin_hits[o] == TransportRow::not_sampled) continue;
     QuarterSample& quarter = quarters[o % origins_per_patch / 4];
     quarter.rays += rays_per_origin;
-    for (const std::size_t end = hit + row.origin_hits[o]; hit < end; ++hit) {
-      const Rgb& leaving = radiosity[hit_leaves_[node][hit]];
-      quarter.irradiance += row.hit_weight.empty() ? leaving : widen(row.hit_weight[hit]) * leaving;
-    }
+    const std::span found = std::span(hit_leaves_[node]).subspan(hit, row.origin_hits[o]);
+    quarter.irradiance +=
+        row.hit_weight.empty() ? radiosity.sum(found) : radiosity.weighted_sum(found, std::span(row.hit_weight).subspan(hit));
+    hit += found.size();
   }
   for (QuarterSample& quarter : quarters)
     if (quarter.rays > 0) quarter.irradiance *= 1 / quarter.rays;
@@ -85,6 +87,7 @@ RowSamples SolveState::samples_of(NodeIndex node, std::span<const Rgb> radiosity
 }
 
 void SolveState::show_smoothly() {
+  if (!has_rows()) return;
   show();
   const auto row_neighbours = row_neighbours_.of(patch_row_);
   const auto leaving = radiosity();
@@ -95,6 +98,7 @@ void SolveState::show_smoothly() {
 }
 
 void SolveState::show_what_came_since() {
+  if (!has_rows()) return;
   const auto irradiance = exchange_->irradiance();
   for (std::size_t p = 0; p < patch_row_.size(); ++p) {
     const NodeIndex row = patch_row_[p];
@@ -111,6 +115,7 @@ bool SolveState::may_split(Candidate::Kind kind, NodeIndex patch) const {
 
 void SolveState::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
                                 double rays) {
+  if (!plan_.needs(Feature::refinement)) return;
   for (std::size_t n = 0; n < patches.size(); ++n)
     if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
 }
@@ -120,13 +125,13 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
   std::vector<double> errors(patches_.size());
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const NodeIndex row = patch_row_[p];
-    const FieldFit& fit = row_fit_[row];
+    const FieldFit& fit = has_rows() ? row_fit_[row] : no_field;
     const double area = patches_[p].area, noise = area * fit.variance;
     error.misfit += area * fit.squared_misfit;
     errors[p] = area * misfit_at_centre * fit.window_misfit;
     if (rows_[row].crosses_contact()) {
       const Rgb direct = direct_[patch_leaves_[patches_[p].first_leaf]].irradiance;
-      const double by_contact = area * squared(contact_error * (row_irradiance_[row] + direct).mean());
+      const double by_contact = area * squared(contact_error * ((has_rows() ? row_irradiance_[row] : Rgb{}) + direct).mean());
       errors[p] += by_contact;
       error.misfit += by_contact;
     }
@@ -141,15 +146,14 @@ void SolveState::estimate_rows(ErrorEstimate& error) {
 /// Mean square of what arrives at the origins of a leaf beyond its slope and the noise of their shadow rays.
 double SolveState::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
   const PatchShape shape = leaf_forest_.shape(leaf);
-  const FieldFit& fit = row_fit_[row_of(leaf_forest_.id(leaf))];
   const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
   double squares = 0;
   for (int k = 0; k < 4; ++k) {
     const PatchShape quarter = shape.child(k);
-    const double indirect = fit.at(centre_of(mesh_, quarter)).mean();
+    const double by_rows = indirect(leaf, centre_of(mesh_, quarter)).mean();
     for (int o = 0; o < 4; ++o) {
       const Vec3 offset = centre_of(mesh_, quarter.child(o)) - leaf_centre_[leaf];
-      squares += squared(direct_[leaf].at_origin[4 * k + o] + indirect - irradiance.mean() - dot(steepest, offset));
+      squares += squared(direct_[leaf].at_origin[4 * k + o] + by_rows - irradiance.mean() - dot(steepest, offset));
     }
   }
   return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct_[leaf].origin_variance);
@@ -194,7 +198,7 @@ ErrorEstimate SolveState::estimate() {
   if (power <= 0) return {};
   double area = 0;
   for (std::size_t p = 0; p < patches_.size(); ++p)
-    if (!patches_[p].row->is_hidden()) area += patches_[p].area;
+    if (!patches_[p].row->is_hidden() || !may_be_lit(patch_row_[p])) area += patches_[p].area;
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;

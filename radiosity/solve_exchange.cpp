@@ -17,11 +17,16 @@ void SolveState::find_hit_leaves(NodeIndex row) {
     found.clear();
     for (const PatchId hit : hits) found.push_back(hit.root_face());
   }
+  if (!plan_.needs(Feature::refinement)) return;
   for (std::size_t h = 0; h < hits.size(); ++h) found[h] = leaf_forest_.leaf_at(hits[h], found[h]);
 }
 
 void SolveState::begin_exchange() {
   list_patches();
+  if (!has_rows()) {
+    exchange_ = std::make_unique<Gathering>();
+    return;
+  }
   tbb::parallel_for(std::size_t{0}, patch_row_.size(), [this](std::size_t p) { find_hit_leaves(patch_row_[p]); });
   if (options_.strategy == Strategy::automatic) exchange_ = begin_gathering();
   else exchange_ = std::make_unique<ShotExchange>(begin_shooting(), options_.strategy);
@@ -56,7 +61,8 @@ std::unique_ptr<Exchange> SolveState::begin_gathering() {
     irradiance.push_back(row_irradiance_[row]);
   }
   return std::make_unique<Gathering>(patches_, patch_leaves_, leaf_forest_.node_count(), own_radiosity_, std::move(hit_leaf),
-                                     std::move(irradiance), std::move(ids));
+                                     std::move(irradiance), std::move(ids),
+                                     GatheringNeeds{plan_.needs(Feature::three_bands), plan_.needs(Feature::acceleration)});
 }
 
 Shooting SolveState::begin_shooting() {

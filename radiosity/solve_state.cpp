@@ -11,7 +11,6 @@ namespace {
 constexpr double start_edge = 1.0 / 6;       // of the extent: no patch of the first mesh is longer
 constexpr double start_area = 1e-3;          // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
 constexpr double small_area = 2e-5;          // of the scene's: roots below begin with small rows
-constexpr double most_area_emits = 0.5;      // beyond this share rows find the emitters as well as shadow rays do
 constexpr std::size_t most_one_by_one = 12;  // emitters
 constexpr std::size_t parts_shown = 8;       // of a scene with more
 constexpr double marked_share = 0.9;         // of the squared error, per pass
@@ -26,8 +25,9 @@ double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
 
 }  // namespace
 
-SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget)
+SolveState::SolveState(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, RayBudget& budget)
     : mesh_(mesh),
+      plan_(plan),
       options_(options),
       budget_(budget),
       scene_(mesh),
@@ -42,7 +42,7 @@ SolveState::SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBud
 
 // Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
 void SolveState::choose_emitters() {
-  double emitting = 0, brightest = 0;
+  double brightest = 0;
   for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) brightest = std::max(brightest, mesh_.material_of(r).emission.max());
   if (brightest > 0) emission_unit_ = brightest;
   for (std::uint32_t r = 0; r < mesh_.roots().size(); ++r) {
@@ -50,22 +50,21 @@ void SolveState::choose_emitters() {
     area_ += mesh_.roots()[r].area;
     if (emission.is_zero()) continue;
     emitters_.push_back({r, emission, emission.sum() * mesh_.roots()[r].area});
-    emitting += mesh_.roots()[r].area;
     emitted_power_ += emitters_.back().power;
   }
-  emission_by_rows_ = emitting > most_area_emits * area_;
-  if (emission_by_rows_) emitters_.clear();
+  if (plan_.emission_by_rows()) emitters_.clear();
   std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
   waiting_power_ = emitted_power_;
   if (emitters_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(scene_, emitters_);
 }
 
-Rgb SolveState::row_emission(std::uint32_t root) const { return emission_by_rows_ ? emission_of(root) : Rgb{}; }
+Rgb SolveState::row_emission(std::uint32_t root) const { return plan_.emission_by_rows() ? emission_of(root) : Rgb{}; }
 Rgb SolveState::emission_of(std::uint32_t root) const { return (1 / emission_unit_) * mesh_.material_of(root).emission; }
 
 void SolveState::split_to_start() {
   const auto is_coarse = [&](NodeIndex node) {
     const PatchId id = row_forest_.id(node);
+    if (!may_be_lit(node)) return false;
     const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area_;
     return shows_no_curvature || longest_edge(mesh_, row_forest_.shape(node)) > start_edge * mesh_.extent();
   };
@@ -80,9 +79,11 @@ void SolveState::fit_to_nodes() {
   const std::size_t rows = row_forest_.node_count(), leaves = leaf_forest_.node_count();
   rows_.resize(rows);
   row_is_traced_.resize(rows);
-  row_irradiance_.resize(rows);
-  row_fit_.resize(rows);
-  hit_leaves_.resize(rows);
+  if (has_rows()) {
+    row_irradiance_.resize(rows);
+    row_fit_.resize(rows);
+    hit_leaves_.resize(rows);
+  }
   direct_.resize(leaves);
   direct_is_known_.resize(leaves);
   shot_.resize(leaves);
@@ -98,7 +99,7 @@ void SolveState::fit_to_nodes() {
 void SolveState::trace_new_rows() {
   for (auto traced = trace_untraced(); !traced.empty(); traced = trace_untraced())
     for (const NodeIndex row : traced) heed_hidden_origins(row);
-  if (options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
+  if (has_rows() && options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
 }
 
 std::vector<NodeIndex> SolveState::trace_untraced() {
@@ -107,19 +108,26 @@ std::vector<NodeIndex> SolveState::trace_untraced() {
   std::vector<PatchId> patches;
   std::vector<RowSize> sizes;
   for (const NodeIndex row : row_forest_.leaves()) {
-    if (row_is_traced_[row]) continue;
+    if (row_is_traced_[row] || !may_be_lit(row)) continue;
     nodes.push_back(row);
     shapes.push_back(row_forest_.shape(row));
     patches.push_back(row_forest_.id(row));
-    const bool is_small = patches.back().level() == 0 && mesh_.roots()[shapes.back().root].area < small_area * area_;
-    sizes.push_back(is_small ? RowSize::small : RowSize::whole);
+    sizes.push_back(size_of(patches.back()));
   }
-  auto rows = trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_);
+  const bool nothing_to_find = !has_rows() && !plan_.backs_are_seen();
+  auto rows = nothing_to_find ? std::vector(nodes.size(), TransportRow{.rays = rays_per_row})
+                              : trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_, row_needs());
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     rows_[nodes[n]] = std::move(rows[n]);
     row_is_traced_[nodes[n]] = true;
   }
   return nodes;
+}
+
+RowSize SolveState::size_of(PatchId patch) const {
+  if (!has_rows()) return RowSize::hidden_only;
+  const bool is_small = patch.level() == 0 && mesh_.roots()[patch.root_face()].area < small_area * area_;
+  return is_small ? RowSize::small : RowSize::whole;
 }
 
 // Which points are hidden under a solid is known from rows only: along contacts leaves must not be finer than rows, and direct
@@ -135,7 +143,7 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
 std::vector<Receiver> SolveState::unlit_receivers(std::vector<NodeIndex>& nodes) const {
   std::vector<Receiver> receivers;
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
-    if (direct_is_known_[leaf]) continue;
+    if (direct_is_known_[leaf] || !plan_.may_be_lit(leaf_forest_.id(leaf).root_face())) continue;
     const NodeIndex row = row_of(leaf_forest_.id(leaf));
     const bool same = row_forest_.id(row) == leaf_forest_.id(leaf);
     const auto none = static_cast<std::uint16_t>(rows_[row].is_hidden() ? 0xffff : 0);
@@ -150,6 +158,7 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
   std::vector<NodeIndex> nodes;
   const std::vector<Receiver> receivers = unlit_receivers(nodes);
   std::vector<DirectLight> light(nodes.size());
+  const ShadowNeeds needs{plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)};
   const auto show = [&](std::size_t first, std::size_t count, double power) {
     for (std::size_t n = first; n < first + count; ++n) direct_[nodes[n]] = light[n];
     waiting_power_ = std::max(0.0, waiting_power_ - power);
@@ -160,12 +169,12 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     for (std::size_t first = 0; first < receivers.size(); first += step) {
       const std::size_t count = std::min(step, receivers.size() - first);
       add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
-                       std::span(light).subspan(first, count));
+                       std::span(light).subspan(first, count), needs);
       show(first, count, emitted_power_ * static_cast<double>(count) / static_cast<double>(receivers.size()));
     }
   } else {
     for (const Emitter& emitter : emitters_) {
-      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light);
+      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light, needs);
       show(0, nodes.size(), emitter.power);
     }
   }
@@ -247,12 +256,13 @@ bool SolveState::split_row(NodeIndex row) {
   for (const NodeIndex parent : split) {
     split_leaf(leaf_node_of_row(parent));
     for (int k = 0; k < 4; ++k) {
+      if (!has_rows()) break;
       const NodeIndex child = row_forest_.child(parent, k);
       row_fit_[child] = row_fit_[parent];
       row_irradiance_[child] = row_fit_[parent].at(row_centre_[child]);
     }
     rows_[parent] = {};
-    hit_leaves_[parent] = {};
+    if (has_rows()) hit_leaves_[parent] = {};
   }
   return done;
 }
@@ -265,7 +275,7 @@ bool SolveState::add_rays(std::span<const NodeIndex> rows) {
     patches.push_back(row_forest_.id(row));
   }
   const auto more = trace_rows(scene_, directions_, shapes, patches, std::vector(rows.size(), RowSize::whole),
-                               options_.seed + ++rounds_of_rays_, budget_);
+                               options_.seed + ++rounds_of_rays_, budget_, row_needs());
   if (budget_.is_out()) return false;
   for (std::size_t n = 0; n < rows.size(); ++n) rows_[rows[n]].append(more[n]);
   return !rows.empty();

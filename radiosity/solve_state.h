@@ -6,6 +6,7 @@
 #include "radiosity/error_estimate.h"
 #include "radiosity/exchange.h"
 #include "radiosity/irradiance_field.h"
+#include "radiosity/light_by_leaf.h"
 #include "radiosity/marking.h"
 #include "radiosity/shooting.h"
 #include "radiosity/solver.h"
@@ -23,7 +24,9 @@ namespace alvor {
 /// sweeps of the exchange, refine.
 class SolveState {
  public:
-  SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget);
+  SolveState(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, RayBudget& budget);
+  SolveState(const BaseMesh& mesh, const SolveOptions& options, RayBudget& budget)
+      : SolveState(mesh, Plan(mesh, options), options, budget) {}
 
   const std::vector<Emitter>& emitters() const { return emitters_; }
   double emitted_power() const { return emitted_power_; }
@@ -79,6 +82,7 @@ class SolveState {
   bool split_row(NodeIndex row);
   void follow_contact(NodeIndex split_leaf);
   std::vector<NodeIndex> trace_untraced();
+  RowSize size_of(PatchId patch) const;
   void make_rows_exact();
   void heed_hidden_origins(NodeIndex row);
   void inherit(std::span<const NodeIndex> split);
@@ -90,16 +94,22 @@ class SolveState {
   bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
-  RowSamples samples_of(NodeIndex row, std::span<const Rgb> radiosity) const;
-  std::vector<Rgb> radiosity() const;
+  RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
+  LightByLeaf radiosity() const;
+  /// Otherwise rows are there to tell what is hidden, and no light goes along them.
+  bool has_rows() const { return plan_.needs(Feature::indirect_rows); }
+  RowNeeds row_needs() const { return {plan_.needs(Feature::back_sides), plan_.needs(Feature::refinement)}; }
+  bool may_be_lit(NodeIndex row) const { return plan_.may_be_lit(row_forest_.id(row).root_face()); }
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   void estimate_rows(ErrorEstimate& error);
   double estimate_leaves(ErrorEstimate& error);
   double squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const;
-  Rgb indirect(NodeIndex leaf) const { return row_fit_[row_of(leaf_forest_.id(leaf))].at(leaf_centre_[leaf]); }
+  Rgb indirect(NodeIndex leaf) const { return indirect(leaf, leaf_centre_[leaf]); }
+  Rgb indirect(NodeIndex leaf, Vec3 at) const { return has_rows() ? row_fit_[row_of(leaf_forest_.id(leaf))].at(at) : Rgb{}; }
 
   const BaseMesh& mesh_;
+  Plan plan_;
   SolveOptions options_;
   RayBudget& budget_;
   LocalScene scene_;
@@ -109,10 +119,9 @@ class SolveState {
   NeighbourTable row_neighbours_{row_forest_}, leaf_neighbours_{leaf_forest_};
   std::vector<Emitter> emitters_;
   std::unique_ptr<LightTree> light_tree_;  ///< where there are many
-  bool emission_by_rows_ = false;
-  std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
-  double area_ = 0;                   ///< of all roots, m2
-  double emission_unit_ = 1;          ///< the brightest emission, W/m2
+  std::uint64_t rounds_of_rays_ = 0;       ///< each adds independent rays
+  double area_ = 0;                        ///< of all roots, m2
+  double emission_unit_ = 1;               ///< the brightest emission, W/m2
   double emitted_power_ = 0;
   double waiting_power_ = 0;  ///< of the emitters whose light was not added yet
 

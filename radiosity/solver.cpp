@@ -49,21 +49,33 @@ class SolveClock {
   Clock::duration paused_{};
 };
 
+/// One step: every face, and no light on any.
+SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
+  std::vector<LeafValue> values;
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) values.push_back({PatchId::root(root), {}});
+  Step step;
+  step.leaves = values.size();
+  step.unshot_fraction = step.estimated_error = 0;
+  log.publish(values, step);
+  return {.reason = StopReason::dark, .cpu_s = cpu.seconds()};
+}
+
+/// Of a scene with light.
 class Run {
  public:
-  Run(const BaseMesh& mesh, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log, std::stop_token stop)
-      : options_(options),
+  Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
+      std::stop_token stop)
+      : plan_(plan),
+        options_(options),
         log_(log),
         stop_(std::move(stop)),
         cpu_(cpu),
         budget_([this] { return must_stop(); }),
-        state_(mesh, options, budget_) {}
+        state_(mesh, plan, options, budget_) {}
 
   SolveOutcome run() {
-    const bool is_lit = state_.emitted_power() > 0;
-    if (!is_lit) error_ = {};
     publish();
-    const StopReason reason = is_lit ? pass_until_done() : StopReason::dark;
+    const StopReason reason = pass_until_done();
     const double cpu = cpu_.seconds();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, balance_};
   }
@@ -143,7 +155,7 @@ class Run {
     step.unshot_fraction = state_.unshot_fraction();
     step.estimated_error = error_.total();
     step.displayed_error = displayed_error * std::min(1.0, error_.total());
-    if (shows_ambient(options_.strategy)) step.ambient_irradiance = state_.ambient_irradiance();
+    if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
@@ -161,6 +173,7 @@ class Run {
     return state_.leaf_count() + 3 > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
   }
 
+  const Plan& plan_;
   SolveOptions options_;
   SolutionLog& log_;
   std::stop_token stop_;
@@ -190,14 +203,20 @@ std::string_view text(StopReason reason) {
   return "unknown";
 }
 
-SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
+SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                              std::stop_token stop) {
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   tbb::task_arena arena(threads);
   const CpuClock cpu(arena);
   return arena.execute([&] {
     const CloseAtEnd close{log};
-    return Run(mesh, options, cpu, log, std::move(stop)).run();
+    if (!plan.has_light()) return show_darkness(mesh, cpu, log);
+    return Run(mesh, plan, options, cpu, log, std::move(stop)).run();
   });
+}
+
+SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
+  return solve_as_planned(mesh, Plan(mesh, options), options, log, std::move(stop));
 }
 
 }  // namespace alvor

@@ -2,7 +2,9 @@
 // The solve: rows, shots and splits until the stopping rule says enough.
 
 #include "meshing/base_mesh.h"
+#include "radiosity/plan.h"
 #include "radiosity/strategies.h"
+#include "solution/feature.h"
 #include "solution/solution_log.h"
 
 #include <cstdint>
@@ -32,6 +34,7 @@ struct SolveOptions {
   Strategy strategy = Strategy::automatic;
   FormFactorMethod form_factors = FormFactorMethod::automatic;
   double step_pause_s = 0;  ///< waits this long after each published step, for people who watch; not counted as solving time
+  FeatureSet forced_on;     ///< kept on though the plan would switch them off: for tests and measurements
 };
 
 /// `stalled`: light went round so slowly, or rounding so far, that what is left unshot exceeds the tolerance; the estimated error
@@ -61,7 +64,10 @@ struct SolveOutcome {
 
 /// Solves on the calling thread and its worker threads; publishes every step to `log` and closes it. Step 1 is published before
 /// any ray is traced. A stop request is obeyed within one batch of rays or shots, and leaves a usable solution in the log.
-/// Requires: !mesh.roots().empty(), log.head() == 0.
+/// Requires: !mesh.roots().empty(), log.head() == 0; the plan is of this mesh and these options.
+SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                              std::stop_token stop);
+/// The same, with its own plan.
 SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop);
 
 }  // namespace alvor

@@ -51,6 +51,7 @@ void start_at(RayPacket& packet, float x, float y, float z) {
 enum class Outcome { stored, escaped, black_back };
 
 /// Traces one row after the other.
+template <bool back_sides, bool places>
 class RowTracer {
  public:
   RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget)
@@ -62,6 +63,10 @@ class RowTracer {
     set_ = &directions_[random.next_below(DirectionSets::set_count)];
     const TurnedFrame frame(scene_.root(shape.root), 2 * std::numbers::pi * random.next());
     choose_origins(size, random);
+    if (size == RowSize::hidden_only && !any_back(points, frame)) {
+      row.rays = rays_per_row;
+      return;
+    }
     for (int n = 0; n < count_; ++n) {
       const int o = origin_[n];
       start_at(packets_[n], points.x[o], points.y[o], points.z[o]);
@@ -69,6 +74,7 @@ class RowTracer {
     }
     budget_.spend(static_cast<std::uint64_t>(count_) * rays_per_origin,
                   [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size())); });
+    if (size == RowSize::hidden_only) return store_hidden(row);
     retrace_slipped_rays(scene_.root(shape.root).normal);
     store(row);
   }
@@ -76,17 +82,51 @@ class RowTracer {
  private:
   std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
 
+  /// Whether one ray of each origin, each in another direction of the hemisphere, meets a back.
+  bool any_back(const PatchPoints& points, const TurnedFrame& frame) {
+    RayPacket& some = packets_[0];
+    for (int o = 0; o < origins_per_patch; ++o) {
+      start_at(packets_[1], points.x[o], points.y[o], points.z[o]);
+      aim(packets_[1], *set_, o, frame);
+      copy_ray(packets_[1], some, o);
+    }
+    budget_.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&some, 1}, {hits_.data(), 1}); });
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcome(some, hits_[0], lane) == Outcome::black_back) return true;
+    return false;
+  }
+  static void copy_ray(const RayPacket& from, RayPacket& to, int lane) {
+    to.origin_x[lane] = from.origin_x[lane], to.direction_x[lane] = from.direction_x[lane];
+    to.origin_y[lane] = from.origin_y[lane], to.direction_y[lane] = from.direction_y[lane];
+    to.origin_z[lane] = from.origin_z[lane], to.direction_z[lane] = from.direction_z[lane];
+    to.t_min[lane] = from.t_min[lane], to.t_max[lane] = from.t_max[lane];
+  }
+
+  void store_hidden(TransportRow& row) const {
+    for (std::size_t o = 0; o < origins_per_patch; ++o) {
+      if (is_hidden(o)) row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+      else row.rays += rays_per_origin;
+    }
+  }
+  bool is_hidden(std::size_t p) const {
+    int backs = 0;
+    for (int lane = 0; lane < RayPacket::width; ++lane) backs += outcome(packets_[p], hits_[p], lane) == Outcome::black_back;
+    return 2 * backs > RayPacket::width;
+  }
+
   /// All, or one a quarter so that their mean is the middle.
   void choose_origins(RowSize size, RandomStream& random) {
-    count_ = size == RowSize::whole ? origins_per_patch : 4;
+    count_ = size == RowSize::small ? 4 : origins_per_patch;
     const int turn = static_cast<int>(random.next_below(4));
-    for (int n = 0; n < count_; ++n) origin_[n] = size == RowSize::whole ? n : 4 * n + ((3 - n) ^ turn);
+    for (int n = 0; n < count_; ++n) origin_[n] = size == RowSize::small ? 4 * n + ((3 - n) ^ turn) : n;
   }
 
   Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {
     if (hit.root[lane] == HitPacket::nothing) return Outcome::escaped;
-    return meets_front(packet, hit, lane) || scene_.root(hit.root[lane]).twin != RootPatch::no_twin ? Outcome::stored
-                                                                                                    : Outcome::black_back;
+    if (meets_front(packet, hit, lane)) return Outcome::stored;
+    if constexpr (back_sides)
+      if (scene_.root(hit.root[lane]).twin != RootPatch::no_twin) return Outcome::stored;
+    return Outcome::black_back;
   }
   bool meets_front(const RayPacket& packet, const HitPacket& hit, int lane) const {
     const Float3& n = scene_.root(hit.root[lane]).normal;
@@ -146,23 +186,27 @@ class RowTracer {
       backs += outcomes[lane] == Outcome::black_back;
     }
     if (2 * backs > RayPacket::width) return false;
-    const HitPacket hit = turned_to_front(p);
-    alignas(64) std::uint32_t path[RayPacket::width];
-    scene_.places_of_hits(hit, path);
-    for (int lane = 0; lane < RayPacket::width; ++lane)
-      if (outcomes[lane] == Outcome::stored) row.hits.push_back(PatchId::finest(hit.root[lane], path[lane]));
+    if constexpr (back_sides) store_hits(turned_to_front(p), outcomes, row);
+    else store_hits(hits_[p], outcomes, row);
     if (medium_.is_clear() && !directions_.has_weights()) return true;
     const float* weight = &set_->weight[p * rays_per_origin];
     for (int lane = 0; lane < RayPacket::width; ++lane)
       if (outcomes[lane] == Outcome::stored)
-        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hit.t[lane] * scene_.frame().metres_per_unit)));
+        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hits_[p].t[lane] * scene_.frame().metres_per_unit)));
     return true;
+  }
+
+  void store_hits(const HitPacket& hit, const Outcome* outcomes, TransportRow& row) const {
+    alignas(64) std::uint32_t path[RayPacket::width];
+    if constexpr (places) scene_.places_of_hits(hit, path);
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcomes[lane] == Outcome::stored)
+        row.hits.push_back(places ? PatchId::finest(hit.root[lane], path[lane]) : PatchId::root(hit.root[lane]));
   }
 
   /// Hits from behind as hits of the twin, where there is one.
   HitPacket turned_to_front(std::size_t p) const {
     HitPacket hit = hits_[p];
-    if (!scene_.has_twins()) return hit;
     for (int lane = 0; lane < RayPacket::width; ++lane) {
       if (hit.root[lane] == HitPacket::nothing || meets_front(packets_[p], hits_[p], lane)) continue;
       const std::uint32_t twin = scene_.root(hit.root[lane]).twin;
@@ -213,14 +257,18 @@ void TransportRow::append(const TransportRow& more) {
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
-                                     RayBudget& budget) {
-  std::vector<TransportRow> rows(patches.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
-    RowTracer tracer(scene, directions, seed, budget);
-    for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
-      tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
-  });
-  return rows;
+                                     RayBudget& budget, RowNeeds needs) {
+  const auto trace = [&]<bool back_sides, bool places>() {
+    std::vector<TransportRow> rows(patches.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
+      RowTracer<back_sides, places> tracer(scene, directions, seed, budget);
+      for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
+        tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
+    });
+    return rows;
+  };
+  if (needs.back_sides) return needs.places ? trace.template operator()<true, true>() : trace.template operator()<true, false>();
+  return needs.places ? trace.template operator()<false, true>() : trace.template operator()<false, false>();
 }
 
 }  // namespace alvor

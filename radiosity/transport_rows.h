@@ -39,7 +39,15 @@ struct TransportRow {
 };
 
 /// How many rays a row begins with: 16 from each of 16 origins, or from one origin a quarter, for patches that matter little.
-enum class RowSize : std::uint8_t { whole, small };
+/// `hidden_only` stores no hits: it looks with one ray an origin, and where any meets a back as a whole row does, for what is
+/// hidden.
+enum class RowSize : std::uint8_t { whole, small, hidden_only };
+
+/// What rows have to find out. What they have not takes no time.
+struct RowNeeds {
+  bool back_sides = true;  ///< false: no face has a twin
+  bool places = true;      ///< where on a face a hit is; false: patches are never split, and each hit is the id of its root
+};
 
 /// Traces one row for each patch: 256 (or 64) cosine-distributed rays from 16 (or 4) stratified origins. An origin most of whose
 /// rays meet backs is hidden (under a box, inside a solid) and is left out, so that a patch half under a box has the irradiance
@@ -47,6 +55,6 @@ enum class RowSize : std::uint8_t { whole, small };
 /// Rows come in the order of `patches` and do not depend on the number of threads. Requires: as many shapes and sizes as patches.
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
-                                     RayBudget& budget);
+                                     RayBudget& budget, RowNeeds needs = {});
 
 }  // namespace alvor

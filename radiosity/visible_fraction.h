@@ -16,6 +16,16 @@ struct VisibleFraction {
   Rgb arriving;  // of `visible`, where there is a medium
   bool any_blocked = false, any_visible = false;
 
+  /// Of an emitter that nothing hides.
+  static VisibleFraction all() {
+    VisibleFraction fraction;
+    fraction.weight.fill(1);
+    fraction.visible.fill(1);
+    fraction.any_visible = true;
+    fraction.finish();
+    return fraction;
+  }
+
   bool mixed() const { return any_blocked && any_visible; }
   double value() const { return all_ > 0 ? all_visible_ / all_ : 0; }
   /// At an origin, where enough rays tell; elsewhere as everywhere.

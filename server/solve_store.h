@@ -20,7 +20,7 @@ namespace alvor {
 struct SolveStoreOptions {
   int max_running = 4;  ///< each uses all of the machine unless its spec says less; more of them only share it
   SolveLimits limits;
-  Solver solver = solve;
+  Solver solver = solve_as_planned;
   std::shared_ptr<spdlog::logger> logger;  ///< never null
 };
 

@@ -20,7 +20,9 @@ StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const Store
 
 void StoredSolve::run(const Solver& solver, std::stop_token stop) {
   try {
-    const SolveOutcome outcome = solver(scene_->mesh, options_, log, stop);
+    const Plan plan(scene_->mesh, options_);
+    show(plan);
+    const SolveOutcome outcome = solver(scene_->mesh, plan, options_, log, stop);
     const bool cancelled = outcome.reason == StopReason::cancelled;
     end(cancelled ? v1::Solve::CANCELLED : v1::Solve::SUCCEEDED, std::string(text(outcome.reason)), outcome);
   } catch (const std::bad_alloc&) {
@@ -30,6 +32,11 @@ void StoredSolve::run(const Solver& solver, std::stop_token stop) {
   }
   // The solver has closed it before the state was final: watchers have to be woken once more.
   log.close();
+}
+
+void StoredSolve::show(const Plan& plan) {
+  std::scoped_lock hold(lock_);
+  *facts_.mutable_plan() = encode(plan.features());
 }
 
 void StoredSolve::end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome) {

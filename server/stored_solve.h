@@ -13,8 +13,8 @@
 
 namespace alvor {
 
-/// alvor::solve, or what stands in for it.
-using Solver = std::function<SolveOutcome(const BaseMesh&, const SolveOptions&, SolutionLog&, std::stop_token)>;
+/// solve_as_planned, or what stands in for it.
+using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, std::stop_token)>;
 
 /// Thread-safe.
 class StoredSolve {
@@ -35,6 +35,7 @@ class StoredSolve {
   v1::Solve describe() const;
 
  private:
+  void show(const Plan& plan);
   void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
 
   const std::shared_ptr<const StoredScene> scene_;

@@ -1,10 +1,16 @@
 // alvor explain SCENE: what the solver makes of a scene.
 
+#include "client/command/absorption_option.h"
 #include "client/command/commands.h"
 #include "client/command/failure.h"
 #include "client/command/outputs.h"
+#include "client/command/plan_text.h"
 #include "client/scene_file.h"
 #include "radiosity/form_factor_checks.h"
+#include "radiosity/plan.h"
+#include "radiosity/solver.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <iostream>
@@ -16,10 +22,21 @@ namespace {
 
 struct ExplainCommand {
   std::filesystem::path scene;
+  std::string absorption;  ///< three numbers; empty: none
+  int max_depth = SolveOptions().max_depth;
+  bool json = false;
   bool form_factors = false;
   std::size_t pairs = 50, faces = 100;
   std::uint64_t seed = 1;
 };
+
+void explain_plan(const ExplainCommand& command, const Scene& scene) {
+  const BaseMesh mesh(scene);
+  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, command.scene.string() + ": no face has any area");
+  const Plan plan(mesh, {.max_depth = command.max_depth});
+  if (command.json) std::cout << json_of(plan.features()).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  else std::cout << table_of(plan.features());
+}
 
 void explain_form_factors(const ExplainCommand& command, const Scene& scene) {
   std::cout << "law          method    checked  rms        worst\n";
@@ -34,19 +51,24 @@ void explain_form_factors(const ExplainCommand& command, const Scene& scene) {
 }
 
 void run_explain(const ExplainCommand& command) {
-  if (!command.form_factors) throw Failure(ExitStatus::usage, "nothing to explain: say --form-factors");
-  const SceneFile file = read_scene_file(command.scene);
+  SceneFile file = read_scene_file(command.scene);
   warn(file.warnings);
-  explain_form_factors(command, file.scene);
+  take_absorption(command.absorption, file.scene);
+  if (command.form_factors) explain_form_factors(command, file.scene);
+  else explain_plan(command, file.scene);
 }
 
 }  // namespace
 
 void add_explain_command(CLI::App& app) {
   const auto options = std::make_shared<ExplainCommand>();
-  CLI::App& command = *app.add_subcommand("explain", "What the solver makes of a scene");
+  CLI::App& command = *app.add_subcommand("explain", "What a solve of the scene needs, what not, and why");
   command.add_option("scene", options->scene, "A scene file")->required()->type_name("SCENE");
-  command.add_flag("--form-factors", options->form_factors, "Measure reciprocity, additivity and closure");
+  command.add_flag("--json", options->json, "Print the plan as a JSON array");
+  command.add_option("--max-depth", options->max_depth, "Levels of subdivision that a solve may use (10)")
+      ->check(CLI::Range(0, PatchId::max_level));
+  add_absorption_option(command, options->absorption);
+  command.add_flag("--form-factors", options->form_factors, "Measure reciprocity, additivity and closure instead");
   command.add_option("--pairs", options->pairs, "Pairs of faces to check, taken at random (50)");
   command.add_option("--faces", options->faces, "Faces whose row sums to check (100)");
   command.add_option("--seed", options->seed, "The same seed checks the same pairs (1)");

@@ -3,6 +3,7 @@
 #include "client/command/commands.h"
 #include "client/command/connection.h"
 #include "client/command/numbers.h"
+#include "client/command/plan_text.h"
 #include "client/command/table.h"
 #include "proto/codec.h"
 
@@ -22,6 +23,11 @@ using google::protobuf::util::TimeUtil;
 struct ListOptions {
   std::string server;
   std::string parent = "scenes/-";  ///< of solves; all scenes
+  bool json = false;
+};
+
+struct GetOptions {
+  std::string server, name;
   bool json = false;
 };
 
@@ -51,7 +57,8 @@ Json json_of(const v1::Solve& solve) {
           {"rays", step.rays},
           {"leaves", step.leaves},
           {"unshot_fraction", step.unshot_fraction},
-          {"estimated_error", step.estimated_error}};
+          {"estimated_error", step.estimated_error},
+          {"plan", json_of(decode(solve.plan()))}};
 }
 
 using Row = std::vector<std::string>;
@@ -109,6 +116,28 @@ CLI::App& add_list(CLI::App& parent, const std::shared_ptr<ListOptions>& options
   return command;
 }
 
+/// A solve with its plan.
+void print_solve(const v1::Solve& solve, bool json) {
+  if (json) {
+    std::cout << json_of(solve).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    return;
+  }
+  print_table(std::vector{solve});
+  if (solve.has_plan()) std::cout << '\n' << table_of(decode(solve.plan()));
+}
+
+void add_get(CLI::App& solves) {
+  const auto options = std::make_shared<GetOptions>();
+  CLI::App& command = *solves.add_subcommand("get", "Show one, and what its scene needs of the solver");
+  add_server_option(command, options->server);
+  command.add_option("name", options->name, "As list prints it")->required()->type_name("NAME");
+  command.add_flag("--json", options->json, "Print a JSON object");
+  command.callback([options] {
+    Connection connection(options->server);
+    print_solve(connection.client().get_solve(options->name), options->json);
+  });
+}
+
 /// `act` is called with the client and each name.
 template <class Act>
 void add_act(CLI::App& parent, const std::string& verb, const std::string& description, Act act) {
@@ -137,6 +166,7 @@ void add_solves_command(CLI::App& app) {
   CLI::App& list =
       add_list(solves, options, [](Client& client, const ListOptions& asked) { return client.list_solves(asked.parent); });
   list.add_option("scene", options->parent, "Only those of this scene")->type_name("SCENE");
+  add_get(solves);
   add_act(solves, "cancel", "Stop solves; what they found stays",
           [](Client& client, const std::string& name) { client.cancel_solve(name); });
   add_act(solves, "delete", "Delete solves that have ended",

@@ -203,6 +203,23 @@ TEST_F(Command, FormFactorMatrixHasALinePerPairThatSeesEachOther) {
   EXPECT_FALSE(std::filesystem::exists(file("F.csv.part")));
 }
 
+TEST_F(Command, WhatASceneNeedsIsExplained) {
+  const Ran ran = run("explain " + cornell_box + " --max-depth 0");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("refinement       off"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("three bands      on"), std::string::npos) << ran.out;
+}
+
+TEST_F(Command, PlansAreJsonOnDemand) {
+  const Ran ran = run("explain --json --absorption 1,1,1 " + cornell_box);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto plan = nlohmann::json::parse(ran.out);
+  const auto medium = std::ranges::find_if(plan, [](const auto& planned) { return planned.at("feature") == "medium"; });
+  ASSERT_NE(medium, plan.end());
+  EXPECT_TRUE(medium->at("on"));
+  EXPECT_NE(medium->at("reason").get<std::string>().find("1 1 1 per metre"), std::string::npos);
+}
+
 TEST_F(Command, LawsOfFormFactorsAreMeasured) {
   write("cube.obj", cube);
   const Ran ran = run("explain --form-factors cube.obj");

@@ -123,6 +123,8 @@ TEST(Solver, RoomWithoutLightIsBlackAndDone) {
   SolutionLog log;
   EXPECT_EQ(solve(mesh, {}, log, {}).reason, StopReason::dark);
   EXPECT_EQ(log.last_step().rays, 0u);
+  EXPECT_EQ(log.last_step().unshot_fraction, 0);
+  EXPECT_EQ(log.last_step().estimated_error, 0);
   for (const LeafValue& leaf : log.leaves()) EXPECT_TRUE(leaf.irradiance.is_zero());
 }
 

@@ -128,5 +128,20 @@ TEST(Api, DarkSceneIsSolvedByTheRealSolver) {
   EXPECT_EQ(watch.mirror.leaf_count(), 2u);
 }
 
+TEST(Api, SolvesTellWhatTheirSceneNeeds) {
+  TestServer server;
+  Client client(server.channel());
+  const Scene scene = squares(2);
+  v1::SolveSpec spec;
+  spec.set_max_depth(0);
+  Client::Watch watch;
+  const auto started = client.create_solve(client.create_scene(scene, "").name(), spec);
+  client.watch_solve(started.name(), watch, [](auto&) {});
+  const Plan plan(BaseMesh(scene), {.max_depth = 0});
+  const auto told = decode(client.get_solve(started.name()).plan());
+  EXPECT_TRUE(std::ranges::equal(told, plan.features()));
+  EXPECT_FALSE(plan.needs(Feature::refinement));
+}
+
 }  // namespace
 }  // namespace alvor

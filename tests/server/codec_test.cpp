@@ -138,5 +138,18 @@ TEST(TextCodec, MakesValidUtf8OfAnything) {
   EXPECT_EQ(as_utf8("\xc0\x80 \xed\xa0\x80 \xe2\x82"), "?? ??? ??");
 }
 
+TEST(PlanCodec, EveryFeatureArrivesAsItWasDecided) {
+  std::vector<PlannedFeature> plan;
+  for (const Feature feature : all_features)
+    plan.push_back({feature, plan.size() % 2 == 0, "because of " + std::string(text(feature)), "much"});
+  EXPECT_EQ(decode(encode(plan)), plan);
+}
+
+TEST(PlanCodec, FeaturesOfALaterVersionAreLeftOut) {
+  v1::Plan message;
+  message.add_features()->set_kind(static_cast<v1::PlannedFeature::Kind>(99));
+  EXPECT_TRUE(decode(message).empty());
+}
+
 }  // namespace
 }  // namespace alvor

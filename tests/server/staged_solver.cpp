@@ -3,7 +3,9 @@
 namespace alvor {
 
 Solver StagedSolver::solver() {
-  return [this](const BaseMesh&, const SolveOptions&, SolutionLog& log, std::stop_token stop) { return run(log, stop); };
+  return [this](const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, std::stop_token stop) {
+    return run(log, stop);
+  };
 }
 
 SolveOutcome StagedSolver::run(SolutionLog& log, std::stop_token stop) {
