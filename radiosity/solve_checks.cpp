@@ -2,6 +2,8 @@
 
 #include "radiosity/solve_state.h"
 
+#include <algorithm>
+
 namespace alvor {
 
 // Where every surface emitted like the brightest and reflected like the lightest, B would be this everywhere, and H no larger.
@@ -16,11 +18,11 @@ Rgb SolveState::largest_irradiance() const {
 }
 
 // What leaves a patch is lost as far as its row does not find a front. Where a solid stands on it nothing arrives, and what it
-// emits there is lost too.
+// emits there is lost too. Where there are no rows nothing tells: what did not arrive must have been lost.
 PowerBalance SolveState::balance() const {
   PowerBalance balance{.emitted = emission_unit_ * emitted_power_};
   if (!exchange_) return balance;
-  const auto irradiance = exchange_->irradiance();
+  const auto irradiance = has_rows() ? exchange_->irradiance() : std::vector<Rgb>(patches_.size());
   Rgb absorbed, lost;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const ShootingPatch& patch = patches_[p];
@@ -36,7 +38,7 @@ PowerBalance SolveState::balance() const {
     }
   }
   balance.absorbed = emission_unit_ * absorbed.sum();
-  balance.lost = emission_unit_ * lost.sum();
+  balance.lost = has_rows() ? emission_unit_ * lost.sum() : std::max(0.0, balance.emitted - balance.absorbed);
   balance.unshot = emission_unit_ * exchange_->unshot_power();
   return balance;
 }

@@ -74,8 +74,9 @@ Shooting SolveState::begin_shooting() {
     place_of[leaf] = n;
     leaves.push_back({leaf_area_[leaf], own_radiosity_[n] - shot_[leaf], shot_[leaf]});
   }
-  for (const NodeIndex row : patch_row_)
-    for (const NodeIndex leaf : hit_leaves_[row]) hit_leaf.push_back(place_of[leaf]);
+  if (has_rows())
+    for (const NodeIndex row : patch_row_)
+      for (const NodeIndex leaf : hit_leaves_[row]) hit_leaf.push_back(place_of[leaf]);
   Shooting shooting(patches_, std::move(leaves), std::move(hit_leaf));
   shooting.find_unshot();
   return shooting;
