@@ -25,6 +25,6 @@ double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, s
 }
 
 double ErrorEstimate::mesh() const { return std::hypot(interpolation, misfit); }
-double ErrorEstimate::total() const { return std::hypot(mesh(), sampling, unshot); }
+double ErrorEstimate::total() const { return std::hypot(std::hypot(mesh(), sampling), std::hypot(unshot, balance)); }
 
 }  // namespace alvor

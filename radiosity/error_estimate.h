@@ -20,6 +20,7 @@ struct ErrorEstimate {
   double misfit = 0;         ///< of what rows say by the field fitted to them
   double sampling = 0;       ///< noise of that field
   double unshot = 0;         ///< of stopping early
+  double balance = 0;        ///< of the emitted power: what is not accounted for
   double mesh() const;
   double total() const;
 };

@@ -73,7 +73,11 @@ class Server:
       if message.ended:
         return
       acknowledgement = solves.AcknowledgeFrameRequest(watch_id=message.watch_id, revision=message.to_revision, frame_count=count)
-      self.call("/alvor.v1.SolveService/AcknowledgeFrame", acknowledgement, solves.AcknowledgeFrameResponse)
+      try:
+        self.call("/alvor.v1.SolveService/AcknowledgeFrame", acknowledgement, solves.AcknowledgeFrameResponse)
+      except grpc.RpcError as error:
+        if error.code() != grpc.StatusCode.NOT_FOUND:  # the watch has just ended
+          raise
 
 
 def middle_of(patch):
