@@ -15,12 +15,20 @@ Rgb SolveState::largest_irradiance() const {
   return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
 }
 
+// Not where they were switched off: for all faces, or for emitters that no light reaches.
+bool SolveState::rows_tell_what_is_lost() const {
+  if (!has_rows()) return false;
+  for (std::uint32_t root = 0; root < mesh_.roots().size(); ++root)
+    if (!plan_.may_be_lit(root) && !mesh_.material_of(root).emission.is_zero()) return false;
+  return true;
+}
+
 // What leaves a patch is lost as far as its row does not find a front. Where a solid stands on it nothing arrives, and what it
 // emits there is lost too.
 PowerBalance SolveState::balance() const {
   PowerBalance balance{.emitted = emission_unit_ * emitted_power_};
   if (!exchange_) return balance;
-  const auto irradiance = exchange_->irradiance();
+  const auto irradiance = has_rows() ? exchange_->irradiance() : std::vector<Rgb>(patches_.size());
   Rgb absorbed, lost;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const ShootingPatch& patch = patches_[p];
@@ -36,8 +44,8 @@ PowerBalance SolveState::balance() const {
     }
   }
   balance.absorbed = emission_unit_ * absorbed.sum();
-  balance.lost = emission_unit_ * lost.sum();
   balance.unshot = emission_unit_ * exchange_->unshot_power();
+  balance.lost = rows_tell_what_is_lost() ? emission_unit_ * lost.sum() : balance.emitted - balance.absorbed - balance.unshot;
   return balance;
 }
 
