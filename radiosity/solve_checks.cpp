@@ -2,8 +2,6 @@
 
 #include "radiosity/solve_state.h"
 
-#include <algorithm>
-
 namespace alvor {
 
 // Where every surface emitted like the brightest and reflected like the lightest, B would be this everywhere, and H no larger.
@@ -15,6 +13,14 @@ Rgb SolveState::largest_irradiance() const {
     reflectance = upper(reflectance, mesh_.materials()[root.material].reflectance);
   }
   return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
+}
+
+// Not where they were switched off: for all faces, or for emitters that no light reaches.
+bool SolveState::rows_tell_what_is_lost() const {
+  if (!has_rows()) return false;
+  for (std::uint32_t root = 0; root < mesh_.roots().size(); ++root)
+    if (!plan_.may_be_lit(root) && !mesh_.material_of(root).emission.is_zero()) return false;
+  return true;
 }
 
 // What leaves a patch is lost as far as its row does not find a front. Where a solid stands on it nothing arrives, and what it
@@ -38,8 +44,8 @@ PowerBalance SolveState::balance() const {
     }
   }
   balance.absorbed = emission_unit_ * absorbed.sum();
-  balance.lost = has_rows() ? emission_unit_ * lost.sum() : std::max(0.0, balance.emitted - balance.absorbed);
   balance.unshot = emission_unit_ * exchange_->unshot_power();
+  balance.lost = rows_tell_what_is_lost() ? emission_unit_ * lost.sum() : balance.emitted - balance.absorbed - balance.unshot;
   return balance;
 }
 

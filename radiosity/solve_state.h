@@ -41,7 +41,7 @@ class SolveState {
   Exchange& exchange() { return *exchange_; }
   const Exchange& exchange() const { return *exchange_; }
   /// The system of the current rows as if nothing had been shot: all that is unshot is direct light on its receivers. Borrows
-  /// from the state, until it is refined. Requires: begin_exchange before.
+  /// from the state, until it is refined. Requires: begin_exchange before, indirect rows.
   Shooting unshot_system();
   /// Makes irradiance by patch what leaf_values() shows.
   void show(std::span<const Rgb> irradiance);
@@ -91,6 +91,7 @@ class SolveState {
   Rgb emission_of(std::uint32_t root) const;
   Rgb row_emission(std::uint32_t root) const;
   Rgb largest_irradiance() const;
+  bool rows_tell_what_is_lost() const;
   bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;

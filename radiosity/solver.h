@@ -48,7 +48,7 @@ std::string_view text(StopReason reason);
 struct PowerBalance {
   double emitted = 0;
   double absorbed = 0;  ///< by fronts
-  double lost = 0;      ///< left the scene, met black backs, or faded in the medium
+  double lost = 0;      ///< left the scene, met black backs, or faded in the medium; where no rows tell: the rest
   double unshot = 0;    ///< not distributed yet
   /// What is not accounted for, of the emitted power; negative: more came than was sent. 0 in the dark.
   double gap() const { return emitted > 0 ? (emitted - absorbed - lost - unshot) / emitted : 0; }

@@ -24,6 +24,18 @@ TEST_P(Stability, Holds) {
                                          << looked_at.limit << ' ' << measured.end;
 }
 
+/// Where nearly all is reflected all patches are too bright or too dark together.
+TEST(StabilityEstimate, KnowsTheErrorThatAllPatchesHaveInCommon) {
+  int looked_at = 0;
+  for (const Case& stiff : quick_cases()) {
+    if (!stiff.name.starts_with("cube, one face emits 1") || !stiff.condition.starts_with("rho 0.999")) continue;
+    const Measured measured = stiff.measure();
+    EXPECT_GE(measured.estimate, 0.5 * measured.error) << stiff.condition;
+    ++looked_at;
+  }
+  EXPECT_GE(looked_at, 2);
+}
+
 std::string test_name(const testing::TestParamInfo<Case>& info) {
   std::string name = std::to_string(info.index) + '_' + info.param.name + '_' + info.param.condition;
   for (char& c : name)

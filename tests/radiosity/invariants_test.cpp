@@ -157,6 +157,15 @@ TEST(Invariants, TwoSidesAreTwoFacesBackToBack) {
   EXPECT_EQ(solution_of(pavilion()).leaves, solution_of(test::with_backs_as_faces(pavilion())).leaves);
 }
 
+TEST(Invariants, WhereNothingReflectsWhatDoesNotArriveIsLost) {
+  Scene scene = pavilion();
+  for (Material& material : scene.materials) material.reflectance = {};
+  const PowerBalance balance = solution_of(scene).balance;
+  EXPECT_GT(balance.absorbed, 0.1 * balance.emitted);
+  EXPECT_GT(balance.lost, 0.1 * balance.emitted);
+  EXPECT_NEAR(balance.gap(), 0, 1e-12);
+}
+
 TEST(Invariants, EverythingPublishedIsFiniteWhateverTheEmission) {
   for (const double emission : {1e-300, 1e-30, 1e30}) {
     const Solution solution = solution_of(test::with_emission_times(test::coloured_room(), emission / 50));

@@ -88,7 +88,9 @@ Finding radiosity_is_bounded(const Subject& s) {
 Finding row_sums_are_at_most_one(const Subject& s) {
   constexpr double rounding = 1e-6;
   RayBudget budget([] { return false; });
-  SolveState state(s.mesh, s.trial.options, budget);
+  SolveOptions options = s.trial.options;
+  options.forced_on.add(Feature::indirect_rows);
+  SolveState state(s.mesh, options, budget);
   state.trace_new_rows();
   state.add_new_direct_light([] {});
   state.begin_exchange();
