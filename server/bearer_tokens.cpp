@@ -26,7 +26,8 @@ BearerTokens BearerTokens::parse(std::string_view text) {
     std::string name, hash, more;
     if (!(words >> name) || name.starts_with('#')) continue;
     if (!(words >> hash) || !is_hash(hash) || words >> more)
-      throw std::invalid_argument("line " + std::to_string(number) + ": must be a name and the SHA-256 of a token in 64 digits 0-9a-f");
+      throw std::invalid_argument("line " + std::to_string(number) +
+                                  ": must be a name and the SHA-256 of a token in 64 digits 0-9a-f");
     tokens.holder_by_hash_.emplace(hash, name);
   }
   if (tokens.holder_by_hash_.empty()) throw std::invalid_argument("holds no token");

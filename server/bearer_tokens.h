@@ -8,8 +8,8 @@
 
 namespace alvor {
 
-/// A file of lines `NAME HASH`: HASH is the SHA-256 of a token in 64 hexadecimal digits (printf %s TOKEN | sha256sum), NAME who it stands
-/// for. Empty lines and those that begin with # say nothing; a name may have several tokens.
+/// A file of lines `NAME HASH`: HASH is the SHA-256 of a token in 64 hexadecimal digits (printf %s TOKEN | sha256sum), NAME who
+/// it stands for. Empty lines and those that begin with # say nothing; a name may have several tokens.
 class BearerTokens {
  public:
   /// Throws std::invalid_argument, naming the line, if it is no such file or holds no token.

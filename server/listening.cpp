@@ -30,7 +30,8 @@ class TokenCheck final : public grpc::AuthMetadataProcessor {
     if (found == metadata.end()) return {grpc::UNAUTHENTICATED, "authorization: is missing, must be 'Bearer TOKEN'"};
     const std::string value(found->second.data(), found->second.size());
     constexpr std::string_view scheme = "Bearer ";
-    const auto holder = value.starts_with(scheme) ? tokens_.holder_of(std::string_view(value).substr(scheme.size())) : std::nullopt;
+    const auto holder =
+        value.starts_with(scheme) ? tokens_.holder_of(std::string_view(value).substr(scheme.size())) : std::nullopt;
     if (!holder) return {grpc::UNAUTHENTICATED, "authorization: is not a token that this server knows"};
     context->AddProperty("tenant", *holder);
     consumed->emplace("authorization", value);
@@ -64,7 +65,8 @@ std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& opt
   if (options.certificate.empty() != options.key.empty()) throw std::invalid_argument("--tls-cert and --tls-key go together");
   const bool has_tls = !options.certificate.empty();
   if (!has_tls && !options.client_ca.empty()) throw std::invalid_argument("--tls-client-ca needs --tls-cert and --tls-key");
-  if (!has_tls && !options.tokens.empty()) throw std::invalid_argument("--tokens needs --tls-cert and --tls-key: tokens are secrets");
+  if (!has_tls && !options.tokens.empty())
+    throw std::invalid_argument("--tokens needs --tls-cert and --tls-key: tokens are secrets");
   if (!has_tls && !options.insecure && !is_loopback(options.address))
     throw std::invalid_argument("--listen " + options.address +
                                 ": other machines could call without TLS; give --tls-cert and --tls-key, or say --insecure");

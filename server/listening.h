@@ -17,8 +17,8 @@ struct ListenOptions {
   bool insecure = false;  ///< plaintext for other machines too
 };
 
-/// Throws std::invalid_argument naming the option: a file cannot be read or makes no sense, options contradict each other, or the address is
-/// not of this machine alone and there is neither TLS nor leave to do without.
+/// Throws std::invalid_argument naming the option: a file cannot be read or makes no sense, options contradict each other, or the
+/// address is not of this machine alone and there is neither TLS nor leave to do without.
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& options);
 
 /// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a unix socket.

@@ -21,7 +21,8 @@ std::string fault_of(const ListenOptions& options) {
 TEST(Listening, KnowsWhoElseCouldCall) {
   for (const char* own : {"127.0.0.1:1", "127.9.9.9:0", "localhost:50051", "[::1]:50051", "unix:/tmp/alvor"})
     EXPECT_TRUE(is_loopback(own)) << own;
-  for (const char* open : {"0.0.0.0:1", "[::]:1", "192.168.0.7:50051", "127.example.org:1", "localhost.example.org:1", "example.org:1"})
+  for (const char* open :
+       {"0.0.0.0:1", "[::]:1", "192.168.0.7:50051", "127.example.org:1", "localhost.example.org:1", "example.org:1"})
     EXPECT_FALSE(is_loopback(open)) << open;
 }
 
@@ -43,7 +44,8 @@ TEST(BearerTokens, HashIsThatOfTheStandard) {
 }
 
 TEST(BearerTokens, KnowTheirHolders) {
-  const auto tokens = BearerTokens::parse("# who\n\nada " + sha256("one") + "\nbob " + sha256("two") + "\nada " + sha256("three") + "\n");
+  const auto tokens =
+      BearerTokens::parse("# who\n\nada " + sha256("one") + "\nbob " + sha256("two") + "\nada " + sha256("three") + "\n");
   EXPECT_EQ(tokens.holder_of("one"), "ada");
   EXPECT_EQ(tokens.holder_of("two"), "bob");
   EXPECT_EQ(tokens.holder_of("three"), "ada");
