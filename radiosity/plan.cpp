@@ -181,7 +181,7 @@ class Planner {
       case Feature::back_sides: return "a look at both sides of each hit from behind";
       case Feature::medium: return "a weight a hit, an exponential a ray";
       case Feature::refinement: return "splits, and a place of 30 bits a hit";
-      case Feature::acceleration: return "12 numbers a row and band";
+      case Feature::acceleration: return "12 numbers a row and band, and a coarse grid";
       case Feature::ambient_display: return "a sum a step";
     }
     return {};

@@ -2,6 +2,8 @@
 
 #include "radiosity/solve_state.h"
 
+#include <algorithm>
+
 namespace alvor {
 
 // Where every surface emitted like the brightest and reflected like the lightest, B would be this everywhere, and H no larger.
@@ -45,7 +47,8 @@ PowerBalance SolveState::balance() const {
   }
   balance.absorbed = emission_unit_ * absorbed.sum();
   balance.unshot = emission_unit_ * exchange_->unshot_power();
-  balance.lost = rows_tell_what_is_lost() ? emission_unit_ * lost.sum() : balance.emitted - balance.absorbed - balance.unshot;
+  const double not_seen_again = std::max(0.0, balance.emitted - balance.absorbed - balance.unshot);
+  balance.lost = rows_tell_what_is_lost() ? emission_unit_ * lost.sum() : not_seen_again;
   return balance;
 }
 

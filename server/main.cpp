@@ -1,5 +1,6 @@
 // alvord: the Alvor server.
 
+#include "server/listening.h"
 #include "server/service.h"
 
 #include <grpc/support/log.h>
@@ -14,20 +15,27 @@
 #include <csignal>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace {
 
 struct Options {
-  std::string listen = "127.0.0.1:50051";
+  alvor::ListenOptions listen;
   std::string directory;
   int max_solves = alvor::SolveStoreOptions{}.max_running;
   std::string log_level = "info";
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("--listen", options.listen, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
+  alvor::ListenOptions& listen = options.listen;
+  app.add_option("--listen", listen.address, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
+  app.add_option("--tls-cert", listen.certificate, "The server's certificate, and what it takes to trust it (PEM): TLS");
+  app.add_option("--tls-key", listen.key, "The key of --tls-cert (PEM)");
+  app.add_option("--tls-client-ca", listen.client_ca, "Clients must show a certificate signed by one of these (PEM)");
+  app.add_option("--tokens", listen.tokens, "Calls must carry a bearer token of this file: lines NAME SHA256, see the README");
+  app.add_flag("--insecure", listen.insecure, "Listen for other machines without TLS");
   app.add_option("--data", options.directory, "Directory for what is kept between runs (not used by this version)");
   app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
       ->check(CLI::Range(1, 1000))
@@ -69,14 +77,14 @@ std::string wait_for_stop(const sigset_t& signals) {
 
 // Null if it cannot listen there. Two servers must not share a port unknowingly, and a peer that vanished without a word
 // must not keep its watches for ever.
-std::unique_ptr<grpc::Server> start(alvor::Service& service, const std::string& address, int& port) {
+std::unique_ptr<grpc::Server> start(alvor::Service& service, const alvor::ListenOptions& listen, int& port) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 60'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20'000);
-  builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5'000);
+  builder.AddListeningPort(listen.address, alvor::credentials_of(listen), &port);
   service.register_with(builder);
   auto server = builder.BuildAndStart();
   return port > 0 ? std::move(server) : nullptr;
@@ -103,13 +111,13 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   int port = 0;
   const auto server = start(service, options.listen, port);
   if (!server) {
-    std::cerr << "alvord: cannot listen on " << options.listen << ": the address is in use or not of this machine\n";
+    std::cerr << "alvord: cannot listen on " << options.listen.address << ": the address is in use or not of this machine\n";
     return 1;
   }
   set_serving(*server, true);
   if (!options.directory.empty())
     logger->warn("--data {}: this version keeps scenes and solves in memory only, they end with the server", options.directory);
-  logger->info("listening on {}:{}", options.listen.substr(0, options.listen.rfind(':')), port);
+  logger->info("listening on {}:{}", options.listen.address.substr(0, options.listen.address.rfind(':')), port);
   logger->info("stopping: {}", wait_for_stop(signals));
   stop(service, *server);
   logger->info("stopped");
@@ -130,5 +138,10 @@ int main(int argc, char** argv) {
   }
   const auto logger = make_logger(options.log_level);
   quieten_grpc();
-  return serve(options, signals, logger);
+  try {
+    return serve(options, signals, logger);
+  } catch (const std::invalid_argument& fault) {
+    std::cerr << "alvord: " << fault.what() << '\n';
+    return 2;
+  }
 }

@@ -1,27 +1,46 @@
 #include "client/command/connection.h"
 
 #include "client/command/failure.h"
+#include "client/whole_file.h"
 
 namespace alvor {
 
 namespace {
 
-// Servers are named directly: a proxy meant for the web would only be in the way.
-std::shared_ptr<grpc::Channel> dial(const std::string& address) {
-  grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
+std::string read(const std::string& file) {
+  if (file.empty()) return {};
+  try {
+    return read_whole_file(file);
+  } catch (const std::exception& fault) {
+    throw Failure(ExitStatus::usage, fault.what());
+  }
 }
 
-std::shared_ptr<grpc::Channel> open_channel(const std::string& address, std::optional<InProcessServer>& local) {
-  return address.empty() ? local.emplace().channel() : dial(address);
+std::string first_line(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
+
+std::shared_ptr<grpc::ChannelCredentials> credentials_of(const ServerChoice& server) {
+  if (server.ca.empty()) return grpc::InsecureChannelCredentials();
+  const auto tls = grpc::SslCredentials({read(server.ca), read(server.key), read(server.certificate)});
+  if (server.token_file.empty()) return tls;
+  return grpc::CompositeChannelCredentials(tls, grpc::AccessTokenCredentials(first_line(read(server.token_file))));
+}
+
+// Servers are named directly: a proxy meant for the web would only be in the way.
+std::shared_ptr<grpc::Channel> dial(const ServerChoice& server) {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  return grpc::CreateCustomChannel(server.address, credentials_of(server), arguments);
+}
+
+std::shared_ptr<grpc::Channel> open_channel(const ServerChoice& server, std::optional<InProcessServer>& local) {
+  return server.is_given() ? dial(server) : local.emplace().channel();
 }
 
 }  // namespace
 
-Connection::Connection(const std::string& address) : client_(open_channel(address, local_)) {
+Connection::Connection(const ServerChoice& server) : client_(open_channel(server, local_)) {
   if (remote() && !client_.wait_until_connected(patience))
-    throw Failure(ExitStatus::unreachable, "the server at " + address + " cannot be reached");
+    throw Failure(ExitStatus::unreachable, "the server at " + server.address + " cannot be reached");
 }
 
 }  // namespace alvor

@@ -2,6 +2,7 @@
 // The server that a command talks to.
 
 #include "client/client.h"
+#include "client/command/server_option.h"
 #include "client/in_process.h"
 
 #include <chrono>
@@ -15,8 +16,9 @@ class Connection {
  public:
   static constexpr std::chrono::seconds patience{5};
 
-  /// An empty `address` means a server in this process. Throws Failure if a remote one does not answer within `patience`.
-  explicit Connection(const std::string& address);
+  /// No server chosen means one in this process. Throws Failure if a remote one does not answer within `patience`, or a file that
+  /// shows who calls cannot be read.
+  explicit Connection(const ServerChoice& server);
 
   Client& client() { return client_; }
   bool remote() const { return !local_; }

@@ -19,7 +19,7 @@ namespace {
 
 struct RenderCommand {
   std::string solution;
-  std::string server;  ///< empty: `solution` is a file
+  ServerChoice server;  ///< none: `solution` is a file
   bool ambient = false;
   std::filesystem::path output;
   PictureSize size;
@@ -35,7 +35,7 @@ void require_picture_path(const std::filesystem::path& path) {
 }
 
 DisplayMesh read_from_anywhere(const RenderCommand& command) {
-  if (!command.server.empty()) return read_served_solution({command.server, command.solution, command.ambient});
+  if (command.server.is_given()) return read_served_solution({command.server, command.solution, command.ambient});
   if (is_solve_name(command.solution) && !std::filesystem::exists(command.solution))
     throw Failure(ExitStatus::usage, command.solution + " is the name of a solve: where is it? Add --server HOST:PORT");
   return read_solution(command.solution);
@@ -56,8 +56,7 @@ void add_source(CLI::App& command, RenderCommand& options) {
   command.add_option("solution", options.solution, "What solve wrote, or scenes/SCENE/solves/SOLVE on a server")
       ->required()
       ->type_name("SOLUTION");
-  CLI::Option* server = command.add_option("--server", options.server, "Where the solve is: draw its newest state");
-  server->type_name("HOST:PORT");
+  CLI::Option* server = &add_server_option(command, options.server, "Where the solve is: draw its newest state");
   command.add_flag("--ambient", options.ambient, "Add an estimate of the light still to come; for display only")->needs(server);
 }
 

@@ -21,18 +21,19 @@ using Json = nlohmann::ordered_json;
 using google::protobuf::util::TimeUtil;
 
 struct ListOptions {
-  std::string server;
+  ServerChoice server;
   std::string parent = "scenes/-";  ///< of solves; all scenes
   bool json = false;
 };
 
 struct GetOptions {
-  std::string server, name;
+  ServerChoice server;
+  std::string name;
   bool json = false;
 };
 
 struct NameOptions {
-  std::string server;
+  ServerChoice server;
   std::vector<std::string> names;
 };
 
@@ -99,15 +100,15 @@ void print(const std::vector<Resource>& resources, const ListOptions& options) {
   options.json ? print_json(resources) : print_table(resources);
 }
 
-void add_server_option(CLI::App& command, std::string& server) {
-  command.add_option("--server", server, "The server that holds them")->required()->type_name("HOST:PORT");
+void require_server(CLI::App& command, ServerChoice& server) {
+  add_server_option(command, server, "The server that holds them").required();
 }
 
 /// `list` is called with the client and the options.
 template <class List>
 CLI::App& add_list(CLI::App& parent, const std::shared_ptr<ListOptions>& options, List list) {
   CLI::App& command = *parent.add_subcommand("list", "List them, newest first");
-  add_server_option(command, options->server);
+  require_server(command, options->server);
   command.add_flag("--json", options->json, "Print a JSON array");
   command.callback([options, list] {
     Connection connection(options->server);
@@ -129,7 +130,7 @@ void print_solve(const v1::Solve& solve, bool json) {
 void add_get(CLI::App& solves) {
   const auto options = std::make_shared<GetOptions>();
   CLI::App& command = *solves.add_subcommand("get", "Show one, and what its scene needs of the solver");
-  add_server_option(command, options->server);
+  require_server(command, options->server);
   command.add_option("name", options->name, "As list prints it")->required()->type_name("NAME");
   command.add_flag("--json", options->json, "Print a JSON object");
   command.callback([options] {
@@ -143,7 +144,7 @@ template <class Act>
 void add_act(CLI::App& parent, const std::string& verb, const std::string& description, Act act) {
   const auto options = std::make_shared<NameOptions>();
   CLI::App& command = *parent.add_subcommand(verb, description);
-  add_server_option(command, options->server);
+  require_server(command, options->server);
   command.add_option("names", options->names, "As list prints them")->required()->type_name("NAME");
   command.callback([options, act] {
     Connection connection(options->server);

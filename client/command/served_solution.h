@@ -1,6 +1,7 @@
 #pragma once
 // The solution of a solve on a server, running or ended.
 
+#include "client/command/server_option.h"
 #include "meshing/display_mesh.h"
 
 #include <string>
@@ -8,7 +9,7 @@
 namespace alvor {
 
 struct ServedSolution {
-  std::string server;    ///< HOST:PORT
+  ServerChoice server;
   std::string solve;     ///< scenes/SCENE/solves/SOLVE
   bool ambient = false;  ///< add the ambient term: for display only
 };

@@ -36,7 +36,7 @@ constexpr double pace_of_frames_s = 0.04;
 /// What is not set is left to the server.
 struct SolveCommand {
   std::filesystem::path scene;
-  std::string server;
+  ServerChoice server;
   OutputOptions outputs;
   std::optional<double> tolerance;
   std::optional<int> max_depth;
@@ -130,7 +130,7 @@ void add_solve_command(CLI::App& app) {
   const auto options = std::make_shared<SolveCommand>();
   CLI::App& command = *app.add_subcommand("solve", "Solve a scene");
   command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file")->required()->type_name("SCENE");
-  command.add_option("--server", options->server, "Solve there instead of in this process")->type_name("HOST:PORT");
+  add_server_option(command, options->server, "Solve there instead of in this process");
   add_output_options(command, options->outputs);
   add_limits(command, *options);
   add_method(command, *options);

@@ -15,7 +15,7 @@ namespace {
 
 struct WatchCommand {
   std::string solve;
-  std::string server;
+  ServerChoice server;
   OutputOptions outputs;
 };
 
@@ -51,7 +51,7 @@ void add_watch_command(CLI::App& app) {
   const auto options = std::make_shared<WatchCommand>();
   CLI::App& command = *app.add_subcommand("watch", "Follow a solve on a server");
   command.add_option("solve", options->solve, "scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
-  command.add_option("--server", options->server, "Where it runs")->required()->type_name("HOST:PORT");
+  add_server_option(command, options->server, "Where it runs").required();
   add_output_options(command, options->outputs);
   command.callback([options] { run_watch(*options); });
 }

@@ -1,0 +1,19 @@
+#include "client/command/server_option.h"
+
+namespace alvor {
+
+CLI::Option& add_server_option(CLI::App& command, ServerChoice& server, const std::string& description) {
+  CLI::Option* address = command.add_option("--server", server.address, description)->type_name("HOST:PORT");
+  const auto add_file = [&](const char* name, std::string& file, const char* what) {
+    return command.add_option(name, file, what)->check(CLI::ExistingFile)->type_name("FILE")->needs(address);
+  };
+  CLI::Option* ca = add_file("--tls-ca", server.ca, "Use TLS; who signed the server's certificate (PEM)");
+  CLI::Option* key = add_file("--tls-key", server.key, "The key of --tls-cert (PEM)")->needs(ca);
+  CLI::Option* certificate = add_file("--tls-cert", server.certificate, "The certificate to show to the server (PEM)")->needs(ca);
+  key->needs(certificate);
+  certificate->needs(key);
+  add_file("--token-file", server.token_file, "A file with the token to show to the server")->needs(ca);
+  return *address;
+}
+
+}  // namespace alvor

@@ -1,0 +1,27 @@
+#pragma once
+// Where a server listens, and whom it lets in.
+
+#include <grpcpp/security/server_credentials.h>
+
+#include <memory>
+#include <string>
+
+namespace alvor {
+
+struct ListenOptions {
+  std::string address = "127.0.0.1:50051";  ///< HOST:PORT
+  // Names of PEM files; without certificate and key there is no TLS.
+  std::string certificate, key;
+  std::string client_ca;  ///< clients must then show a certificate that it signed
+  std::string tokens;     ///< name of a file as BearerTokens reads it: calls must then carry one; needs TLS
+  bool insecure = false;  ///< plaintext for other machines too
+};
+
+/// Throws std::invalid_argument naming the option: a file cannot be read or makes no sense, options contradict each other, or the
+/// address is not of this machine alone and there is neither TLS nor leave to do without.
+std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& options);
+
+/// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a unix socket.
+bool is_loopback(const std::string& address);
+
+}  // namespace alvor

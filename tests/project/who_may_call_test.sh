@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# who_may_call_test.sh BINARIES: with TLS, client certificates and tokens, the server lets in those it should, and nobody else.
+set -euo pipefail
+alvor=$1/alvor alvord=$1/alvord
+work=$(mktemp -d)
+server=
+trap 'kill $server 2> /dev/null; rm -rf "$work"' EXIT
+cd "$work"
+
+# certificate NAME: its own authority.
+certificate() {
+  openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj "/CN=$1" \
+    -addext "subjectAltName=DNS:localhost,IP:127.0.0.1" -keyout "$1.key" -out "$1.pem" 2> /dev/null
+}
+for name in server client stranger; do certificate $name; done
+echo "open sesame" > token
+echo "close sesame" > wrong_token
+echo "ali $(printf %s "open sesame" | sha256sum | cut -d' ' -f1)" > tokens
+
+serve() {
+  [ -z "$server" ] || { kill "$server"; wait "$server" || true; }
+  "$alvord" --listen 127.0.0.1:0 --tls-cert server.pem --tls-key server.key "$@" 2> log & server=$!
+  until address=$(sed -n 's/.*listening on \(127[0-9.:]*\).*/\1/p' log) && [ -n "$address" ]; do
+    kill -0 "$server" || { cat log; exit 1; }
+    sleep 0.05
+  done
+}
+# expect STATUS WORDS OPTIONS...: `alvor scenes list` ends so, and says that.
+expect() {
+  local status=0 said
+  said=$("$alvor" scenes list --server "$address" "${@:3}" 2>&1) || status=$?
+  [ "$status" = "$1" ] && [[ $said == *"$2"* ]] && return
+  echo "expected status $1 and '$2', got $status and '$said' for: ${*:3}"
+  exit 1
+}
+
+serve --tokens tokens
+expect 0 "" --tls-ca server.pem --token-file token
+expect 5 "is missing" --tls-ca server.pem
+expect 5 "not a token" --tls-ca server.pem --token-file wrong_token
+expect 4 "cannot be reached" --tls-ca stranger.pem --token-file token
+expect 4 "cannot be reached"
+
+serve --tls-client-ca client.pem
+expect 0 "" --tls-ca server.pem --tls-cert client.pem --tls-key client.key
+expect 4 "cannot be reached" --tls-ca server.pem --tls-cert stranger.pem --tls-key stranger.key
+expect 4 "cannot be reached" --tls-ca server.pem
+echo "those were let in who should be"
