@@ -6,8 +6,8 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -20,6 +20,8 @@ constexpr double pass_remaining = 0.1;    // of the tolerance: a pass goes on un
 constexpr double final_remaining = 1e-6;  // the same, of a pass that may be the last
 constexpr double near_the_end = 1.5;      // times the tolerance: the next pass is likely the last
 constexpr double displayed_error = 0.5;   // of the estimated error: how far a display may lag behind
+constexpr double worth_going_on = 0.98;   // of the lowest error so far
+constexpr int most_idle_passes = 4;
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
@@ -87,13 +89,25 @@ class Run {
       if (!pass(first)) return stop_reason();
       if (error_.total() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
-      const bool is_better = state_.refine();
+      const bool has_gained = gains();
+      const bool is_better = has_gained && state_.refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
         state_.begin_exchange();
         return converge(limit_reached());
       }
     }
+  }
+
+  /// False where passes that split nothing, but only add rays, do not bring the error down any more.
+  bool gains() {
+    const bool has_split = state_.leaf_count() > leaves_before_;
+    if (has_split || error_.total() < worth_going_on * lowest_error_) {
+      idle_passes_ = 0;
+      leaves_before_ = state_.leaf_count();
+      lowest_error_ = error_.total();
+    }
+    return ++idle_passes_ <= most_idle_passes;
   }
 
   /// False if it was stopped: then the last published step stands.
@@ -193,6 +207,9 @@ class Run {
   bool has_stalled_ = false;  // light was still going round when the last exchange ended
   ErrorEstimate error_{.unshot = 1};
   PowerBalance balance_;
+  double lowest_error_ = 0;
+  std::size_t leaves_before_ = 0;
+  int idle_passes_ = 0;
   double published_at_ = 0, publishing_s_ = 0;
 };
 

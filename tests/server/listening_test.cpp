@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace alvor {
 namespace {
@@ -63,7 +65,8 @@ TEST(BearerTokens, BadFilesAreRefusedByLine) {
     }
   };
   EXPECT_EQ(fault("# nobody\n"), "holds no token");
-  for (const std::string line : {"ada", "ada 1234", "ada token", "ada " + sha256("x") + " more", "ada " + std::string(64, 'G')})
+  for (const std::string& line :
+       std::vector<std::string>{"ada", "ada 1234", "ada token", "ada " + sha256("x") + " more", "ada " + std::string(64, 'G')})
     EXPECT_EQ(fault("# one\n" + line + "\n").rfind("line 2: ", 0), 0u) << line;
 }
 
