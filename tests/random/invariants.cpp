@@ -104,7 +104,7 @@ Finding row_sums_are_at_most_one(const Subject& s) {
   return std::nullopt;
 }
 
-/// Exact: of leaves and of steps, but for `rounding` of the estimated error.
+/// Exact: of leaves and of steps, but for `rounding` of the estimated error and of unshot power.
 Finding difference(const Solved& expected, const Solved& got, double rounding = 0) {
   if (got.outcome.reason == StopReason::time_limit) return std::nullopt;  // the clock decides what it shows
   if (got.leaves.size() != expected.leaves.size())
@@ -115,9 +115,9 @@ Finding difference(const Solved& expected, const Solved& got, double rounding = 
              number(got.leaves[n].irradiance.r);
   for (std::size_t n = 0; n < std::min(got.steps.size(), expected.steps.size()); ++n) {
     const Step &a = expected.steps[n], &b = got.steps[n];
-    const double apart = std::abs(a.estimated_error - b.estimated_error);
-    if (a.rays != b.rays || a.shots != b.shots || !(apart <= rounding * a.estimated_error) ||
-        a.unshot_fraction != b.unshot_fraction)
+    const double errors_apart = std::abs(a.estimated_error - b.estimated_error);
+    const double unshot_apart = std::abs(a.unshot_fraction - b.unshot_fraction);
+    if (a.rays != b.rays || a.shots != b.shots || !(errors_apart <= rounding * a.estimated_error) || !(unshot_apart <= rounding))
       return "step " + std::to_string(n) + ": error " + number(a.estimated_error) + " and " + number(b.estimated_error);
   }
   return std::nullopt;
