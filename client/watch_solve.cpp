@@ -2,6 +2,7 @@
 
 #include "client/client.h"
 #include "proto/codec.h"
+#include "proto/leaf_codec.h"
 
 namespace alvor {
 
@@ -14,7 +15,7 @@ v1::WatchSolveRequest request_for(const std::string& name, const Client::Watch& 
   request.set_name(name);
   request.set_epoch(watch.epoch);
   request.set_base_revision(watch.mirror.revision());
-  request.set_detail(watch.detail == Detail::display ? v1::DETAIL_DISPLAY : v1::DETAIL_EXACT);
+  request.set_detail(encode(watch.detail));
   return request;
 }
 

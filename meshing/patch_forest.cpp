@@ -14,16 +14,13 @@ PatchForest::PatchForest(const BaseMesh& mesh) : mesh_(&mesh), leaf_count_(mesh.
 std::vector<NodeIndex> PatchForest::leaves() const {
   std::vector<NodeIndex> all;
   all.reserve(leaf_count_);
-  std::vector<NodeIndex> open;
-  for (NodeIndex root = 0; root < mesh_->roots().size(); ++root)
-    for (open.push_back(root); !open.empty();) {
-      const NodeIndex node = open.back();
-      open.pop_back();
-      if (is_leaf(node)) all.push_back(node);
-      else
-        for (int k = 3; k >= 0; --k) open.push_back(child(node, k));
-    }
+  for (NodeIndex root = 0; root < mesh_->roots().size(); ++root) append_leaves_of(root, all);
   return all;
+}
+
+void PatchForest::append_leaves_of(NodeIndex node, std::vector<NodeIndex>& leaves) const {
+  if (is_leaf(node)) return leaves.push_back(node);
+  for (int k = 0; k < 4; ++k) append_leaves_of(child(node, k), leaves);
 }
 
 NodeIndex PatchForest::leaf_across(const PatchShape& shape, int edge, double fraction) const {

@@ -35,6 +35,8 @@ class PatchForest {
   PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, ids_[node]); }
   /// In the order of their ids.
   std::vector<NodeIndex> leaves() const;
+  /// Appends those of `node`, itself if it is one, in the same order.
+  void append_leaves_of(NodeIndex node, std::vector<NodeIndex>& leaves) const;
 
   /// The leaf that contains `place`, or is it, or lies below it at its first corner. O(levels).
   NodeIndex leaf_at(PatchId place) const {

@@ -57,6 +57,15 @@ void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t mater
   corners.insert(corners.end(), polygon.begin(), polygon.end());
 }
 
+void Scene::add_polygon(std::span<const Vec3> polygon, std::uint32_t material) {
+  std::vector<std::uint32_t> ring;
+  for (const Vec3& corner : polygon) {
+    ring.push_back(static_cast<std::uint32_t>(vertices.size()));
+    vertices.push_back(corner);
+  }
+  add_face(ring, material);
+}
+
 std::optional<Fault> find_fault(const Scene& scene) {
   if (scene.faces.empty()) return Fault{"scene", "has no faces"};
   if (!scene.absorption.is_finite() || scene.absorption.min() < 0) return Fault{"absorption", "is not a finite number >= 0"};

@@ -39,6 +39,8 @@ struct Scene {
   }
   /// Appends a face. No check is made: see find_fault.
   void add_face(std::span<const std::uint32_t> polygon, std::uint32_t material);
+  /// The same, with vertices of its own.
+  void add_polygon(std::span<const Vec3> polygon, std::uint32_t material);
 };
 
 /// Radiant exitance of a diffuse emitter of this radiance: E = pi L.

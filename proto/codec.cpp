@@ -152,7 +152,7 @@ std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta)
   delta.to_revision = message.to_revision();
   delta.head = message.head_revision();
   if (message.has_state_hash()) delta.state_hash = message.state_hash();
-  delta.detail = message.leaves().detail() == v1::DETAIL_DISPLAY ? Detail::display : Detail::exact;
+  delta.detail = decode(message.leaves().detail());
   if (auto fault = decode_leaves(message.leaves(), delta.values)) return Fault{"leaves: " + fault->place, fault->reason};
   if (delta.values.size() > 0) delta.coding = SharedExponent(message.leaves().scale());
   for (const v1::Step& step : message.steps()) delta.steps.push_back(decode(step));

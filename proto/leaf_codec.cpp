@@ -225,11 +225,14 @@ std::optional<Fault> fault_in_sizes(const v1::LeafValues& message, Detail detail
 
 }  // namespace
 
+v1::Detail encode(Detail detail) { return detail == Detail::display ? v1::DETAIL_DISPLAY : v1::DETAIL_EXACT; }
+Detail decode(v1::Detail detail) { return detail == v1::DETAIL_DISPLAY ? Detail::display : Detail::exact; }
+
 std::size_t leaves_per_frame(Detail detail) { return most_frame_bytes / (4 * words_of(detail) + longest_id); }
 
 v1::LeafValues encode_leaves(std::span<const LeafValue> values, Detail detail, SharedExponent coding) {
   v1::LeafValues message;
-  message.set_detail(detail == Detail::display ? v1::DETAIL_DISPLAY : v1::DETAIL_EXACT);
+  message.set_detail(encode(detail));
   message.set_scale(coding.scale());
   message.set_count(static_cast<std::uint32_t>(values.size()));
   if (values.empty()) return message;
@@ -246,7 +249,7 @@ v1::LeafValues encode_leaves(std::span<const LeafValue> values, Detail detail, S
 
 std::optional<Fault> decode_leaves(const v1::LeafValues& message, std::vector<LeafValue>& values) {
   values.clear();
-  const Detail detail = message.detail() == v1::DETAIL_DISPLAY ? Detail::display : Detail::exact;
+  const Detail detail = decode(message.detail());
   if (message.detail() != v1::DETAIL_DISPLAY && message.detail() != v1::DETAIL_EXACT) {
     if (message.count() == 0) return std::nullopt;
     return Fault{"detail", "is not one"};

@@ -16,6 +16,10 @@ namespace alvor {
 inline constexpr std::size_t most_frame_bytes = 256 * 1024;  ///< before compression
 inline constexpr std::size_t most_leaves_per_frame = most_frame_bytes / 5;
 
+v1::Detail encode(Detail detail);
+/// Exact where it is not said.
+Detail decode(v1::Detail detail);
+
 /// How many leaves, however their ids jump, stay below most_frame_bytes.
 std::size_t leaves_per_frame(Detail detail);
 

@@ -39,7 +39,7 @@ void SolveState::make_rows_exact() {
   std::vector<std::vector<NodeIndex>> leaves(rows.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
     polygons.push_back(polygon_of(mesh_, row_forest_.shape(rows[n])));
-    collect_leaves(leaf_node_of_row(rows[n]), leaves[n]);
+    leaf_forest_.append_leaves_of(leaf_node_of_row(rows[n]), leaves[n]);
   }
   const FacePolygons patches(std::move(polygons));
   const Blockers blockers(mesh_);

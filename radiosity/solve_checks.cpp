@@ -8,11 +8,11 @@ namespace alvor {
 
 // Where every surface emitted like the brightest and reflected like the lightest, B would be this everywhere, and H no larger.
 // What rays estimate may lie beyond, the truth does not.
-Rgb SolveState::largest_irradiance() const {
+Rgb SolveState::largest_irradiance(const BaseMesh& mesh) {
   Rgb emission, reflectance;
-  for (const RootPatch& root : mesh_.roots()) {
-    emission = upper(emission, mesh_.materials()[root.material].emission);
-    reflectance = upper(reflectance, mesh_.materials()[root.material].reflectance);
+  for (const RootPatch& root : mesh.roots()) {
+    emission = upper(emission, mesh.materials()[root.material].emission);
+    reflectance = upper(reflectance, mesh.materials()[root.material].reflectance);
   }
   return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
 }

@@ -39,7 +39,7 @@ void SolveState::list_patches() {
   patch_row_ = row_forest_.leaves();
   for (const NodeIndex row : patch_row_) {
     const auto first = static_cast<std::uint32_t>(patch_leaves_.size());
-    collect_leaves(leaf_node_of_row(row), patch_leaves_);
+    leaf_forest_.append_leaves_of(leaf_node_of_row(row), patch_leaves_);
     ShootingPatch patch{&rows_[row], first, static_cast<std::uint32_t>(patch_leaves_.size()) - first,
                         mesh_.material_of(row_forest_.id(row).root_face()).reflectance, 0};
     for (std::size_t n = first; n < patch_leaves_.size(); ++n) patch.area += leaf_area_[patch_leaves_[n]];

@@ -135,7 +135,7 @@ RowSize SolveState::size_of(PatchId patch) const {
 void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows_[row].hidden_origins == 0) return;
   std::vector<NodeIndex> leaves;
-  collect_leaves(leaf_node_of_row(row), leaves);
+  leaf_forest_.append_leaves_of(leaf_node_of_row(row), leaves);
   for (const NodeIndex leaf : leaves) direct_is_known_[leaf] = false;
   if (rows_[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
@@ -192,14 +192,6 @@ NodeIndex SolveState::leaf_node_of_row(NodeIndex row) const {
   return node;
 }
 
-void SolveState::collect_leaves(NodeIndex node, std::vector<NodeIndex>& leaves) const {
-  if (leaf_forest_.is_leaf(node)) {
-    leaves.push_back(node);
-    return;
-  }
-  for (int k = 0; k < 4; ++k) collect_leaves(leaf_forest_.child(node, k), leaves);
-}
-
 double SolveState::unshot_power() const {
   if (exchange_) return exchange_->unshot_power();
   double power = waiting_power_;
@@ -211,13 +203,12 @@ double SolveState::unshot_power() const {
 }
 
 std::vector<LeafValue> SolveState::leaf_values() const {
-  const Rgb most = largest_irradiance();
   std::vector<LeafValue> values;
   values.reserve(leaf_forest_.leaf_count());
   for (const NodeIndex leaf : leaf_forest_.leaves()) {
     const PatchId id = leaf_forest_.id(leaf);
     const Rgb irradiance = emission_unit_ * (direct_[leaf].irradiance + indirect(leaf));
-    values.push_back({id, narrow(lower(upper(irradiance, {}), most))});
+    values.push_back({id, narrow(lower(upper(irradiance, {}), largest_irradiance_))});
   }
   return values;
 }
@@ -255,16 +246,19 @@ bool SolveState::split_row(NodeIndex row) {
   fit_to_nodes();
   for (const NodeIndex parent : split) {
     split_leaf(leaf_node_of_row(parent));
-    for (int k = 0; k < 4; ++k) {
-      if (!has_rows()) break;
-      const NodeIndex child = row_forest_.child(parent, k);
-      row_fit_[child] = row_fit_[parent];
-      row_irradiance_[child] = row_fit_[parent].at(row_centre_[child]);
-    }
+    if (has_rows()) hand_down_field(parent);
     rows_[parent] = {};
-    if (has_rows()) hit_leaves_[parent] = {};
   }
   return done;
+}
+
+void SolveState::hand_down_field(NodeIndex split_row) {
+  for (int k = 0; k < 4; ++k) {
+    const NodeIndex child = row_forest_.child(split_row, k);
+    row_fit_[child] = row_fit_[split_row];
+    row_irradiance_[child] = row_fit_[split_row].at(row_centre_[child]);
+  }
+  hit_leaves_[split_row] = {};
 }
 
 bool SolveState::add_rays(std::span<const NodeIndex> rows) {

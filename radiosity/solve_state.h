@@ -60,8 +60,8 @@ class SolveState {
   /// however bright or dim a scene is.
   double emission_unit() const { return emission_unit_; }
 
-  /// Irradiance of every leaf, W/m2, in the order of their ids. Before the first shots this is direct light alone. Never negative,
-  /// and never more than where all surfaces were like the brightest.
+  /// Irradiance of every leaf, W/m2, in the order of their ids. Before the first shots this is direct light alone. Never
+  /// negative, and never more than where all surfaces were like the brightest.
   std::vector<LeafValue> leaf_values() const;
   /// Of what the current pass has distributed, in W.
   PowerBalance balance() const;
@@ -81,16 +81,16 @@ class SolveState {
   bool split_leaf(NodeIndex leaf);
   bool split_row(NodeIndex row);
   void follow_contact(NodeIndex split_leaf);
+  void hand_down_field(NodeIndex split_row);
   std::vector<NodeIndex> trace_untraced();
   RowSize size_of(PatchId patch) const;
   void make_rows_exact();
   void heed_hidden_origins(NodeIndex row);
   void inherit(std::span<const NodeIndex> split);
-  void collect_leaves(NodeIndex node, std::vector<NodeIndex>& leaves) const;
   NodeIndex leaf_node_of_row(NodeIndex row) const;
   Rgb emission_of(std::uint32_t root) const;
   Rgb row_emission(std::uint32_t root) const;
-  Rgb largest_irradiance() const;
+  static Rgb largest_irradiance(const BaseMesh& mesh);
   bool rows_tell_what_is_lost() const;
   bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
@@ -110,6 +110,7 @@ class SolveState {
   Rgb indirect(NodeIndex leaf, Vec3 at) const { return has_rows() ? row_fit_[row_of(leaf_forest_.id(leaf))].at(at) : Rgb{}; }
 
   const BaseMesh& mesh_;
+  const Rgb largest_irradiance_ = largest_irradiance(mesh_);  ///< that the solution can have, W/m2
   Plan plan_;
   SolveOptions options_;
   RayBudget& budget_;

@@ -89,8 +89,7 @@ class Run {
       if (!pass(first)) return stop_reason();
       if (error_.total() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
-      const bool has_gained = gains();
-      const bool is_better = has_gained && state_.refine();
+      const bool is_better = gains() && state_.refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
         state_.begin_exchange();

@@ -6,6 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -104,14 +105,18 @@ class RowTracer {
 
   void store_hidden(TransportRow& row) const {
     for (std::size_t o = 0; o < origins_per_patch; ++o) {
-      if (is_hidden(o)) row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+      if (is_hidden(outcomes_of(o))) row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
       else row.rays += rays_per_origin;
     }
   }
-  bool is_hidden(std::size_t p) const {
-    int backs = 0;
-    for (int lane = 0; lane < RayPacket::width; ++lane) backs += outcome(packets_[p], hits_[p], lane) == Outcome::black_back;
-    return 2 * backs > RayPacket::width;
+  using Outcomes = std::array<Outcome, RayPacket::width>;
+  Outcomes outcomes_of(std::size_t p) const {
+    Outcomes outcomes;
+    for (int lane = 0; lane < RayPacket::width; ++lane) outcomes[lane] = outcome(packets_[p], hits_[p], lane);
+    return outcomes;
+  }
+  static bool is_hidden(const Outcomes& outcomes) {
+    return 2 * std::ranges::count(outcomes, Outcome::black_back) > RayPacket::width;
   }
 
   /// All, or one a quarter so that their mean is the middle.
@@ -179,13 +184,8 @@ class RowTracer {
 
   /// False, and nothing is stored, if the origin is hidden.
   bool store_origin(std::size_t p, TransportRow& row) const {
-    Outcome outcomes[RayPacket::width];
-    int backs = 0;
-    for (int lane = 0; lane < RayPacket::width; ++lane) {
-      outcomes[lane] = outcome(packets_[p], hits_[p], lane);
-      backs += outcomes[lane] == Outcome::black_back;
-    }
-    if (2 * backs > RayPacket::width) return false;
+    const Outcomes outcomes = outcomes_of(p);
+    if (is_hidden(outcomes)) return false;
     if constexpr (back_sides) store_hits(turned_to_front(p), outcomes, row);
     else store_hits(hits_[p], outcomes, row);
     if (medium_.is_clear() && !directions_.has_weights()) return true;
@@ -196,7 +196,7 @@ class RowTracer {
     return true;
   }
 
-  void store_hits(const HitPacket& hit, const Outcome* outcomes, TransportRow& row) const {
+  void store_hits(const HitPacket& hit, const Outcomes& outcomes, TransportRow& row) const {
     alignas(64) std::uint32_t path[RayPacket::width];
     if constexpr (places) scene_.places_of_hits(hit, path);
     for (int lane = 0; lane < RayPacket::width; ++lane)

@@ -29,7 +29,6 @@ class FrameSource {
   FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves = SolutionLog::unlimited);
 
   StoredSolve& solve() const { return *solve_; }
-  const std::string& epoch() const { return epoch_; }
   /// Whether frame_after(cursor) would say anything that `cursor` does not know.
   bool has_news(const Cursor& cursor) const;
   /// The same frame to all who ask from the same place, for as long as any of them keeps it.

@@ -1,5 +1,6 @@
 #include "server/watch_call.h"
 
+#include "proto/leaf_codec.h"
 #include "server/random_id.h"
 #include "server/status_error.h"
 
@@ -30,7 +31,7 @@ Watch::Clock::duration interval_of(double rate_hz) {
 WatchPlan plan_of(const v1::WatchSolveRequest& request) {
   WatchPlan plan;
   if (!v1::Detail_IsValid(request.detail())) throw invalid_argument("detail: is not one");
-  plan.detail = request.detail() == v1::DETAIL_DISPLAY ? Detail::display : Detail::exact;
+  plan.detail = decode(request.detail());
   plan.min_interval = interval_of(request.max_rate_hertz());
   if (const std::uint64_t bytes = request.max_bytes_per_second(); bytes > 0) {
     if (bytes < least_bytes_per_s) throw invalid_argument("max_bytes_per_second: must be 0 or at least 1000");

@@ -9,12 +9,7 @@
 namespace alvor::test {
 
 inline void add_polygon(Scene& scene, std::initializer_list<Vec3> corners, std::uint32_t material = 0) {
-  std::vector<std::uint32_t> ring;
-  for (const Vec3& corner : corners) {
-    ring.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-    scene.vertices.push_back(corner);
-  }
-  scene.add_face(ring, material);
+  scene.add_polygon({corners.begin(), corners.size()}, material);
 }
 
 /// Six quads; normals point inwards for a room, outwards for a solid. Faces: floor (y low), ceiling, x low, x high, z low, z
@@ -54,6 +49,19 @@ inline Scene coloured_room() {
   add_box(scene, {0, 0, 0}, {4, 3, 5}, true, {0, 0, 2, 0, 0, 0});
   add_box(scene, {1, 0, 1}, {2, 1, 3}, false);
   add_polygon(scene, {{1.5, 2.99, 2}, {2.5, 2.99, 2}, {2.5, 2.99, 3}, {1.5, 2.99, 3}}, 1);
+  return scene;
+}
+
+/// The same with a second block, turned so that its outline crosses patches of all levels.
+inline Scene room_with_contacts() {
+  Scene scene = coloured_room();
+  const std::size_t first = scene.vertices.size();
+  add_box(scene, {2.5, 0, 1}, {3.3, 1.5, 1.8}, false);
+  const Vec3 axis{2.9, 0, 1.4};
+  for (std::size_t v = first; v < scene.vertices.size(); ++v) {
+    const Vec3 d = scene.vertices[v] - axis;
+    scene.vertices[v] = axis + Vec3{0.9 * d.x - 0.4 * d.z, d.y, 0.4 * d.x + 0.9 * d.z};
+  }
   return scene;
 }
 

@@ -66,8 +66,8 @@ Scene slivers() {
     if (strip % 2) {
       add_quad(scene, {x, 0, 0}, {x, 0, 4}, {X, 0, 4}, {X, 0, 0});
     } else {
-      add_polygon(scene, std::array<Vec3, 3>{{{x, 0, 0}, {x, 0, 4}, {X, 0, 4}}});
-      add_polygon(scene, std::array<Vec3, 3>{{{x, 0, 0}, {X, 0, 4}, {X, 0, 0}}});
+      scene.add_polygon(std::array<Vec3, 3>{{{x, 0, 0}, {x, 0, 4}, {X, 0, 4}}}, 0);
+      scene.add_polygon(std::array<Vec3, 3>{{{x, 0, 0}, {X, 0, 4}, {X, 0, 0}}}, 0);
     }
   }
   const double last = 1 + 10 * width;
@@ -150,8 +150,8 @@ Scene clearly_bent() { return bent(0.1); }
 
 Scene with_degenerate_faces() {
   Scene scene = furnace();
-  add_polygon(scene, std::array<Vec3, 3>{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}});
-  add_polygon(scene, std::array<Vec3, 3>{{{1, 1, 1}, {2, 1, 1}, {1.5, 1, 1}}});
+  scene.add_polygon(std::array<Vec3, 3>{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}, 0);
+  scene.add_polygon(std::array<Vec3, 3>{{{1, 1, 1}, {2, 1, 1}, {1.5, 1, 1}}}, 0);
   add_quad(scene, {1, 1, 1}, {2, 1, 1}, {2, 1, 1}, {1, 1, 1});
   return scene;
 }
@@ -173,7 +173,7 @@ Scene one_face() {
 Scene all_degenerate() {
   Scene scene;
   scene.materials = {grey(1, reflectance)};
-  add_polygon(scene, std::array<Vec3, 3>{{{1, 1, 1}, {2, 1, 1}, {1.5, 1, 1}}});
+  scene.add_polygon(std::array<Vec3, 3>{{{1, 1, 1}, {2, 1, 1}, {1.5, 1, 1}}}, 0);
   return scene;
 }
 

@@ -4,17 +4,6 @@ namespace alvor::bench {
 
 namespace {
 
-std::array<std::array<Vec3, 4>, 6> faces_of_room(Vec3 low, Vec3 high) {
-  const auto [x, y, z] = low;
-  const auto [X, Y, Z] = high;
-  return {{{{{x, y, z}, {x, y, Z}, {X, y, Z}, {X, y, z}}},
-           {{{x, Y, z}, {X, Y, z}, {X, Y, Z}, {x, Y, Z}}},
-           {{{x, y, z}, {x, Y, z}, {x, Y, Z}, {x, y, Z}}},
-           {{{X, y, z}, {X, y, Z}, {X, Y, Z}, {X, Y, z}}},
-           {{{x, y, z}, {X, y, z}, {X, Y, z}, {x, Y, z}}},
-           {{{x, y, Z}, {x, Y, Z}, {X, Y, Z}, {X, y, Z}}}}};
-}
-
 /// Between two rooms, seen from both: beside the door, on both sides, and above it.
 void add_wall_with_door(Scene& scene, double x, std::uint32_t material) {
   constexpr double left = 0.4, right = 0.6, top = 0.4;
@@ -25,32 +14,16 @@ void add_wall_with_door(Scene& scene, double x, std::uint32_t material) {
 
 }  // namespace
 
-Material grey(double emission, double reflectance) {
-  return {"grey", {emission, emission, emission}, {reflectance, reflectance, reflectance}, false};
-}
-
-void add_polygon(Scene& scene, std::span<const Vec3> corners, std::uint32_t material) {
-  std::vector<std::uint32_t> ring;
-  for (const Vec3& corner : corners) {
-    ring.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-    scene.vertices.push_back(corner);
-  }
-  scene.add_face(ring, material);
-}
-
 void add_quad(Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d, std::uint32_t material) {
-  add_polygon(scene, std::array{a, b, c, d}, material);
+  scene.add_polygon(std::array{a, b, c, d}, material);
 }
 
 void add_room(Scene& scene, Vec3 low, Vec3 high, const BoxMaterials& materials) {
-  const auto faces = faces_of_room(low, high);
-  for (std::size_t f = 0; f < faces.size(); ++f) add_polygon(scene, faces[f], materials[f]);
+  test::add_box(scene, low, high, true, materials);
 }
 
 void add_block(Scene& scene, Vec3 low, Vec3 high, const BoxMaterials& materials) {
-  const auto faces = faces_of_room(low, high);
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    add_quad(scene, faces[f][3], faces[f][2], faces[f][1], faces[f][0], materials[f]);
+  test::add_box(scene, low, high, false, materials);
 }
 
 Scene unit_cube(const Material& floor, const Material& rest) {

@@ -1,17 +1,14 @@
 #pragma once
 // Scenes of few faces whose light is known.
 
-#include "meshing/scene.h"
+#include "tests/scenes.h"
 
 #include <array>
-#include <span>
 
 namespace alvor::bench {
 
-/// The same in all bands.
-Material grey(double emission, double reflectance);
+using test::grey;
 
-void add_polygon(Scene& scene, std::span<const Vec3> corners, std::uint32_t material = 0);
 void add_quad(Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d, std::uint32_t material = 0);
 
 /// Six quads that look inwards: y low, y high, x low, x high, z low, z high.

@@ -77,8 +77,8 @@ Scene sphere(const Material& cap, const Material& rest) {
     for (int side = 0; side < sides; ++side) {
       const std::uint32_t material = ring < rings / 8 ? 0 : 1;
       const Vec3 a = at(ring, side), b = at(ring, side + 1), c = at(ring + 1, side + 1), d = at(ring + 1, side);
-      if (ring == 0) add_polygon(scene, std::array{a, d, c}, material);
-      else if (ring == rings - 1) add_polygon(scene, std::array{a, d, b}, material);
+      if (ring == 0) scene.add_polygon(std::array{a, d, c}, material);
+      else if (ring == rings - 1) scene.add_polygon(std::array{a, d, b}, material);
       else add_quad(scene, a, d, c, b, material);
     }
   return scene;

@@ -2,14 +2,13 @@
 # foreign_client_test.sh BINARIES SOURCE: a client in another language, with nothing but the API and docs/frame-format.md, watches a
 # solve at both details, and sees what `alvor probe` reads from the same solution.
 set -euo pipefail
-binaries=$1 source=$2
+. "$(dirname "$0")/start_alvord.sh"
+binaries=$1 source=$2 alvord=$1/alvord
 work=$(mktemp -d)
-trap 'kill "$server" 2> /dev/null; rm -rf "$work"' EXIT
-"$binaries/alvord" --listen 127.0.0.1:0 > "$work/log" 2>&1 & server=$!
-until address=$(grep -o '127\.0\.0\.1:[0-9]*' "$work/log" | tail -1) && [ -n "$address" ]; do
-  kill -0 "$server" || { cat "$work/log"; exit 1; }
-  sleep 0.05
-done
+server=
+trap 'kill $server 2> /dev/null; rm -rf "$work"' EXIT
+cd "$work"
+start_alvord
 mkdir "$work/api"
 protoc -I "$source/proto" --python_out "$work/api" "$source"/proto/alvor/v1/*.proto
 for detail in exact display; do

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # who_may_call_test.sh BINARIES: with TLS, client certificates and tokens, the server lets in those it should, and nobody else.
 set -euo pipefail
+. "$(dirname "$0")/start_alvord.sh"
 alvor=$1/alvor alvord=$1/alvord
 work=$(mktemp -d)
 server=
@@ -19,11 +20,7 @@ echo "ali $(printf %s "open sesame" | sha256sum | cut -d' ' -f1)" > tokens
 
 serve() {
   [ -z "$server" ] || { kill "$server"; wait "$server" || true; }
-  "$alvord" --listen 127.0.0.1:0 --tls-cert server.pem --tls-key server.key "$@" 2> log & server=$!
-  until address=$(sed -n 's/.*listening on \(127[0-9.:]*\).*/\1/p' log) && [ -n "$address" ]; do
-    kill -0 "$server" || { cat log; exit 1; }
-    sleep 0.05
-  done
+  start_alvord --tls-cert server.pem --tls-key server.key "$@"
 }
 # expect STATUS WORDS OPTIONS...: `alvor scenes list` ends so, and says that.
 expect() {

@@ -21,19 +21,6 @@ void expect_tiling(const BaseMesh& mesh, std::vector<LeafValue> leaves) {
   EXPECT_NEAR(covered, roots, 1e-9 * roots);
 }
 
-/// A room with a lamp, where two blocks stand on the floor, one of them turned: its outline crosses patches of all levels.
-Scene room_with_contacts() {
-  Scene scene = test::coloured_room();
-  const std::size_t first = scene.vertices.size();
-  test::add_box(scene, {2.5, 0, 1}, {3.3, 1.5, 1.8}, false);
-  const Vec3 axis{2.9, 0, 1.4};
-  for (std::size_t v = first; v < scene.vertices.size(); ++v) {
-    const Vec3 d = scene.vertices[v] - axis;
-    scene.vertices[v] = axis + Vec3{0.9 * d.x - 0.4 * d.z, d.y, 0.4 * d.x + 0.9 * d.z};
-  }
-  return scene;
-}
-
 void pass_before_refining(SolveState& state) {
   state.trace_new_rows();
   state.add_new_direct_light([] {});
@@ -43,7 +30,7 @@ void pass_before_refining(SolveState& state) {
 }
 
 TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
-  const BaseMesh mesh(room_with_contacts());
+  const BaseMesh mesh(test::room_with_contacts());
   for (const Strategy strategy : {Strategy::automatic, Strategy::sorted}) {
     RayBudget budget([] { return false; });
     SolveState state(mesh, {.max_leaves = 20'000, .strategy = strategy}, budget);
@@ -59,7 +46,7 @@ TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
 }
 
 TEST(SolveState, LimitsDoNotBreakTheTiling) {
-  const BaseMesh mesh(room_with_contacts());
+  const BaseMesh mesh(test::room_with_contacts());
   for (const std::uint64_t most : {600u, 1100u, 1501u}) {
     RayBudget budget([] { return false; });
     SolveState state(mesh, {.max_leaves = most}, budget);
@@ -74,7 +61,7 @@ TEST(SolveState, LimitsDoNotBreakTheTiling) {
 }
 
 TEST(SolveState, PublishedLeavesTileTheRoots) {
-  const BaseMesh mesh(room_with_contacts());
+  const BaseMesh mesh(test::room_with_contacts());
   SolutionLog log;
   solve(mesh, {.tolerance = 0.03, .max_leaves = 5000}, log, {});
   EXPECT_EQ(log.leaves().size(), log.last_step().leaves);

@@ -108,19 +108,12 @@ TEST(SwitchedOff, DarkOuterWallsSaveTheirRows) {
   EXPECT_LT(pair.as_planned.rays, pair.forced.rays);
 }
 
-/// Two blocks on the floor of a room, one of them turned so that its outline crosses patches, a lamp, and nothing that reflects.
-Scene black_room() {
-  Scene scene = test::coloured_room();
+/// Nothing reflects.
+Scene black(Scene scene) {
   for (Material& material : scene.materials) material.reflectance = {};
-  const std::size_t first = scene.vertices.size();
-  test::add_box(scene, {2.5, 0, 1}, {3.3, 1.5, 1.8}, false);
-  const Vec3 axis{2.9, 0, 1.4};
-  for (std::size_t v = first; v < scene.vertices.size(); ++v) {
-    const Vec3 d = scene.vertices[v] - axis;
-    scene.vertices[v] = axis + Vec3{0.9 * d.x - 0.4 * d.z, d.y, 0.4 * d.x + 0.9 * d.z};
-  }
   return scene;
 }
+Scene black_room() { return black(test::room_with_contacts()); }
 
 TEST(SwitchedOff, RowsOfABlackRoomSaveTheirRays) {
   const Pair pair = solved_both_ways(black_room(), Feature::indirect_rows, {.tolerance = 0.05});
@@ -129,9 +122,7 @@ TEST(SwitchedOff, RowsOfABlackRoomSaveTheirRays) {
 }
 
 TEST(SwitchedOff, RowsOfABlackConvexRoomSaveTheirRays) {
-  Scene scene = convex_room();
-  for (Material& material : scene.materials) material.reflectance = {};
-  const Pair pair = solved_both_ways(scene, Feature::indirect_rows);
+  const Pair pair = solved_both_ways(black(convex_room()), Feature::indirect_rows);
   EXPECT_LT(pair.difference(), rounding);
   EXPECT_EQ(pair.as_planned.rays, 0u);
 }

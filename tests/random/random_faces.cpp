@@ -14,7 +14,7 @@ std::array<std::uint32_t, 6> six_materials(Dice& dice, const Scene& scene) {
 
 void add_triangle(Dice& dice, Scene& scene) {
   const std::array<Vec3, 3> ring{random_point(dice), random_point(dice), random_point(dice)};
-  add_ring(scene, ring, dice.below(scene.materials.size()));
+  scene.add_polygon(ring, dice.below(scene.materials.size()));
 }
 
 /// A parallelogram, or with corner 2 moved within its plane.
@@ -22,7 +22,7 @@ void add_quad(Dice& dice, Scene& scene) {
   const double size = dice.magnitude(0.01, 1);
   const Vec3 at = random_point(dice), u = size * (random_point(dice) - at), v = size * (random_point(dice) - at);
   const double stretch = dice.happens(0.5) ? 1 : dice.between(0.6, 2);
-  add_ring(scene, std::array<Vec3, 4>{at, at + u, at + stretch * (u + v), at + v}, dice.below(scene.materials.size()));
+  scene.add_polygon(std::array<Vec3, 4>{at, at + u, at + stretch * (u + v), at + v}, dice.below(scene.materials.size()));
 }
 
 void add_soup(Dice& dice, Scene& scene) {
@@ -52,15 +52,6 @@ void add_solids(Dice& dice, Scene& scene) {
 }  // namespace
 
 Vec3 random_point(Dice& dice) { return {dice.between(0, 1), dice.between(0, 1), dice.between(0, 1)}; }
-
-void add_ring(Scene& scene, std::span<const Vec3> ring, std::uint32_t material) {
-  std::vector<std::uint32_t> corners;
-  for (const Vec3& corner : ring) {
-    corners.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-    scene.vertices.push_back(corner);
-  }
-  scene.add_face(corners, material);
-}
 
 void add_random_faces(Dice& dice, Scene& scene) {
   switch (dice.below(4)) {

@@ -11,7 +11,4 @@ void add_random_faces(Dice& dice, Scene& scene);
 
 Vec3 random_point(Dice& dice);
 
-/// Adds a polygon with vertices of its own.
-void add_ring(Scene& scene, std::span<const Vec3> ring, std::uint32_t material);
-
 }  // namespace alvor::test

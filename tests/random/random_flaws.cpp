@@ -23,26 +23,26 @@ std::uint32_t random_material(Dice& dice, const Scene& scene) { return dice.belo
 void add_sliver(Dice& dice, Scene& scene) {
   const Vec3 a = random_point(dice), b = random_point(dice);
   const Vec3 aside = dice.magnitude(1e-9, 1e-2) * random_point(dice);
-  add_ring(scene, std::array<Vec3, 3>{a, b, lerp(a, b, dice.between(0, 1)) + aside}, random_material(dice, scene));
+  scene.add_polygon(std::array<Vec3, 3>{a, b, lerp(a, b, dice.between(0, 1)) + aside}, random_material(dice, scene));
 }
 
 void add_speck(Dice& dice, Scene& scene) {
   const double size = dice.magnitude(1e-7, 1e-3);
   const Vec3 at = random_point(dice), u = size * random_point(dice), v = size * random_point(dice);
-  add_ring(scene, std::array<Vec3, 4>{at, at + u, at + u + v, at + v}, random_material(dice, scene));
+  scene.add_polygon(std::array<Vec3, 4>{at, at + u, at + u + v, at + v}, random_material(dice, scene));
 }
 
 void add_degenerate(Dice& dice, Scene& scene) {
   const Vec3 a = random_point(dice), b = dice.happens(0.3) ? a : random_point(dice);
   const Vec3 c = dice.happens(0.5) ? b : lerp(a, b, dice.between(0, 1));
-  add_ring(scene, std::array<Vec3, 3>{a, b, c}, random_material(dice, scene));
+  scene.add_polygon(std::array<Vec3, 3>{a, b, c}, random_material(dice, scene));
 }
 
 /// A quad with one corner out of its plane.
 void add_bent(Dice& dice, Scene& scene) {
   const Vec3 at = random_point(dice), u = 0.5 * random_point(dice), v = 0.5 * random_point(dice);
   const Vec3 off = dice.magnitude(1e-8, 0.3) * random_point(dice);
-  add_ring(scene, std::array<Vec3, 4>{at, at + u, at + u + v + off, at + v}, random_material(dice, scene));
+  scene.add_polygon(std::array<Vec3, 4>{at, at + u, at + u + v + off, at + v}, random_material(dice, scene));
 }
 
 /// Five to eight corners around a middle, in one plane; stars, some of which cross themselves.
@@ -54,7 +54,7 @@ void add_star(Dice& dice, Scene& scene) {
     const double angle = 2 * std::numbers::pi * turns * c / corners, radius = dice.between(0.2, 1);
     ring.push_back(at + radius * std::cos(angle) * u + radius * std::sin(angle) * v);
   }
-  add_ring(scene, ring, random_material(dice, scene));
+  scene.add_polygon(ring, random_material(dice, scene));
 }
 
 /// The same corners once more, perhaps turned over or begun at another.
@@ -75,14 +75,14 @@ void add_coplanar(Dice& dice, Scene& scene) {
   const Vec3 hair = dice.happens(0.5) ? Vec3{} : dice.magnitude(1e-9, 1e-4) * random_point(dice);
   for (Vec3& corner : ring) corner = lerp(middle, corner, size) + hair;
   if (dice.happens(0.3)) std::ranges::reverse(ring);
-  add_ring(scene, ring, random_material(dice, scene));
+  scene.add_polygon(ring, random_material(dice, scene));
 }
 
 /// Many faces on one edge.
 void add_fan(Dice& dice, Scene& scene) {
   const Vec3 a = random_point(dice), b = random_point(dice);
   for (std::uint32_t n = 2 + dice.below(4); n > 0; --n)
-    add_ring(scene, std::array<Vec3, 3>{a, b, random_point(dice)}, random_material(dice, scene));
+    scene.add_polygon(std::array<Vec3, 3>{a, b, random_point(dice)}, random_material(dice, scene));
 }
 
 void add_unused_vertex(Dice& dice, Scene& scene) {

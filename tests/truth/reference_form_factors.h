@@ -62,17 +62,9 @@ inline std::vector<ReferenceFormFactor> read_reference_form_factors(const std::f
 inline Scene scene_of(const ReferenceFormFactor& row) {
   Scene scene;
   scene.materials.emplace_back();
-  const auto add = [&](const Polygon& polygon) {
-    std::vector<std::uint32_t> ring;
-    for (const Vec3& corner : polygon) {
-      ring.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
-      scene.vertices.push_back(corner);
-    }
-    scene.add_face(ring, 0);
-  };
-  add(row.from);
-  add(row.to);
-  for (const Polygon& blocker : row.blockers) add(blocker);
+  scene.add_polygon(row.from, 0);
+  scene.add_polygon(row.to, 0);
+  for (const Polygon& blocker : row.blockers) scene.add_polygon(blocker, 0);
   return scene;
 }
 
