@@ -43,7 +43,7 @@ void SolveState::make_rows_exact() {
   }
   const FacePolygons patches(std::move(polygons));
   const Blockers blockers(mesh_);
-  const FormFactorRows form_factors(patches, blockers, accuracy, 0);
+  const FormFactorRows form_factors(patches, blockers, accuracy);
   const Medium medium{mesh_.absorption()};
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     TransportRow& row = rows_[rows[n]];
