@@ -26,6 +26,11 @@ class RayBudget {
   }
 
   std::uint64_t rays() const { return rays_; }
+  /// Counts what was spent before this budget was made.
+  void add_spent(std::uint64_t rays, double traversal_s) {
+    rays_ += rays;
+    nanoseconds_ += static_cast<std::uint64_t>(1e9 * traversal_s);
+  }
   double traversal_s() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
 
  private:

@@ -8,12 +8,13 @@ namespace alvor {
 
 namespace {
 
-constexpr double start_edge = 1.0 / 6;       // of the extent: no patch of the first mesh is longer
-constexpr double start_area = 1e-3;          // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
-constexpr double small_area = 2e-5;          // of the scene's: roots below begin with small rows
-constexpr std::size_t most_one_by_one = 12;  // emitters
-constexpr std::size_t parts_shown = 8;       // of a scene with more
-constexpr double marked_share = 0.9;         // of the squared error, per pass
+constexpr double start_edge = 1.0 / 6;        // of the extent: no patch of the first mesh is longer
+constexpr double start_area = 1e-3;           // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+constexpr double small_area = 2e-5;           // of the scene's: roots below begin with small rows
+constexpr std::size_t most_one_by_one = 12;   // emitters
+constexpr std::size_t parts_shown = 8;        // of a scene with more
+constexpr double marked_share = 0.9;          // of the squared error, per pass
+constexpr std::size_t rows_per_batch = 8192;  // between which a solve can be interrupted and go on later
 
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
@@ -96,32 +97,52 @@ void SolveState::fit_to_nodes() {
   }
 }
 
-void SolveState::trace_new_rows() {
-  for (auto traced = trace_untraced(); !traced.empty(); traced = trace_untraced())
-    for (const NodeIndex row : traced) heed_hidden_origins(row);
+void SolveState::trace_new_rows(const std::function<void()>& after_each) {
+  if (!add_wanted_rays(after_each)) return;
+  for (auto rows = untraced_rows(); !rows.empty(); rows = untraced_rows())
+    for (std::span<const NodeIndex> left = rows; !left.empty(); left = left.subspan(std::min(rows_per_batch, left.size()))) {
+      if (!trace(left.first(std::min(rows_per_batch, left.size())))) return;
+      after_each();
+    }
   if (has_rows() && options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
 }
 
-std::vector<NodeIndex> SolveState::trace_untraced() {
+std::vector<NodeIndex> SolveState::untraced_rows() const {
+  std::vector<NodeIndex> rows = row_forest_.leaves();
+  std::erase_if(rows, [this](NodeIndex row) { return row_is_traced_[row] || !may_be_lit(row); });
+  return rows;
+}
+
+/// False, and nothing has changed, if the budget ran out.
+bool SolveState::trace(std::span<const NodeIndex> batch) {
   std::vector<NodeIndex> nodes;
-  std::vector<PatchShape> shapes;
-  std::vector<PatchId> patches;
   std::vector<RowSize> sizes;
-  for (const NodeIndex row : row_forest_.leaves()) {
-    if (row_is_traced_[row] || !may_be_lit(row)) continue;
+  for (const NodeIndex row : batch) {
+    if (!row_forest_.is_leaf(row)) continue;  // a row before it followed a contact
     nodes.push_back(row);
-    shapes.push_back(row_forest_.shape(row));
-    patches.push_back(row_forest_.id(row));
-    sizes.push_back(size_of(patches.back()));
+    sizes.push_back(size_of(row_forest_.id(row)));
   }
   const bool nothing_to_find = !has_rows() && !plan_.backs_are_seen();
-  auto rows = nothing_to_find ? std::vector(nodes.size(), TransportRow{.rays = rays_per_row})
-                              : trace_rows(scene_, directions_, shapes, patches, sizes, options_.seed, budget_, row_needs());
+  auto rows =
+      nothing_to_find ? std::vector(nodes.size(), TransportRow{.rays = rays_per_row}) : traced(nodes, sizes, options_.seed);
+  if (budget_.is_out()) return false;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     rows_[nodes[n]] = std::move(rows[n]);
     row_is_traced_[nodes[n]] = true;
   }
-  return nodes;
+  for (const NodeIndex row : nodes) heed_hidden_origins(row);
+  return true;
+}
+
+std::vector<TransportRow> SolveState::traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
+                                             std::uint64_t seed) {
+  std::vector<PatchShape> shapes;
+  std::vector<PatchId> patches;
+  for (const NodeIndex row : rows) {
+    shapes.push_back(row_forest_.shape(row));
+    patches.push_back(row_forest_.id(row));
+  }
+  return trace_rows(scene_, directions_, shapes, patches, sizes, seed, budget_, row_needs());
 }
 
 RowSize SolveState::size_of(PatchId patch) const {
@@ -159,8 +180,11 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
   const std::vector<Receiver> receivers = unlit_receivers(nodes);
   std::vector<DirectLight> light(nodes.size());
   const ShadowNeeds needs{plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)};
-  const auto show = [&](std::size_t first, std::size_t count, double power) {
-    for (std::size_t n = first; n < first + count; ++n) direct_[nodes[n]] = light[n];
+  const auto show = [&](std::size_t first, std::size_t count, double power, bool is_all) {
+    for (std::size_t n = first; n < first + count; ++n) {
+      direct_[nodes[n]] = light[n];
+      direct_is_known_[nodes[n]] = is_all;
+    }
     waiting_power_ = std::max(0.0, waiting_power_ - power);
     after_each();
   };
@@ -170,16 +194,18 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
       const std::size_t count = std::min(step, receivers.size() - first);
       add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
                        std::span(light).subspan(first, count), needs);
-      show(first, count, emitted_power_ * static_cast<double>(count) / static_cast<double>(receivers.size()));
+      if (budget_.is_out()) return;
+      show(first, count, emitted_power_ * static_cast<double>(count) / static_cast<double>(receivers.size()), true);
     }
   } else {
     for (const Emitter& emitter : emitters_) {
       add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light, needs);
-      show(0, nodes.size(), emitter.power);
+      if (budget_.is_out()) return;
+      show(0, nodes.size(), emitter.power, &emitter == &emitters_.back());
     }
+    if (emitters_.empty()) show(0, nodes.size(), 0, true);
   }
   waiting_power_ = 0;
-  for (const NodeIndex leaf : nodes) direct_is_known_[leaf] = true;
 }
 
 NodeIndex SolveState::leaf_node_of_row(NodeIndex row) const {
@@ -261,18 +287,18 @@ void SolveState::hand_down_field(NodeIndex split_row) {
   hit_leaves_[split_row] = {};
 }
 
-bool SolveState::add_rays(std::span<const NodeIndex> rows) {
-  std::vector<PatchShape> shapes;
-  std::vector<PatchId> patches;
-  for (const NodeIndex row : rows) {
-    shapes.push_back(row_forest_.shape(row));
-    patches.push_back(row_forest_.id(row));
+/// False if the budget ran out before all had theirs.
+bool SolveState::add_wanted_rays(const std::function<void()>& after_each) {
+  while (!wanting_rays_.empty()) {
+    const std::size_t count = std::min(rows_per_batch, wanting_rays_.size());
+    const std::vector<NodeIndex> rows(wanting_rays_.end() - static_cast<std::ptrdiff_t>(count), wanting_rays_.end());
+    const auto more = traced(rows, std::vector(count, RowSize::whole), options_.seed + rounds_of_rays_);
+    if (budget_.is_out()) return false;
+    for (std::size_t n = 0; n < count; ++n) rows_[rows[n]].append(more[n]);
+    wanting_rays_.resize(wanting_rays_.size() - count);
+    after_each();
   }
-  const auto more = trace_rows(scene_, directions_, shapes, patches, std::vector(rows.size(), RowSize::whole),
-                               options_.seed + ++rounds_of_rays_, budget_, row_needs());
-  if (budget_.is_out()) return false;
-  for (std::size_t n = 0; n < rows.size(); ++n) rows_[rows[n]].append(more[n]);
-  return !rows.empty();
+  return true;
 }
 
 bool SolveState::refine() {
@@ -282,16 +308,16 @@ bool SolveState::refine() {
     for (std::size_t n = 0; n < patch_leaves_.size(); ++n) shot_[patch_leaves_[n]] = shot[n];
   }
   exchange_.reset();
-  std::vector<NodeIndex> noisy;
   for (const Candidate& candidate : mark(std::move(candidates_), marked_share)) {
-    if (candidate.kind == Candidate::Kind::add_rays) noisy.push_back(candidate.patch);
+    if (candidate.kind == Candidate::Kind::add_rays) wanting_rays_.push_back(candidate.patch);
     if (candidate.kind == Candidate::Kind::split_row) split_row(candidate.patch);
     if (candidate.kind == Candidate::Kind::split_leaf) split_leaf(candidate.patch);
   }
   candidates_.clear();
-  std::erase_if(noisy, [this](NodeIndex row) { return !row_forest_.is_leaf(row); });
+  std::erase_if(wanting_rays_, [this](NodeIndex row) { return !row_forest_.is_leaf(row); });
+  if (!wanting_rays_.empty()) ++rounds_of_rays_;
   const bool has_split = leaf_forest_.leaf_count() != leaves_before || row_forest_.leaf_count() != rows_before;
-  return add_rays(noisy) || has_split;
+  return !wanting_rays_.empty() || has_split;
 }
 
 }  // namespace alvor

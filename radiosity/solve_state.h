@@ -32,8 +32,10 @@ class SolveState {
   double emitted_power() const { return emitted_power_; }
   std::size_t leaf_count() const { return leaf_forest_.leaf_count(); }
 
-  void trace_new_rows();
-  /// `after_each` is called now and then, when what direct_ holds may be shown.
+  /// Adds the rays that refine() asked for, and traces the rows that are not. Until it is done, `after_each` is called now and then,
+  /// where save() may be. Returns early where the budget is out; called again, it goes on from there.
+  void trace_new_rows(const std::function<void()>& after_each = [] {});
+  /// The same; what direct_ holds may then be shown.
   void add_new_direct_light(const std::function<void()>& after_each);
   /// Sets up the exchange of light; what the previous pass found carries over.
   void begin_exchange();
@@ -70,6 +72,11 @@ class SolveState {
   /// split and rows are not what errs most. Requires: estimate() just before.
   bool refine();
 
+  /// What it takes to go on from here with another state of the same mesh, plan and options. Between passes and where it is allowed.
+  void save(PlainWriter& out) const;
+  /// Requires: nothing was done yet. Throws BadBytes, and is then of no use.
+  void load(PlainReader& in);
+
  private:
   void list_patches();
   std::unique_ptr<Exchange> begin_gathering();
@@ -82,7 +89,10 @@ class SolveState {
   bool split_row(NodeIndex row);
   void follow_contact(NodeIndex split_leaf);
   void hand_down_field(NodeIndex split_row);
-  std::vector<NodeIndex> trace_untraced();
+  std::vector<NodeIndex> untraced_rows() const;
+  bool trace(std::span<const NodeIndex> rows);
+  bool add_wanted_rays(const std::function<void()>& after_each);
+  std::vector<TransportRow> traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
   RowSize size_of(PatchId patch) const;
   void make_rows_exact();
   void heed_hidden_origins(NodeIndex row);
@@ -92,7 +102,6 @@ class SolveState {
   Rgb row_emission(std::uint32_t root) const;
   static Rgb largest_irradiance(const BaseMesh& mesh);
   bool rows_tell_what_is_lost() const;
-  bool add_rays(std::span<const NodeIndex> rows);
   void find_hit_leaves(NodeIndex row);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
@@ -122,6 +131,7 @@ class SolveState {
   std::vector<Emitter> emitters_;
   std::unique_ptr<LightTree> light_tree_;  ///< where there are many
   std::uint64_t rounds_of_rays_ = 0;       ///< each adds independent rays
+  std::vector<NodeIndex> wanting_rays_;    ///< rows that the newest round has not reached
   double area_ = 0;                        ///< of all roots, m2
   double emission_unit_ = 1;               ///< the brightest emission, W/m2
   double emitted_power_ = 0;

@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <mutex>
+#include <functional>
 #include <thread>
 
 namespace alvor {
@@ -26,27 +25,38 @@ constexpr double publish_when = 0.75;     // of the unshot power at the last pub
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
 
-struct CloseAtEnd {
-  SolutionLog& log;
-  ~CloseAtEnd() { log.close(); }
+constexpr std::uint32_t checkpoint_version = 1;
+
+/// What a run knows besides its state.
+struct Progress {
+  double elapsed_s = 0, cpu_s = 0, traversal_s = 0;
+  std::uint64_t rays = 0, shots = 0;
+  std::uint64_t passes = 0;  ///< that came to their end
+  ErrorEstimate error{.unshot = 1};
+  PowerBalance balance;
+  double lowest_error = 0;
+  std::uint64_t leaves_before = 0;  ///< the last pass that gained something
+  std::uint64_t idle_passes = 0;    ///< since
 };
 
 /// The pauses of a paced solve are not part of its time.
 class SolveClock {
  public:
   double elapsed_s() const { return seconds(Clock::now() - start_ - paused_); }
-  /// Returns early when a stop is requested.
-  void pause(double duration_s, const std::stop_token& stop) {
-    const auto before = Clock::now();
-    std::mutex lock;
-    std::unique_lock hold(lock);
-    std::condition_variable_any never;
-    never.wait_for(hold, stop, std::chrono::duration<double>(duration_s), [] { return false; });
+  /// Returns early once `must_stop` says so.
+  void pause(double duration_s, const std::function<bool()>& must_stop) {
+    const auto before = Clock::now(), end = before + of(duration_s);
+    while (!must_stop() && Clock::now() < end)
+      std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), most_nap));
     paused_ += Clock::now() - before;
   }
+  /// What was elapsed before this clock was made.
+  void add_elapsed(double elapsed_s) { start_ -= of(elapsed_s); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds most_nap{20};
+  static Clock::duration of(double s) { return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s)); }
   static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
   Clock::time_point start_ = Clock::now();
   Clock::duration paused_{};
@@ -67,27 +77,30 @@ SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLo
 class Run {
  public:
   Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
-      std::stop_token stop)
+      const SolveControl& control)
       : plan_(plan),
         options_(options),
         log_(log),
-        stop_(std::move(stop)),
+        control_(control),
         cpu_(cpu),
         budget_([this] { return must_stop(); }),
         state_(mesh, plan, options, budget_) {}
 
   SolveOutcome run() {
-    publish();
+    if (control_.checkpoint.empty()) publish();
+    else load();
     const StopReason reason = pass_until_done();
-    const double cpu = cpu_.seconds();
-    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, balance_};
+    if (reason == StopReason::parked) save();
+    const double cpu = cpu_s();
+    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
   }
 
  private:
   StopReason pass_until_done() {
-    for (bool first = true;; first = false) {
-      if (!pass(first)) return stop_reason();
-      if (error_.total() <= options_.tolerance) return converge(StopReason::tolerance);
+    for (;;) {
+      save_if_due();
+      if (!pass()) return stop_reason();
+      if (is_.error.total() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
       const bool is_better = gains() && state_.refine();
       if (must_stop()) return stop_reason();
@@ -100,29 +113,31 @@ class Run {
 
   /// False where passes that split nothing, but only add rays, do not bring the error down any more.
   bool gains() {
-    const bool has_split = state_.leaf_count() > leaves_before_;
-    if (has_split || error_.total() < worth_going_on * lowest_error_) {
-      idle_passes_ = 0;
-      leaves_before_ = state_.leaf_count();
-      lowest_error_ = error_.total();
+    const bool has_split = state_.leaf_count() > is_.leaves_before;
+    if (has_split || is_.error.total() < worth_going_on * is_.lowest_error) {
+      is_.idle_passes = 0;
+      is_.leaves_before = state_.leaf_count();
+      is_.lowest_error = is_.error.total();
     }
-    return ++idle_passes_ <= most_idle_passes;
+    return ++is_.idle_passes <= most_idle_passes;
   }
 
   /// False if it was stopped: then the last published step stands.
-  bool pass(bool first) {
-    state_.trace_new_rows();
+  bool pass() {
+    state_.trace_new_rows([this] { save_if_due(); });
     if (must_stop()) return false;
-    state_.add_new_direct_light([&] {
-      ++shots_;
-      if (first && !must_stop()) publish_if_due();
+    state_.add_new_direct_light([this] {
+      ++is_.shots;
+      if (is_.passes == 0 && !must_stop()) publish_if_due();
+      save_if_due();
     });
     if (must_stop()) return false;
     state_.begin_exchange();
-    if (!exchange_down_to(may_be_last(first) ? final_remaining : pass_remaining * options_.tolerance)) return false;
-    error_ = state_.estimate();
+    if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
+    is_.error = state_.estimate();
     account();
     publish();
+    ++is_.passes;
     return true;
   }
 
@@ -130,7 +145,7 @@ class Run {
   StopReason converge(StopReason reason) {
     if (!exchange_down_to(final_remaining)) return stop_reason();
     state_.show_what_came_since();
-    error_.unshot = state_.exchange().remaining_error();
+    is_.error.unshot = state_.exchange().remaining_error();
     account();
     publish();
     return is_stuck() ? StopReason::stalled : reason;
@@ -139,8 +154,8 @@ class Run {
   /// Noise of rows that all of the scene has in common shows in what they lose of the power or add to it: where nearly all is
   /// reflected, a thousandth of each row is a large part of the solution.
   void account() {
-    balance_ = state_.balance();
-    error_.balance = std::abs(balance_.gap());
+    is_.balance = state_.balance();
+    is_.error.balance = std::abs(is_.balance.gap());
   }
 
   /// False if it was stopped.
@@ -148,8 +163,8 @@ class Run {
     Exchange& exchange = state_.exchange();
     double published = exchange.unshot_power();
     const Settling end = settle(exchange, remaining_error, [&](std::size_t steps) {
-      shots_ += steps;
-      if (must_stop()) return false;
+      is_.shots += steps;
+      if (must_break_off()) return false;
       if (exchange.unshot_power() >= publish_when * published) return true;
       published = exchange.unshot_power();
       state_.show_what_came_since();
@@ -170,26 +185,64 @@ class Run {
     const double before = clock_.elapsed_s();
     Step step;
     step.elapsed_s = before;
-    step.shots = shots_;
+    step.shots = is_.shots;
     step.rays = budget_.rays();
     step.leaves = state_.leaf_count();
     step.unshot_fraction = state_.unshot_fraction();
-    step.estimated_error = error_.total();
-    step.displayed_error = displayed_error * std::min(1.0, error_.total());
+    step.estimated_error = is_.error.total();
+    step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
     if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
-    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, stop_);
+    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return must_stop(); });
   }
 
-  bool is_stuck() const { return has_stalled_ && error_.unshot > pass_remaining * options_.tolerance; }
-  /// A pass that may be the last goes on to the end where that is cheap: what it shows is then smoothed as a whole.
-  bool may_be_last(bool first) const {
-    return options_.strategy == Strategy::automatic && (first || error_.total() < near_the_end * options_.tolerance);
+  void save_if_due() {
+    if (control_.is_checkpoint_due && control_.is_checkpoint_due()) save();
   }
-  bool must_stop() const { return stop_.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
-  StopReason stop_reason() const { return stop_.stop_requested() ? StopReason::cancelled : StopReason::time_limit; }
+
+  void save() {
+    if (!control_.save) return;
+    Progress now = is_;
+    now.elapsed_s = clock_.elapsed_s();
+    now.cpu_s = cpu_s();
+    now.traversal_s = budget_.traversal_s();
+    now.rays = budget_.rays();
+    control_.save([&](PlainWriter& out) {
+      out.put(checkpoint_version);
+      out.put(now);
+      state_.save(out);
+    });
+  }
+
+  void load() {
+    PlainReader in(control_.checkpoint);
+    if (in.get<std::uint32_t>() != checkpoint_version) throw BadBytes("is of another version");
+    is_ = in.get<Progress>();
+    const double numbers[] = {is_.elapsed_s, is_.cpu_s, is_.traversal_s, is_.error.total(), is_.lowest_error, is_.balance.gap()};
+    if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || is_.elapsed_s < 0)
+      throw BadBytes("progress: cannot be");
+    state_.load(in);
+    in.expect_end();
+    clock_.add_elapsed(is_.elapsed_s);
+    budget_.add_spent(is_.rays, is_.traversal_s);
+  }
+
+  double cpu_s() const { return is_.cpu_s + cpu_.seconds(); }
+
+  bool is_stuck() const { return has_stalled_ && is_.error.unshot > pass_remaining * options_.tolerance; }
+  /// A pass that may be the last goes on to the end where that is cheap: what it shows is then smoothed as a whole.
+  bool may_be_last() const {
+    return options_.strategy == Strategy::automatic && (is_.passes == 0 || is_.error.total() < near_the_end * options_.tolerance);
+  }
+  /// Whatever is under way is given up: from the middle of an exchange a solve would go on otherwise.
+  bool must_break_off() const { return control_.stop.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
+  bool must_stop() const { return control_.park.stop_requested() || must_break_off(); }
+  StopReason stop_reason() const {
+    if (control_.stop.stop_requested()) return StopReason::cancelled;
+    return clock_.elapsed_s() > options_.time_limit_s ? StopReason::time_limit : StopReason::parked;
+  }
   StopReason limit_reached() const {
     return state_.leaf_count() + 3 > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
   }
@@ -197,18 +250,13 @@ class Run {
   const Plan& plan_;
   SolveOptions options_;
   SolutionLog& log_;
-  std::stop_token stop_;
+  const SolveControl& control_;
   SolveClock clock_;
   const CpuClock& cpu_;
   RayBudget budget_;
   SolveState state_;
-  std::uint64_t shots_ = 0;
+  Progress is_;
   bool has_stalled_ = false;  // light was still going round when the last exchange ended
-  ErrorEstimate error_{.unshot = 1};
-  PowerBalance balance_;
-  double lowest_error_ = 0;
-  std::size_t leaves_before_ = 0;
-  int idle_passes_ = 0;
   double published_at_ = 0, publishing_s_ = 0;
 };
 
@@ -223,24 +271,30 @@ std::string_view text(StopReason reason) {
     case StopReason::cancelled: return "cancelled";
     case StopReason::dark: return "no light";
     case StopReason::stalled: return "light goes round too slowly";
+    case StopReason::parked: return "parked";
   }
   return "unknown";
 }
 
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
-                              std::stop_token stop) {
+                              const SolveControl& control) {
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   tbb::task_arena arena(threads);
   const CpuClock cpu(arena);
   return arena.execute([&] {
-    const CloseAtEnd close{log};
     if (!plan.has_light()) return show_darkness(mesh, cpu, log);
-    return Run(mesh, plan, options, cpu, log, std::move(stop)).run();
+    return Run(mesh, plan, options, cpu, log, control).run();
   });
 }
 
 SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
-  return solve_as_planned(mesh, Plan(mesh, options), options, log, std::move(stop));
+  const struct CloseAtEnd {
+    SolutionLog& log;
+    ~CloseAtEnd() { log.close(); }
+  } close{log};
+  SolveControl control;
+  control.stop = std::move(stop);
+  return solve_as_planned(mesh, Plan(mesh, options), options, log, control);
 }
 
 }  // namespace alvor

@@ -3,6 +3,7 @@
 
 #include "meshing/base_mesh.h"
 #include "radiosity/plan.h"
+#include "radiosity/solve_control.h"
 #include "radiosity/strategies.h"
 #include "solution/feature.h"
 #include "solution/solution_log.h"
@@ -38,8 +39,8 @@ struct SolveOptions {
 };
 
 /// `stalled`: light went round so slowly, or rounding so far, that what is left unshot exceeds the tolerance; the estimated error
-/// says by how much.
-enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled, dark, stalled };
+/// says by how much. `parked`: SolveControl::park was obeyed.
+enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled, dark, stalled, parked };
 /// "tolerance", "leaf limit", ... for people.
 std::string_view text(StopReason reason);
 
@@ -62,12 +63,12 @@ struct SolveOutcome {
   PowerBalance balance;        ///< of the last pass that light went round; all 0 if it was stopped before
 };
 
-/// Solves on the calling thread and its worker threads; publishes every step to `log` and closes it. Step 1 is published before
-/// any ray is traced. A stop request is obeyed within one batch of rays or shots, and leaves a usable solution in the log.
-/// Requires: !mesh.roots().empty(), log.head() == 0; the plan is of this mesh and these options.
+/// Solves on the calling thread and its worker threads; publishes every step to `log`. Step 1 is published before any ray is
+/// traced. Throws BadBytes for a checkpoint that cannot be of this mesh and these options.
+/// Requires: !mesh.roots().empty(), log.head() == 0 without a checkpoint; the plan is of this mesh and these options.
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
-                              std::stop_token stop);
-/// The same, with its own plan.
+                              const SolveControl& control);
+/// The same with its own plan; closes the log.
 SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop);
 
 }  // namespace alvor

@@ -22,7 +22,9 @@ void StoredSolve::run(const Solver& solver, std::stop_token stop) {
   try {
     const Plan plan(scene_->mesh, options_);
     show(plan);
-    const SolveOutcome outcome = solver(scene_->mesh, plan, options_, log, stop);
+    SolveControl control;
+    control.stop = std::move(stop);
+    const SolveOutcome outcome = solver(scene_->mesh, plan, options_, log, control);
     const bool cancelled = outcome.reason == StopReason::cancelled;
     end(cancelled ? v1::Solve::CANCELLED : v1::Solve::SUCCEEDED, std::string(text(outcome.reason)), outcome);
   } catch (const std::bad_alloc&) {
@@ -30,7 +32,6 @@ void StoredSolve::run(const Solver& solver, std::stop_token stop) {
   } catch (const std::exception& fault) {
     end(v1::Solve::FAILED, as_utf8(fault.what()), {});
   }
-  // The solver has closed it before the state was final: watchers have to be woken once more.
   log.close();
 }
 

@@ -14,7 +14,7 @@
 namespace alvor {
 
 /// solve_as_planned, or what stands in for it.
-using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, std::stop_token)>;
+using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, const SolveControl&)>;
 
 /// Thread-safe.
 class StoredSolve {

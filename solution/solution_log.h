@@ -2,6 +2,7 @@
 // The state of a growing solution: newest value per leaf and the revision at which it last changed.
 
 #include "solution/leaf_value.h"
+#include "solution/plain_bytes.h"
 #include "solution/shared_exponent.h"
 #include "solution/state_hash.h"
 
@@ -54,6 +55,12 @@ struct Delta {
 class SolutionLog {
  public:
   static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+
+  SolutionLog() = default;
+  /// As it was saved; it goes on from there. Throws BadBytes.
+  explicit SolutionLog(PlainReader& saved);
+  /// All there is, whether it is closed or not excepted. Not while publishing: the writer's thread may call it.
+  void save(PlainWriter& out) const;
 
   /// Makes the next revision. A value for a patch deeper than the log holds splits its ancestor; leaves implied by that and not
   /// given inherit. `step.revision` and `step.step` are filled in here. Requires: `changed` ascends, no patch of it contains

@@ -3,8 +3,8 @@
 namespace alvor {
 
 Solver StagedSolver::solver() {
-  return [this](const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, std::stop_token stop) {
-    return run(log, stop);
+  return [this](const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
+    return run(log, control.stop);
   };
 }
 
@@ -15,7 +15,6 @@ SolveOutcome StagedSolver::run(SolutionLog& log, std::stop_token stop) {
   const bool told = changed_.wait(hold, stop, [this] { return finished_; });
   log_ = nullptr;
   if (told && !failure_.empty()) throw std::runtime_error(failure_);
-  log.close();
   return {.reason = told ? StopReason::tolerance : StopReason::cancelled};
 }
 

@@ -41,7 +41,7 @@ class WatchTest : public testing::Test {
   static constexpr std::size_t page = 10;
   void publish() { solve->log.publish(leaves.next(), {}); }
   void end() {
-    solve->run([](auto&, auto&, auto&, SolutionLog& log, std::stop_token) { return log.close(), SolveOutcome{}; }, {});
+    solve->run([](auto&, auto&, auto&, SolutionLog&, const SolveControl&) { return SolveOutcome{}; }, {});
   }
   static std::shared_ptr<StoredSolve> make_solve() {
     SceneStore scenes;

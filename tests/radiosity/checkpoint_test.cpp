@@ -1,0 +1,197 @@
+// A solve that is interrupted and goes on later.
+
+#include "radiosity/solver.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace alvor {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+PlainWriter writer_to(Bytes& bytes) {
+  return PlainWriter([&bytes](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+}
+
+Bytes saved(const SolutionLog& log) {
+  Bytes bytes;
+  PlainWriter out = writer_to(bytes);
+  log.save(out);
+  return bytes;
+}
+
+struct Saved {
+  Bytes state, log;
+};
+
+/// Solves until the `n`th place where it may be interrupted, or to its end.
+struct Interrupted {
+  SolveOutcome outcome;
+  Saved saved;
+  std::vector<LeafValue> leaves;
+  Step last;
+};
+
+Interrupted solve_until(int n, const BaseMesh& mesh, const SolveOptions& options, const Saved& from = {}) {
+  auto log = std::make_unique<SolutionLog>();
+  if (!from.log.empty()) {
+    PlainReader in(from.log);
+    log = std::make_unique<SolutionLog>(in);
+  }
+  Interrupted result;
+  std::stop_source park;
+  SolveControl control;
+  control.park = park.get_token();
+  control.is_checkpoint_due = [&] {
+    if (n-- == 0) park.request_stop();
+    return false;
+  };
+  control.save = [&](const SolveControl::Write& write) {
+    PlainWriter out = writer_to(result.saved.state);
+    write(out);
+    result.saved.log = saved(*log);
+  };
+  control.checkpoint = from.state;
+  result.outcome = solve_as_planned(mesh, Plan(mesh, options), options, *log, control);
+  result.leaves = log->leaves();
+  result.last = log->last_step();
+  return result;
+}
+
+Scene room_with_many_lamps() {
+  Scene scene = test::coloured_room();
+  for (int n = 0; n < 20; ++n) {
+    const double x = 0.15 * n + 0.2, X = x + 0.1;
+    test::add_polygon(scene, {{x, 2.9, 4}, {X, 2.9, 4}, {X, 2.9, 4.1}, {x, 2.9, 4.1}}, 1);
+  }
+  return scene;
+}
+
+Scene black_room() {
+  Scene scene = test::room_with_contacts();
+  for (Material& material : scene.materials) material.reflectance = {};
+  return scene;
+}
+
+Scene hazy_room() {
+  Scene scene = test::room_with_contacts();
+  scene.absorption = {0.01, 0.1, 0.05};
+  return scene;
+}
+
+struct Case {
+  const char* name;
+  Scene (*scene)();
+  SolveOptions options;
+};
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+class Checkpoint : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(
+    Of, Checkpoint,
+    testing::Values(Case{"OneLamp", test::room_with_contacts, {.tolerance = 0.02, .max_leaves = 6000}},
+                    Case{"ManyLamps", room_with_many_lamps, {.tolerance = 0.03, .max_leaves = 4000}},
+                    Case{"Shooting", test::coloured_room, {.tolerance = 0.04, .strategy = Strategy::sorted}},
+                    Case{"NothingReflects", black_room, {.tolerance = 0.03, .max_leaves = 6000}},
+                    Case{"HemicubesInHaze", hazy_room, {.tolerance = 0.05, .form_factors = FormFactorMethod::hemicube}},
+                    Case{"Furnace", [] { return test::furnace(1, 0.9); }, {}}),
+    [](const auto& one) { return one.param.name; });
+
+TEST_P(Checkpoint, ASolveGoesOnFromItAsIfItHadNotBeenInterrupted) {
+  const BaseMesh mesh(GetParam().scene());
+  const SolveOptions& options = GetParam().options;
+  const Interrupted whole = solve_until(-1, mesh, options);
+  int interruptions = 0;
+  for (int n = 0;; n += 1 + n / 4) {
+    const Interrupted half = solve_until(n, mesh, options);
+    if (half.outcome.reason != StopReason::parked) break;
+    const Interrupted rest = solve_until(-1, mesh, options, half.saved);
+    ++interruptions;
+    EXPECT_EQ(rest.outcome.reason, whole.outcome.reason) << n;
+    EXPECT_EQ(rest.last.estimated_error, whole.last.estimated_error) << n;
+    EXPECT_GE(rest.last.rays, whole.last.rays) << n;
+    ASSERT_EQ(rest.leaves, whole.leaves) << n;
+  }
+  EXPECT_GE(interruptions, 2);
+}
+
+TEST(CheckpointOfARun, CountsWhatWasSpentBefore) {
+  const BaseMesh mesh(test::room_with_contacts());
+  const SolveOptions options{.tolerance = 0.02, .max_leaves = 6000};
+  const Interrupted half = solve_until(4, mesh, options);
+  const Interrupted rest = solve_until(-1, mesh, options, half.saved);
+  EXPECT_GT(rest.outcome.cpu_s, half.outcome.cpu_s);
+  EXPECT_GT(rest.outcome.solve_s, half.outcome.solve_s);
+  EXPECT_GT(rest.last.rays, half.last.rays);
+  EXPECT_GT(rest.last.revision, half.last.revision);
+  EXPECT_GT(rest.last.elapsed_s, half.last.elapsed_s);
+}
+
+TEST(CheckpointOfARun, IsRefusedWhenCutOffOrOfAnotherScene) {
+  const BaseMesh mesh(test::coloured_room());
+  const SolveOptions options{.tolerance = 0.02, .max_leaves = 2000};
+  const Saved whole = solve_until(3, mesh, options).saved;
+  ASSERT_FALSE(whole.state.empty());
+  for (std::size_t size = 1; size < whole.state.size(); size += whole.state.size() / 200 + 1) {
+    Saved cut = whole;
+    cut.state.resize(size);
+    EXPECT_THROW(solve_until(-1, mesh, options, cut), BadBytes) << size;
+  }
+  Saved longer = whole;
+  longer.state.push_back({});
+  EXPECT_THROW(solve_until(-1, mesh, options, longer), BadBytes);
+  Scene other;
+  other.materials = {test::grey(1, 0.5)};
+  test::add_polygon(other, {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}});
+  EXPECT_THROW(solve_until(-1, BaseMesh(other), options, whole), BadBytes);
+}
+
+TEST(SavedLog, GoesOnAsItWas) {
+  const BaseMesh mesh(test::coloured_room());
+  SolutionLog log;
+  solve(mesh, {.tolerance = 0.05}, log, {});
+  const Bytes bytes = saved(log);
+  PlainReader in(bytes);
+  SolutionLog again(in);
+  in.expect_end();
+  for (const Detail detail : {Detail::exact, Detail::display}) {
+    for (const std::uint64_t base : {std::uint64_t{0}, log.head() / 2, log.head()}) {
+      const Delta before = log.since({.base = base}, detail), after = again.since({.base = base}, detail);
+      EXPECT_EQ(after.values, before.values);
+      EXPECT_EQ(after.steps, before.steps);
+      EXPECT_EQ(after.state_hash, before.state_hash);
+    }
+  }
+  EXPECT_FALSE(again.closed());
+}
+
+TEST(SavedLog, IsRefusedWhenAnythingIsCutOffOrCannotBe) {
+  SolutionLog log;
+  log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}, {PatchId::root(1), {3, 2, 1}}}, {});
+  const Bytes whole = saved(log);
+  const auto load = [](const Bytes& bytes) {
+    PlainReader in(bytes);
+    SolutionLog loaded(in);
+    in.expect_end();
+  };
+  EXPECT_NO_THROW(load(whole));
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_THROW(load(Bytes(whole.begin(), whole.begin() + size)), BadBytes);
+  // Every byte turned over is refused or makes a log that can be asked everything: nothing else may happen.
+  for (std::size_t place = 0; place < whole.size(); ++place) {
+    Bytes changed = whole;
+    changed[place] ^= std::byte{0xff};
+    try {
+      PlainReader in(changed);
+      SolutionLog loaded(in);
+      loaded.since({}, Detail::display);
+      loaded.leaves();
+    } catch (const BadBytes&) {}
+  }
+}
+
+}  // namespace
+}  // namespace alvor
