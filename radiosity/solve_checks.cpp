@@ -6,6 +6,12 @@
 
 namespace alvor {
 
+namespace {
+
+constexpr double held_by_floats = 1e37;  // W/m2, with room for sums
+
+}  // namespace
+
 // Where every surface emitted like the brightest and reflected like the lightest, B would be this everywhere, and H no larger.
 // What rays estimate may lie beyond, the truth does not.
 Rgb SolveState::largest_irradiance(const BaseMesh& mesh) {
@@ -14,7 +20,8 @@ Rgb SolveState::largest_irradiance(const BaseMesh& mesh) {
     emission = upper(emission, mesh.materials()[root.material].emission);
     reflectance = upper(reflectance, mesh.materials()[root.material].reflectance);
   }
-  return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
+  const Rgb most{emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
+  return lower(most, {held_by_floats, held_by_floats, held_by_floats});
 }
 
 // Not where they were switched off: for all faces, or for emitters that no light reaches.
