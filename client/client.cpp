@@ -3,6 +3,7 @@
 #include "proto/codec.h"
 
 #include <algorithm>
+#include <random>
 
 namespace alvor {
 
@@ -29,13 +30,26 @@ void check(const grpc::Status& status) {
   if (!status.ok()) throw RpcError(status);
 }
 
+/// Of a call that answers at once.
+struct Deadline : grpc::ClientContext {
+  Deadline() { set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1)); }
+};
+
+/// A UUID would do as well.
+std::string random_id() {
+  std::random_device source;
+  std::string id;
+  for (int n = 0; n < 4; ++n) id += std::to_string(source()) + (n < 3 ? "-" : "");
+  return id;
+}
+
 [[noreturn]] void refuse(const Fault& fault) { throw RpcError({grpc::DATA_LOSS, fault.text()}); }
 
 // All pages of a list; `call` fills in a response, `append` takes its items.
 template <class Request, class Response, class Call, class Append>
 void read_pages(Request request, Call&& call, Append&& append) {
   do {
-    grpc::ClientContext context;
+    Deadline context;
     Response response;
     check(call(context, request, response));
     append(response);
@@ -55,21 +69,44 @@ bool Client::wait_until_connected(std::chrono::milliseconds patience) const {
 }
 
 v1::Scene Client::create_scene(const Scene& scene, const std::string& display_name) {
+  v1::CreateSceneRequest first;
+  first.mutable_scene()->set_display_name(as_utf8(display_name));
+  first.set_request_id(random_id());
+  return with_patience([&] { return upload(first, scene); });
+}
+
+/// Goes on from where an earlier attempt of the same request came to.
+v1::Scene Client::upload(v1::CreateSceneRequest first, const Scene& scene) {
+  first.set_resume_after_chunks(received_chunks(first.request_id()));
   grpc::ClientContext context;
   v1::Scene stored;
   const auto writer = scenes_->CreateScene(&context, &stored);
-  v1::CreateSceneRequest request;
-  request.mutable_scene()->set_display_name(as_utf8(display_name));
   SceneSlicer slicer(scene);
+  v1::CreateSceneRequest request;
+  for (std::uint64_t sent = 0; sent < first.resume_after_chunks(); ++sent) slicer.next(*request.mutable_chunk());
+  request = first;
   // A write fails when the server has refused what came before: Finish then tells why.
-  while (writer->Write(request) && slicer.next(*request.mutable_chunk())) {}
+  while (writer->Write(request)) {
+    request.Clear();
+    if (!slicer.next(*request.mutable_chunk())) break;
+  }
   writer->WritesDone();
   check(writer->Finish());
   return stored;
 }
 
+std::uint64_t Client::received_chunks(const std::string& request_id) {
+  v1::GetUploadRequest request;
+  request.set_request_id(request_id);
+  v1::Upload upload;
+  Deadline context;
+  const grpc::Status status = scenes_->GetUpload(&context, request, &upload);
+  if (!status.ok() && status.error_code() != grpc::NOT_FOUND) throw RpcError(status);
+  return status.ok() ? upload.chunk_count() : 0;
+}
+
 v1::Scene Client::get_scene(const std::string& name) {
-  grpc::ClientContext context;
+  Deadline context;
   v1::GetSceneRequest request;
   request.set_name(name);
   v1::Scene scene;
@@ -86,7 +123,7 @@ std::vector<v1::Scene> Client::list_scenes() {
 }
 
 void Client::delete_scene(const std::string& name) {
-  grpc::ClientContext context;
+  Deadline context;
   v1::DeleteSceneRequest request;
   request.set_name(name);
   google::protobuf::Empty nothing;
@@ -110,17 +147,20 @@ Scene Client::read_scene(const std::string& name) {
 }
 
 v1::Solve Client::create_solve(const std::string& scene_name, const v1::SolveSpec& spec) {
-  grpc::ClientContext context;
   v1::CreateSolveRequest request;
   request.set_parent(scene_name);
   *request.mutable_solve()->mutable_spec() = spec;
-  v1::Solve solve;
-  check(solves_->CreateSolve(&context, request, &solve));
-  return solve;
+  request.set_request_id(random_id());
+  return with_patience([&] {
+    Deadline context;
+    v1::Solve solve;
+    check(solves_->CreateSolve(&context, request, &solve));
+    return solve;
+  });
 }
 
 v1::Solve Client::get_solve(const std::string& name) {
-  grpc::ClientContext context;
+  Deadline context;
   v1::GetSolveRequest request;
   request.set_name(name);
   v1::Solve solve;
@@ -139,7 +179,7 @@ std::vector<v1::Solve> Client::list_solves(const std::string& parent) {
 }
 
 v1::Solve Client::cancel_solve(const std::string& name) {
-  grpc::ClientContext context;
+  Deadline context;
   v1::CancelSolveRequest request;
   request.set_name(name);
   v1::Solve solve;
@@ -147,8 +187,26 @@ v1::Solve Client::cancel_solve(const std::string& name) {
   return solve;
 }
 
+v1::Solve Client::pause_solve(const std::string& name) {
+  Deadline context;
+  v1::PauseSolveRequest request;
+  request.set_name(name);
+  v1::Solve solve;
+  check(solves_->PauseSolve(&context, request, &solve));
+  return solve;
+}
+
+v1::Solve Client::resume_solve(const std::string& name) {
+  Deadline context;
+  v1::ResumeSolveRequest request;
+  request.set_name(name);
+  v1::Solve solve;
+  check(solves_->ResumeSolve(&context, request, &solve));
+  return solve;
+}
+
 void Client::delete_solve(const std::string& name) {
-  grpc::ClientContext context;
+  Deadline context;
   v1::DeleteSolveRequest request;
   request.set_name(name);
   google::protobuf::Empty nothing;

@@ -32,7 +32,8 @@ class Client {
   /// False if no connection was made within `patience`.
   bool wait_until_connected(std::chrono::milliseconds patience) const;
 
-  /// Sends `scene` in chunks well below the message limit.
+  /// Sends `scene` in chunks well below the message limit. Where the connection is lost it goes on, or starts again, and never
+  /// makes two.
   v1::Scene create_scene(const Scene& scene, const std::string& display_name);
   v1::Scene get_scene(const std::string& name);
   std::vector<v1::Scene> list_scenes();  ///< all pages
@@ -43,6 +44,8 @@ class Client {
   v1::Solve get_solve(const std::string& name);
   std::vector<v1::Solve> list_solves(const std::string& parent);  ///< all pages
   v1::Solve cancel_solve(const std::string& name);
+  v1::Solve pause_solve(const std::string& name);
+  v1::Solve resume_solve(const std::string& name);
   void delete_solve(const std::string& name);
 
   /// Where a watch stands; keep it to go on after a lost connection.
@@ -59,6 +62,20 @@ class Client {
                         std::stop_token stop = {});
 
  private:
+  /// Once more where the server could not be reached, if it can be again within a while. For requests that may be sent twice.
+  template <class Body>
+  auto with_patience(Body&& body) const {
+    for (int tries = 1;; ++tries) try {
+        return body();
+      } catch (const RpcError& error) {
+        if (error.code != grpc::UNAVAILABLE || tries == most_tries || !wait_until_connected(patience_for_server)) throw;
+      }
+  }
+  v1::Scene upload(v1::CreateSceneRequest first, const Scene& scene);
+  std::uint64_t received_chunks(const std::string& request_id);
+
+  static constexpr int most_tries = 5;
+  static constexpr std::chrono::seconds patience_for_server{5};
   std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::SceneService::Stub> scenes_;
   std::unique_ptr<v1::SolveService::Stub> solves_;

@@ -13,6 +13,9 @@ namespace alvor {
 namespace {
 
 constexpr double accuracy = 1e-4;  // of single factors; shadowed ones err more, their sums less
+// The edges of shadows are followed where patches are few and large: there common points err by percents. Among many patches it
+// would take a hundred times as long.
+constexpr std::size_t most_rows_followed = 32, most_shadows_followed = 32;
 
 std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
@@ -43,7 +46,7 @@ void SolveState::make_rows_exact() {
   }
   const FacePolygons patches(std::move(polygons));
   const Blockers blockers(mesh_);
-  const FormFactorRows form_factors(patches, blockers, accuracy);
+  const FormFactorRows form_factors(patches, blockers, accuracy, rows.size() <= most_rows_followed ? most_shadows_followed : 0);
   const Medium medium{mesh_.absorption()};
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     TransportRow& row = rows_[rows[n]];

@@ -138,8 +138,8 @@ double kernel_sum(const Piece& from, const Piece& to) {
 
 class FormFactorRows::Pairs {
  public:
-  Pairs(const FacePolygons& faces, const Blockers& blockers, double accuracy)
-      : faces_(faces), blockers_(blockers), accuracy_(accuracy) {
+  Pairs(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed)
+      : faces_(faces), blockers_(blockers), accuracy_(accuracy), most_followed_(most_followed) {
     for (std::uint32_t face = 0; face < faces.face_count(); ++face) {
       first_.push_back(pieces_.size());
       for (const auto& corners : faces.pieces(face)) pieces_.push_back(make_piece(face, corners));
@@ -199,7 +199,7 @@ class FormFactorRows::Pairs {
   /// Few pairs: each shadow's edge is followed. Many: all of them from the same points of `from`, more until the errors are
   /// small; where a shadow's edge crosses several faces, what one gets too much another gets too little, and their sum is right.
   void solve_shadowed(const Piece& from, std::vector<Shadowed>& pairs) const {
-    if (from.points.count == 0 || (pairs.size() <= most_followed && worth_following(pairs))) {
+    if (from.points.count == 0 || (pairs.size() <= most_followed_ && worth_following(pairs))) {
       for (Shadowed& pair : pairs) pair.found = followed(from, pair);
       return;
     }
@@ -280,18 +280,19 @@ class FormFactorRows::Pairs {
   static constexpr double unseen_error = 0.01;          // of the unobstructed factor: a corner that no point saw
   static constexpr double shadow_accuracy = 1000;       // accuracies that a shadowed pair may be off
 
-  static constexpr std::size_t most_followed = 32, most_followed_blockers = 16;
+  static constexpr std::size_t most_followed_blockers = 16;
   static constexpr int most_levels = 1;
 
   const FacePolygons& faces_;
   const Blockers& blockers_;
   double accuracy_;
+  std::size_t most_followed_;
   std::vector<Piece> pieces_;
   std::vector<std::size_t> first_;
 };
 
-FormFactorRows::FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy)
-    : pairs_(std::make_unique<Pairs>(faces, blockers, accuracy)) {}
+FormFactorRows::FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed)
+    : pairs_(std::make_unique<Pairs>(faces, blockers, accuracy, most_followed)) {}
 FormFactorRows::~FormFactorRows() = default;
 
 std::vector<MatrixEntry> FormFactorRows::row(std::uint32_t from) const { return pairs_->row(from); }

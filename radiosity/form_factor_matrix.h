@@ -32,8 +32,8 @@ struct MatrixOptions {
 /// row's sum.
 class FormFactorRows {
  public:
-  /// Where few faces are partly shadowed as seen from one, each shadow's edge is followed exactly.
-  FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy);
+  /// Where at most `most_followed` faces are partly shadowed as seen from one, each shadow's edge is followed exactly.
+  FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed = 32);
   ~FormFactorRows();
   FormFactorRows(const FormFactorRows&) = delete;
   FormFactorRows& operator=(const FormFactorRows&) = delete;

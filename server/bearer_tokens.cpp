@@ -1,8 +1,7 @@
 #include "server/bearer_tokens.h"
 
-#include <openssl/sha.h>
+#include "server/sha256.h"
 
-#include <array>
 #include <sstream>
 #include <stdexcept>
 
@@ -11,7 +10,7 @@ namespace alvor {
 namespace {
 
 bool is_hash(std::string_view text) {
-  return text.size() == 2 * SHA256_DIGEST_LENGTH && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 }  // namespace
@@ -38,17 +37,6 @@ std::optional<std::string> BearerTokens::holder_of(std::string_view token) const
   const auto found = holder_by_hash_.find(sha256(token));
   if (found == holder_by_hash_.end()) return std::nullopt;
   return found->second;
-}
-
-std::string sha256(std::string_view bytes) {
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest;
-  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), digest.data());
-  std::string text;
-  for (const unsigned char byte : digest) {
-    text.push_back("0123456789abcdef"[byte >> 4]);
-    text.push_back("0123456789abcdef"[byte & 15]);
-  }
-  return text;
 }
 
 }  // namespace alvor

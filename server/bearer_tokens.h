@@ -22,7 +22,4 @@ class BearerTokens {
   std::map<std::string, std::string, std::less<>> holder_by_hash_;
 };
 
-/// In lower-case hexadecimal digits.
-std::string sha256(std::string_view bytes);
-
 }  // namespace alvor

@@ -4,6 +4,7 @@
 
 #include <grpcpp/security/auth_metadata_processor.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -14,7 +15,8 @@ namespace {
 
 std::string read(const std::string& option, const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), {});
+  std::string text;
+  if (!std::filesystem::is_directory(file)) text.assign(std::istreambuf_iterator<char>(in), {});
   if (!in || text.empty()) throw std::invalid_argument(option + ": '" + file + "' cannot be read or is empty");
   return text;
 }

@@ -2,6 +2,7 @@
 
 #include "server/listening.h"
 #include "server/service.h"
+#include "server/task_queue.h"
 
 #include <grpc/support/log.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
@@ -25,6 +26,8 @@ struct Options {
   alvor::ListenOptions listen;
   std::string directory;
   int max_solves = alvor::SolveStoreOptions{}.max_running;
+  double checkpoint_interval_s = 10;
+  alvor::Quota quota;
   std::string log_level = "info";
 };
 
@@ -36,7 +39,17 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--tls-client-ca", listen.client_ca, "Clients must show a certificate signed by one of these (PEM)");
   app.add_option("--tokens", listen.tokens, "Calls must carry a bearer token of this file: lines NAME SHA256, see the README");
   app.add_flag("--insecure", listen.insecure, "Listen for other machines without TLS");
-  app.add_option("--data", options.directory, "Directory for what is kept between runs (not used by this version)");
+  app.add_option("--data", options.directory,
+                 "Directory for scenes, solves and their checkpoints; without it they end with the server");
+  app.add_option("--checkpoint-interval", options.checkpoint_interval_s, "Seconds between checkpoints of a running solve")
+      ->check(CLI::Range(0.05, 86400.0))
+      ->capture_default_str();
+  alvor::Quota& quota = options.quota;
+  app.add_option("--quota-scenes", quota.scenes, "Scenes that each tenant may keep")->capture_default_str();
+  app.add_option("--quota-bytes", quota.scene_bytes, "Bytes that these may come to")->capture_default_str();
+  app.add_option("--quota-solves", quota.solves, "Solves of each tenant that have not ended")->capture_default_str();
+  app.add_option("--quota-leaves", quota.leaves, "Leaves that these may come to")->capture_default_str();
+  app.add_option("--quota-watchers", quota.watchers, "Watches that each tenant may hold open")->capture_default_str();
   app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -103,10 +116,35 @@ void stop(alvor::Service& service, grpc::Server& server) {
   server.Shutdown(std::chrono::system_clock::now() + 3s);
 }
 
+std::chrono::steady_clock::duration seconds(double s) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(s));
+}
+
+/// Notes every second that the server is alive, so that the next one can tell how much work was lost.
+class Heartbeat {
+ public:
+  explicit Heartbeat(alvor::Archive* archive) : archive_(archive) {
+    if (archive_) beat();
+  }
+
+ private:
+  void beat() {
+    archive_->note_alive();
+    tasks_.post_at(alvor::TaskQueue::Clock::now() + std::chrono::seconds(1), [this] { beat(); });
+  }
+  alvor::Archive* const archive_;
+  alvor::TaskQueue tasks_;
+};
+
 int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
   alvor::ServiceOptions service_options;
   service_options.solves.max_running = options.max_solves;
   service_options.solves.logger = logger;
+  service_options.solves.keeping.interval = seconds(options.checkpoint_interval_s);
+  service_options.quota = options.quota;
+  std::unique_ptr<alvor::Archive> archive;
+  if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
+  service_options.archive = archive.get();
   alvor::Service service(service_options);
   int port = 0;
   const auto server = start(service, options.listen, port);
@@ -115,8 +153,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
     return 1;
   }
   set_serving(*server, true);
-  if (!options.directory.empty())
-    logger->warn("--data {}: this version keeps scenes and solves in memory only, they end with the server", options.directory);
+  const Heartbeat heartbeat(archive.get());
   logger->info("listening on {}:{}", options.listen.address.substr(0, options.listen.address.rfind(':')), port);
   logger->info("stopping: {}", wait_for_stop(signals));
   stop(service, *server);

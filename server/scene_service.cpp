@@ -2,31 +2,94 @@
 
 #include "server/answer.h"
 
+#include <atomic>
+#include <memory>
+#include <mutex>
+
 namespace alvor {
 
 namespace {
 
+/// Ends a call that nothing comes from. The call may be gone before its time has come.
+class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
+ public:
+  using Clock = TaskQueue::Clock;
+  IdleWatch(grpc::CallbackServerContext& context, TaskQueue& tasks, Clock::duration patience)
+      : context_(&context), tasks_(tasks), patience_(patience) {}
+  void wait() {
+    tasks_.post_at(Clock::now() + patience_, [self = shared_from_this()] { self->look(); });
+  }
+  void note_message() { last_ = Clock::now(); }
+  /// No longer looked at.
+  void end() {
+    std::scoped_lock hold(lock_);
+    context_ = nullptr;
+  }
+  bool has_ended_call() const { return has_ended_call_; }
+
+ private:
+  void look() {
+    std::scoped_lock hold(lock_);
+    if (!context_) return;
+    if (Clock::now() < last_.load() + patience_) return wait();
+    has_ended_call_ = true;
+    context_->TryCancel();
+  }
+
+  std::mutex lock_;
+  grpc::CallbackServerContext* context_;
+  TaskQueue& tasks_;
+  const Clock::duration patience_;
+  std::atomic<Clock::time_point> last_ = Clock::now();
+  std::atomic<bool> has_ended_call_ = false;
+};
+
 // Reads one message at a time into a SceneUpload. Deletes itself.
 class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequest> {
  public:
-  CreateSceneCall(grpc::CallbackServerContext& context, SceneStore& scenes, const UploadLimits& limits, TaskQueue& building,
-                  spdlog::logger& logger, v1::Scene& answer)
-      : context_(context), scenes_(scenes), building_(building), logger_(logger), answer_(answer), upload_(limits) {
+  CreateSceneCall(grpc::CallbackServerContext& context, SceneStore& scenes, Uploads& uploads, const UploadLimits& limits,
+                  TaskQueue& building, spdlog::logger& logger, v1::Scene& answer)
+      : context_(context),
+        scenes_(scenes),
+        uploads_(uploads),
+        building_(building),
+        logger_(logger),
+        answer_(answer),
+        caller_{tenant_of(context), {}},
+        upload_(std::make_unique<SceneUpload>(limits)),
+        idle_(std::make_shared<IdleWatch>(context, building, limits.patience)) {
+    idle_->wait();
     StartRead(&message_);
   }
 
  private:
   void OnReadDone(bool ok) override {
     if (!ok) return finish_upload();
-    const grpc::Status status = attempt(logger_, "CreateScene", [&] { upload_.add(message_); });
+    idle_->note_message();
+    const grpc::Status status = attempt(logger_, "CreateScene", [&] { take_message(); });
     if (!status.ok()) return Finish(status);
     StartRead(&message_);
+  }
+
+  void take_message() {
+    if (!is_first_) return upload_->add(message_);
+    is_first_ = false;
+    check_request_id(message_.request_id());
+    caller_.request_id = message_.request_id();
+    if (message_.resume_after_chunks() == 0) return upload_->add(message_);
+    upload_ = uploads_.take(caller_, message_.resume_after_chunks());
   }
 
   // A read also fails when the client breaks off, and half a scene must not be taken for a whole one: gRPC marks the call
   // cancelled before it reports such a read.
   void finish_upload() {
-    if (context_.IsCancelled()) return Finish({grpc::CANCELLED, "the upload was broken off"});
+    if (context_.IsCancelled()) {
+      if (!is_first_) uploads_.put(caller_, std::move(upload_));
+      const bool is_idle = idle_->has_ended_call();
+      return Finish(is_idle ? grpc::Status{grpc::ABORTED, "no message came for too long"}
+                            : grpc::Status{grpc::CANCELLED, "the upload was broken off"});
+    }
+    idle_->end();
     message_.Clear();
     building_.post([this] {
       const grpc::Status status = attempt(logger_, "CreateScene", [this] { store(); });
@@ -35,27 +98,34 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   }
 
   void store() {
-    const auto stored = upload_.finish(scenes_);
+    const auto stored = upload_->finish(scenes_, caller_);
     answer_ = stored->facts;
     logger_.info("scene {} '{}' stored: {} faces, {} bytes received", answer_.name(), one_line(answer_.display_name()),
-                 answer_.face_count(), upload_.bytes());
+                 answer_.face_count(), upload_->bytes());
   }
 
-  void OnDone() override { delete this; }
+  void OnDone() override {
+    idle_->end();
+    delete this;
+  }
 
   grpc::CallbackServerContext& context_;
   SceneStore& scenes_;
+  Uploads& uploads_;
   TaskQueue& building_;
   spdlog::logger& logger_;
   v1::Scene& answer_;
-  SceneUpload upload_;
+  Caller caller_;
+  std::unique_ptr<SceneUpload> upload_;
+  const std::shared_ptr<IdleWatch> idle_;
   v1::CreateSceneRequest message_;
+  bool is_first_ = true;
 };
 
 // Sends a scene chunk by chunk. Deletes itself.
 class ReadSceneCall final : public grpc::ServerWriteReactor<v1::ReadSceneResponse> {
  public:
-  explicit ReadSceneCall(std::shared_ptr<const StoredScene> stored) : stored_(std::move(stored)), slicer_(stored_->scene) {
+  explicit ReadSceneCall(std::shared_ptr<const SceneContent> content) : content_(std::move(content)), slicer_(content_->scene) {
     send_next();
   }
 
@@ -70,7 +140,7 @@ class ReadSceneCall final : public grpc::ServerWriteReactor<v1::ReadSceneRespons
   }
   void OnDone() override { delete this; }
 
-  const std::shared_ptr<const StoredScene> stored_;
+  const std::shared_ptr<const SceneContent> content_;
   SceneSlicer slicer_;
   v1::ReadSceneResponse message_;
 };
@@ -87,17 +157,23 @@ class RefusedRead final : public grpc::ServerWriteReactor<v1::ReadSceneResponse>
 }  // namespace
 
 grpc::ServerReadReactor<v1::CreateSceneRequest>* SceneService::CreateScene(Context* context, v1::Scene* scene) {
-  return new CreateSceneCall(*context, scenes_, limits_, building_, logger_, *scene);
+  return new CreateSceneCall(*context, scenes_, uploads_, limits_, building_, logger_, *scene);
+}
+
+SceneService::Reactor* SceneService::GetUpload(Context* context, const v1::GetUploadRequest* request, v1::Upload* upload) {
+  return answer(context, logger_, "GetUpload", [&] {
+    upload->set_chunk_count(uploads_.chunks({tenant_of(*context), request->request_id()}));
+  });
 }
 
 SceneService::Reactor* SceneService::GetScene(Context* context, const v1::GetSceneRequest* request, v1::Scene* scene) {
-  return answer(context, logger_, "GetScene", [&] { *scene = scenes_.find(request->name())->facts; });
+  return answer(context, logger_, "GetScene", [&] { *scene = scenes_.find(request->name(), tenant_of(*context))->facts; });
 }
 
 SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::ListScenesRequest* request,
                                                 v1::ListScenesResponse* response) {
   return answer(context, logger_, "ListScenes", [&] {
-    const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()));
+    const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()), tenant_of(*context));
     for (const auto& stored : page.items) *response->add_scenes() = stored->facts;
     response->set_next_page_token(tokens_.token(page.next_before));
   });
@@ -105,14 +181,15 @@ SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::List
 
 SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::DeleteSceneRequest* request,
                                                  google::protobuf::Empty*) {
-  return answer(context, logger_, "DeleteScene", [&] { scenes_.remove(request->name()); });
+  return answer(context, logger_, "DeleteScene", [&] { scenes_.remove(request->name(), tenant_of(*context)); });
 }
 
-grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context*, const v1::ReadSceneRequest* request) {
-  std::shared_ptr<const StoredScene> stored;
-  const grpc::Status status = attempt(logger_, "ReadScene", [&] { stored = scenes_.find(request->name()); });
+grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context* context, const v1::ReadSceneRequest* request) {
+  std::shared_ptr<const SceneContent> content;
+  const grpc::Status status =
+      attempt(logger_, "ReadScene", [&] { content = scenes_.find(request->name(), tenant_of(*context))->content(); });
   if (!status.ok()) return new RefusedRead(status);
-  return new ReadSceneCall(std::move(stored));
+  return new ReadSceneCall(std::move(content));
 }
 
 }  // namespace alvor

@@ -4,6 +4,7 @@
 #include "alvor/v1/scene_service.grpc.pb.h"
 #include "server/scene_upload.h"
 #include "server/task_queue.h"
+#include "server/uploads.h"
 
 namespace spdlog {
 class logger;
@@ -23,6 +24,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   using Reactor = grpc::ServerUnaryReactor;
 
   grpc::ServerReadReactor<v1::CreateSceneRequest>* CreateScene(Context*, v1::Scene* scene) override;
+  Reactor* GetUpload(Context*, const v1::GetUploadRequest* request, v1::Upload* upload) override;
   Reactor* GetScene(Context*, const v1::GetSceneRequest* request, v1::Scene* scene) override;
   Reactor* ListScenes(Context*, const v1::ListScenesRequest* request, v1::ListScenesResponse* response) override;
   Reactor* DeleteScene(Context*, const v1::DeleteSceneRequest* request, google::protobuf::Empty*) override;
@@ -30,6 +32,7 @@ class SceneService final : public v1::SceneService::CallbackService {
 
   SceneStore& scenes_;
   const UploadLimits limits_;
+  Uploads uploads_;
   TaskQueue& building_;
   spdlog::logger& logger_;
   PageTokens tokens_;

@@ -26,6 +26,7 @@ void SceneUpload::add(const v1::CreateSceneRequest& message) {
   }
   check_limits(message.chunk());
   if (const auto fault = assembler_.add(message.chunk())) throw invalid_argument(fault->text());
+  ++chunks_;
 }
 
 void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
@@ -34,9 +35,9 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
   check_limit(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
 }
 
-std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store) {
+std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller) {
   if (!begun_) throw invalid_argument("scene: the first message must set it");
-  return store.add(assembler_.take(), display_name_);
+  return store.add(assembler_.take(), display_name_, caller);
 }
 
 }  // namespace alvor

@@ -13,9 +13,13 @@ namespace {
 
 constexpr int largest_message = 64 << 20;
 
-SolveStoreOptions with_logger(SolveStoreOptions options) {
+SolveStoreOptions solve_options(const ServiceOptions& service, const std::string& epoch) {
+  SolveStoreOptions options = service.solves;
   const auto nowhere = std::make_shared<spdlog::sinks::null_sink_mt>();
   if (!options.logger) options.logger = std::make_shared<spdlog::logger>("silent", nowhere);
+  options.keeping.archive = service.archive;
+  options.keeping.epoch = epoch;
+  options.quota = service.quota;
   return options;
 }
 
@@ -24,25 +28,25 @@ SolveStoreOptions with_logger(SolveStoreOptions options) {
 // In the order of use: each may refer to those above it.
 struct Service::Parts {
   explicit Parts(const ServiceOptions& options)
-      : logger(options.solves.logger),
-        solves(options.solves),
-        watches(random_id('e')),
+      : watches(random_id('e'), options.quota.watchers),
+        solve_store_options(solve_options(options, watches.epoch())),
+        logger(solve_store_options.logger),
+        scenes(options.archive, options.quota),
+        solves(solve_store_options, scenes),
         scene_service(scenes, options.upload, building, *logger),
         solve_service(scenes, solves, watches, *logger) {}
 
+  Watches watches;
+  const SolveStoreOptions solve_store_options;
   std::shared_ptr<spdlog::logger> logger;
   SceneStore scenes;
   SolveStore solves;
-  Watches watches;
   TaskQueue building;
   SceneService scene_service;
   SolveService solve_service;
 };
 
-Service::Service(ServiceOptions options) {
-  options.solves = with_logger(std::move(options.solves));
-  parts_ = std::make_unique<Parts>(options);
-}
+Service::Service(ServiceOptions options) : parts_(std::make_unique<Parts>(options)) {}
 
 Service::~Service() { shut_down(); }
 

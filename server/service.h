@@ -12,6 +12,8 @@ namespace alvor {
 
 struct ServiceOptions {
   UploadLimits upload;
+  Archive* archive = nullptr;  ///< must outlive the service; null: all is in memory
+  Quota quota;                 ///< of each tenant
   /// Without a logger the service is silent.
   SolveStoreOptions solves;
 };
@@ -23,7 +25,8 @@ class Service {
   explicit Service(ServiceOptions options = {});
   ~Service();
   void register_with(grpc::ServerBuilder& builder);
-  /// Ends all watches, cancels all solves and waits for them. Later CreateSolve and WatchSolve calls are UNAVAILABLE.
+  /// Ends all watches, parks or cancels all solves (SolveStore::shut_down) and waits for them. Later CreateSolve and WatchSolve
+  /// calls are UNAVAILABLE.
   void shut_down();
 
  private:

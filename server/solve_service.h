@@ -21,6 +21,8 @@ class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchS
   Reactor* GetSolve(Context*, const v1::GetSolveRequest* request, v1::Solve* solve) override;
   Reactor* ListSolves(Context*, const v1::ListSolvesRequest* request, v1::ListSolvesResponse* response) override;
   Reactor* CancelSolve(Context*, const v1::CancelSolveRequest* request, v1::Solve* solve) override;
+  Reactor* PauseSolve(Context*, const v1::PauseSolveRequest* request, v1::Solve* solve) override;
+  Reactor* ResumeSolve(Context*, const v1::ResumeSolveRequest* request, v1::Solve* solve) override;
   Reactor* DeleteSolve(Context*, const v1::DeleteSolveRequest* request, google::protobuf::Empty*) override;
   grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSolve(Context*, const grpc::ByteBuffer* request) override;
   Reactor* AcknowledgeFrame(Context*, const v1::AcknowledgeFrameRequest* request, v1::AcknowledgeFrameResponse*) override;

@@ -83,6 +83,7 @@ SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
     refuse("threads", options.threads, "is outside [0, " + std::to_string(most_threads(limits)) + "]");
 
   if (spec.has_seed()) options.seed = spec.seed();
+  if (!v1::Priority_IsValid(spec.priority())) refuse("priority", spec.priority(), "is not known to this server");
   options.strategy = strategy_of(spec.strategy());
   options.form_factors = form_factors_of(spec.form_factors());
   return options;

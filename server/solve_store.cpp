@@ -5,6 +5,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <google/protobuf/util/message_differencer.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 namespace alvor {
 
 namespace {
@@ -17,79 +21,245 @@ void report_end(spdlog::logger& logger, const v1::Solve& solve) {
              100 * solve.traversal_share());
 }
 
+/// Of the calling thread. Five steps are a factor of three in processor time.
+void be_as_nice_as(v1::Priority priority) {
+  const int nice = priority == v1::PRIORITY_HIGH ? 0 : priority == v1::PRIORITY_LOW ? 10 : 5;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
+}
+
+void refuse_ended(const StoredSolve& solve) {
+  if (solve.ended()) throw StatusError(grpc::FAILED_PRECONDITION, solve.name + " has ended");
+}
+
 }  // namespace
 
-SolveStore::SolveStore(SolveStoreOptions options) : options_(std::move(options)) {}
+SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : options_(std::move(options)) {
+  if (!options_.keeping.archive) return;
+  std::scoped_lock hold(lock_);
+  for (Archive::SolveRow& row : options_.keeping.archive->solves()) {
+    const std::string name = row.facts.name(), tenant = row.tenant;
+    next_number_ = row.number + 1;
+    SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), tenant);
+    const SolveOptions how = options_of(row.facts.spec(), options_.limits);
+    auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
+    requests_.add(solve->creator, name);
+    if (!solve->ended())
+      options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
+    Entry& entry = solves_[name];
+    entry.scene = std::move(scene);
+    entry.shall_pause = solve->state() == v1::Solve::PAUSED;
+    entry.solve = std::move(solve);
+  }
+  start_waiting();
+}
 
 SolveStore::~SolveStore() { shut_down(); }
 
-std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveSpec& spec) {
-  const SolveOptions options = options_of(spec, options_.limits);
+std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveSpec& spec, const Caller& caller) {
+  const SolveOptions how = options_of(spec, options_.limits);
+  check_request_id(caller.request_id);
   std::scoped_lock hold(lock_);
-  check_capacity();
-  auto solve = std::make_shared<StoredSolve>(next_number_++, scene.scene, spec, options);
-  options_.logger->info("solve {} started", solve->name);
-  solves_.emplace(solve->name, Entry{std::move(scene), solve, start(solve)});
+  if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
+  if (auto known = repeated(caller, scene.scene->facts.name(), spec)) return known;
+  check_capacity(caller.tenant, how);
+  auto solve = std::make_shared<StoredSolve>(next_number_, scene.scene, caller, spec, how, options_.keeping);
+  solve->keep();
+  ++next_number_;
+  requests_.add(caller, solve->name);
+  Entry& entry = solves_[solve->name];
+  entry.scene = std::move(scene);
+  entry.solve = solve;
+  start_waiting();
   return solve;
 }
 
-void SolveStore::check_capacity() const {
-  if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
-  const auto running = std::ranges::count_if(solves_, [](const auto& named) { return !named.second.solve->ended(); });
-  if (running >= options_.max_running)
-    throw StatusError(grpc::RESOURCE_EXHAUSTED, std::to_string(running) + " solves are running, as many as this server allows");
+std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec) {
+  const std::string name = requests_.find(caller);
+  if (name.empty()) return nullptr;
+  auto known = entry(name, caller.tenant).solve;
+  const bool is_same =
+      name.starts_with(scene + "/") && google::protobuf::util::MessageDifferencer::Equals(known->describe().spec(), spec);
+  if (!is_same) throw other_request(caller.request_id);
+  return known;
 }
 
-std::jthread SolveStore::start(const std::shared_ptr<StoredSolve>& solve) const {
-  return std::jthread([solve, solver = options_.solver, logger = options_.logger](std::stop_token stop) {
-    solve->run(solver, stop);
-    report_end(*logger, solve->describe());
+void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next) const {
+  std::uint64_t waiting = 0, own = 1, leaves = next.max_leaves;
+  for (const auto& [name, entry] : solves_) {
+    if (entry.solve->ended()) continue;
+    waiting += !entry.is_running;
+    if (entry.solve->creator.tenant != tenant) continue;
+    ++own;
+    leaves += entry.solve->options.max_leaves;
+  }
+  const auto refuse = [](const std::string& text) { throw StatusError(grpc::RESOURCE_EXHAUSTED, text); };
+  if (running_ >= options_.max_running && waiting >= static_cast<std::uint64_t>(options_.max_waiting))
+    refuse(std::to_string(waiting) + " solves are waiting, as many as this server allows");
+  if (own > options_.quota.solves)
+    refuse("solves: " + std::to_string(options_.quota.solves) + " have not ended, as many as are allowed");
+  if (leaves > options_.quota.leaves)
+    refuse("solve.spec.max_elements: with the other solves that have not ended " + std::to_string(leaves) + ", " +
+           std::to_string(options_.quota.leaves) + " are allowed");
+}
+
+/// As many as may run do, by priority and age. Requires: the lock.
+void SolveStore::start_waiting() {
+  join_finished();
+  while (!stopping_ && running_ < options_.max_running) {
+    Entry* const next = next_waiting();
+    if (!next) return;
+    start(*next);
+  }
+}
+
+SolveStore::Entry* SolveStore::next_waiting() {
+  const auto is_before = [](const StoredSolve& a, const StoredSolve& b) {
+    return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
+  };
+  Entry* first = nullptr;
+  for (auto& [name, entry] : solves_)
+    if (!entry.is_running && entry.solve->state() == v1::Solve::QUEUED && (!first || is_before(*entry.solve, *first->solve)))
+      first = &entry;
+  return first;
+}
+
+void SolveStore::start(Entry& entry) {
+  entry.is_running = true;
+  entry.cancel = {};
+  entry.park = {};
+  ++running_;
+  entry.solve->note_running();
+  options_.logger->info("solve {} started", entry.solve->name);
+  std::thread thread([this, &entry] { run(entry); });
+  threads_.emplace(thread.get_id(), std::move(thread));
+}
+
+void SolveStore::run(Entry& entry) {
+  const auto solve = entry.solve;
+  be_as_nice_as(solve->priority);
+  const RunControl control{entry.cancel.get_token(), entry.park.get_token(), abandon_.get_token()};
+  const auto is_paused = [&] {
+    std::scoped_lock hold(lock_);
+    return entry.shall_pause;
+  };
+  solve->run(options_.solver, control, is_paused,
+             [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", solve->name, fault); });
+  report_end(*options_.logger, solve->describe());
+  std::scoped_lock hold(lock_);
+  settle(entry);
+  entry.is_running = false;
+  --running_;
+  finished_.push_back(std::this_thread::get_id());
+  start_waiting();
+  changed_.notify_all();
+}
+
+/// Whether it shall pause may have been said otherwise while it was about to do so.
+void SolveStore::settle(const Entry& entry) {
+  const auto state = entry.solve->state();
+  const auto wanted = entry.shall_pause ? v1::Solve::PAUSED : v1::Solve::QUEUED;
+  if (entry.solve->ended() || state == wanted) return;
+  try {
+    entry.solve->set_waiting_state(wanted);
+  } catch (const StatusError& fault) {
+    options_.logger->error("solve {} cannot be kept: {}", entry.solve->name, fault.what());
+  }
+}
+
+/// Requires: the lock. All that a finished thread could still be at is to give the lock back, so this does not wait.
+void SolveStore::join_finished() {
+  std::erase_if(finished_, [this](std::thread::id id) {
+    if (id == std::this_thread::get_id()) return false;
+    threads_.extract(id).mapped().join();
+    return true;
   });
 }
 
-SolveStore::Entry& SolveStore::entry(const std::string& name) {
+SolveStore::Entry& SolveStore::entry(const std::string& name, const std::string& tenant) {
   const auto found = solves_.find(name);
-  if (found == solves_.end()) throw not_found(name);
+  if (found == solves_.end() || found->second.solve->creator.tenant != tenant) throw not_found(name);
   return found->second;
 }
 
-std::shared_ptr<StoredSolve> SolveStore::find(const std::string& name) const {
+std::shared_ptr<StoredSolve> SolveStore::find(const std::string& name, const std::string& tenant) const {
   std::scoped_lock hold(lock_);
-  return entry(name).solve;
+  return entry(name, tenant).solve;
 }
 
-Page<const StoredSolve> SolveStore::list(const std::string& scene_name, const PageRequest& request) const {
+Page<const StoredSolve> SolveStore::list(const std::string& scene_name, const PageRequest& request,
+                                         const std::string& tenant) const {
   std::vector<std::shared_ptr<const StoredSolve>> all;
   {
     std::scoped_lock hold(lock_);
     for (const auto& [name, entry] : solves_)
-      if (scene_name == "scenes/-" || name.starts_with(scene_name + "/solves/")) all.push_back(entry.solve);
+      if (entry.solve->creator.tenant == tenant && (scene_name == "scenes/-" || name.starts_with(scene_name + "/solves/")))
+        all.push_back(entry.solve);
   }
   return cut_page(std::move(all), request);
 }
 
-std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name) {
+std::vector<std::shared_ptr<StoredSolve>> SolveStore::all() const {
+  std::vector<std::shared_ptr<StoredSolve>> all;
   std::scoped_lock hold(lock_);
-  Entry& cancelled = entry(name);
-  cancelled.thread.request_stop();
+  for (const auto& [name, entry] : solves_) all.push_back(entry.solve);
+  return all;
+}
+
+std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const std::string& tenant) {
+  std::scoped_lock hold(lock_);
+  Entry& cancelled = entry(name, tenant);
+  if (cancelled.is_running) cancelled.cancel.request_stop();
+  else if (!cancelled.solve->ended()) cancelled.solve->set_waiting_state(v1::Solve::CANCELLED);
   return cancelled.solve;
 }
 
-void SolveStore::remove(const std::string& name) {
-  decltype(solves_)::node_type removed;  // its thread is joined after the lock is released
+std::shared_ptr<StoredSolve> SolveStore::pause(const std::string& name, const std::string& tenant) {
   std::scoped_lock hold(lock_);
-  if (!entry(name).solve->ended()) throw StatusError(grpc::FAILED_PRECONDITION, name + " is running: cancel it first");
+  Entry& paused = entry(name, tenant);
+  refuse_ended(*paused.solve);
+  paused.shall_pause = true;
+  if (paused.is_running) paused.park.request_stop();
+  else paused.solve->set_waiting_state(v1::Solve::PAUSED);
+  return paused.solve;
+}
+
+std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const std::string& tenant) {
+  std::scoped_lock hold(lock_);
+  Entry& resumed = entry(name, tenant);
+  refuse_ended(*resumed.solve);
+  resumed.shall_pause = false;
+  if (resumed.solve->state() == v1::Solve::PAUSED && !resumed.is_running) resumed.solve->set_waiting_state(v1::Solve::QUEUED);
+  start_waiting();
+  return resumed.solve;
+}
+
+void SolveStore::remove(const std::string& name, const std::string& tenant) {
+  decltype(solves_)::node_type removed;  // freed after the lock is
+  std::unique_lock hold(lock_);
+  if (!entry(name, tenant).solve->ended()) throw StatusError(grpc::FAILED_PRECONDITION, name + " has not ended: cancel it first");
+  changed_.wait(hold, [&] { return !entry(name, tenant).is_running; });  // it is just ending
+  const StoredSolve& old = *entry(name, tenant).solve;
+  if (options_.keeping.archive) options_.keeping.archive->remove_solve(old.number);
+  requests_.remove(old.creator);
   removed = solves_.extract(name);
 }
 
 void SolveStore::shut_down() {
-  std::vector<std::jthread> threads;
-  {
-    std::scoped_lock hold(lock_);
-    stopping_ = true;
-    for (auto& [name, entry] : solves_) threads.push_back(std::move(entry.thread));
+  std::unique_lock hold(lock_);
+  stopping_ = true;
+  const auto ask = [&](std::stop_source Entry::*what) {
+    for (auto& [name, entry] : solves_)
+      if (entry.is_running) (entry.*what).request_stop();
+  };
+  const auto nothing_runs = [this] { return running_ == 0; };
+  if (options_.keeping.archive) {
+    ask(&Entry::park);
+    changed_.wait_for(hold, options_.patience, nothing_runs);
+    abandon_.request_stop();
   }
-  for (std::jthread& thread : threads) thread.request_stop();  // all are asked before the first is waited for
+  ask(&Entry::cancel);
+  changed_.wait(hold, nothing_runs);
+  join_finished();
 }
 
 }  // namespace alvor

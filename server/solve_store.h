@@ -1,9 +1,10 @@
 #pragma once
-// The solves that a server holds, in memory, and the threads they run on.
+// The solves that a server holds, and the threads they run on.
 
 #include "server/solve_spec.h"
 #include "server/stored_solve.h"
 
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,49 +19,78 @@ class logger;
 namespace alvor {
 
 struct SolveStoreOptions {
-  int max_running = 4;  ///< each uses all of the machine unless its spec says less; more of them only share it
+  int max_running = 4;     ///< each uses all of the machine unless its spec says less; more of them only share it
+  int max_waiting = 1000;  ///< beyond those
   SolveLimits limits;
+  Quota quota;
   Solver solver = solve_as_planned;
+  Keeping keeping;
+  std::chrono::steady_clock::duration patience =
+      std::chrono::seconds(7);             ///< with solves that are to be parked when the server stops
   std::shared_ptr<spdlog::logger> logger;  ///< never null
 };
 
-/// Thread-safe. Throws StatusError.
+/// Thread-safe. Throws StatusError. Solves of other tenants than the caller are NOT_FOUND.
 class SolveStore {
  public:
-  explicit SolveStore(SolveStoreOptions options);
-  /// Stops and joins all solves.
+  /// Begins with the solves of the archive, if there is one; those that have not ended go on. `scenes` is only used here.
+  SolveStore(SolveStoreOptions options, const SceneStore& scenes);
+  /// As shut_down().
   ~SolveStore();
 
-  /// Starts at once on a thread of its own. RESOURCE_EXHAUSTED when too many run, INVALID_ARGUMENT names the field of the spec.
-  std::shared_ptr<StoredSolve> create(SceneUse scene, const v1::SolveSpec& spec);
+  /// Starts at once on a thread of its own, or waits. RESOURCE_EXHAUSTED when too many wait, INVALID_ARGUMENT names the field of
+  /// the spec. The same request again gets the same solve. When it returns the solve is kept.
+  std::shared_ptr<StoredSolve> create(SceneUse scene, const v1::SolveSpec& spec, const Caller& caller = {});
   /// NOT_FOUND.
-  std::shared_ptr<StoredSolve> find(const std::string& name) const;
+  std::shared_ptr<StoredSolve> find(const std::string& name, const std::string& tenant = {}) const;
   /// Of one scene, or of all when `scene_name` is "scenes/-".
-  Page<const StoredSolve> list(const std::string& scene_name, const PageRequest& request) const;
+  Page<const StoredSolve> list(const std::string& scene_name, const PageRequest& request, const std::string& tenant = {}) const;
   /// Asks it to stop and returns at once; one that has ended is left as it is. NOT_FOUND.
-  std::shared_ptr<StoredSolve> cancel(const std::string& name);
-  /// NOT_FOUND; FAILED_PRECONDITION while it is running. Those who hold the solve may go on reading it.
-  void remove(const std::string& name);
-  /// Cancels all solves and waits for them; later creates are UNAVAILABLE.
+  std::shared_ptr<StoredSolve> cancel(const std::string& name, const std::string& tenant = {});
+  /// NOT_FOUND; FAILED_PRECONDITION when it has ended.
+  std::shared_ptr<StoredSolve> pause(const std::string& name, const std::string& tenant = {});
+  std::shared_ptr<StoredSolve> resume(const std::string& name, const std::string& tenant = {});
+  /// NOT_FOUND; FAILED_PRECONDITION before it has ended. Those who hold the solve may go on reading it.
+  void remove(const std::string& name, const std::string& tenant = {});
+  /// Nothing runs when it returns, and later creates are UNAVAILABLE. With an archive, what runs is parked, to go on when the
+  /// server is started again; else it is cancelled.
   void shut_down();
 
+  /// Every solve, for metrics.
+  std::vector<std::shared_ptr<StoredSolve>> all() const;
+
  private:
-  /// The thread is joined when the entry goes.
   struct Entry {
     SceneUse scene;
     std::shared_ptr<StoredSolve> solve;
-    std::jthread thread;
+    std::stop_source cancel, park;
+    bool is_running = false;
+    bool shall_pause = false;
   };
-  Entry& entry(const std::string& name);
-  const Entry& entry(const std::string& name) const { return const_cast<SolveStore&>(*this).entry(name); }
-  void check_capacity() const;
-  std::jthread start(const std::shared_ptr<StoredSolve>& solve) const;
+  Entry& entry(const std::string& name, const std::string& tenant);
+  const Entry& entry(const std::string& name, const std::string& tenant) const {
+    return const_cast<SolveStore&>(*this).entry(name, tenant);
+  }
+  std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec);
+  void check_capacity(const std::string& tenant, const SolveOptions& next) const;
+  void start_waiting();
+  Entry* next_waiting();
+  void start(Entry& entry);
+  void run(Entry& entry);
+  void settle(const Entry& entry);
+  void join_finished();
 
   const SolveStoreOptions options_;
   mutable std::mutex lock_;
-  std::map<std::string, Entry> solves_;
+  std::condition_variable changed_;
+  std::map<std::string, Entry> solves_;  ///< entries of running solves are not removed
+  RequestIds requests_;
   std::uint64_t next_number_ = 1;
+  int running_ = 0;
   bool stopping_ = false;
+  std::stop_source abandon_;
+  std::map<std::thread::id, std::thread> threads_;
+  std::vector<std::thread::id> finished_;  ///< have nothing left to do but to end
 };
 
 }  // namespace alvor

@@ -1,58 +1,253 @@
 #include "server/stored_solve.h"
 
 #include "proto/codec.h"
+#include "server/pieces.h"
 #include "server/random_id.h"
+#include "server/status_error.h"
 
 #include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+#include <utility>
 
 namespace alvor {
 
 using google::protobuf::util::TimeUtil;
 
-StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, const v1::SolveSpec& spec,
-                         const SolveOptions& options)
-    : number(solve_number), name(scene->facts.name() + "/solves/" + random_id('s')), scene_(std::move(scene)), options_(options) {
+namespace {
+
+constexpr int least_share = 20;  // of the time between checkpoints goes into them
+
+bool is_final(v1::Solve::State state) {
+  return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
+}
+
+v1::PowerBalance encode(const PowerBalance& balance) {
+  v1::PowerBalance message;
+  message.set_emitted_watts(balance.emitted);
+  message.set_absorbed_watts(balance.absorbed);
+  message.set_lost_watts(balance.lost);
+  message.set_unshot_watts(balance.unshot);
+  return message;
+}
+
+std::vector<std::string> pieces_of(const SolveControl::Write& write) {
+  PieceWriter pieces;
+  PlainWriter out([&](std::span<const std::byte> bytes) { pieces.add(bytes); });
+  write(out);
+  return pieces.finish();
+}
+
+}  // namespace
+
+StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller,
+                         const v1::SolveSpec& spec, const SolveOptions& solve_options, Keeping keeping)
+    : number(solve_number),
+      name(scene->facts.name() + "/solves/" + random_id('s')),
+      creator(std::move(caller)),
+      options(solve_options),
+      priority(spec.priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : spec.priority()),
+      scene_(std::move(scene)),
+      keeping_(std::move(keeping)),
+      log_(std::make_unique<SolutionLog>()) {
   facts_.set_name(name);
   *facts_.mutable_spec() = spec;
-  facts_.set_state(v1::Solve::RUNNING);
+  facts_.set_state(v1::Solve::QUEUED);
   *facts_.mutable_create_time() = TimeUtil::GetCurrentTime();
 }
 
-void StoredSolve::run(const Solver& solver, std::stop_token stop) {
+StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& solve_options,
+                         Keeping keeping)
+    : number(row.number),
+      name(row.facts.name()),
+      creator{std::move(row.tenant), std::move(row.request_id)},
+      options(solve_options),
+      priority(row.facts.spec().priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : row.facts.spec().priority()),
+      scene_(std::move(scene)),
+      keeping_(std::move(keeping)),
+      facts_(std::move(row.facts)),
+      lineage_(std::move(row.lineage)) {
+  const bool has_checkpoint = facts_.has_checkpoint_time();
+  if (!has_checkpoint) log_ = std::make_unique<SolutionLog>();
+  if (is_final(facts_.state())) return;
+  facts_.set_restarts(facts_.restarts() + 1);
+  facts_.set_resumed_from_revision(facts_.last_step().revision());
+  if (facts_.state() != v1::Solve::RUNNING) return;
+  const auto since = TimeUtil::TimestampToMicroseconds(has_checkpoint ? facts_.checkpoint_time() : facts_.create_time());
+  const auto seen = keeping_.archive->seen_alive().value_or(std::chrono::system_clock::now()).time_since_epoch();
+  const double lost_s = 1e-6 * static_cast<double>(std::chrono::duration_cast<std::chrono::microseconds>(seen).count() - since);
+  *facts_.mutable_work_lost() = encode_seconds(std::max(0.0, lost_s));
+  facts_.set_state(v1::Solve::QUEUED);
+}
+
+void StoredSolve::keep() {
+  if (keeping_.archive) keeping_.archive->add(row(), scene_->number);
+}
+
+Archive::SolveRow StoredSolve::row() const {
+  std::scoped_lock hold(lock_);
+  return {number, creator.tenant, creator.request_id, facts_, lineage_};
+}
+
+SolutionLog& StoredSolve::log() const {
+  std::scoped_lock hold(log_lock_);
+  if (log_) return *log_;
+  const auto bytes = keeping_.archive->log(number);
   try {
-    const Plan plan(scene_->mesh, options_);
-    show(plan);
-    SolveControl control;
-    control.stop = std::move(stop);
-    const SolveOutcome outcome = solver(scene_->mesh, plan, options_, log, control);
-    const bool cancelled = outcome.reason == StopReason::cancelled;
-    end(cancelled ? v1::Solve::CANCELLED : v1::Solve::SUCCEEDED, std::string(text(outcome.reason)), outcome);
-  } catch (const std::bad_alloc&) {
-    end(v1::Solve::FAILED, "out of memory", {});
-  } catch (const std::exception& fault) {
-    end(v1::Solve::FAILED, as_utf8(fault.what()), {});
+    PlainReader in(bytes);
+    auto loaded = std::make_unique<SolutionLog>(in);
+    in.expect_end();
+    if (ended()) loaded->close();
+    log_ = std::move(loaded);
+  } catch (const BadBytes& fault) {
+    throw StatusError(grpc::DATA_LOSS, "the server's data directory: the solution of " + name + ": " + fault.what());
   }
-  log.close();
+  return *log_;
+}
+
+std::vector<std::byte> StoredSolve::take_checkpoint() {
+  {
+    std::scoped_lock hold(lock_);
+    if (!state_in_memory_.empty()) return std::exchange(state_in_memory_, {});
+    if (!facts_.has_checkpoint_time()) return {};
+  }
+  return keeping_.archive->state(number);
+}
+
+void StoredSolve::run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
+                      const std::function<void(const std::string&)>& complain) {
+  v1::Solve::State state = v1::Solve::FAILED;
+  std::string reason;
+  SolveOutcome outcome;
+  try {
+    outcome = solve(solver, control, complain);
+    reason = text(outcome.reason);
+    const bool is_cancelled = outcome.reason == StopReason::cancelled;
+    const bool goes_on = outcome.reason == StopReason::parked || (is_cancelled && control.abandon.stop_requested());
+    state = !goes_on      ? is_cancelled ? v1::Solve::CANCELLED : v1::Solve::SUCCEEDED
+            : is_paused() ? v1::Solve::PAUSED
+                          : v1::Solve::QUEUED;
+  } catch (const std::bad_alloc&) {
+    reason = "out of memory";
+  } catch (const std::exception& fault) {
+    reason = as_utf8(fault.what());
+  }
+  try {
+    if (is_final(state)) end(state, reason, outcome);
+    else set_waiting_state(state);
+  } catch (const std::exception& fault) {
+    complain(fault.what());
+  }
+  if (is_final(state)) log().close();
+}
+
+SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
+                                const std::function<void(const std::string&)>& complain) {
+  const auto content = scene_->content();
+  const std::vector<std::byte> from = take_checkpoint();
+  const Plan plan(content->mesh, options);
+  show(plan);
+  if (keeping_.archive) keeping_.archive->update(row());
+  auto next_checkpoint = Clock::now() + keeping_.interval;
+  SolveControl control;
+  control.stop = run.cancel;
+  control.park = run.park;
+  control.checkpoint = from;
+  if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
+  control.save = [&](const SolveControl::Write& write) {
+    const auto begun = Clock::now();
+    try {
+      save(write);
+    } catch (const std::exception& fault) {
+      complain(fault.what());
+      if (run.park.stop_requested()) save_in_memory(write);
+    }
+    next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
+  };
+  return solver(content->mesh, plan, options, log(), control);
+}
+
+void StoredSolve::save(const SolveControl::Write& write) {
+  if (keeping_.archive) keep_checkpoint(row(), pieces_of(write));
+  else save_in_memory(write);
+}
+
+void StoredSolve::save_in_memory(const SolveControl::Write& write) {
+  std::vector<std::byte> bytes;
+  PlainWriter out([&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+  write(out);
+  std::scoped_lock hold(lock_);
+  state_in_memory_ = std::move(bytes);
+}
+
+/// `state` is empty once the solve has ended.
+void StoredSolve::keep_checkpoint(Archive::SolveRow next, std::vector<std::string> state) {
+  SolutionLog& solution = log();
+  const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution.save(out); }), std::move(state)};
+  next.lineage[keeping_.epoch] = solution.head();
+  *next.facts.mutable_last_step() = alvor::encode(solution.last_step());
+  *next.facts.mutable_checkpoint_time() = TimeUtil::GetCurrentTime();
+  keeping_.archive->update(next, checkpoint);
+  std::scoped_lock hold(lock_);
+  lineage_ = std::move(next.lineage);
+  *facts_.mutable_last_step() = next.facts.last_step();
+  *facts_.mutable_checkpoint_time() = next.facts.checkpoint_time();
 }
 
 void StoredSolve::show(const Plan& plan) {
   std::scoped_lock hold(lock_);
-  *facts_.mutable_plan() = encode(plan.features());
+  *facts_.mutable_plan() = alvor::encode(plan.features());
 }
 
+/// Others see the end once it is kept, or could not be.
 void StoredSolve::end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome) {
-  std::scoped_lock hold(lock_);
-  facts_.set_state(state);
-  facts_.set_end_reason(reason);
-  *facts_.mutable_end_time() = TimeUtil::GetCurrentTime();
-  *facts_.mutable_cpu_time() = encode_seconds(outcome.cpu_s);
-  facts_.set_traversal_share(outcome.traversal_share);
+  Archive::SolveRow last = row();
+  last.facts.set_state(state);
+  last.facts.set_end_reason(reason);
+  *last.facts.mutable_end_time() = TimeUtil::GetCurrentTime();
+  *last.facts.mutable_cpu_time() = encode_seconds(outcome.cpu_s);
+  last.facts.set_traversal_share(outcome.traversal_share);
+  *last.facts.mutable_balance() = encode(outcome.balance);
+  const auto show_end = [&] {
+    std::scoped_lock hold(lock_);
+    facts_ = last.facts;
+  };
+  try {
+    if (keeping_.archive) keep_checkpoint(last, {});
+  } catch (...) {
+    show_end();
+    throw;
+  }
+  show_end();
 }
 
-bool StoredSolve::ended() const {
+void StoredSolve::note_running() {
   std::scoped_lock hold(lock_);
-  return facts_.state() != v1::Solve::RUNNING;
+  facts_.set_state(v1::Solve::RUNNING);
 }
+
+void StoredSolve::set_waiting_state(v1::Solve::State state) {
+  Archive::SolveRow next = row();
+  next.facts.set_state(state);
+  if (is_final(state)) {
+    next.facts.set_end_reason(std::string(text(StopReason::cancelled)));
+    *next.facts.mutable_end_time() = TimeUtil::GetCurrentTime();
+  }
+  if (keeping_.archive) keeping_.archive->update(next);
+  {
+    std::scoped_lock hold(lock_);
+    facts_ = next.facts;
+    if (is_final(state)) state_in_memory_.clear();
+  }
+  if (is_final(state)) log().close();
+}
+
+v1::Solve::State StoredSolve::state() const {
+  std::scoped_lock hold(lock_);
+  return facts_.state();
+}
+
+bool StoredSolve::ended() const { return is_final(state()); }
 
 v1::Solve StoredSolve::describe() const {
   v1::Solve facts;
@@ -61,8 +256,17 @@ v1::Solve StoredSolve::describe() const {
     facts = facts_;
   }
   // Asked after the state: a final state is never told with an older step than the last.
-  if (const Step step = log.last_step(); step.revision > 0) *facts.mutable_last_step() = encode(step);
+  std::scoped_lock hold(log_lock_);
+  if (!log_) return facts;
+  if (const Step step = log_->last_step(); step.revision > 0) *facts.mutable_last_step() = alvor::encode(step);
   return facts;
+}
+
+bool StoredSolve::knows(const std::string& epoch, std::uint64_t revision) const {
+  if (epoch == keeping_.epoch) return revision <= log().head();
+  std::scoped_lock hold(lock_);
+  const auto line = lineage_.find(epoch);
+  return line != lineage_.end() && revision <= line->second;
 }
 
 }  // namespace alvor

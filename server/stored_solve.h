@@ -1,10 +1,12 @@
 #pragma once
-// One solve: what was asked, the log it fills, and how it ended.
+// One solve: what was asked, the log it fills, how it ended, and what is kept of it.
 
 #include "alvor/v1/solve_service.pb.h"
 #include "radiosity/solver.h"
+#include "server/archive.h"
 #include "server/scene_store.h"
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -16,32 +18,79 @@ namespace alvor {
 /// solve_as_planned, or what stands in for it.
 using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, const SolveControl&)>;
 
+/// Where and how often what a solve found is kept.
+struct Keeping {
+  Archive* archive = nullptr;  ///< null: in memory, and only what a paused solve needs
+  std::string epoch;           ///< of this run of the server
+  std::chrono::steady_clock::duration interval =
+      std::chrono::seconds(10);  ///< between checkpoints, if they take a twentieth of it or less
+};
+
+/// How a run is steered.
+struct RunControl {
+  std::stop_token cancel;
+  std::stop_token park;
+  std::stop_token abandon;  ///< with `cancel`: the solve shall go on from its last checkpoint when the server is started again
+};
+
 /// Thread-safe.
 class StoredSolve {
  public:
-  StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, const v1::SolveSpec& spec,
-              const SolveOptions& options);
+  /// QUEUED. Nothing is kept of it before keep() is called.
+  StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller, const v1::SolveSpec& spec,
+              const SolveOptions& options, Keeping keeping);
+  /// As the archive has it. One that was running is QUEUED again.
+  StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& options, Keeping keeping);
 
   const std::uint64_t number;
   const std::string name;
-  SolutionLog log;
+  const Caller creator;
+  const SolveOptions options;
+  const v1::Priority priority;
 
-  /// Solves on the calling thread; an exception of the solver makes the solve FAILED. To be called once. When it returns, ended()
-  /// holds and the log is closed.
-  void run(const Solver& solver, std::stop_token stop);
+  /// Makes it known to the archive. Throws StatusError.
+  void keep();
+
+  /// Loaded at the first call where it was kept. Throws StatusError where it cannot be.
+  SolutionLog& log() const;
+
+  /// Solves on the calling thread; an exception of the solver makes the solve FAILED. When it returns the solve has ended and the
+  /// log is closed, or it is PAUSED or QUEUED, as `is_paused` then says. One run at a time. `complain` is told what could not be
+  /// kept.
+  void run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
+           const std::function<void(const std::string&)>& complain);
+  /// Of one that is not running: from QUEUED to PAUSED and back, or to CANCELLED. Throws StatusError, and changes nothing, where
+  /// that cannot be kept.
+  void set_waiting_state(v1::Solve::State state);
+  void note_running();
+
+  v1::Solve::State state() const;
   /// The state will not change and the log will not grow. Listeners of the log are woken after this became true.
   bool ended() const;
   /// As the API tells it.
   v1::Solve describe() const;
+  /// Whether a mirror that is complete up to `revision` of `epoch` can go on.
+  bool knows(const std::string& epoch, std::uint64_t revision) const;
 
  private:
+  using Clock = std::chrono::steady_clock;
   void show(const Plan& plan);
   void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
+  SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
+  void save(const SolveControl::Write& write);
+  void save_in_memory(const SolveControl::Write& write);
+  void keep_checkpoint(Archive::SolveRow next, std::vector<std::string> state);
+  std::vector<std::byte> take_checkpoint();
+  Archive::SolveRow row() const;
 
   const std::shared_ptr<const StoredScene> scene_;
-  const SolveOptions options_;
+  const Keeping keeping_;
+  mutable std::mutex log_lock_;
+  mutable std::unique_ptr<SolutionLog> log_;  ///< null: kept, and not loaded yet
   mutable std::mutex lock_;
-  v1::Solve facts_;  ///< all but the last step
+  v1::Solve facts_;  ///< its last step is that of the checkpoint
+  std::map<std::string, std::uint64_t> lineage_;
+  std::vector<std::byte> state_in_memory_;  ///< of a paused solve where it is not in the archive
 };
 
 }  // namespace alvor

@@ -2,6 +2,7 @@
 
 #include "server/status_error.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace alvor {
@@ -15,10 +16,18 @@ std::shared_ptr<FrameSource> Watches::frames_of(const std::shared_ptr<StoredSolv
   return source;
 }
 
-void Watches::add(const std::string& id, const std::shared_ptr<Watch>& watch) {
+void Watches::add(const std::string& id, const std::shared_ptr<Watch>& watch, const std::string& tenant) {
   std::scoped_lock hold(lock_);
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
-  watches_.emplace(id, watch);
+  const auto own = std::ranges::count_if(watches_, [&](const auto& named) { return named.second.tenant == tenant; });
+  if (static_cast<std::uint64_t>(own) >= most_per_tenant_)
+    throw StatusError(grpc::RESOURCE_EXHAUSTED, "watches: " + std::to_string(own) + " are open, as many as are allowed");
+  watches_.emplace(id, Entry{watch, tenant});
+}
+
+std::size_t Watches::count() const {
+  std::scoped_lock hold(lock_);
+  return watches_.size();
 }
 
 void Watches::remove(const std::string& id) {
@@ -26,13 +35,13 @@ void Watches::remove(const std::string& id) {
   watches_.erase(id);
 }
 
-void Watches::acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision) {
+void Watches::acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision, const std::string& tenant) {
   std::shared_ptr<Watch> watch;
   {
     std::scoped_lock hold(lock_);
     const auto found = watches_.find(id);
-    if (found == watches_.end()) throw not_found("watch '" + id + "'");
-    watch = found->second;
+    if (found == watches_.end() || found->second.tenant != tenant) throw not_found("watch '" + id + "'");
+    watch = found->second.watch;
   }
   watch->acknowledge(frame_count, revision);
   ask_for_turn(watch);
@@ -43,7 +52,7 @@ void Watches::stop_all() {
   {
     std::scoped_lock hold(lock_);
     stopping_ = true;
-    for (const auto& [id, watch] : watches_) all.push_back(watch);
+    for (const auto& [id, entry] : watches_) all.push_back(entry.watch);
   }
   for (const auto& watch : all) {
     v1::Closing closing;

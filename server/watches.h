@@ -14,17 +14,19 @@ namespace alvor {
 /// Thread-safe. All turns are taken on one thread of its own: neither the solver nor gRPC encodes frames.
 class Watches {
  public:
-  explicit Watches(std::string epoch) : epoch_(std::move(epoch)) {}
+  explicit Watches(std::string epoch, std::uint64_t most_per_tenant = Quota{}.watchers)
+      : epoch_(std::move(epoch)), most_per_tenant_(most_per_tenant) {}
   const std::string& epoch() const { return epoch_; }
 
   /// The same source for all who watch `solve` at a time.
   std::shared_ptr<FrameSource> frames_of(const std::shared_ptr<StoredSolve>& solve);
 
-  /// UNAVAILABLE after stop_all.
-  void add(const std::string& id, const std::shared_ptr<Watch>& watch);
+  /// UNAVAILABLE after stop_all; RESOURCE_EXHAUSTED where the tenant has as many as it may.
+  void add(const std::string& id, const std::shared_ptr<Watch>& watch, const std::string& tenant = {});
   void remove(const std::string& id);
-  /// NOT_FOUND when the watch has ended; INVALID_ARGUMENT as in Watch::acknowledge.
-  void acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision);
+  /// NOT_FOUND when the watch has ended, or is another tenant's; INVALID_ARGUMENT as in Watch::acknowledge.
+  void acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision, const std::string& tenant = {});
+  std::size_t count() const;
   /// Ends every watch, and lets none begin.
   void stop_all();
 
@@ -34,9 +36,14 @@ class Watches {
  private:
   void take_turn(const std::shared_ptr<Watch>& watch);
 
+  struct Entry {
+    std::shared_ptr<Watch> watch;
+    std::string tenant;
+  };
   const std::string epoch_;
-  std::mutex lock_;
-  std::map<std::string, std::shared_ptr<Watch>> watches_;
+  const std::uint64_t most_per_tenant_;
+  mutable std::mutex lock_;
+  std::map<std::string, Entry> watches_;
   std::map<std::string, std::weak_ptr<FrameSource>> sources_;  ///< by the name of the solve
   bool stopping_ = false;
   TaskQueue turns_;

@@ -2,6 +2,7 @@
 
 #include "client/command/commands.h"
 #include "client/command/connection.h"
+#include "client/command/interrupt.h"
 #include "client/command/numbers.h"
 #include "client/command/plan_text.h"
 #include "client/command/table.h"
@@ -10,8 +11,11 @@
 #include <google/protobuf/util/time_util.h>
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
+#include <chrono>
 #include <iostream>
 #include <memory>
+#include <thread>
 
 namespace alvor {
 
@@ -24,6 +28,7 @@ struct ListOptions {
   ServerChoice server;
   std::string parent = "scenes/-";  ///< of solves; all scenes
   bool json = false;
+  bool watch = false;
 };
 
 struct GetOptions {
@@ -59,6 +64,9 @@ Json json_of(const v1::Solve& solve) {
           {"leaves", step.leaves},
           {"unshot_fraction", step.unshot_fraction},
           {"estimated_error", step.estimated_error},
+          {"restarts", solve.restarts()},
+          {"resumed_from_revision", solve.resumed_from_revision()},
+          {"work_lost_s", decode_seconds(solve.work_lost())},
           {"plan", json_of(decode(solve.plan()))}};
 }
 
@@ -104,6 +112,21 @@ void require_server(CLI::App& command, ServerChoice& server) {
   add_server_option(command, server, "The server that holds them").required();
 }
 
+/// Again every second, on a screen that is cleared in between, until Ctrl-C.
+template <class List>
+void watch(Client& client, List list, const ListOptions& options) {
+  Interrupt interrupt;
+  const std::stop_token stop = interrupt.token();
+  while (!stop.stop_requested()) {
+    const auto resources = list(client, options);
+    if (isatty(STDOUT_FILENO)) std::cout << "\033[H\033[2J";
+    print(resources, options);
+    std::cout << std::flush;
+    for (int tenth = 0; tenth < 10 && !stop.stop_requested(); ++tenth)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
 /// `list` is called with the client and the options.
 template <class List>
 CLI::App& add_list(CLI::App& parent, const std::shared_ptr<ListOptions>& options, List list) {
@@ -112,6 +135,7 @@ CLI::App& add_list(CLI::App& parent, const std::shared_ptr<ListOptions>& options
   command.add_flag("--json", options->json, "Print a JSON array");
   command.callback([options, list] {
     Connection connection(options->server);
+    if (options->watch) return watch(connection.client(), list, *options);
     print(list(connection.client(), *options), *options);
   });
   return command;
@@ -167,9 +191,14 @@ void add_solves_command(CLI::App& app) {
   CLI::App& list =
       add_list(solves, options, [](Client& client, const ListOptions& asked) { return client.list_solves(asked.parent); });
   list.add_option("scene", options->parent, "Only those of this scene")->type_name("SCENE");
+  list.add_flag("--watch", options->watch, "Again every second, until Ctrl-C");
   add_get(solves);
   add_act(solves, "cancel", "Stop solves; what they found stays",
           [](Client& client, const std::string& name) { client.cancel_solve(name); });
+  add_act(solves, "pause", "Let solves give up their threads and memory until they are resumed",
+          [](Client& client, const std::string& name) { client.pause_solve(name); });
+  add_act(solves, "resume", "Let paused solves go on",
+          [](Client& client, const std::string& name) { client.resume_solve(name); });
   add_act(solves, "delete", "Delete solves that have ended",
           [](Client& client, const std::string& name) { client.delete_solve(name); });
 }

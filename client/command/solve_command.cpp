@@ -26,6 +26,9 @@ const std::map<std::string, v1::Strategy> strategies{{"auto", v1::STRATEGY_UNSPE
                                                      {"sorted+ambient", v1::STRATEGY_SORTED_AMBIENT},
                                                      {"overshoot", v1::STRATEGY_OVERSHOOT}};
 
+const std::map<std::string, v1::Priority> priorities{
+    {"low", v1::PRIORITY_LOW}, {"normal", v1::PRIORITY_NORMAL}, {"high", v1::PRIORITY_HIGH}};
+
 const std::map<std::string, v1::FormFactors> form_factor_methods{{"auto", v1::FORM_FACTORS_UNSPECIFIED},
                                                                  {"nusselt", v1::FORM_FACTORS_NUSSELT},
                                                                  {"hemicube", v1::FORM_FACTORS_HEMICUBE},
@@ -45,6 +48,7 @@ struct SolveCommand {
   std::optional<int> threads;
   std::optional<std::uint64_t> seed;
   std::string strategy = "auto";      ///< a key of `strategies`
+  std::string priority = "normal";    ///< a key of `priorities`
   std::string form_factors = "auto";  ///< a key of `form_factor_methods`
   std::optional<double> pace_s;
   std::string absorption;  ///< three numbers; empty: none
@@ -59,6 +63,7 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
   if (command.seed) spec.set_seed(*command.seed);
   if (command.time_limit_s) *spec.mutable_time_limit() = encode_seconds(*command.time_limit_s);
   spec.set_strategy(strategies.at(command.strategy));
+  spec.set_priority(priorities.at(command.priority));
   spec.set_form_factors(form_factor_methods.at(command.form_factors));
   // Without a pace a small room is done between two frames.
   const double pace_s = command.pace_s.value_or(command.outputs.frames.empty() ? 0 : pace_of_frames_s);
@@ -111,6 +116,8 @@ void add_limits(CLI::App& command, SolveCommand& options) {
 }
 
 void add_method(CLI::App& command, SolveCommand& options) {
+  command.add_option("--priority", options.priority, "Among the solves of a server: low, normal or high (normal)")
+      ->check(CLI::IsMember(priorities));
   command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
       ->type_name("S")
       ->check(CLI::IsMember({"auto", "gather", "shoot", "sorted", "sorted+ambient", "overshoot"}));

@@ -1,73 +1,14 @@
 // The alvord program, as an operator and a load balancer see it.
 
 #include "client/client.h"
+#include "tests/server/alvord_process.h"
 #include "tests/server/sample_scenes.h"
 
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-#include <csignal>
-
-extern char** environ;
-
 namespace alvor {
 namespace {
-
-/// A running alvord; what it logs can be read line by line.
-class Alvord {
- public:
-  explicit Alvord(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), ALVOR_BINARIES "/alvord");
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    int ends[2] = {-1, -1};
-    EXPECT_EQ(pipe2(ends, O_CLOEXEC), 0);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-    EXPECT_EQ(posix_spawn(&process_, argv[0], &actions, nullptr, argv.data(), environ), 0);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    log_ = fdopen(ends[0], "r");
-  }
-  ~Alvord() {
-    if (process_ > 0) kill(process_, SIGKILL), exit_status();
-    std::fclose(log_);
-  }
-  Alvord(const Alvord&) = delete;
-  Alvord& operator=(const Alvord&) = delete;
-
-  /// The next line of the log, "" at its end.
-  std::string line() {
-    char text[4096] = "";
-    return std::fgets(text, sizeof text, log_) ? text : "";
-  }
-  /// Reads the log up to the line that tells the address.
-  std::string address() {
-    const std::string words = "listening on ";
-    for (std::string next = line(); !next.empty(); next = line())
-      if (const auto at = next.find(words); at != std::string::npos) {
-        next.pop_back();  // the line's end
-        return next.substr(at + words.size());
-      }
-    return "";
-  }
-  void ask_to_stop() { kill(process_, SIGTERM); }
-  int exit_status() {
-    int status = 0;
-    waitpid(std::exchange(process_, -1), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t process_ = -1;
-  std::FILE* log_ = nullptr;
-};
 
 grpc::ByteBuffer bytes_of(const std::string& text) {
   const grpc::Slice slice(text);
@@ -145,11 +86,6 @@ TEST(AlvordProgram, PortInUseIsOneLineAndStatusOne) {
   EXPECT_EQ(second.line(), "alvord: cannot listen on " + address + ": the address is in use or not of this machine\n");
   EXPECT_EQ(second.line(), "");
   EXPECT_EQ(second.exit_status(), 1);
-}
-
-TEST(AlvordProgram, SaysThatDataIsNotKept) {
-  Alvord alvord({"--listen", "127.0.0.1:0", "--data", "nowhere"});
-  EXPECT_NE(alvord.line().find("memory only"), std::string::npos);
 }
 
 }  // namespace

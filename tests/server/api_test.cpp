@@ -94,7 +94,7 @@ TEST(Api, SceneLivesAsLongAsItsSolves) {
   Client client(server.channel());
   const std::string scene = client.create_scene(squares(1), "").name();
   const std::string solve = client.create_solve(scene, {}).name();
-  EXPECT_EQ(error_of([&] { client.delete_solve(solve); }), "FAILED_PRECONDITION: " + solve + " is running: cancel it first");
+  EXPECT_EQ(error_of([&] { client.delete_solve(solve); }), "FAILED_PRECONDITION: " + solve + " has not ended: cancel it first");
   EXPECT_EQ(error_of([&] { client.delete_scene(scene); }), "FAILED_PRECONDITION: " + scene + " has solves: delete them first");
   client.cancel_solve(solve);
   Client::Watch watch;

@@ -1,6 +1,7 @@
 #include "server/listening.h"
 
 #include "server/bearer_tokens.h"
+#include "server/sha256.h"
 
 #include <gtest/gtest.h>
 

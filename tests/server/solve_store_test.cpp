@@ -14,10 +14,12 @@ namespace {
 class SolveStoreTest : public testing::Test {
  protected:
   static SolveStoreOptions options_for(StagedSolver& stage) {
-    return {.max_running = 2,
-            .limits = {},
-            .solver = stage.solver(),
-            .logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>())};
+    SolveStoreOptions options;
+    options.max_running = 2;
+    options.max_waiting = 2;
+    options.solver = stage.solver();
+    options.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
+    return options;
   }
   std::shared_ptr<StoredSolve> create() { return solves.create(scenes.use(scene), {}); }
   static v1::Solve ended(const std::shared_ptr<StoredSolve>& solve) {
@@ -29,7 +31,7 @@ class SolveStoreTest : public testing::Test {
   StagedSolver stage;
   SceneStore scenes;
   std::string scene = scenes.add(squares(2), "")->facts.name();
-  SolveStore solves{options_for(stage)};
+  SolveStore solves{options_for(stage), scenes};
 };
 
 TEST_F(SolveStoreTest, SolveRunsUntilTheSolverReturns) {
@@ -51,7 +53,7 @@ TEST_F(SolveStoreTest, CancelledSolveStaysReadable) {
   stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   solves.cancel(solve->name);
   EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
-  EXPECT_EQ(solves.find(solve->name)->log.leaves().size(), 1u);
+  EXPECT_EQ(solves.find(solve->name)->log().leaves().size(), 1u);
   EXPECT_EQ(ended(solves.cancel(solve->name)).state(), v1::Solve::CANCELLED) << "cancelling again changes nothing";
 }
 
@@ -60,19 +62,108 @@ TEST_F(SolveStoreTest, SolverThatThrowsFailsTheSolveAndNotTheServer) {
   stage.fail("no rays today");
   EXPECT_EQ(ended(solve).state(), v1::Solve::FAILED);
   EXPECT_EQ(ended(solve).end_reason(), "no rays today");
-  solve->log.wait_beyond(solve->log.head());  // returns: the log is closed although the solver did not
+  solve->log().wait_beyond(solve->log().head());  // returns: the log is closed although the solver did not
 }
 
-TEST_F(SolveStoreTest, OnlySoManyRunAtATime) {
-  create();
-  create();
-  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(); }), "2 solves are running, as many as this server allows");
+TEST_F(SolveStoreTest, OnlySoManyRunAtATimeAndOnlySoManyWait) {
+  for (const auto state : {v1::Solve::RUNNING, v1::Solve::RUNNING, v1::Solve::QUEUED, v1::Solve::QUEUED})
+    EXPECT_EQ(create()->describe().state(), state);
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(); }), "2 solves are waiting, as many as this server allows");
+}
+
+TEST_F(SolveStoreTest, WaitingSolvesStartByPriorityThenAge) {
+  const auto first = create(), second = create();
+  v1::SolveSpec low, high;
+  low.set_priority(v1::PRIORITY_LOW);
+  high.set_priority(v1::PRIORITY_HIGH);
+  const auto third = solves.create(scenes.use(scene), low), fourth = solves.create(scenes.use(scene), high);
+  solves.cancel(first->name);
+  while (fourth->describe().state() == v1::Solve::QUEUED) std::this_thread::yield();
+  EXPECT_EQ(third->describe().state(), v1::Solve::QUEUED);
+  solves.cancel(second->name);
+  while (third->describe().state() == v1::Solve::QUEUED) std::this_thread::yield();
+}
+
+TEST_F(SolveStoreTest, PausedSolveGoesOnFromWhereItWas) {
+  const auto solve = create();
+  EXPECT_EQ(stage.resumed_from(), 0u);
+  stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
+  solves.pause(solve->name);
+  while (solve->describe().state() != v1::Solve::PAUSED) std::this_thread::yield();
+  EXPECT_FALSE(solve->log().closed());
+  solves.resume(solve->name);
+  EXPECT_EQ(stage.resumed_from(), sizeof(std::uint32_t));
+  EXPECT_EQ(solve->describe().state(), v1::Solve::RUNNING);
+  EXPECT_EQ(stage.log().head(), 1u);
+  stage.finish();
+  EXPECT_EQ(ended(solve).state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { solves.pause(solve->name); }), solve->name + " has ended");
+}
+
+TEST_F(SolveStoreTest, PausedSolveCanBeCancelledAndLeavesItsPlaceToOthers) {
+  const auto first = create(), second = create(), third = create();
+  solves.pause(third->name);
+  EXPECT_EQ(third->describe().state(), v1::Solve::PAUSED) << "it had not begun";
+  solves.pause(first->name);
+  while (first->describe().state() != v1::Solve::PAUSED) std::this_thread::yield();
+  solves.resume(third->name);
+  while (third->describe().state() != v1::Solve::RUNNING) std::this_thread::yield();
+  solves.cancel(first->name);
+  EXPECT_EQ(first->describe().state(), v1::Solve::CANCELLED);
+  EXPECT_TRUE(first->log().closed());
+}
+
+TEST_F(SolveStoreTest, SameRequestMakesOneSolve) {
+  const auto solve = solves.create(scenes.use(scene), {}, {"", "once"});
+  EXPECT_EQ(solves.create(scenes.use(scene), {}, {"", "once"}), solve);
+  v1::SolveSpec other;
+  other.set_tolerance(0.1);
+  EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT,
+                       [&] {
+                         solves.create(scenes.use(scene), other, {"", "once"});
+                       }),
+            "request_id: 'once' was used for another request");
+  EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT,
+                       [&] {
+                         solves.create(scenes.use(scene), {}, {"", "a b"});
+                       }),
+            "request_id: must be 1 to 64 printable ASCII characters");
+}
+
+TEST_F(SolveStoreTest, TenantsSeeAndCountTheirOwn) {
+  const std::string hers = scenes.add(squares(1), "", {"ada", ""})->facts.name();
+  EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { scenes.use(hers, "bob"); }), hers + " does not exist");
+  const auto solve = solves.create(scenes.use(hers, "ada"), {}, {"ada", ""});
+  EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { solves.cancel(solve->name, "bob"); }), solve->name + " does not exist");
+  EXPECT_TRUE(solves.list("scenes/-", {}, "bob").items.empty());
+  EXPECT_EQ(solves.list("scenes/-", {}, "ada").items.size(), 1u);
+}
+
+TEST(SolveQuota, EndsWhatATenantMayStart) {
+  StagedSolver stage;
+  SceneStore scenes;
+  const std::string scene = scenes.add(squares(2), "")->facts.name();
+  SolveStoreOptions options;
+  options.quota.solves = 2;
+  options.quota.leaves = 1000;
+  options.solver = stage.solver();
+  options.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
+  SolveStore solves(options, scenes);
+  v1::SolveSpec spec;
+  spec.set_max_elements(600);
+  solves.create(scenes.use(scene), spec);
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); }),
+            "solve.spec.max_elements: with the other solves that have not ended 1200, 1000 are allowed");
+  spec.set_max_elements(400);
+  solves.create(scenes.use(scene), spec);
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); }),
+            "solves: 2 have not ended, as many as are allowed");
 }
 
 TEST_F(SolveStoreTest, RunningSolveCannotBeDeletedAndItsSceneNeither) {
   const auto solve = create();
   EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { solves.remove(solve->name); }),
-            solve->name + " is running: cancel it first");
+            solve->name + " has not ended: cancel it first");
   stage.finish();
   ended(solve);
   EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { scenes.remove(scene); }), scene + " has solves: delete them first");

@@ -4,17 +4,27 @@ namespace alvor {
 
 Solver StagedSolver::solver() {
   return [this](const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
-    return run(log, control.stop);
+    return run(log, control);
   };
 }
 
-SolveOutcome StagedSolver::run(SolutionLog& log, std::stop_token stop) {
+SolveOutcome StagedSolver::run(SolutionLog& log, const SolveControl& control) {
+  const std::stop_callback wake(control.park, [this] {
+    std::scoped_lock hold(lock_);
+    changed_.notify_all();
+  });
   std::unique_lock hold(lock_);
   log_ = &log;
+  resumed_from_ = control.checkpoint.size();
   changed_.notify_all();
-  const bool told = changed_.wait(hold, stop, [this] { return finished_; });
+  const bool told = changed_.wait(hold, control.stop, [&] { return finished_ || control.park.stop_requested(); });
   log_ = nullptr;
   if (told && !failure_.empty()) throw std::runtime_error(failure_);
+  if (told && control.park.stop_requested()) {
+    hold.unlock();
+    control.save([](PlainWriter& out) { out.put(std::uint32_t{7}); });
+    return {.reason = StopReason::parked};
+  }
   return {.reason = told ? StopReason::tolerance : StopReason::cancelled};
 }
 
@@ -22,6 +32,12 @@ SolutionLog& StagedSolver::log() {
   std::unique_lock hold(lock_);
   changed_.wait(hold, [this] { return log_ != nullptr; });
   return *log_;
+}
+
+std::size_t StagedSolver::resumed_from() {
+  log();
+  std::scoped_lock hold(lock_);
+  return resumed_from_;
 }
 
 void StagedSolver::finish() {

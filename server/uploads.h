@@ -1,0 +1,41 @@
+#pragma once
+// Uploads whose connection was lost, and that may be gone on with.
+
+#include "server/request_ids.h"
+#include "server/scene_upload.h"
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace alvor {
+
+/// Thread-safe. Throws StatusError.
+class Uploads {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::minutes patience{10};
+  static constexpr std::size_t most = 16;  ///< of all tenants: they take memory
+
+  /// Keeps what has arrived. Does nothing for a request without an id. The oldest go when there are too many.
+  void put(const Caller& caller, std::unique_ptr<SceneUpload> upload);
+  /// How many chunks wait. NOT_FOUND.
+  std::uint64_t chunks(const Caller& caller);
+  /// Takes it out. NOT_FOUND where none waits, or another number of chunks does.
+  std::unique_ptr<SceneUpload> take(const Caller& caller, std::uint64_t chunks);
+
+ private:
+  struct Waiting {
+    std::unique_ptr<SceneUpload> upload;
+    Clock::time_point since;
+  };
+  using Key = std::pair<std::string, std::string>;
+  std::map<Key, Waiting>::iterator find(const Caller& caller);
+
+  std::mutex lock_;
+  std::map<Key, Waiting> waiting_;
+};
+
+}  // namespace alvor
