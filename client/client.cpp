@@ -72,12 +72,15 @@ v1::Scene Client::create_scene(const Scene& scene, const std::string& display_na
   v1::CreateSceneRequest first;
   first.mutable_scene()->set_display_name(as_utf8(display_name));
   first.set_request_id(random_id());
-  return with_patience([&] { return upload(first, scene); });
+  bool has_begun = false;
+  return with_patience([&] {
+    if (has_begun) first.set_resume_after_chunks(received_chunks(first.request_id()));
+    has_begun = true;
+    return upload(first, scene);
+  });
 }
 
-/// Goes on from where an earlier attempt of the same request came to.
-v1::Scene Client::upload(v1::CreateSceneRequest first, const Scene& scene) {
-  first.set_resume_after_chunks(received_chunks(first.request_id()));
+v1::Scene Client::upload(const v1::CreateSceneRequest& first, const Scene& scene) {
   grpc::ClientContext context;
   v1::Scene stored;
   const auto writer = scenes_->CreateScene(&context, &stored);

@@ -71,7 +71,8 @@ class Client {
         if (error.code != grpc::UNAVAILABLE || tries == most_tries || !wait_until_connected(patience_for_server)) throw;
       }
   }
-  v1::Scene upload(v1::CreateSceneRequest first, const Scene& scene);
+  /// From the chunk that `first` says.
+  v1::Scene upload(const v1::CreateSceneRequest& first, const Scene& scene);
   std::uint64_t received_chunks(const std::string& request_id);
 
   static constexpr int most_tries = 5;

@@ -8,6 +8,7 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <prometheus/exposer.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
@@ -27,6 +28,7 @@ struct Options {
   std::string directory;
   int max_solves = alvor::SolveStoreOptions{}.max_running;
   double checkpoint_interval_s = 10;
+  std::string metrics;
   alvor::Quota quota;
   std::string log_level = "info";
 };
@@ -53,6 +55,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  app.add_option("--metrics", options.metrics, "HOST:PORT to tell Prometheus on, at /metrics (not at all)");
   app.add_option("--log-level", options.log_level, "How much to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -136,6 +139,18 @@ class Heartbeat {
   alvor::TaskQueue tasks_;
 };
 
+// Null without an address.
+std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const alvor::Service& service) {
+  if (address.empty()) return nullptr;
+  try {
+    auto exposer = std::make_unique<prometheus::Exposer>(address);
+    exposer->RegisterCollectable(service.metrics());
+    return exposer;
+  } catch (const std::exception&) {
+    throw std::invalid_argument("--metrics: cannot listen on " + address + ": the address is in use or not of this machine");
+  }
+}
+
 int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
   alvor::ServiceOptions service_options;
   service_options.solves.max_running = options.max_solves;
@@ -152,6 +167,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
     std::cerr << "alvord: cannot listen on " << options.listen.address << ": the address is in use or not of this machine\n";
     return 1;
   }
+  const auto exposer = expose(options.metrics, service);
   set_serving(*server, true);
   const Heartbeat heartbeat(archive.get());
   logger->info("listening on {}:{}", options.listen.address.substr(0, options.listen.address.rfind(':')), port);

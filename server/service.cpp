@@ -1,5 +1,6 @@
 #include "server/service.h"
 
+#include "server/metrics.h"
 #include "server/random_id.h"
 #include "server/scene_service.h"
 #include "server/solve_service.h"
@@ -34,7 +35,8 @@ struct Service::Parts {
         scenes(options.archive, options.quota),
         solves(solve_store_options, scenes),
         scene_service(scenes, options.upload, building, *logger),
-        solve_service(scenes, solves, watches, *logger) {}
+        solve_service(scenes, solves, watches, *logger),
+        metrics(std::make_shared<Metrics>(scenes, solves, watches, *solve_store_options.keeping.counts)) {}
 
   Watches watches;
   const SolveStoreOptions solve_store_options;
@@ -44,6 +46,7 @@ struct Service::Parts {
   TaskQueue building;
   SceneService scene_service;
   SolveService solve_service;
+  std::shared_ptr<Metrics> metrics;
 };
 
 Service::Service(ServiceOptions options) : parts_(std::make_unique<Parts>(options)) {}
@@ -55,6 +58,8 @@ void Service::register_with(grpc::ServerBuilder& builder) {
   builder.RegisterService(&parts_->scene_service);
   builder.RegisterService(&parts_->solve_service);
 }
+
+std::shared_ptr<prometheus::Collectable> Service::metrics() const { return parts_->metrics; }
 
 void Service::shut_down() {
   parts_->watches.stop_all();

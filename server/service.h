@@ -5,6 +5,7 @@
 #include "server/solve_store.h"
 
 #include <grpcpp/server_builder.h>
+#include <prometheus/collectable.h>
 
 #include <memory>
 
@@ -28,6 +29,8 @@ class Service {
   /// Ends all watches, parks or cancels all solves (SolveStore::shut_down) and waits for them. Later CreateSolve and WatchSolve
   /// calls are UNAVAILABLE.
   void shut_down();
+  /// Answers as long as the service exists.
+  std::shared_ptr<prometheus::Collectable> metrics() const;
 
  private:
   struct Parts;

@@ -159,9 +159,12 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
     try {
       save(write);
     } catch (const std::exception& fault) {
+      ++keeping_.counts->failures;
       complain(fault.what());
       if (run.park.stop_requested()) save_in_memory(write);
     }
+    const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begun);
+    keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
     next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
   };
   return solver(content->mesh, plan, options, log(), control);
@@ -188,6 +191,9 @@ void StoredSolve::keep_checkpoint(Archive::SolveRow next, std::vector<std::strin
   *next.facts.mutable_last_step() = alvor::encode(solution.last_step());
   *next.facts.mutable_checkpoint_time() = TimeUtil::GetCurrentTime();
   keeping_.archive->update(next, checkpoint);
+  ++keeping_.counts->checkpoints;
+  for (const auto* pieces : {&checkpoint.log, &checkpoint.state})
+    for (const std::string& piece : *pieces) keeping_.counts->bytes += piece.size();
   std::scoped_lock hold(lock_);
   lineage_ = std::move(next.lineage);
   *facts_.mutable_last_step() = next.facts.last_step();

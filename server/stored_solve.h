@@ -6,6 +6,7 @@
 #include "server/archive.h"
 #include "server/scene_store.h"
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -18,10 +19,16 @@ namespace alvor {
 /// solve_as_planned, or what stands in for it.
 using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, const SolveControl&)>;
 
+/// Of all solves.
+struct KeepingCounts {
+  std::atomic<std::uint64_t> checkpoints = 0, microseconds = 0, bytes = 0, failures = 0;
+};
+
 /// Where and how often what a solve found is kept.
 struct Keeping {
   Archive* archive = nullptr;  ///< null: in memory, and only what a paused solve needs
   std::string epoch;           ///< of this run of the server
+  std::shared_ptr<KeepingCounts> counts = std::make_shared<KeepingCounts>();
   std::chrono::steady_clock::duration interval =
       std::chrono::seconds(10);  ///< between checkpoints, if they take a twentieth of it or less
 };

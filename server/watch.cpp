@@ -7,7 +7,12 @@
 namespace alvor {
 
 Watch::Watch(std::shared_ptr<FrameSource> frames, const WatchPlan& plan, FrameSink& sink)
-    : frames_(std::move(frames)), plan_(plan), sink_(sink), cursor_(plan.start), sent_revision_(plan.start.base) {}
+    : frames_(std::move(frames)),
+      plan_(plan),
+      sink_(sink),
+      cursor_(plan.start),
+      acknowledged_revision_(plan.start.base),
+      sent_revision_(plan.start.base) {}
 
 std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) {
   turn_asked_ = false;  // before anything is looked at: what happens from here on asks again
@@ -68,6 +73,7 @@ void Watch::send(Clock::time_point now) {
 void Watch::write(std::shared_ptr<const Frame> frame, Clock::time_point now) {
   under_way_ = std::move(frame);
   last_write_ = now;
+  bytes_ += under_way_->bytes.size();
   sink_.write(*under_way_);
 }
 
@@ -93,6 +99,7 @@ void Watch::acknowledge(std::uint64_t frame_count, std::uint64_t revision) {
   if (frame_count == 0 || frame_count > sent_) refuse("frame_count", frame_count, sent_);
   if (revision > sent_revision_) refuse("revision", revision, sent_revision_);
   acknowledged_ = std::max(acknowledged_, frame_count);
+  acknowledged_revision_ = std::max(acknowledged_revision_, revision);
 }
 
 void Watch::stop(const grpc::Status& reason) {
@@ -110,6 +117,17 @@ void Watch::close(const v1::Closing& closing) {
 std::uint64_t Watch::frames_sent() const {
   std::scoped_lock hold(lock_);
   return sent_;
+}
+
+std::uint64_t Watch::bytes_sent() const {
+  std::scoped_lock hold(lock_);
+  return bytes_;
+}
+
+std::uint64_t Watch::revisions_behind() const {
+  std::scoped_lock hold(lock_);
+  const std::uint64_t head = frames_->solve().log().head();
+  return head - std::min(head, acknowledged_revision_);
 }
 
 }  // namespace alvor

@@ -65,6 +65,9 @@ class Watch {
   void close(const v1::Closing& closing);
 
   std::uint64_t frames_sent() const;
+  std::uint64_t bytes_sent() const;
+  /// How many revisions there are that the watcher has not acknowledged.
+  std::uint64_t revisions_behind() const;
 
  private:
   std::optional<Clock::time_point> wait_until(Clock::time_point due);
@@ -82,7 +85,8 @@ class Watch {
 
   mutable std::mutex lock_;
   Cursor cursor_;
-  std::uint64_t sent_ = 0, acknowledged_ = 0;
+  std::uint64_t sent_ = 0, acknowledged_ = 0, bytes_ = 0;
+  std::uint64_t acknowledged_revision_;
   std::uint64_t sent_revision_;             ///< to_revision of the newest frame
   std::shared_ptr<const Frame> under_way_;  ///< set between write() and written()
   std::optional<grpc::Status> end_;         ///< why to finish once nothing is under way

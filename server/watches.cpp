@@ -25,14 +25,24 @@ void Watches::add(const std::string& id, const std::shared_ptr<Watch>& watch, co
   watches_.emplace(id, Entry{watch, tenant});
 }
 
-std::size_t Watches::count() const {
+Watches::Traffic Watches::traffic() const {
   std::scoped_lock hold(lock_);
-  return watches_.size();
+  Traffic all{watches_.size(), frames_, bytes_, 0};
+  for (const auto& [id, entry] : watches_) {
+    all.frames += entry.watch->frames_sent();
+    all.bytes += entry.watch->bytes_sent();
+    all.most_behind = std::max(all.most_behind, entry.watch->revisions_behind());
+  }
+  return all;
 }
 
 void Watches::remove(const std::string& id) {
   std::scoped_lock hold(lock_);
-  watches_.erase(id);
+  const auto found = watches_.find(id);
+  if (found == watches_.end()) return;
+  frames_ += found->second.watch->frames_sent();
+  bytes_ += found->second.watch->bytes_sent();
+  watches_.erase(found);
 }
 
 void Watches::acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision, const std::string& tenant) {

@@ -26,7 +26,12 @@ class Watches {
   void remove(const std::string& id);
   /// NOT_FOUND when the watch has ended, or is another tenant's; INVALID_ARGUMENT as in Watch::acknowledge.
   void acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision, const std::string& tenant = {});
-  std::size_t count() const;
+  struct Traffic {
+    std::size_t watchers = 0;
+    std::uint64_t frames = 0, bytes = 0;  ///< since the server was started
+    std::uint64_t most_behind = 0;        ///< revisions that one watcher has not acknowledged
+  };
+  Traffic traffic() const;
   /// Ends every watch, and lets none begin.
   void stop_all();
 
@@ -45,6 +50,7 @@ class Watches {
   mutable std::mutex lock_;
   std::map<std::string, Entry> watches_;
   std::map<std::string, std::weak_ptr<FrameSource>> sources_;  ///< by the name of the solve
+  std::uint64_t frames_ = 0, bytes_ = 0;                       ///< of watches that have ended
   bool stopping_ = false;
   TaskQueue turns_;
 };

@@ -14,6 +14,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <random>
 #include <thread>
 
 namespace alvor {
@@ -156,34 +158,58 @@ TEST_F(KeepingTest, WatcherAheadOfTheCheckpointStartsAfresh) {
   EXPECT_EQ(watch.mirror.leaves(), uninterrupted());
 }
 
+/// Asks for scenes and solves as fast as they are answered, until the server is gone, and notes what was.
+struct Requests {
+  std::vector<std::string> scenes, solves;
+
+  void send(const std::string& address, const v1::SolveSpec& spec) {
+    const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
+    const auto stub = v1::SolveService::NewStub(channel);
+    while (scenes.size() < 3) {
+      v1::Scene scene;
+      if (!upload(channel, scene)) return;
+      scenes.push_back(scene.name());
+      grpc::ClientContext context;
+      v1::CreateSolveRequest create;
+      create.set_parent(scene.name());
+      *create.mutable_solve()->mutable_spec() = spec;
+      v1::Solve solve;
+      if (!stub->CreateSolve(&context, create, &solve).ok()) return;
+      solves.push_back(solve.name());
+    }
+  }
+  static bool upload(const std::shared_ptr<grpc::Channel>& channel, v1::Scene& stored) {
+    const auto stub = v1::SceneService::NewStub(channel);
+    grpc::ClientContext context;
+    const auto writer = stub->CreateScene(&context, &stored);
+    v1::CreateSceneRequest request;
+    request.mutable_scene();
+    const Scene room = test::room_with_contacts();
+    SceneSlicer slicer(room);
+    do writer->Write(request);
+    while (slicer.next(*request.mutable_chunk()));
+    writer->WritesDone();
+    return writer->Finish().ok();
+  }
+};
+
 TEST_F(KeepingTest, EveryDurableStepIsDoneOrNot) {
   for (const std::string step : {"scene", "solve", "checkpoint"})
     for (const std::string when : {"before", "after"}) {
       fs::remove_all(directory);
       bool has_scene = false, has_solve = false;
-      std::string scene;
       {
         Alvord alvord(arguments(), "ALVOR_FAILPOINT=" + step + "." + when);
         auto stub_channel = grpc::CreateChannel(alvord.address(), grpc::InsecureChannelCredentials());
-        const auto scenes = v1::SceneService::NewStub(stub_channel);
         const auto solves = v1::SolveService::NewStub(stub_channel);
-        grpc::ClientContext first, second;
+        grpc::ClientContext context;
         v1::Scene stored;
-        const auto writer = scenes->CreateScene(&first, &stored);
-        v1::CreateSceneRequest request;
-        request.mutable_scene();
-        writer->Write(request);
-        const Scene room = test::room_with_contacts();
-        SceneSlicer slicer(room);
-        while (slicer.next(*request.mutable_chunk())) writer->Write(request);
-        writer->WritesDone();
-        has_scene = writer->Finish().ok();
-        scene = stored.name();
+        has_scene = Requests::upload(stub_channel, stored);
         v1::CreateSolveRequest create;
-        create.set_parent(scene);
+        create.set_parent(stored.name());
         *create.mutable_solve()->mutable_spec() = slow_spec();
         v1::Solve solve;
-        if (has_scene) has_solve = solves->CreateSolve(&second, create, &solve).ok();
+        if (has_scene) has_solve = solves->CreateSolve(&context, create, &solve).ok();
         EXPECT_EQ(has_scene, step != "scene") << "it died at " << step << '.' << when;
         EXPECT_EQ(has_solve, step == "checkpoint") << "it died at " << step << '.' << when;
         if (step == "checkpoint") alvord.exit_status();
@@ -200,6 +226,45 @@ TEST_F(KeepingTest, EveryDurableStepIsDoneOrNot) {
         EXPECT_EQ(watch.mirror.leaves(), uninterrupted()) << step << '.' << when;
       }
     }
+}
+
+// More of them by scripts/crashes.sh, which sets their number.
+TEST_F(KeepingTest, NothingAcknowledgedIsLostWheneverTheServerIsKilled) {
+  const char* chosen = std::getenv("ALVOR_CRASHES");
+  const int crashes = chosen ? std::atoi(chosen) : 4;
+  const auto expected = uninterrupted();
+  std::mt19937 dice(7);
+  double longest_start_s = 0;
+  int resumed = 0;
+  for (int crash = 0; crash < crashes; ++crash) {
+    Requests requests;
+    {
+      Alvord alvord(arguments());
+      const std::string address = alvord.address();
+      std::thread client([&] { requests.send(address, slow_spec()); });
+      std::this_thread::sleep_for(std::chrono::milliseconds(dice() % 900));
+      alvord.kill();
+      client.join();
+    }
+    const auto begun = std::chrono::steady_clock::now();
+    Alvord alvord(arguments());
+    Client client = client_of(alvord);
+    EXPECT_TRUE(client.wait_until_connected(std::chrono::seconds(20)));
+    longest_start_s = std::max(longest_start_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+    for (const std::string& scene : requests.scenes)
+      EXPECT_EQ(client.get_scene(scene).face_count(), test::room_with_contacts().faces.size()) << "crash " << crash;
+    for (const std::string& solve : requests.solves) {
+      Client::Watch watch;
+      const v1::Solve ended = client.watch_solve(solve, watch, [](auto&) {});
+      resumed += ended.resumed_from_revision() > 0;
+      EXPECT_EQ(ended.state(), v1::Solve::SUCCEEDED) << "crash " << crash << ": " << ended.end_reason();
+      EXPECT_EQ(watch.mirror.leaves(), expected) << "crash " << crash;
+    }
+    alvord.kill();
+  }
+  std::cout << crashes << " crashes, " << resumed << " solves went on from a checkpoint, listening again after at most "
+            << longest_start_s << " s\n";
+  EXPECT_LT(longest_start_s, 5);
 }
 
 TEST_F(KeepingTest, ScenesOfEqualContentAreKeptOnce) {

@@ -1,0 +1,43 @@
+#pragma once
+// What an operator may want to know of a running server, as Prometheus asks for it.
+
+#include <prometheus/collectable.h>
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+class SceneStore;
+class SolveStore;
+class Watches;
+struct KeepingCounts;
+
+/// Everything is looked up when it is asked for; nothing is counted while light is solved. Thread-safe; everything it is given
+/// must outlive it.
+class Metrics : public prometheus::Collectable {
+ public:
+  Metrics(const SceneStore& scenes, const SolveStore& solves, const Watches& watches, const KeepingCounts& keeping)
+      : scenes_(scenes), solves_(solves), watches_(watches), keeping_(keeping) {}
+  std::vector<prometheus::MetricFamily> Collect() const override;
+
+ private:
+  /// Of a solve, as it was when it was last looked at.
+  struct Seen {
+    std::uint64_t shots = 0, rays = 0;
+  };
+  void collect_solves(std::vector<prometheus::MetricFamily>& families) const;
+
+  const SceneStore& scenes_;
+  const SolveStore& solves_;
+  const Watches& watches_;
+  const KeepingCounts& keeping_;
+  mutable std::mutex lock_;
+  mutable std::map<std::string, Seen> seen_;
+  mutable std::uint64_t shots_ = 0, rays_ = 0;  ///< since the server was started, of solves that are gone too
+};
+
+}  // namespace alvor
