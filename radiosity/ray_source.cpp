@@ -5,7 +5,8 @@ namespace alvor {
 PatchPoints sample_points(const LocalScene& scene, const PatchShape& patch, RandomStream& random) {
   const LocalRoot& root = scene.root(patch.root);
   const Uv jitter{random.next() - 0.5, random.next() - 0.5};
-  const auto [u, v] = origins_in(patch, jitter);
+  const OriginPlaces origins = origins_in(patch, jitter);
+  const auto &u = origins.u, &v = origins.v;
   PatchPoints points;
   const auto along = [&](float origin, float edge_u, float edge_v, float twist, float normal, float* out) {
     for (int o = 0; o < origins_per_patch; ++o)

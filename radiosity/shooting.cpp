@@ -236,7 +236,7 @@ Rgb Shooting::signed_unshot_power() const {
 }
 
 void Shooting::keep_ambient_account() {
-  account_.emplace(std::vector<Rgb>(leaves_.size()), signed_unshot_power());
+  account_ = Account{std::vector<Rgb>(leaves_.size()), signed_unshot_power()};
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const Rgb reflecting = (patches_[p].area * receivers_[p].weight) * patches_[p].reflectance;
     const auto& weight = patches_[p].row->hit_weight;

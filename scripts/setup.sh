@@ -8,7 +8,7 @@ packages=(
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
   libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
-  libgtest-dev libgmock-dev
+  libgtest-dev libgmock-dev clang libclang-rt-14-dev
   gnuplot-nox
   python3-grpcio python3-zstandard python3-protobuf
 )

@@ -4,6 +4,7 @@
 #include "server/service.h"
 #include "server/task_queue.h"
 
+#include <google/protobuf/stubs/logging.h>
 #include <grpc/support/log.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
@@ -68,10 +69,13 @@ std::shared_ptr<spdlog::logger> make_logger(const std::string& level) {
   return logger;
 }
 
-// gRPC's own messages are for those who debug it; what a user needs to know is said here.
+// The libraries' own messages are for those who debug it; what a user needs to know is said here.
 void quieten_grpc() {
   gpr_set_log_function([](gpr_log_func_args* line) {
     if (const auto logger = spdlog::get("alvord")) logger->debug("grpc: {}", line->message);
+  });
+  google::protobuf::SetLogHandler([](google::protobuf::LogLevel, const char*, int, const std::string& line) {
+    if (const auto logger = spdlog::get("alvord")) logger->debug("protobuf: {}", line);
   });
 }
 

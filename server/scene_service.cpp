@@ -3,6 +3,7 @@
 #include "server/answer.h"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 
@@ -10,38 +11,35 @@ namespace alvor {
 
 namespace {
 
-/// Ends a call that nothing comes from. The call may be gone before its time has come.
+/// Tells when nothing came for too long. Whom it tells may be gone before that.
 class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
  public:
   using Clock = TaskQueue::Clock;
-  IdleWatch(grpc::CallbackServerContext& context, TaskQueue& tasks, Clock::duration patience)
-      : context_(&context), tasks_(tasks), patience_(patience) {}
+  IdleWatch(TaskQueue& tasks, Clock::duration patience, std::function<void()> tell)
+      : tasks_(tasks), patience_(patience), tell_(std::move(tell)) {}
   void wait() {
-    tasks_.post_at(Clock::now() + patience_, [self = shared_from_this()] { self->look(); });
+    tasks_.post_at(last_.load() + patience_, [self = shared_from_this()] { self->look(); });
   }
   void note_message() { last_ = Clock::now(); }
-  /// No longer looked at.
+  /// Nobody is told from now on.
   void end() {
     std::scoped_lock hold(lock_);
-    context_ = nullptr;
+    tell_ = nullptr;
   }
-  bool has_ended_call() const { return has_ended_call_; }
 
  private:
   void look() {
     std::scoped_lock hold(lock_);
-    if (!context_) return;
-    if (Clock::now() < last_.load() + patience_) return wait();
-    has_ended_call_ = true;
-    context_->TryCancel();
+    if (!tell_) return;
+    if (Clock::now() < last_.load() + patience_) wait();
+    else tell_();
   }
 
-  std::mutex lock_;
-  grpc::CallbackServerContext* context_;
   TaskQueue& tasks_;
   const Clock::duration patience_;
+  std::mutex lock_;
+  std::function<void()> tell_;
   std::atomic<Clock::time_point> last_ = Clock::now();
-  std::atomic<bool> has_ended_call_ = false;
 };
 
 // Reads one message at a time into a SceneUpload. Deletes itself.
@@ -57,7 +55,9 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
         answer_(answer),
         caller_{tenant_of(context), {}},
         upload_(std::make_unique<SceneUpload>(limits)),
-        idle_(std::make_shared<IdleWatch>(context, building, limits.patience)) {
+        idle_(std::make_shared<IdleWatch>(building, limits.patience, [this] {
+          finish({grpc::ABORTED, "no message came for too long"});
+        })) {
     idle_->wait();
     StartRead(&message_);
   }
@@ -67,8 +67,13 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
     if (!ok) return finish_upload();
     idle_->note_message();
     const grpc::Status status = attempt(logger_, "CreateScene", [&] { take_message(); });
-    if (!status.ok()) return Finish(status);
+    if (!status.ok()) return finish(status);
     StartRead(&message_);
+  }
+
+  /// A call ends once, by whoever is first.
+  void finish(const grpc::Status& status) {
+    if (!is_finished_.exchange(true)) Finish(status);
   }
 
   void take_message() {
@@ -83,17 +88,15 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   // A read also fails when the client breaks off, and half a scene must not be taken for a whole one: gRPC marks the call
   // cancelled before it reports such a read.
   void finish_upload() {
-    if (context_.IsCancelled()) {
+    if (context_.IsCancelled() || is_finished_) {
       if (!is_first_) uploads_.put(caller_, std::move(upload_));
-      const bool is_idle = idle_->has_ended_call();
-      return Finish(is_idle ? grpc::Status{grpc::ABORTED, "no message came for too long"}
-                            : grpc::Status{grpc::CANCELLED, "the upload was broken off"});
+      return finish({grpc::CANCELLED, "the upload was broken off"});
     }
     idle_->end();
     message_.Clear();
     building_.post([this] {
       const grpc::Status status = attempt(logger_, "CreateScene", [this] { store(); });
-      Finish(status);
+      finish(status);
     });
   }
 
@@ -120,6 +123,7 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   const std::shared_ptr<IdleWatch> idle_;
   v1::CreateSceneRequest message_;
   bool is_first_ = true;
+  std::atomic<bool> is_finished_ = false;
 };
 
 // Sends a scene chunk by chunk. Deletes itself.

@@ -62,6 +62,7 @@ class Alvord {
       }
     return "";
   }
+  pid_t process() const { return process_; }
   void ask_to_stop() { ::kill(process_, SIGTERM); }
   /// As when the power fails.
   void kill() {

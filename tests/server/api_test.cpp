@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 namespace alvor {
 namespace {
 
@@ -53,6 +55,67 @@ TEST(Api, UploadBeyondTheLimitEndsEarly) {
   Client client(server.channel());
   EXPECT_EQ(error_of([&] { client.create_scene(squares(30'000), ""); }),
             "RESOURCE_EXHAUSTED: scene: more than 1000 corners, the limit of this server");
+}
+
+/// Of a scene in small chunks.
+std::vector<v1::CreateSceneRequest> upload_of(const Scene& scene, const std::string& request_id) {
+  std::vector<v1::CreateSceneRequest> messages(1);
+  messages[0].mutable_scene()->set_display_name("room");
+  messages[0].set_request_id(request_id);
+  SceneSlicer slicer(scene, 400);
+  for (v1::CreateSceneRequest message; slicer.next(*message.mutable_chunk());) messages.push_back(message);
+  return messages;
+}
+
+TEST(Api, UploadGoesOnWhereItBrokeOff) {
+  TestServer server;
+  const auto stub = v1::SceneService::NewStub(server.channel());
+  const auto messages = upload_of(squares(20), "once");
+  v1::Upload arrived;
+  {
+    grpc::ClientContext context;
+    v1::Scene stored;
+    const auto writer = stub->CreateScene(&context, &stored);
+    for (int n = 0; n < 4; ++n) writer->Write(messages[static_cast<std::size_t>(n)]);
+    context.TryCancel();
+    EXPECT_FALSE(writer->Finish().ok());
+  }
+  v1::GetUploadRequest question;
+  question.set_request_id("once");
+  const auto ask = [&] {
+    grpc::ClientContext context;
+    return stub->GetUpload(&context, question, &arrived).ok();
+  };
+  while (!ask()) std::this_thread::yield();
+  ASSERT_LE(arrived.chunk_count(), 3u);
+  std::string name;
+  for (const std::uint64_t sent : {arrived.chunk_count(), std::uint64_t{0}}) {  // and once more from the beginning
+    grpc::ClientContext context;
+    v1::Scene stored;
+    const auto writer = stub->CreateScene(&context, &stored);
+    auto first = messages[0];
+    first.set_resume_after_chunks(sent);
+    writer->Write(first);
+    for (std::size_t n = 1 + sent; n < messages.size(); ++n) writer->Write(messages[n]);
+    writer->WritesDone();
+    const grpc::Status status = writer->Finish();
+    ASSERT_TRUE(status.ok()) << status.error_message();
+    EXPECT_EQ(stored.face_count(), 20u);
+    if (name.empty()) name = stored.name();
+    EXPECT_EQ(stored.name(), name);
+  }
+  EXPECT_FALSE(ask()) << "nothing waits any more";
+}
+
+TEST(Api, UploadFromWhichNothingComesIsEnded) {
+  ServiceOptions options;
+  options.upload.patience = std::chrono::milliseconds(1);
+  TestServer server(options);
+  const auto stub = v1::SceneService::NewStub(server.channel());
+  grpc::ClientContext context;
+  v1::Scene stored;
+  const auto writer = stub->CreateScene(&context, &stored);
+  EXPECT_EQ(writer->Finish().error_code(), grpc::ABORTED);
 }
 
 TEST(Api, UploadThatIsBrokenOffLeavesNothing) {

@@ -1,0 +1,92 @@
+// seeds DIRECTORY FILES: what fuzzing begins with, a folder for each target: real messages, frames and checkpoints, and the
+// files.
+
+#include "proto/codec.h"
+#include "radiosity/solver.h"
+#include "server/pieces.h"
+#include "tests/fuzz/input.h"
+#include "tests/scenes.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace alvor {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& bytes) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::string upload_of(const Scene& scene) {
+  v1::CreateSceneRequest message;
+  message.mutable_scene()->set_display_name("room");
+  std::string bytes = fuzz::as_text(message.SerializeAsString());
+  SceneSlicer slicer(scene, 600);
+  while (slicer.next(*message.mutable_chunk())) bytes += fuzz::as_text(message.SerializeAsString());
+  return bytes;
+}
+
+std::string frames_of(const SolutionLog& log, Detail detail) {
+  std::string bytes;
+  for (Cursor cursor; cursor.base < log.head();) {
+    const Delta delta = log.since(cursor, detail, 500);
+    v1::WatchSolveResponse message;
+    encode(delta, message);
+    bytes += fuzz::as_text(message.SerializeAsString());
+    cursor = delta.next;
+  }
+  return bytes;
+}
+
+std::string written(const SolveControl::Write& write) {
+  std::string bytes;
+  PlainWriter out(
+      [&](std::span<const std::byte> more) { bytes.append(reinterpret_cast<const char*>(more.data()), more.size()); });
+  write(out);
+  return bytes;
+}
+
+void write_seeds(const fs::path& directory, std::span<char*> files) {
+  const Scene room = test::coloured_room();
+  write(directory / "scene_upload" / "room", upload_of(room));
+  write(directory / "scene_upload" / "furnace", upload_of(test::furnace(1, 0.5)));
+  const BaseMesh mesh(room);
+  SolutionLog log;
+  SolveOptions options{.tolerance = 0.05, .max_leaves = 2000, .threads = 1};
+  SolveControl control;
+  int saves = 0;
+  control.is_checkpoint_due = [] { return true; };
+  control.save = [&](const SolveControl::Write& state) {
+    write(directory / "checkpoint" / ("state" + std::to_string(saves)), "\x01" + written(state));
+    write(directory / "checkpoint" / ("log" + std::to_string(saves++)),
+          std::string(1, '\0') + written([&](PlainWriter& out) { log.save(out); }));
+  };
+  solve_as_planned(mesh, Plan(mesh, options), options, log, control);
+  PieceWriter pieces;
+  pieces.add(std::as_bytes(std::span(std::string_view("a piece, a piece, a piece"))));
+  write(directory / "checkpoint" / "piece", "\x02" + pieces.finish().front());
+  for (const Detail detail : {Detail::exact, Detail::display})
+    write(directory / "frame" / (detail == Detail::exact ? "exact" : "display"), frames_of(log, detail));
+  write(directory / "watch" / "ordinary", std::string("\1\3\7\0\1\3\5\0\1\3\5\1\0\2\3\5\1\6\0\x09\1\3", 22));
+  const std::string kinds[] = {".obj", ".gltf", ".glb", "solution.glb", ".ply", ".mtl"};
+  for (char* file : files)
+    for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
+      if (!std::string_view(file).ends_with(kinds[kind])) continue;
+      std::ifstream in(file, std::ios::binary);
+      const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+      if (bytes.size() < 100'000)
+        write(directory / "file" / (std::to_string(kind) + fs::path(file).filename().string()), char(kind) + bytes);
+    }
+}
+
+}  // namespace
+}  // namespace alvor
+
+int main(int argc, char** argv) {
+  if (argc < 2) return 2;
+  alvor::write_seeds(argv[1], std::span(argv + 2, argv + argc));
+}
