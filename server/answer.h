@@ -1,6 +1,7 @@
 #pragma once
 // From what a call's logic does or throws to what gRPC is told.
 
+#include "server/error_details.h"
 #include "server/status_error.h"
 
 #include <grpcpp/grpcpp.h>
@@ -26,7 +27,7 @@ grpc::Status attempt(spdlog::logger& logger, const char* call, Body&& body) {
     return grpc::Status::OK;
   } catch (const StatusError& refusal) {
     logger.info("refused {}: {}", call, one_line(refusal.what()));
-    return {refusal.code, refusal.what()};
+    return {refusal.code, refusal.what(), details_of(refusal)};
   } catch (const std::bad_alloc&) {
     logger.error("refused {}: out of memory", call);
     return {grpc::RESOURCE_EXHAUSTED, "the server is out of memory"};

@@ -65,7 +65,9 @@ void Watch::send(Clock::time_point now) {
   cursor_ = frame->next;
   sent_revision_ = frame->to_revision;
   const std::chrono::duration<double> by_bytes(static_cast<double>(frame->bytes.size()) / plan_.max_bytes_per_s);
-  next_frame_ = now + std::max(plan_.min_interval, std::chrono::duration_cast<Clock::duration>(by_bytes));
+  // Pages of a round follow each other: a mirror between revisions is of little use.
+  const auto by_rate = frame->next.is_inside_round() ? Clock::duration::zero() : plan_.min_interval;
+  next_frame_ = now + std::max(by_rate, std::chrono::duration_cast<Clock::duration>(by_bytes));
   if (frame->last) end_ = grpc::Status::OK;
   write(std::move(frame), now);
 }

@@ -33,7 +33,7 @@ class FrameSink {
 struct WatchPlan {
   Detail detail = Detail::exact;
   Cursor start;
-  std::chrono::steady_clock::duration min_interval{};
+  std::chrono::steady_clock::duration min_interval{};  ///< between rounds
   double max_bytes_per_s = std::numeric_limits<double>::infinity();
 };
 

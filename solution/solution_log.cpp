@@ -11,7 +11,8 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t leaves_per_block = 512;
-constexpr double darkest = 0.125;  // of the mean: what is darker may be off by as much as if it were this bright
+constexpr double mean_may_fall_to = 0.9;  // of itself, before all that is displayed is looked at again
+constexpr double darkest = 0.125;         // of the mean: what is darker may be off by as much as if it were this bright
 
 /// Of nine: as many as stay below the displayed error, since a mantissa is 256 or more.
 int dropped_bits(double displayed_error) { return displayed_error > 0 ? std::clamp(std::ilogb(512 * displayed_error), 0, 4) : 0; }
@@ -33,7 +34,13 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step) {
       find_places(leaves_.patch, changed, places);
     }
     const double mean = leaves_.patch.empty() ? 0 : sum_ / static_cast<double>(leaves_.patch.size());
-    for (std::size_t n = 0; n < changed.size(); ++n) set(places[n], changed[n].irradiance, step.displayed_error, mean);
+    const bool is_checked = step.displayed_error >= checked_error_ && mean >= checked_mean_;
+    const double counted_mean = is_checked ? mean : mean_may_fall_to * mean;
+    for (std::size_t n = 0; n < changed.size(); ++n)
+      if (!is_checked || has_changed(places[n], changed[n].irradiance))
+        set(places[n], changed[n].irradiance, step.displayed_error, counted_mean);
+    if (!is_checked && changed.size() == leaves_.patch.size())
+      checked_error_ = step.displayed_error, checked_mean_ = counted_mean;
     step.revision = head_;
     step.step = steps_.size();
     steps_.push_back(step);

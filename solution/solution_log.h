@@ -105,6 +105,10 @@ class SolutionLog {
   };
   void split_for(std::span<const LeafValue> changed);
   void make_room_for(std::span<const LeafValue> changed);
+  /// Or is new.
+  bool has_changed(std::size_t leaf, const RgbF& irradiance) const {
+    return leaves_.irradiance[leaf] != irradiance || leaves_.display.changed_at[leaf] == head_;
+  }
   void set(std::size_t leaf, const RgbF& irradiance, double displayed_error, double mean);
   void show(std::size_t leaf, std::uint32_t word);
   void note_change(Tier& tier, std::size_t leaf);
@@ -122,6 +126,9 @@ class SolutionLog {
   SharedExponent coding_{0};
   bool has_coding_ = false;
   double sum_ = 0;  ///< of the means of all leaves
+  /// What is displayed of all leaves was within this error when they were looked at last, as long as the mean is not below that
+  /// one.
+  double checked_error_ = std::numeric_limits<double>::infinity(), checked_mean_ = 0;
   std::vector<Step> steps_;
   std::uint64_t head_ = 0;
   bool closed_ = false;

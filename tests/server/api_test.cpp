@@ -1,4 +1,6 @@
 #include "client/client.h"
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "proto/codec.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
@@ -65,6 +67,33 @@ std::vector<v1::CreateSceneRequest> upload_of(const Scene& scene, const std::str
   SceneSlicer slicer(scene, 400);
   for (v1::CreateSceneRequest message; slicer.next(*message.mutable_chunk());) messages.push_back(message);
   return messages;
+}
+
+TEST(Api, RefusalsTellProgramsTheFieldAndWhenToTryAgain) {
+  TestServer server;
+  Client client(server.channel());
+  const auto stub = v1::SolveService::NewStub(server.channel());
+  v1::CreateSolveRequest request;
+  request.set_parent(client.create_scene(squares(1), "").name());
+  request.mutable_solve()->mutable_spec()->set_tolerance(2);
+  const auto refused = [&] {
+    grpc::ClientContext context;
+    v1::Solve solve;
+    google::rpc::Status status;
+    EXPECT_TRUE(status.ParseFromString(stub->CreateSolve(&context, request, &solve).error_details()));
+    return status;
+  };
+  google::rpc::BadRequest bad;
+  ASSERT_EQ(refused().details_size(), 1);
+  ASSERT_TRUE(refused().details(0).UnpackTo(&bad));
+  EXPECT_EQ(bad.field_violations(0).field(), "solve.spec.tolerance");
+  EXPECT_EQ(bad.field_violations(0).description(), "2 is outside (0, 1]");
+  server.stop_service();
+  request.mutable_solve()->mutable_spec()->set_tolerance(0);
+  google::rpc::RetryInfo retry;
+  ASSERT_EQ(refused().details_size(), 1);
+  ASSERT_TRUE(refused().details(0).UnpackTo(&retry));
+  EXPECT_EQ(retry.retry_delay().seconds(), 1);
 }
 
 TEST(Api, UploadGoesOnWhereItBrokeOff) {
