@@ -10,6 +10,9 @@
 
 namespace alvor {
 
+/// Among the solves of a process: worker threads go to the highest first. Each has at least the thread it was called on.
+enum class SolvePriority { low, normal, high };
+
 /// All functions are called on the thread that solves.
 struct SolveControl {
   /// Obeyed within one batch of rays or shots; leaves a usable solution in the log.
@@ -22,6 +25,8 @@ struct SolveControl {
   /// What it is given writes the checkpoint, and may be called only there. The log is to be saved with it.
   using Write = std::function<void(PlainWriter&)>;
   std::function<void(const Write&)> save;
+
+  SolvePriority priority = SolvePriority::normal;
 
   /// A checkpoint of the same mesh, plan and options to go on from; the log is as it was saved with it. Empty: from the
   /// beginning.

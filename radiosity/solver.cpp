@@ -260,6 +260,14 @@ class Run {
   double published_at_ = 0, publishing_s_ = 0;
 };
 
+tbb::task_arena::priority priority_of(SolvePriority priority) {
+  switch (priority) {
+    case SolvePriority::low: return tbb::task_arena::priority::low;
+    case SolvePriority::high: return tbb::task_arena::priority::high;
+    default: return tbb::task_arena::priority::normal;
+  }
+}
+
 }  // namespace
 
 std::string_view text(StopReason reason) {
@@ -279,7 +287,7 @@ std::string_view text(StopReason reason) {
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control) {
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  tbb::task_arena arena(threads);
+  tbb::task_arena arena(threads, 1, priority_of(control.priority));
   const CpuClock cpu(arena);
   return arena.execute([&] {
     if (!plan.has_light()) return show_darkness(mesh, cpu, log);

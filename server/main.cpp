@@ -200,5 +200,8 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& fault) {
     std::cerr << "alvord: " << fault.what() << '\n';
     return 2;
+  } catch (const std::exception& fault) {
+    std::cerr << "alvord: " << fault.what() << '\n';
+    return 1;
   }
 }

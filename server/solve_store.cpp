@@ -40,9 +40,19 @@ SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : op
     const std::string name = row.facts.name(), tenant = row.tenant;
     next_number_ = row.number + 1;
     SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), tenant);
-    const SolveOptions how = options_of(row.facts.spec(), options_.limits);
+    SolveOptions how;
+    std::string refusal;
+    try {
+      how = options_of(row.facts.spec(), options_.limits);
+    } catch (const StatusError& fault) {
+      refusal = fault.what();  // the limits, or the machine, were larger when it was made
+    }
     auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
     requests_.add(solve->creator, name);
+    if (!refusal.empty() && !solve->ended()) {
+      options_.logger->error("solve {} cannot go on: {}", name, refusal);
+      solve->set_waiting_state(v1::Solve::CANCELLED);
+    }
     if (!solve->ended())
       options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
     Entry& entry = solves_[name];

@@ -153,6 +153,9 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   control.stop = run.cancel;
   control.park = run.park;
   control.checkpoint = from;
+  control.priority = priority == v1::PRIORITY_LOW    ? SolvePriority::low
+                     : priority == v1::PRIORITY_HIGH ? SolvePriority::high
+                                                     : SolvePriority::normal;
   if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
   control.save = [&](const SolveControl::Write& write) {
     const auto begun = Clock::now();

@@ -8,8 +8,13 @@ void Uploads::put(const Caller& caller, std::unique_ptr<SceneUpload> upload) {
   if (caller.request_id.empty()) return;
   std::scoped_lock hold(lock_);
   waiting_[{caller.tenant, caller.request_id}] = {std::move(upload), Clock::now()};
-  if (waiting_.size() > most)
-    waiting_.erase(std::ranges::min_element(waiting_, {}, [](const auto& entry) { return entry.second.since; }));
+  std::uint64_t bytes = 0;
+  for (const auto& [key, entry] : waiting_) bytes += entry.upload->bytes();
+  while (bytes > most_bytes) {
+    const auto oldest = std::ranges::min_element(waiting_, {}, [](const auto& entry) { return entry.second.since; });
+    bytes -= oldest->second.upload->bytes();
+    waiting_.erase(oldest);
+  }
 }
 
 std::map<Uploads::Key, Uploads::Waiting>::iterator Uploads::find(const Caller& caller) {

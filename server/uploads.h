@@ -17,9 +17,9 @@ class Uploads {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::minutes patience{10};
-  static constexpr std::size_t most = 16;  ///< of all tenants: they take memory
+  static constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;  ///< of all tenants: they take memory
 
-  /// Keeps what has arrived. Does nothing for a request without an id. The oldest go when there are too many.
+  /// Keeps what has arrived. Does nothing for a request without an id. The oldest go when they are too large.
   void put(const Caller& caller, std::unique_ptr<SceneUpload> upload);
   /// How many chunks wait. NOT_FOUND.
   std::uint64_t chunks(const Caller& caller);
