@@ -43,6 +43,19 @@ std::string random_id() {
   return id;
 }
 
+/// A call whose request is a name: call(context, request, response).
+template <class Request, class Response, class Call>
+Response by_name(const std::string& name, Call&& call) {
+  Deadline deadline;
+  grpc::ClientContext* const context = &deadline;
+  Request request;
+  request.set_name(name);
+  Response response;
+  Response* const into = &response;
+  check(call(context, request, into));
+  return response;
+}
+
 [[noreturn]] void refuse(const Fault& fault) { throw RpcError({grpc::DATA_LOSS, fault.text()}); }
 
 // All pages of a list; `call` fills in a response, `append` takes its items.
@@ -109,12 +122,7 @@ std::uint64_t Client::received_chunks(const std::string& request_id) {
 }
 
 v1::Scene Client::get_scene(const std::string& name) {
-  Deadline context;
-  v1::GetSceneRequest request;
-  request.set_name(name);
-  v1::Scene scene;
-  check(scenes_->GetScene(&context, request, &scene));
-  return scene;
+  return by_name<v1::GetSceneRequest, v1::Scene>(name, [this](auto&... call) { return scenes_->GetScene(call...); });
 }
 
 std::vector<v1::Scene> Client::list_scenes() {
@@ -126,11 +134,7 @@ std::vector<v1::Scene> Client::list_scenes() {
 }
 
 void Client::delete_scene(const std::string& name) {
-  Deadline context;
-  v1::DeleteSceneRequest request;
-  request.set_name(name);
-  google::protobuf::Empty nothing;
-  check(scenes_->DeleteScene(&context, request, &nothing));
+  by_name<v1::DeleteSceneRequest, google::protobuf::Empty>(name, [this](auto&... call) { return scenes_->DeleteScene(call...); });
 }
 
 Scene Client::read_scene(const std::string& name) {
@@ -163,12 +167,7 @@ v1::Solve Client::create_solve(const std::string& scene_name, const v1::SolveSpe
 }
 
 v1::Solve Client::get_solve(const std::string& name) {
-  Deadline context;
-  v1::GetSolveRequest request;
-  request.set_name(name);
-  v1::Solve solve;
-  check(solves_->GetSolve(&context, request, &solve));
-  return solve;
+  return by_name<v1::GetSolveRequest, v1::Solve>(name, [this](auto&... call) { return solves_->GetSolve(call...); });
 }
 
 std::vector<v1::Solve> Client::list_solves(const std::string& parent) {
@@ -182,38 +181,19 @@ std::vector<v1::Solve> Client::list_solves(const std::string& parent) {
 }
 
 v1::Solve Client::cancel_solve(const std::string& name) {
-  Deadline context;
-  v1::CancelSolveRequest request;
-  request.set_name(name);
-  v1::Solve solve;
-  check(solves_->CancelSolve(&context, request, &solve));
-  return solve;
+  return by_name<v1::CancelSolveRequest, v1::Solve>(name, [this](auto&... call) { return solves_->CancelSolve(call...); });
 }
 
 v1::Solve Client::pause_solve(const std::string& name) {
-  Deadline context;
-  v1::PauseSolveRequest request;
-  request.set_name(name);
-  v1::Solve solve;
-  check(solves_->PauseSolve(&context, request, &solve));
-  return solve;
+  return by_name<v1::PauseSolveRequest, v1::Solve>(name, [this](auto&... call) { return solves_->PauseSolve(call...); });
 }
 
 v1::Solve Client::resume_solve(const std::string& name) {
-  Deadline context;
-  v1::ResumeSolveRequest request;
-  request.set_name(name);
-  v1::Solve solve;
-  check(solves_->ResumeSolve(&context, request, &solve));
-  return solve;
+  return by_name<v1::ResumeSolveRequest, v1::Solve>(name, [this](auto&... call) { return solves_->ResumeSolve(call...); });
 }
 
 void Client::delete_solve(const std::string& name) {
-  Deadline context;
-  v1::DeleteSolveRequest request;
-  request.set_name(name);
-  google::protobuf::Empty nothing;
-  check(solves_->DeleteSolve(&context, request, &nothing));
+  by_name<v1::DeleteSolveRequest, google::protobuf::Empty>(name, [this](auto&... call) { return solves_->DeleteSolve(call...); });
 }
 
 }  // namespace alvor

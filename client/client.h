@@ -53,6 +53,7 @@ class Client {
     std::string epoch;
     SolutionMirror mirror;
     Detail detail = Detail::exact;
+    bool is_inside_round = false;  ///< the mirror equals no revision: a new watch begins afresh
   };
   /// Follows the solve into `watch.mirror` until it has ended, and returns it. Acknowledges each frame before `on_frame` is
   /// called, so that a slow callback does not hold the stream. Starts afresh when the server does not know

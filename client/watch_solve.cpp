@@ -10,7 +10,9 @@ namespace {
 
 [[noreturn]] void lost(const std::string& reason) { throw RpcError({grpc::DATA_LOSS, "a frame does not fit: " + reason}); }
 
-v1::WatchSolveRequest request_for(const std::string& name, const Client::Watch& watch) {
+v1::WatchSolveRequest request_for(const std::string& name, Client::Watch& watch) {
+  // What it holds of the round may be undone by a server that goes on from before it.
+  if (watch.is_inside_round) watch = {.detail = watch.detail};
   v1::WatchSolveRequest request;
   request.set_name(name);
   request.set_epoch(watch.epoch);
@@ -28,6 +30,7 @@ void apply(const v1::WatchSolveResponse& frame, Client::Watch& watch) {
     watch.mirror = {};
     lost(*fault);
   }
+  watch.is_inside_round = delta.to_revision == delta.from_revision && !delta.values.empty();
 }
 
 // NOT_FOUND means that the watch has just ended, which is no harm.

@@ -144,6 +144,8 @@ void SolveState::load(PlainReader& in) {
   rounds_of_rays_ = in.get<std::uint64_t>();
   waiting_power_ = in.get<double>();
   if (!std::isfinite(waiting_power_)) throw BadBytes("waiting power: not a finite number");
+  // The first emitter is the next again.
+  if (std::ranges::none_of(leaves, [this](NodeIndex leaf) { return direct_is_known_[leaf]; })) waiting_power_ = emitted_power_;
 }
 
 }  // namespace alvor

@@ -4,6 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-cmake --preset release > /dev/null
-cmake --build --preset release --target server_tests alvord
+scripts/build.sh server_tests alvord
 ALVOR_CRASHES=${1:-200} build/release/bin/server_tests --gtest_filter='KeepingTest.NothingAcknowledgedIsLost*'

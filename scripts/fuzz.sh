@@ -5,9 +5,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-cmake --preset fuzz > /dev/null
 targets=(scene_upload frame watch checkpoint file)
-cmake --build --preset fuzz --target seeds "${targets[@]/%/_fuzz}"
+PRESET=fuzz scripts/build.sh seeds "${targets[@]/%/_fuzz}"
 cd build/fuzz
 mkdir -p found
 bin/seeds seeds ../../tests/client/{good,bad}_files/* ../../scenes/cornell_box.*

@@ -5,7 +5,6 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-cmake --preset asan > /dev/null
-cmake --build --preset asan --target random_scenes_test
+PRESET=asan scripts/build.sh random_scenes_test
 export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1:print_stacktrace=1
 build/asan/bin/random_scenes_test --scenes "${1:-10000}" --first "${2:-1}"

@@ -79,6 +79,8 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   void take_message() {
     if (!is_first_) return upload_->add(message_);
     is_first_ = false;
+    uploads_.open(caller_.tenant);
+    is_open_ = true;
     check_request_id(message_.request_id());
     caller_.request_id = message_.request_id();
     if (message_.resume_after_chunks() == 0) return upload_->add(message_);
@@ -88,11 +90,11 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   // A read also fails when the client breaks off, and half a scene must not be taken for a whole one: gRPC marks the call
   // cancelled before it reports such a read.
   void finish_upload() {
+    idle_->end();  // whether it has ended the call is settled now
     if (context_.IsCancelled() || is_finished_) {
       if (!is_first_) uploads_.put(caller_, std::move(upload_));
       return finish({grpc::CANCELLED, "the upload was broken off"});
     }
-    idle_->end();
     message_.Clear();
     building_.post([this] {
       const grpc::Status status = attempt(logger_, "CreateScene", [this] { store(); });
@@ -109,6 +111,7 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
 
   void OnDone() override {
     idle_->end();
+    if (is_open_) uploads_.close(caller_.tenant);
     delete this;
   }
 
@@ -123,6 +126,7 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   const std::shared_ptr<IdleWatch> idle_;
   v1::CreateSceneRequest message_;
   bool is_first_ = true;
+  bool is_open_ = false;  ///< counted among the open ones
   std::atomic<bool> is_finished_ = false;
 };
 

@@ -15,7 +15,8 @@ void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
 }  // namespace
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
-  bytes_ += message.ByteSizeLong();
+  constexpr std::uint64_t bytes_of_material = 100;  // in memory; on the wire an empty one is two
+  bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size());
   check_limit(bytes_, limits_.bytes, "bytes");
   if (message.has_scene() == begun_)
     throw invalid_argument(begun_ ? "scene: only the first message may set it" : "scene: the first message must set it");
@@ -33,6 +34,10 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
   const Scene& scene = assembler_.scene();
   check_limit(scene.corners.size() + static_cast<std::uint64_t>(chunk.corner_vertices_size()), limits_.corners, "corners");
   check_limit(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
+  for (const std::uint32_t corners : chunk.face_corner_counts())
+    check_limit(corners, limits_.corners_of_face, "corners in a face");
+  for (const v1::Material& material : chunk.materials())
+    check_limit(material.name().size(), limits_.bytes_of_name, "bytes in a material's name");
 }
 
 std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller) {

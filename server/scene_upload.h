@@ -13,6 +13,8 @@ struct UploadLimits {
   std::uint64_t bytes = std::uint64_t{2} << 30;                            ///< of messages
   std::uint64_t corners = 50'000'000;                                      ///< of all faces
   std::chrono::steady_clock::duration patience = std::chrono::minutes(1);  ///< between messages; then ABORTED
+  std::uint64_t corners_of_face = 5000;                                    ///< cutting up a polygon takes the square of them
+  std::uint64_t bytes_of_name = 1000;                                      ///< of a material
   std::uint64_t materials = 1'000'000;  ///< an empty one is two bytes on the wire, but not in memory
 };
 

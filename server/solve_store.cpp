@@ -8,6 +8,7 @@
 #include <google/protobuf/util/message_differencer.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <system_error>
 
 namespace alvor {
 
@@ -118,7 +119,12 @@ void SolveStore::start_waiting() {
   while (!stopping_ && running_ < options_.max_running) {
     Entry* const next = next_waiting();
     if (!next) return;
-    start(*next);
+    try {
+      start(*next);
+    } catch (const std::system_error& fault) {
+      options_.logger->error("solve {} waits: {}", next->solve->name, fault.what());
+      return;
+    }
   }
 }
 
@@ -134,18 +140,22 @@ SolveStore::Entry* SolveStore::next_waiting() {
 }
 
 void SolveStore::start(Entry& entry) {
-  entry.is_running = true;
   entry.cancel = {};
   entry.park = {};
+  // It cannot begin before the lock is given back.
+  std::thread thread([this, &entry] { run(entry); });
+  threads_.emplace(thread.get_id(), std::move(thread));
+  entry.is_running = true;
   ++running_;
   entry.solve->note_running();
   options_.logger->info("solve {} started", entry.solve->name);
-  std::thread thread([this, &entry] { run(entry); });
-  threads_.emplace(thread.get_id(), std::move(thread));
 }
 
 void SolveStore::run(Entry& entry) {
-  const auto solve = entry.solve;
+  const auto solve = [&] {
+    std::scoped_lock hold(lock_);
+    return entry.solve;
+  }();
   be_as_nice_as(solve->priority);
   const RunControl control{entry.cancel.get_token(), entry.park.get_token(), abandon_.get_token()};
   const auto is_paused = [&] {
@@ -164,10 +174,10 @@ void SolveStore::run(Entry& entry) {
   changed_.notify_all();
 }
 
-/// Whether it shall pause may have been said otherwise while it was about to do so.
+/// What it shall do may have been said otherwise while it was about to pause.
 void SolveStore::settle(const Entry& entry) {
   const auto state = entry.solve->state();
-  const auto wanted = entry.shall_pause ? v1::Solve::PAUSED : v1::Solve::QUEUED;
+  const auto wanted = entry.shall_cancel ? v1::Solve::CANCELLED : entry.shall_pause ? v1::Solve::PAUSED : v1::Solve::QUEUED;
   if (entry.solve->ended() || state == wanted) return;
   try {
     entry.solve->set_waiting_state(wanted);
@@ -218,6 +228,7 @@ std::vector<std::shared_ptr<StoredSolve>> SolveStore::all() const {
 std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const std::string& tenant) {
   std::scoped_lock hold(lock_);
   Entry& cancelled = entry(name, tenant);
+  cancelled.shall_cancel = true;  // also if it is just being parked
   if (cancelled.is_running) cancelled.cancel.request_stop();
   else if (!cancelled.solve->ended()) cancelled.solve->set_waiting_state(v1::Solve::CANCELLED);
   return cancelled.solve;

@@ -65,7 +65,7 @@ class SolveStore {
     std::shared_ptr<StoredSolve> solve;
     std::stop_source cancel, park;
     bool is_running = false;
-    bool shall_pause = false;
+    bool shall_pause = false, shall_cancel = false;
   };
   Entry& entry(const std::string& name, const std::string& tenant);
   const Entry& entry(const std::string& name, const std::string& tenant) const {

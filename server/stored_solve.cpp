@@ -71,6 +71,7 @@ StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScen
   if (!has_checkpoint) log_ = std::make_unique<SolutionLog>();
   if (is_final(facts_.state())) return;
   facts_.set_restarts(facts_.restarts() + 1);
+  facts_.clear_work_lost();
   facts_.set_resumed_from_revision(facts_.last_step().revision());
   if (facts_.state() != v1::Solve::RUNNING) return;
   const auto since = TimeUtil::TimestampToMicroseconds(has_checkpoint ? facts_.checkpoint_time() : facts_.create_time());
@@ -137,8 +138,16 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
     else set_waiting_state(state);
   } catch (const std::exception& fault) {
     complain(fault.what());
+    std::scoped_lock hold(lock_);
+    facts_.set_state(state);  // there is no thread any more; after a restart it is QUEUED in any case
   }
-  if (is_final(state)) log().close();
+  if (is_final(state)) close_log();
+}
+
+/// One that is not loaded has no listeners, and is closed when it is.
+void StoredSolve::close_log() {
+  std::scoped_lock hold(log_lock_);
+  if (log_) log_->close();
 }
 
 SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
@@ -147,7 +156,11 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   const std::vector<std::byte> from = take_checkpoint();
   const Plan plan(content->mesh, options);
   show(plan);
-  if (keeping_.archive) keeping_.archive->update(row());
+  try {
+    if (keeping_.archive) keeping_.archive->update(row());
+  } catch (const std::exception& fault) {
+    complain(fault.what());
+  }
   auto next_checkpoint = Clock::now() + keeping_.interval;
   SolveControl control;
   control.stop = run.cancel;
@@ -248,7 +261,7 @@ void StoredSolve::set_waiting_state(v1::Solve::State state) {
     facts_ = next.facts;
     if (is_final(state)) state_in_memory_.clear();
   }
-  if (is_final(state)) log().close();
+  if (is_final(state)) close_log();
 }
 
 v1::Solve::State StoredSolve::state() const {

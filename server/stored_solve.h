@@ -82,6 +82,7 @@ class StoredSolve {
  private:
   using Clock = std::chrono::steady_clock;
   void show(const Plan& plan);
+  void close_log();
   void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
   void save(const SolveControl::Write& write);

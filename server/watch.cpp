@@ -42,9 +42,12 @@ Watch::Clock::time_point Watch::next_due() const {
 
 std::optional<Watch::Clock::time_point> Watch::see_to_write(Clock::time_point now) {
   if (!under_way_) return std::nullopt;
-  if (now < last_write_ + patience) return wait_until(last_write_ + patience);
-  sink_.give_up();
-  return std::nullopt;
+  if (now >= last_write_ + patience) {
+    sink_.give_up();
+    return std::nullopt;
+  }
+  if (write_check_ && *write_check_ > now) return std::nullopt;  // that turn asks again if need be
+  return write_check_ = last_write_ + patience;
 }
 
 // An earlier turn asks again for what is due later.

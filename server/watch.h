@@ -93,7 +93,8 @@ class Watch {
   bool finished_ = false;
   std::optional<v1::Closing> closing_;  ///< to be written before the end
   Clock::time_point last_write_ = Clock::time_point::min(), next_frame_ = Clock::time_point::min();
-  std::optional<Clock::time_point> timer_;  ///< the turn that was last asked for by wait_until
+  std::optional<Clock::time_point> write_check_;  ///< the newest turn that was asked for to see to a write
+  std::optional<Clock::time_point> timer_;        ///< the turn that was last asked for by wait_until
 };
 
 }  // namespace alvor

@@ -51,14 +51,16 @@ WatchCall::WatchCall(grpc::CallbackServerContext& context, Watches& watches, spd
 
 void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request) {
   WatchPlan plan = plan_of(request);
+  SolutionLog& log = solve->log();  // loaded here, where it may fail
   if (solve->knows(request.epoch(), request.base_revision())) plan.start.base = request.base_revision();
   else if (request.base_revision() > 0) reset_field_ = field([](auto& message) { message.set_reset(true); });
   auto watch = std::make_shared<Watch>(watches_.frames_of(solve), plan, *this);
   // Known by its id before its first frame can be acknowledged.
   watches_.add(id_, watch, solve->creator.tenant);
   solve_ = solve;
+  log_ = &log;
   watch_ = watch;
-  listener_ = solve->log().listen([&watches = watches_, watch] { watches.ask_for_turn(watch); });
+  listener_ = log_->listen([&watches = watches_, watch] { watches.ask_for_turn(watch); });
   watches_.ask_for_turn(watch_);
   logger_.info("watcher {} of {} joined at revision {}", id_, solve->name, plan.start.base);
 }
@@ -85,7 +87,7 @@ void WatchCall::OnCancel() {
 void WatchCall::OnDone() {
   if (watch_) {
     watches_.remove(id_);
-    solve_->log().forget(listener_);
+    log_->forget(listener_);
     logger_.info("watcher {} of {} left after {} frames", id_, solve_->name, watch_->frames_sent());
   }
   delete this;

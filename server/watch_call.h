@@ -42,6 +42,7 @@ class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, publi
   grpc::Slice reset_field_;  ///< of the first frame, if the base is not known
   std::shared_ptr<StoredSolve> solve_;
   std::shared_ptr<Watch> watch_;  ///< set once it was started
+  SolutionLog* log_ = nullptr;    ///< of the solve, which keeps it
   std::uint64_t listener_ = 0;
   grpc::ByteBuffer bytes_;
 };

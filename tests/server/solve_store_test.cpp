@@ -113,6 +113,16 @@ TEST_F(SolveStoreTest, PausedSolveCanBeCancelledAndLeavesItsPlaceToOthers) {
   EXPECT_TRUE(first->log().closed());
 }
 
+TEST_F(SolveStoreTest, CancellingASolveThatIsJustBeingParkedIsNotForgotten) {
+  for (int n = 0; n < 20; ++n) {
+    const auto solve = create();
+    stage.log();
+    solves.pause(solve->name);
+    solves.cancel(solve->name);
+    EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
+  }
+}
+
 TEST_F(SolveStoreTest, SameRequestMakesOneSolve) {
   const auto solve = solves.create(scenes.use(scene), {}, {"", "once"});
   EXPECT_EQ(solves.create(scenes.use(scene), {}, {"", "once"}), solve);
