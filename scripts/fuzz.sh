@@ -21,8 +21,10 @@ fuzz() {
 }
 seconds=${1:-300}
 # Longest input, and the largest single allocation in MB: twice the input and one, but where a scene or a solve is made of it.
-fuzz scene_upload 65536 16 &
-fuzz frame 65536 2 & wait %1; wait %2
-fuzz watch 2048 16 &
-fuzz checkpoint 1000000 64 & wait %3; wait %4
+fuzz scene_upload 65536 16 & first=$!
+fuzz frame 65536 2
+wait $first
+fuzz watch 2048 16 & first=$!
+fuzz checkpoint 1000000 64
+wait $first
 fuzz file 65536 64
