@@ -6,4 +6,4 @@ cd "$(dirname "$0")/.."
 scripts/setup.sh
 scripts/build.sh
 ctest --preset release "$@"
-scripts/fuzz.sh 20
+scripts/fuzz.sh 20 1

@@ -2,17 +2,11 @@
 
 #include "server/scene_upload.h"
 #include "server/status_error.h"
+#include "tests/fuzz/allocation_limit.h"
 #include "tests/fuzz/input.h"
 
-#include <google/protobuf/stubs/logging.h>
-
-// What is no message is told to nobody.
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-  google::protobuf::SetLogHandler(nullptr);
-  return 0;
-}
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static constexpr std::size_t largest_allocation = 16 << 20;  // a scene and its acceleration structure are made of it
   alvor::fuzz::Input input(data, size);
   alvor::SceneStore store;
   alvor::UploadLimits limits;
@@ -23,8 +17,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (!input.empty()) {
       alvor::v1::CreateSceneRequest message;
       const auto bytes = input.text();
-      if (message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) upload.add(message);
+      if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) continue;
+      const alvor::fuzz::AllocationLimit limit(largest_allocation);
+      upload.add(message);
     }
+    const alvor::fuzz::AllocationLimit limit(largest_allocation);
     upload.finish(store);
   } catch (const alvor::StatusError&) {}
   return 0;

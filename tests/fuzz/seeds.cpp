@@ -43,11 +43,8 @@ std::string frames_of(const SolutionLog& log, Detail detail) {
 }
 
 std::string written(const SolveControl::Write& write) {
-  std::string bytes;
-  PlainWriter out(
-      [&](std::span<const std::byte> more) { bytes.append(reinterpret_cast<const char*>(more.data()), more.size()); });
-  write(out);
-  return bytes;
+  const auto bytes = plain_bytes(write);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 void write_seeds(const fs::path& directory, std::span<char*> files) {
