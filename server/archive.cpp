@@ -4,7 +4,6 @@
 #include "server/failpoint.h"
 #include "server/pieces.h"
 #include "server/sha256.h"
-#include "server/status_error.h"
 #include "solution/plain_bytes.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -18,6 +17,7 @@ namespace alvor {
 namespace {
 
 constexpr int version = 1;
+const std::string place = "the server's data directory: ";
 enum Kind { log_of = 0, state_of = 1 };
 
 constexpr const char* schema = R"(
@@ -54,11 +54,11 @@ StatusError error_of(const SQLite::Exception& fault) {
   const auto status = code == SQLITE_FULL                               ? grpc::RESOURCE_EXHAUSTED
                       : code == SQLITE_CORRUPT || code == SQLITE_NOTADB ? grpc::DATA_LOSS
                                                                         : grpc::UNAVAILABLE;
-  return {status, "the server's data directory: " + reason_of(fault)};
+  return {status, place + reason_of(fault)};
 }
 
-void bind_bytes(SQLite::Statement& statement, int place, const std::string& bytes) {
-  statement.bindNoCopy(place, static_cast<const void*>(bytes.data()), static_cast<int>(bytes.size()));
+void bind_bytes(SQLite::Statement& statement, int index, const std::string& bytes) {
+  statement.bindNoCopy(index, static_cast<const void*>(bytes.data()), static_cast<int>(bytes.size()));
 }
 
 std::string_view bytes_of(const SQLite::Column& column) {
@@ -68,8 +68,7 @@ std::string_view bytes_of(const SQLite::Column& column) {
 template <class Message>
 Message parsed(const SQLite::Column& column, const char* what) {
   Message message;
-  if (!message.ParseFromArray(column.getBlob(), column.getBytes()))
-    throw StatusError(grpc::DATA_LOSS, std::string("the server's data directory: ") + what + " is damaged");
+  if (!message.ParseFromArray(column.getBlob(), column.getBytes())) throw data_loss(std::string(what) + " is damaged");
   return message;
 }
 
@@ -82,14 +81,21 @@ void for_each_chunk(const Scene& scene, Body&& body) {
   for (v1::GeometryChunk chunk; slicer.next(chunk);) body(chunk.SerializeAsString());
 }
 
+/// Chunks are told apart: what is stored must be found by the same sum that it was stored under.
+void add_chunk(std::string_view chunk, Sha256& sum) {
+  sum.add(std::to_string(chunk.size()) + ":");
+  sum.add(chunk);
+}
+
 }  // namespace
+
+StatusError data_loss(const std::string& what) { return {grpc::DATA_LOSS, place + what}; }
 
 SceneBytes measure(const Scene& scene) {
   Sha256 sum;
   std::uint64_t bytes = 0;
   for_each_chunk(scene, [&](const std::string& chunk) {
-    sum.add(std::to_string(chunk.size()) + ":");
-    sum.add(chunk);
+    add_chunk(chunk, sum);
     bytes += chunk.size();
   });
   return {sum.digits(), bytes};
@@ -208,17 +214,14 @@ Scene Archive::content(const std::string& sha256) {
     SQLite::Statement each(database, "SELECT bytes FROM content_pieces WHERE sha256 = ? ORDER BY n");
     each.bind(1, sha256);
     SceneAssembler assembler;
-    const auto refuse = [](const std::string& why) {
-      throw StatusError(grpc::DATA_LOSS, "the server's data directory: a scene's content: " + why);
-    };
+    const auto refuse = [](const std::string& why) { throw data_loss("a scene's content: " + why); };
     Sha256 sum;
     try {
       while (each.executeStep()) {
         std::vector<std::byte> bytes;
         append_piece(bytes_of(each.getColumn(0)), bytes);
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        sum.add(std::to_string(bytes.size()) + ":");
-        sum.add(text);
+        add_chunk(text, sum);
         v1::GeometryChunk chunk;
         if (!chunk.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) refuse("is damaged");
         if (const auto fault = assembler.add(chunk)) refuse(fault->text());
@@ -325,7 +328,7 @@ std::vector<std::byte> Archive::pieces(std::uint64_t solve, int kind) {
     try {
       while (each.executeStep()) append_piece(bytes_of(each.getColumn(0)), bytes);
     } catch (const BadBytes& fault) {
-      throw StatusError(grpc::DATA_LOSS, std::string("the server's data directory: a checkpoint: ") + fault.what());
+      throw data_loss(std::string("a checkpoint: ") + fault.what());
     }
     return bytes;
   });

@@ -4,6 +4,7 @@
 #include "alvor/v1/scene_service.pb.h"
 #include "alvor/v1/solve_service.pb.h"
 #include "meshing/scene.h"
+#include "server/status_error.h"
 
 #include <chrono>
 #include <cstddef>
@@ -21,6 +22,9 @@ class Database;
 }
 
 namespace alvor {
+
+/// What was read is not what was written: DATA_LOSS.
+StatusError data_loss(const std::string& what);
 
 /// Thread-safe. What a call changed is on the disk when it returns, all of it; when it throws, none of it. Throws StatusError:
 /// RESOURCE_EXHAUSTED when the disk is full, UNAVAILABLE when it cannot be written or read, DATA_LOSS when what was read is

@@ -1,6 +1,8 @@
 #include "server/metrics.h"
 
 #include "proto/codec.h"
+#include "proto/status_name.h"
+#include "server/call_counts.h"
 #include "server/solve_store.h"
 #include "server/watches.h"
 
@@ -71,6 +73,10 @@ std::vector<MetricFamily> Metrics::Collect() const {
         static_cast<double>(traffic.most_behind));
   counter("alvor_frames_total", "Frames that were written.", static_cast<double>(traffic.frames));
   counter("alvor_frame_bytes_total", "Bytes of these frames.", static_cast<double>(traffic.bytes));
+  MetricFamily calls = family("alvor_calls_total", "Calls that were answered.", MetricType::Counter);
+  for (const auto& [call, times] : calls_.counts())
+    add(calls, static_cast<double>(times), {{"method", call.first}, {"code", name_of(call.second)}});
+  all.push_back(std::move(calls));
   counter("alvor_checkpoints_total", "Checkpoints that were kept.", static_cast<double>(keeping_.checkpoints));
   counter("alvor_checkpoint_seconds_total", "Time that solves waited for these.",
           1e-6 * static_cast<double>(keeping_.microseconds));

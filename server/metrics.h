@@ -14,14 +14,16 @@ namespace alvor {
 class SceneStore;
 class SolveStore;
 class Watches;
+class CallCounts;
 struct KeepingCounts;
 
 /// Everything is looked up when it is asked for; nothing is counted while light is solved. Thread-safe; everything it is given
 /// must outlive it.
 class Metrics : public prometheus::Collectable {
  public:
-  Metrics(const SceneStore& scenes, const SolveStore& solves, const Watches& watches, const KeepingCounts& keeping)
-      : scenes_(scenes), solves_(solves), watches_(watches), keeping_(keeping) {}
+  Metrics(const SceneStore& scenes, const SolveStore& solves, const Watches& watches, const CallCounts& calls,
+          const KeepingCounts& keeping)
+      : scenes_(scenes), solves_(solves), watches_(watches), calls_(calls), keeping_(keeping) {}
   std::vector<prometheus::MetricFamily> Collect() const override;
 
  private:
@@ -34,6 +36,7 @@ class Metrics : public prometheus::Collectable {
   const SceneStore& scenes_;
   const SolveStore& solves_;
   const Watches& watches_;
+  const CallCounts& calls_;
   const KeepingCounts& keeping_;
   mutable std::mutex lock_;
   mutable std::map<std::string, Seen> seen_;

@@ -1,5 +1,6 @@
 #include "server/service.h"
 
+#include "server/call_counts.h"
 #include "server/metrics.h"
 #include "server/random_id.h"
 #include "server/scene_service.h"
@@ -36,8 +37,9 @@ struct Service::Parts {
         solves(solve_store_options, scenes),
         scene_service(scenes, options.upload, building, *logger),
         solve_service(scenes, solves, watches, *logger),
-        metrics(std::make_shared<Metrics>(scenes, solves, watches, *solve_store_options.keeping.counts)) {}
+        metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts)) {}
 
+  CallCounts calls;
   Watches watches;
   const SolveStoreOptions solve_store_options;
   std::shared_ptr<spdlog::logger> logger;
@@ -57,6 +59,9 @@ void Service::register_with(grpc::ServerBuilder& builder) {
   builder.SetMaxReceiveMessageSize(largest_message);
   builder.RegisterService(&parts_->scene_service);
   builder.RegisterService(&parts_->solve_service);
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
+  interceptors.push_back(counting_calls(parts_->calls));
+  builder.experimental().SetInterceptorCreators(std::move(interceptors));
 }
 
 std::shared_ptr<prometheus::Collectable> Service::metrics() const { return parts_->metrics; }

@@ -229,8 +229,12 @@ std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const s
   std::scoped_lock hold(lock_);
   Entry& cancelled = entry(name, tenant);
   cancelled.shall_cancel = true;  // also if it is just being parked
-  if (cancelled.is_running) cancelled.cancel.request_stop();
-  else if (!cancelled.solve->ended()) cancelled.solve->set_waiting_state(v1::Solve::CANCELLED);
+  if (cancelled.is_running) {
+    cancelled.cancel.request_stop();
+    cancelled.solve->keep_wish(v1::Solve::CANCELLED);
+  } else if (!cancelled.solve->ended()) {
+    cancelled.solve->set_waiting_state(v1::Solve::CANCELLED);
+  }
   return cancelled.solve;
 }
 
@@ -239,8 +243,12 @@ std::shared_ptr<StoredSolve> SolveStore::pause(const std::string& name, const st
   Entry& paused = entry(name, tenant);
   refuse_ended(*paused.solve);
   paused.shall_pause = true;
-  if (paused.is_running) paused.park.request_stop();
-  else paused.solve->set_waiting_state(v1::Solve::PAUSED);
+  if (paused.is_running) {
+    paused.park.request_stop();
+    if (!paused.shall_cancel) paused.solve->keep_wish(v1::Solve::PAUSED);
+  } else {
+    paused.solve->set_waiting_state(v1::Solve::PAUSED);
+  }
   return paused.solve;
 }
 
@@ -249,6 +257,7 @@ std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const s
   Entry& resumed = entry(name, tenant);
   refuse_ended(*resumed.solve);
   resumed.shall_pause = false;
+  if (resumed.is_running && !resumed.shall_cancel) resumed.solve->keep_wish(v1::Solve::RUNNING);
   if (resumed.solve->state() == v1::Solve::PAUSED && !resumed.is_running) resumed.solve->set_waiting_state(v1::Solve::QUEUED);
   start_waiting();
   return resumed.solve;

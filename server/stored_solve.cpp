@@ -22,6 +22,10 @@ bool is_final(v1::Solve::State state) {
   return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
 }
 
+v1::Priority priority_of(const v1::SolveSpec& spec) {
+  return spec.priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : spec.priority();
+}
+
 v1::PowerBalance encode(const PowerBalance& balance) {
   v1::PowerBalance message;
   message.set_emitted_watts(balance.emitted);
@@ -29,6 +33,12 @@ v1::PowerBalance encode(const PowerBalance& balance) {
   message.set_lost_watts(balance.lost);
   message.set_unshot_watts(balance.unshot);
   return message;
+}
+
+void cancel(v1::Solve& facts) {
+  facts.set_state(v1::Solve::CANCELLED);
+  facts.set_end_reason(std::string(text(StopReason::cancelled)));
+  *facts.mutable_end_time() = TimeUtil::GetCurrentTime();
 }
 
 std::vector<std::string> pieces_of(const SolveControl::Write& write) {
@@ -46,7 +56,7 @@ StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const Store
       name(scene->facts.name() + "/solves/" + random_id('s')),
       creator(std::move(caller)),
       options(solve_options),
-      priority(spec.priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : spec.priority()),
+      priority(priority_of(spec)),
       scene_(std::move(scene)),
       keeping_(std::move(keeping)),
       log_(std::make_unique<SolutionLog>()) {
@@ -62,7 +72,7 @@ StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScen
       name(row.facts.name()),
       creator{std::move(row.tenant), std::move(row.request_id)},
       options(solve_options),
-      priority(row.facts.spec().priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : row.facts.spec().priority()),
+      priority(priority_of(row.facts.spec())),
       scene_(std::move(scene)),
       keeping_(std::move(keeping)),
       facts_(std::move(row.facts)),
@@ -87,7 +97,11 @@ void StoredSolve::keep() {
 
 Archive::SolveRow StoredSolve::row() const {
   std::scoped_lock hold(lock_);
-  return {number, creator.tenant, creator.request_id, facts_, lineage_};
+  Archive::SolveRow row{number, creator.tenant, creator.request_id, facts_, lineage_};
+  if (facts_.state() != v1::Solve::RUNNING) return row;
+  if (wish_ == v1::Solve::CANCELLED) cancel(row.facts);
+  else row.facts.set_state(wish_);
+  return row;
 }
 
 SolutionLog& StoredSolve::log() const {
@@ -101,7 +115,7 @@ SolutionLog& StoredSolve::log() const {
     if (ended()) loaded->close();
     log_ = std::move(loaded);
   } catch (const BadBytes& fault) {
-    throw StatusError(grpc::DATA_LOSS, "the server's data directory: the solution of " + name + ": " + fault.what());
+    throw data_loss("the solution of " + name + ": " + fault.what());
   }
   return *log_;
 }
@@ -157,7 +171,7 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   const Plan plan(content->mesh, options);
   show(plan);
   try {
-    if (keeping_.archive) keeping_.archive->update(row());
+    keep_row();
   } catch (const std::exception& fault) {
     complain(fault.what());
   }
@@ -187,22 +201,23 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
 }
 
 void StoredSolve::save(const SolveControl::Write& write) {
-  if (keeping_.archive) keep_checkpoint(row(), pieces_of(write));
+  if (keeping_.archive) keep_checkpoint(pieces_of(write));
   else save_in_memory(write);
 }
 
 void StoredSolve::save_in_memory(const SolveControl::Write& write) {
-  std::vector<std::byte> bytes;
-  PlainWriter out([&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
-  write(out);
+  std::vector<std::byte> bytes = plain_bytes(write);
   std::scoped_lock hold(lock_);
   state_in_memory_ = std::move(bytes);
 }
 
-/// `state` is empty once the solve has ended.
-void StoredSolve::keep_checkpoint(Archive::SolveRow next, std::vector<std::string> state) {
+/// `state` is empty once the solve has ended, as `change` then says.
+void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change) {
   SolutionLog& solution = log();
   const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution.save(out); }), std::move(state)};
+  std::scoped_lock keep(keeping_lock_);
+  Archive::SolveRow next = row();
+  if (change) change(next.facts);
   next.lineage[keeping_.epoch] = solution.head();
   *next.facts.mutable_last_step() = alvor::encode(solution.last_step());
   *next.facts.mutable_checkpoint_time() = TimeUtil::GetCurrentTime();
@@ -223,19 +238,21 @@ void StoredSolve::show(const Plan& plan) {
 
 /// Others see the end once it is kept, or could not be.
 void StoredSolve::end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome) {
-  Archive::SolveRow last = row();
-  last.facts.set_state(state);
-  last.facts.set_end_reason(reason);
-  *last.facts.mutable_end_time() = TimeUtil::GetCurrentTime();
-  *last.facts.mutable_cpu_time() = encode_seconds(outcome.cpu_s);
-  last.facts.set_traversal_share(outcome.traversal_share);
-  *last.facts.mutable_balance() = encode(outcome.balance);
+  const auto end_time = TimeUtil::GetCurrentTime();
+  const auto say_end = [&](v1::Solve& facts) {
+    facts.set_state(state);
+    facts.set_end_reason(reason);
+    *facts.mutable_end_time() = end_time;
+    *facts.mutable_cpu_time() = encode_seconds(outcome.cpu_s);
+    facts.set_traversal_share(outcome.traversal_share);
+    *facts.mutable_balance() = encode(outcome.balance);
+  };
   const auto show_end = [&] {
     std::scoped_lock hold(lock_);
-    facts_ = last.facts;
+    say_end(facts_);
   };
   try {
-    if (keeping_.archive) keep_checkpoint(last, {});
+    if (keeping_.archive) keep_checkpoint({}, say_end);
   } catch (...) {
     show_end();
     throw;
@@ -246,14 +263,31 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
 void StoredSolve::note_running() {
   std::scoped_lock hold(lock_);
   facts_.set_state(v1::Solve::RUNNING);
+  wish_ = v1::Solve::RUNNING;
+}
+
+void StoredSolve::keep_wish(v1::Solve::State state) {
+  {
+    std::scoped_lock hold(lock_);
+    if (std::exchange(wish_, state) == state || facts_.state() != v1::Solve::RUNNING) return;
+  }
+  keep_row();
+}
+
+void StoredSolve::keep_row() {
+  std::scoped_lock keep(keeping_lock_);
+  if (keeping_.archive) keeping_.archive->update(row());
 }
 
 void StoredSolve::set_waiting_state(v1::Solve::State state) {
+  std::scoped_lock keep(keeping_lock_);
   Archive::SolveRow next = row();
-  next.facts.set_state(state);
   if (is_final(state)) {
-    next.facts.set_end_reason(std::string(text(StopReason::cancelled)));
-    *next.facts.mutable_end_time() = TimeUtil::GetCurrentTime();
+    cancel(next.facts);
+  } else {
+    next.facts.set_state(state);
+    next.facts.clear_end_reason();  // a wish to cancel had it
+    next.facts.clear_end_time();
   }
   if (keeping_.archive) keeping_.archive->update(next);
   {

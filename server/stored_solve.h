@@ -70,6 +70,9 @@ class StoredSolve {
   /// that cannot be kept.
   void set_waiting_state(v1::Solve::State state);
   void note_running();
+  /// Of one that runs: what it shall be when the server is started again before the run has ended: PAUSED, CANCELLED or RUNNING.
+  /// Throws StatusError where that cannot be kept; it holds all the same once something else is.
+  void keep_wish(v1::Solve::State state);
 
   v1::Solve::State state() const;
   /// The state will not change and the log will not grow. Listeners of the log are woken after this became true.
@@ -87,16 +90,19 @@ class StoredSolve {
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
   void save(const SolveControl::Write& write);
   void save_in_memory(const SolveControl::Write& write);
-  void keep_checkpoint(Archive::SolveRow next, std::vector<std::string> state);
+  void keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change = {});
   std::vector<std::byte> take_checkpoint();
+  void keep_row();
   Archive::SolveRow row() const;
 
   const std::shared_ptr<const StoredScene> scene_;
   const Keeping keeping_;
   mutable std::mutex log_lock_;
   mutable std::unique_ptr<SolutionLog> log_;  ///< null: kept, and not loaded yet
+  std::mutex keeping_lock_;                   ///< what is kept is what was true last; before lock_
   mutable std::mutex lock_;
   v1::Solve facts_;  ///< its last step is that of the checkpoint
+  v1::Solve::State wish_ = v1::Solve::RUNNING;
   std::map<std::string, std::uint64_t> lineage_;
   std::vector<std::byte> state_in_memory_;  ///< of a paused solve where it is not in the archive
 };

@@ -7,6 +7,11 @@
 #include <gtest/gtest.h>
 #include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <semaphore>
+#include <thread>
 
 namespace alvor {
 namespace {
@@ -121,6 +126,53 @@ TEST_F(SolveStoreTest, CancellingASolveThatIsJustBeingParkedIsNotForgotten) {
     solves.cancel(solve->name);
     EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
   }
+}
+
+/// A solver that stops when the test says so, and no sooner.
+class KeptSolveTest : public testing::Test {
+ protected:
+  ~KeptSolveTest() override {
+    solves.shut_down();
+    std::filesystem::remove_all(directory);
+  }
+  SolveStoreOptions options() {
+    SolveStoreOptions made;
+    made.solver = [this](auto&, auto&, auto&, SolutionLog&, const SolveControl& control) {
+      may_stop.acquire();
+      SolveOutcome outcome;
+      outcome.reason = control.stop.stop_requested() ? StopReason::cancelled : StopReason::parked;
+      return outcome;
+    };
+    made.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
+    made.keeping.archive = &archive;
+    return made;
+  }
+  v1::Solve kept() { return archive.solves().at(0).facts; }
+
+  const std::filesystem::path directory = std::filesystem::temp_directory_path() / ("alvor_kept_" + std::to_string(getpid()));
+  Archive archive{directory};
+  std::binary_semaphore may_stop{0};
+  SceneStore scenes{&archive, {}};
+  SolveStore solves{options(), scenes};
+};
+
+TEST_F(KeptSolveTest, WhatItShallDoIsKeptBeforeItIsDone) {
+  const auto solve = solves.create(scenes.use(scenes.add(squares(2), "")->facts.name()), {}, {});
+  while (kept().state() != v1::Solve::RUNNING) std::this_thread::yield();
+  solves.pause(solve->name);
+  EXPECT_EQ(kept().state(), v1::Solve::PAUSED);
+  solves.resume(solve->name);
+  EXPECT_EQ(kept().state(), v1::Solve::RUNNING);
+  EXPECT_FALSE(kept().has_end_time());
+  solves.pause(solve->name);
+  solves.cancel(solve->name);
+  EXPECT_EQ(kept().state(), v1::Solve::CANCELLED);
+  EXPECT_TRUE(kept().has_end_time());
+  EXPECT_EQ(kept().end_reason(), "cancelled");
+  EXPECT_EQ(solve->state(), v1::Solve::RUNNING) << "others are told once it has stopped";
+  may_stop.release();
+  while (!solve->ended()) std::this_thread::yield();
+  EXPECT_EQ(kept().state(), v1::Solve::CANCELLED);
 }
 
 TEST_F(SolveStoreTest, SameRequestMakesOneSolve) {

@@ -15,6 +15,7 @@ class TestServer {
   ~TestServer();
   std::shared_ptr<grpc::Channel> channel() { return server_->InProcessChannel({}); }
   void stop_service() { service_.shut_down(); }
+  std::shared_ptr<prometheus::Collectable> metrics() const { return service_.metrics(); }
 
  private:
   Service service_;
