@@ -31,6 +31,16 @@ class Client {
 
   /// False if no connection was made within `patience`.
   bool wait_until_connected(std::chrono::milliseconds patience) const;
+  /// Runs `body` once more where it threw that the server could not be reached, if it can be again within a while: a server that
+  /// hangs up every time is as good as none. For what may be sent twice.
+  template <class Body>
+  auto with_patience(Body&& body) const {
+    for (int tries = 1;; ++tries) try {
+        return body();
+      } catch (const RpcError& error) {
+        if (error.code != grpc::UNAVAILABLE || tries == most_tries || !wait_until_connected(patience_for_server)) throw;
+      }
+  }
 
   /// Sends `scene` in chunks well below the message limit. Where the connection is lost it goes on, or starts again, and never
   /// makes two.
@@ -63,15 +73,6 @@ class Client {
                         std::stop_token stop = {});
 
  private:
-  /// Once more where the server could not be reached, if it can be again within a while. For requests that may be sent twice.
-  template <class Body>
-  auto with_patience(Body&& body) const {
-    for (int tries = 1;; ++tries) try {
-        return body();
-      } catch (const RpcError& error) {
-        if (error.code != grpc::UNAVAILABLE || tries == most_tries || !wait_until_connected(patience_for_server)) throw;
-      }
-  }
   /// From the chunk that `first` says.
   v1::Scene upload(const v1::CreateSceneRequest& first, const Scene& scene);
   std::uint64_t received_chunks(const std::string& request_id);

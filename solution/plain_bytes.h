@@ -47,6 +47,14 @@ class PlainWriter {
   Sink sink_;
 };
 
+/// All that `write` puts.
+inline std::vector<std::byte> plain_bytes(const std::function<void(PlainWriter&)>& write) {
+  std::vector<std::byte> bytes;
+  PlainWriter out([&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+  write(out);
+  return bytes;
+}
+
 /// Throws BadBytes. What it allocates is never more than what is left to read.
 class PlainReader {
  public:

@@ -65,4 +65,10 @@ inline Scene room_with_contacts() {
   return scene;
 }
 
+/// The same, where nothing reflects.
+inline Scene black(Scene scene) {
+  for (Material& material : scene.materials) material.reflectance = {};
+  return scene;
+}
+
 }  // namespace alvor::test

@@ -7,23 +7,17 @@
 #include "bench/service/watching.h"
 #include "client/client.h"
 #include "proto/codec.h"
+#include "tests/server/child_process.h"
 #include "tests/server/sample_scenes.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cmath>
-#include <csignal>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <sstream>
 #include <thread>
-
-extern char** environ;
 
 namespace alvor::bench {
 namespace {
@@ -37,44 +31,6 @@ std::uint64_t resident_bytes(pid_t process) {
   statm >> all >> resident;
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
-
-/// This program once more, and what it prints.
-class Child {
- public:
-  explicit Child(std::vector<std::string> words) {
-    int ends[2] = {-1, -1};
-    if (pipe2(ends, O_CLOEXEC) != 0) std::abort();
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    if (posix_spawn(&process_, argv[0], &actions, nullptr, argv.data(), environ) != 0) std::abort();
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    output_ = fdopen(ends[0], "r");
-  }
-  ~Child() {
-    kill(process_, SIGKILL);
-    waitpid(process_, nullptr, 0);
-    std::fclose(output_);
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-  pid_t process() const { return process_; }
-  /// Without its end; "" after the last.
-  std::string line() {
-    char text[256] = "";
-    if (!std::fgets(text, sizeof text, output_)) return "";
-    text[std::strcspn(text, "\n")] = '\0';
-    return text;
-  }
-
- private:
-  pid_t process_ = -1;
-  std::FILE* output_ = nullptr;
-};
 
 struct Round {
   double cpu_us_per_shot = 0;
@@ -99,24 +55,26 @@ double delay_p99(const std::vector<std::vector<Arrival>>& all) {
 }
 
 Round measure(const std::string& program, int count, bool with_stopped, double stopped_s) {
-  Child server({program, "--serve", std::to_string(stopped_s + 10)});
-  const std::string address = server.line();
+  ChildProcess server({program, "--serve", std::to_string(stopped_s + 10)}, STDOUT_FILENO);
+  std::string address = server.line();
+  address.pop_back();  // the line's end
   Client client(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
   const std::string solve = client.create_solve(client.create_scene(squares(1), "").name(), {}).name();
   Round round;
   std::vector<std::vector<Arrival>> seen(static_cast<std::size_t>(count));
   std::vector<std::thread> threads;
   for (auto& arrivals : seen) threads.emplace_back([&] { arrivals = watch(address, solve, rate_hz); });
-  std::unique_ptr<Child> one;
-  if (with_stopped) one = std::make_unique<Child>(std::vector<std::string>{program, "--watch", address, solve});
+  std::unique_ptr<ChildProcess> one;
+  if (with_stopped)
+    one = std::make_unique<ChildProcess>(std::vector<std::string>{program, "--watch", address, solve}, STDOUT_FILENO);
   std::this_thread::sleep_for(std::chrono::seconds(5));
   const std::uint64_t before = resident_bytes(server.process());
-  if (one) kill(one->process(), SIGSTOP);
+  if (one) one->signal(SIGSTOP);
   std::this_thread::sleep_for(std::chrono::duration<double>(stopped_s));
   round.growth_mb = 1e-6 * (static_cast<double>(resident_bytes(server.process())) - static_cast<double>(before));
   round.woken_at_s = now_s();
   if (one) {
-    kill(one->process(), SIGCONT);
+    one->signal(SIGCONT);
     Arrival seen_once;
     for (std::string line = one->line(); !line.empty(); line = one->line())
       if (std::sscanf(line.c_str(), "%lf %lf %lu %lu %lu", &seen_once.at_s, &seen_once.elapsed_s, &seen_once.bytes,

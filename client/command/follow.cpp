@@ -43,21 +43,10 @@ class Observer {
   double first_frame_s_ = -1;  ///< negative until there was one
 };
 
-bool worth_another_try(const RpcError& error, const Client& client) {
-  return error.code == grpc::StatusCode::UNAVAILABLE && client.wait_until_connected(Connection::patience);
-}
-
 // The watch remembers where it stands, so a new connection goes on from there.
 v1::Solve watch_through(Client& client, const std::string& name, Client::Watch& watch,
                         const std::function<void(const Client::Watch&)>& on_frame, std::stop_token stop) {
-  constexpr int most_losses = 5;  // a server that hangs up every time is as good as none
-  for (int losses = 1;; ++losses) {
-    try {
-      return client.watch_solve(name, watch, on_frame, stop);
-    } catch (const RpcError& error) {
-      if (losses == most_losses || !worth_another_try(error, client)) throw;
-    }
-  }
+  return client.with_patience([&] { return client.watch_solve(name, watch, on_frame, stop); });
 }
 
 void try_to_cancel(Client& client, const std::string& name) {

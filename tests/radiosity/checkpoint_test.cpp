@@ -12,15 +12,8 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-PlainWriter writer_to(Bytes& bytes) {
-  return PlainWriter([&bytes](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
-}
-
 Bytes saved(const SolutionLog& log) {
-  Bytes bytes;
-  PlainWriter out = writer_to(bytes);
-  log.save(out);
-  return bytes;
+  return plain_bytes([&](PlainWriter& out) { log.save(out); });
 }
 
 struct Saved {
@@ -50,8 +43,7 @@ Interrupted solve_until(int n, const BaseMesh& mesh, const SolveOptions& options
     return false;
   };
   control.save = [&](const SolveControl::Write& write) {
-    PlainWriter out = writer_to(result.saved.state);
-    write(out);
+    result.saved.state = plain_bytes(write);
     result.saved.log = saved(*log);
   };
   control.checkpoint = from.state;
@@ -70,11 +62,7 @@ Scene room_with_many_lamps() {
   return scene;
 }
 
-Scene black_room() {
-  Scene scene = test::room_with_contacts();
-  for (Material& material : scene.materials) material.reflectance = {};
-  return scene;
-}
+Scene black_room() { return test::black(test::room_with_contacts()); }
 
 Scene hazy_room() {
   Scene scene = test::room_with_contacts();

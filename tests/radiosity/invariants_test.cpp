@@ -158,9 +158,7 @@ TEST(Invariants, TwoSidesAreTwoFacesBackToBack) {
 }
 
 TEST(Invariants, WhereNothingReflectsWhatDoesNotArriveIsLost) {
-  Scene scene = pavilion();
-  for (Material& material : scene.materials) material.reflectance = {};
-  const PowerBalance balance = solution_of(scene).balance;
+  const PowerBalance balance = solution_of(test::black(pavilion())).balance;
   EXPECT_GT(balance.absorbed, 0.1 * balance.emitted);
   EXPECT_GT(balance.lost, 0.1 * balance.emitted);
   EXPECT_NEAR(balance.gap(), 0, 1e-12);

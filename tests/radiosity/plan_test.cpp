@@ -124,8 +124,7 @@ TEST(Plan, PlatesThatFaceEachOtherHaveNothingBetween) {
 }
 
 TEST(Plan, BlackScenesNeedNoRowsAndNoAmbientTerm) {
-  Scene scene = room_with_block();
-  for (Material& material : scene.materials) material.reflectance = {};
+  const Scene scene = test::black(room_with_block());
   EXPECT_FALSE(plan_of(scene).needs(Feature::indirect_rows));
   EXPECT_FALSE(plan_of(scene).needs(Feature::ambient_display));
   EXPECT_TRUE(plan_of(room_with_block()).needs(Feature::indirect_rows));

@@ -108,12 +108,7 @@ TEST(SwitchedOff, DarkOuterWallsSaveTheirRows) {
   EXPECT_LT(pair.as_planned.rays, pair.forced.rays);
 }
 
-/// Nothing reflects.
-Scene black(Scene scene) {
-  for (Material& material : scene.materials) material.reflectance = {};
-  return scene;
-}
-Scene black_room() { return black(test::room_with_contacts()); }
+Scene black_room() { return test::black(test::room_with_contacts()); }
 
 TEST(SwitchedOff, RowsOfABlackRoomSaveTheirRays) {
   const Pair pair = solved_both_ways(black_room(), Feature::indirect_rows, {.tolerance = 0.05});
@@ -122,7 +117,7 @@ TEST(SwitchedOff, RowsOfABlackRoomSaveTheirRays) {
 }
 
 TEST(SwitchedOff, RowsOfABlackConvexRoomSaveTheirRays) {
-  const Pair pair = solved_both_ways(black(convex_room()), Feature::indirect_rows);
+  const Pair pair = solved_both_ways(test::black(convex_room()), Feature::indirect_rows);
   EXPECT_LT(pair.difference(), rounding);
   EXPECT_EQ(pair.as_planned.rays, 0u);
 }

@@ -9,6 +9,8 @@
 #include "tests/server/alvord_process.h"
 #include "tests/server/refusal.h"
 
+#include <gtest/gtest.h>
+
 #include <sys/resource.h>
 #include <cmath>
 #include <cstdlib>
