@@ -159,9 +159,7 @@ std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta)
   return std::nullopt;
 }
 
-namespace {
-
-v1::Material encode_material(const Material& material) {
+v1::Material encode(const Material& material) {
   v1::Material message;
   message.set_name(as_utf8(material.name));
   *message.mutable_emission() = encode(material.emission);
@@ -169,6 +167,8 @@ v1::Material encode_material(const Material& material) {
   message.set_two_sided(material.two_sided);
   return message;
 }
+
+namespace {
 
 Material decode_material(const v1::Material& message) {
   return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided()};
@@ -238,7 +238,7 @@ bool SceneSlicer::next(v1::GeometryChunk& chunk) {
 
 void SceneSlicer::take_materials(v1::GeometryChunk& chunk, std::int64_t& budget) {
   for (; material_ < scene_.materials.size(); ++material_) {
-    v1::Material message = encode_material(scene_.materials[material_]);
+    v1::Material message = encode(scene_.materials[material_]);
     const auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 6;
     if (bytes > budget && chunk.materials_size() > 0) break;
     *chunk.add_materials() = std::move(message);

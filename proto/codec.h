@@ -26,6 +26,7 @@ double decode_seconds(const google::protobuf::Duration& duration);
 
 v1::Rgb encode(const Rgb& value);
 Rgb decode(const v1::Rgb& message);
+v1::Material encode(const Material& material);
 v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
 

@@ -6,7 +6,7 @@ packages=(
   g++ cmake ninja-build ccache mold pkg-config
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
-  libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev
+  libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libcpp-httplib-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev clang libclang-rt-14-dev
   gnuplot-nox

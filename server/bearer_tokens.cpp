@@ -1,6 +1,7 @@
 #include "server/bearer_tokens.h"
 
 #include "server/sha256.h"
+#include "server/status_error.h"
 
 #include <sstream>
 #include <stdexcept>
@@ -37,6 +38,14 @@ std::optional<std::string> BearerTokens::holder_of(std::string_view token) const
   const auto found = holder_by_hash_.find(sha256(token));
   if (found == holder_by_hash_.end()) return std::nullopt;
   return found->second;
+}
+
+std::string BearerTokens::caller_of(std::string_view authorization) const {
+  constexpr std::string_view scheme = "Bearer ";
+  if (authorization.empty()) throw StatusError(grpc::UNAUTHENTICATED, "authorization: is missing, must be 'Bearer TOKEN'");
+  auto holder = authorization.starts_with(scheme) ? holder_of(authorization.substr(scheme.size())) : std::nullopt;
+  if (!holder) throw StatusError(grpc::UNAUTHENTICATED, "authorization: is not a token that this server knows");
+  return *std::move(holder);
 }
 
 }  // namespace alvor

@@ -17,6 +17,8 @@ class BearerTokens {
 
   /// Whose token it is.
   std::optional<std::string> holder_of(std::string_view token) const;
+  /// Whose call it is by its header `authorization`, empty if it has none. Throws StatusError: UNAUTHENTICATED.
+  std::string caller_of(std::string_view authorization) const;
 
  private:
   std::map<std::string, std::string, std::less<>> holder_by_hash_;

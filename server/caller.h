@@ -23,11 +23,10 @@ struct Quota {
   std::uint64_t watchers = 1000;
 };
 
-/// As the server's credentials found out.
-inline std::string tenant_of(const grpc::ServerContextBase& context) {
-  const auto auth = context.auth_context();
-  const auto found = auth ? auth->FindPropertyValues("tenant") : std::vector<grpc::string_ref>{};
-  return found.empty() ? "" : std::string(found.front().data(), found.front().size());
-}
+/// As the server's credentials found out, or a front end in this process.
+std::string tenant_of(const grpc::ServerContextBase& context);
+
+/// Metadata in which a front end in this process says for whom it calls. The key is as random as a secret: nobody else knows it.
+const std::string& tenant_key();
 
 }  // namespace alvor

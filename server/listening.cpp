@@ -1,6 +1,6 @@
 #include "server/listening.h"
 
-#include "server/bearer_tokens.h"
+#include "server/status_error.h"
 
 #include <grpcpp/security/auth_metadata_processor.h>
 
@@ -29,13 +29,12 @@ class TokenCheck final : public grpc::AuthMetadataProcessor {
   grpc::Status Process(const InputMetadata& metadata, grpc::AuthContext* context, OutputMetadata* consumed,
                        OutputMetadata*) override {
     const auto found = metadata.find("authorization");
-    if (found == metadata.end()) return {grpc::UNAUTHENTICATED, "authorization: is missing, must be 'Bearer TOKEN'"};
-    const std::string value(found->second.data(), found->second.size());
-    constexpr std::string_view scheme = "Bearer ";
-    const auto holder =
-        value.starts_with(scheme) ? tokens_.holder_of(std::string_view(value).substr(scheme.size())) : std::nullopt;
-    if (!holder) return {grpc::UNAUTHENTICATED, "authorization: is not a token that this server knows"};
-    context->AddProperty("tenant", *holder);
+    const std::string value = found == metadata.end() ? "" : std::string(found->second.data(), found->second.size());
+    try {
+      context->AddProperty("tenant", tokens_.caller_of(value));
+    } catch (const StatusError& refusal) {
+      return {refusal.code, refusal.what()};
+    }
     consumed->emplace("authorization", value);
     return grpc::Status::OK;
   }
@@ -52,16 +51,23 @@ std::shared_ptr<grpc::ServerCredentials> tls_credentials(const ListenOptions& op
   return grpc::SslServerCredentials(tls);
 }
 
-std::shared_ptr<TokenCheck> token_check(const std::string& file) {
-  const std::string text = read("--tokens", file);
+}  // namespace
+
+std::optional<BearerTokens> tokens_of(const ListenOptions& options) {
+  if (options.tokens.empty()) return std::nullopt;
+  const std::string text = read("--tokens", options.tokens);
   try {
-    return std::make_shared<TokenCheck>(BearerTokens::parse(text));
+    return BearerTokens::parse(text);
   } catch (const std::invalid_argument& fault) {
-    throw std::invalid_argument("--tokens: '" + file + "': " + fault.what());
+    throw std::invalid_argument("--tokens: '" + options.tokens + "': " + fault.what());
   }
 }
 
-}  // namespace
+void refuse_plaintext(const std::string& option, const std::string& address, const ListenOptions& options) {
+  if (options.certificate.empty() && !options.insecure && !is_loopback(address))
+    throw std::invalid_argument(option + " " + address +
+                                ": other machines could call without TLS; give --tls-cert and --tls-key, or say --insecure");
+}
 
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& options) {
   if (options.certificate.empty() != options.key.empty()) throw std::invalid_argument("--tls-cert and --tls-key go together");
@@ -69,12 +75,10 @@ std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& opt
   if (!has_tls && !options.client_ca.empty()) throw std::invalid_argument("--tls-client-ca needs --tls-cert and --tls-key");
   if (!has_tls && !options.tokens.empty())
     throw std::invalid_argument("--tokens needs --tls-cert and --tls-key: tokens are secrets");
-  if (!has_tls && !options.insecure && !is_loopback(options.address))
-    throw std::invalid_argument("--listen " + options.address +
-                                ": other machines could call without TLS; give --tls-cert and --tls-key, or say --insecure");
+  refuse_plaintext("--listen", options.address, options);
   if (!has_tls) return grpc::InsecureServerCredentials();
   const auto credentials = tls_credentials(options);
-  if (!options.tokens.empty()) credentials->SetAuthMetadataProcessor(token_check(options.tokens));
+  if (auto tokens = tokens_of(options)) credentials->SetAuthMetadataProcessor(std::make_shared<TokenCheck>(*std::move(tokens)));
   return credentials;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 // Where a server listens, and whom it lets in.
 
+#include "server/bearer_tokens.h"
+
 #include <grpcpp/security/server_credentials.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace alvor {
@@ -20,6 +23,13 @@ struct ListenOptions {
 /// Throws std::invalid_argument naming the option: a file cannot be read or makes no sense, options contradict each other, or the
 /// address is not of this machine alone and there is neither TLS nor leave to do without.
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& options);
+
+/// Nothing where all may call. Throws std::invalid_argument: the file cannot be read or is no such file.
+std::optional<BearerTokens> tokens_of(const ListenOptions& options);
+
+/// Throws std::invalid_argument naming the option where other machines could call at `address` without TLS, and nobody gave
+/// leave.
+void refuse_plaintext(const std::string& option, const std::string& address, const ListenOptions& options);
 
 /// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a unix socket.
 bool is_loopback(const std::string& address);

@@ -3,6 +3,7 @@
 #include "server/listening.h"
 #include "server/service.h"
 #include "server/task_queue.h"
+#include "server/web_front.h"
 
 #include <google/protobuf/stubs/logging.h>
 #include <grpc/support/log.h>
@@ -16,6 +17,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -30,6 +32,7 @@ struct Options {
   int max_solves = alvor::SolveStoreOptions{}.max_running;
   double checkpoint_interval_s = 10;
   std::string metrics;
+  std::string web, page = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web").string();
   alvor::Quota quota;
   std::string log_level = "info";
 };
@@ -57,6 +60,8 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--metrics", options.metrics, "HOST:PORT to tell Prometheus on, at /metrics (not at all)");
+  app.add_option("--web", options.web, "HOST:PORT to serve the page and gRPC-Web for browsers on (not at all)");
+  app.add_option("--page", options.page, "Directory of that page")->capture_default_str();
   app.add_option("--log-level", options.log_level, "How much to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -155,6 +160,15 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
   }
 }
 
+// Null without an address.
+std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server& server, spdlog::logger& logger) {
+  if (options.web.empty()) return nullptr;
+  const alvor::WebOptions web{options.web, options.page, &options.listen};
+  auto front = std::make_unique<alvor::WebFront>(web, server.InProcessChannel({}), logger);
+  logger.info("web page on {}", front->url());
+  return front;
+}
+
 int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
   alvor::ServiceOptions service_options;
   service_options.solves.max_running = options.max_solves;
@@ -172,6 +186,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
     return 1;
   }
   const auto exposer = expose(options.metrics, service);
+  const auto web = serve_web(options, *server, *logger);
   set_serving(*server, true);
   const Heartbeat heartbeat(archive.get());
   logger->info("listening on {}:{}", options.listen.address.substr(0, options.listen.address.rfind(':')), port);

@@ -1,5 +1,6 @@
 #include "server/scene_service.h"
 
+#include "proto/mesh_codec.h"
 #include "server/answer.h"
 
 #include <atomic>
@@ -130,33 +131,39 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   std::atomic<bool> is_finished_ = false;
 };
 
-// Sends a scene chunk by chunk. Deletes itself.
-class ReadSceneCall final : public grpc::ServerWriteReactor<v1::ReadSceneResponse> {
+bool next(SceneSlicer& slicer, v1::ReadSceneResponse& message) { return slicer.next(*message.mutable_chunk()); }
+bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.next(message); }
+
+// Sends a part of a scene's content piece by piece. Deletes itself.
+template <class Message, class Slicer>
+class SendCall final : public grpc::ServerWriteReactor<Message> {
  public:
-  explicit ReadSceneCall(std::shared_ptr<const SceneContent> content) : content_(std::move(content)), slicer_(content_->scene) {
+  template <class Part>
+  SendCall(std::shared_ptr<const SceneContent> content, const Part& part) : content_(std::move(content)), slicer_(part) {
     send_next();
   }
 
  private:
   void send_next() {
-    if (slicer_.next(*message_.mutable_chunk())) StartWrite(&message_);
-    else Finish(grpc::Status::OK);
+    if (next(slicer_, message_)) this->StartWrite(&message_);
+    else this->Finish(grpc::Status::OK);
   }
   void OnWriteDone(bool ok) override {
     if (ok) send_next();
-    else Finish({grpc::CANCELLED, "the reader has gone"});
+    else this->Finish({grpc::CANCELLED, "the reader has gone"});
   }
   void OnDone() override { delete this; }
 
   const std::shared_ptr<const SceneContent> content_;
-  SceneSlicer slicer_;
-  v1::ReadSceneResponse message_;
+  Slicer slicer_;
+  Message message_;
 };
 
 // A stream that ends as soon as it begins. Deletes itself.
-class RefusedRead final : public grpc::ServerWriteReactor<v1::ReadSceneResponse> {
+template <class Message>
+class Refusal final : public grpc::ServerWriteReactor<Message> {
  public:
-  explicit RefusedRead(const grpc::Status& status) { Finish(status); }
+  explicit Refusal(const grpc::Status& status) { this->Finish(status); }
 
  private:
   void OnDone() override { delete this; }
@@ -192,12 +199,21 @@ SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::Del
   return answer(context, logger_, "DeleteScene", [&] { scenes_.remove(request->name(), tenant_of(*context)); });
 }
 
-grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context* context, const v1::ReadSceneRequest* request) {
+template <class Message, class Slicer, class Part>
+grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& scene, Part part) {
   std::shared_ptr<const SceneContent> content;
-  const grpc::Status status =
-      attempt(logger_, "ReadScene", [&] { content = scenes_.find(request->name(), tenant_of(*context))->content(); });
-  if (!status.ok()) return new RefusedRead(status);
-  return new ReadSceneCall(std::move(content));
+  const grpc::Status status = attempt(logger_, call, [&] { content = scenes_.find(scene, tenant_of(context))->content(); });
+  if (!status.ok()) return new Refusal<Message>(status);
+  const auto& sent = (*content).*part;
+  return new SendCall<Message, Slicer>(std::move(content), sent);
+}
+
+grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context* context, const v1::ReadSceneRequest* request) {
+  return send<v1::ReadSceneResponse, SceneSlicer>(*context, "ReadScene", request->name(), &SceneContent::scene);
+}
+
+grpc::ServerWriteReactor<v1::ReadMeshResponse>* SceneService::ReadMesh(Context* context, const v1::ReadMeshRequest* request) {
+  return send<v1::ReadMeshResponse, MeshSlicer>(*context, "ReadMesh", request->name(), &SceneContent::mesh);
 }
 
 }  // namespace alvor

@@ -29,6 +29,11 @@ class SceneService final : public v1::SceneService::CallbackService {
   Reactor* ListScenes(Context*, const v1::ListScenesRequest* request, v1::ListScenesResponse* response) override;
   Reactor* DeleteScene(Context*, const v1::DeleteSceneRequest* request, google::protobuf::Empty*) override;
   grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
+  grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
+
+  /// Streams a part of the scene's content, cut by a Slicer.
+  template <class Message, class Slicer, class Part>
+  grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& scene, Part part);
 
   SceneStore& scenes_;
   const UploadLimits limits_;

@@ -1,0 +1,39 @@
+#include "proto/mesh_codec.h"
+
+#include "proto/codec.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+std::uint64_t encode(const std::optional<Neighbour>& neighbour) {
+  if (!neighbour) return 0;
+  return 1 + 8 * std::uint64_t{neighbour->root} + 2 * static_cast<std::uint64_t>(neighbour->edge) + (neighbour->smooth ? 1 : 0);
+}
+
+void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& message) {
+  const RootPatch& root = mesh.roots()[index];
+  message.add_corner_counts(static_cast<std::uint32_t>(root.corner_count));
+  message.add_materials(root.material);
+  message.add_scene_faces(root.scene_face);
+  for (int c = 0; c < root.corner_count; ++c) {
+    for (const double x : {root.corners[c].x, root.corners[c].y, root.corners[c].z}) message.add_corner_coordinates(x);
+    message.add_neighbours(encode(mesh.across(index, c)));
+  }
+}
+
+}  // namespace
+
+bool MeshSlicer::next(v1::ReadMeshResponse& message) {
+  message.Clear();
+  const std::size_t end = std::min(mesh_.roots().size(), next_ + roots_at_a_time_);
+  if (next_ == end) return false;
+  if (next_ == 0)
+    for (const Material& material : mesh_.materials()) *message.add_scene_materials() = encode(material);
+  for (; next_ < end; ++next_) append(mesh_, static_cast<std::uint32_t>(next_), message);
+  return true;
+}
+
+}  // namespace alvor

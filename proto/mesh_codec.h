@@ -1,0 +1,23 @@
+#pragma once
+// The root patches of a mesh as the API tells them.
+
+#include "alvor/v1/scene_service.pb.h"
+#include "meshing/base_mesh.h"
+
+namespace alvor {
+
+/// Cuts the root patches of a mesh into messages well below gRPC's limit of 4 MB. The mesh must outlive it.
+class MeshSlicer {
+ public:
+  explicit MeshSlicer(const BaseMesh& mesh, std::size_t roots_at_a_time = 10'000)
+      : mesh_(mesh), roots_at_a_time_(roots_at_a_time) {}
+  /// False, leaving `message` empty, after the last.
+  bool next(v1::ReadMeshResponse& message);
+
+ private:
+  const BaseMesh& mesh_;
+  const std::size_t roots_at_a_time_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace alvor

@@ -1,0 +1,149 @@
+#include "server/web_front.h"
+
+#include "server/status_error.h"
+#include "server/web_call.h"
+
+#include <httplib.h>
+
+#include <stdexcept>
+
+namespace alvor {
+
+namespace {
+
+constexpr int most_connections = 256;               // each has a thread, which mostly sleeps
+constexpr std::chrono::milliseconds patience(500);  // until it is looked whether the browser has gone
+constexpr const char* content_type = "application/grpc-web+proto";
+
+const httplib::Headers headers{
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' "
+     "blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cache-Control", "no-cache"}};
+
+struct Address {
+  std::string host;
+  int port = 0;
+};
+
+Address parse(const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
+  if (colon == 0 || port.empty() || port.size() > 5 || port.find_first_not_of("0123456789") != std::string::npos ||
+      std::stoi(port) > 65535)
+    throw std::invalid_argument("--web: '" + address + "' is not HOST:PORT");
+  std::string host = address.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  return {host, std::stoi(port)};
+}
+
+std::unique_ptr<httplib::Server> make_server(const ListenOptions& listen) {
+  if (listen.certificate.empty()) return std::make_unique<httplib::Server>();
+  const char* const client_ca = listen.client_ca.empty() ? nullptr : listen.client_ca.c_str();
+  auto server = std::make_unique<httplib::SSLServer>(listen.certificate.c_str(), listen.key.c_str(), client_ca);
+  if (!server->is_valid()) throw std::invalid_argument("--web: --tls-cert and --tls-key cannot be used");
+  return server;
+}
+
+/// What an HTTP client says that has no business here has a status of HTTP, not of gRPC.
+bool is_foreign(const httplib::Request& request, bool only_this_machine) {
+  const std::string host = request.get_header_value("Host");
+  if (only_this_machine && !is_loopback(host.find(':') == std::string::npos ? host + ":80" : host)) return true;
+  if (!request.has_header("Origin")) return false;
+  const std::string origin = request.get_header_value("Origin");
+  return origin != "http://" + host && origin != "https://" + host;
+}
+
+}  // namespace
+
+WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel, spdlog::logger& logger)
+    : stub_(std::move(channel)),
+      logger_(logger),
+      only_this_machine_(is_loopback(options.address)),
+      tokens_(tokens_of(*options.listen)),
+      server_(make_server(*options.listen)) {
+  refuse_plaintext("--web", options.address, *options.listen);
+  const Address address = parse(options.address);
+  server_->new_task_queue = [] { return new httplib::ThreadPool(most_connections); };
+  server_->set_keep_alive_max_count(1'000'000);
+  server_->set_default_headers(headers);
+  server_->set_tcp_nodelay(true);
+  server_->set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    if (!is_foreign(request, only_this_machine_)) return httplib::Server::HandlerResponse::Unhandled;
+    response.status = 403;
+    response.set_content("of another origin\n", "text/plain");
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  serve_page(options.page);
+  serve_calls();
+  const int port = address.port == 0                                   ? server_->bind_to_any_port(address.host)
+                   : server_->bind_to_port(address.host, address.port) ? address.port
+                                                                       : -1;
+  if (port < 0)
+    throw std::invalid_argument("--web: cannot listen on " + options.address + ": the address is in use or not of this machine");
+  url_ = (options.listen->certificate.empty() ? "http://" : "https://") +
+         options.address.substr(0, options.address.rfind(':') + 1) + std::to_string(port) + "/";
+  thread_ = std::thread([this] { server_->listen_after_bind(); });
+}
+
+WebFront::~WebFront() {
+  while (!server_->is_running()) std::this_thread::yield();  // it would not be heard before
+  server_->stop();
+  thread_.join();
+}
+
+void WebFront::serve_page(const std::filesystem::path& page) {
+  if (!std::filesystem::exists(page / "index.html"))
+    throw std::invalid_argument("--web: there is no page in " + page.string() + ": scripts/build_page.sh makes it");
+  server_->set_mount_point("/", page.string());
+  server_->set_file_extension_and_mimetype_mapping("obj", "text/plain");
+  server_->set_file_extension_and_mimetype_mapping("mtl", "text/plain");
+}
+
+void WebFront::serve_calls() {
+  server_->Post(R"(/([a-z0-9.]+\.[A-Za-z]+/[A-Za-z]+))",
+                [this](const httplib::Request& request, httplib::Response& response, const httplib::ContentReader& body) {
+                  call(request, response, body);
+                });
+}
+
+/// Who calls; UNAUTHENTICATED where that must be said and is not.
+grpc::Status WebFront::check(const httplib::Request& request, std::string& tenant) const {
+  if (!tokens_) return grpc::Status::OK;
+  try {
+    tenant = tokens_->caller_of(request.get_header_value("Authorization"));
+    return grpc::Status::OK;
+  } catch (const StatusError& refusal) {
+    return {refusal.code, refusal.what()};
+  }
+}
+
+void WebFront::call(const httplib::Request& request, httplib::Response& response, const Body& body) {
+  const std::string type = request.get_header_value("Content-Type");
+  if (type != content_type && type != "application/grpc-web") {
+    response.status = 415;
+    return;
+  }
+  WebCall::Options options;
+  options.method = request.path;
+  if (const grpc::Status status = check(request, options.tenant); !status.ok())
+    return response.set_content(trailers_of(status), content_type);
+  if (const auto timeout = parse_timeout(request.get_header_value("grpc-timeout")))
+    options.deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::microseconds>(*timeout);
+  const auto call = std::make_shared<WebCall>(stub_, options);
+  bool is_wanted = true;
+  const bool is_whole = body([&](const char* bytes, std::size_t count) { return is_wanted = call->take({bytes, count}); });
+  if (!is_whole && is_wanted) return;  // the browser has gone
+  if (is_wanted) call->end_request();
+  response.set_chunked_content_provider(content_type, [call](std::size_t, httplib::DataSink& sink) {
+    const auto bytes = call->next(patience);
+    if (!bytes) return sink.done(), true;
+    return bytes->empty() ? sink.is_writable() : sink.write(bytes->data(), bytes->size());
+  });
+}
+
+}  // namespace alvor

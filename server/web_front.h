@@ -1,0 +1,57 @@
+#pragma once
+// For browsers: the page, and the API as gRPC-Web, from the server's own process.
+
+#include "server/bearer_tokens.h"
+#include "server/listening.h"
+
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/grpcpp.h>
+#include <spdlog/logger.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace httplib {
+class ContentReader;
+class Server;
+struct Request;
+struct Response;
+}  // namespace httplib
+
+namespace alvor {
+
+struct WebOptions {
+  std::string address;                    ///< HOST:PORT; port 0 takes a free one
+  std::filesystem::path page;             ///< a directory with index.html and what it loads
+  const ListenOptions* listen = nullptr;  ///< certificate, key, client_ca, tokens and insecure hold here too
+};
+
+/// Serves from when it is made until it is destroyed; calls that are then under way should end by themselves
+/// (Service::shut_down). Other origins than its own are refused, and so are other hosts where it listens for this machine only.
+class WebFront {
+ public:
+  /// `channel` leads to a server in this process. Throws std::invalid_argument naming the option.
+  WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel, spdlog::logger& logger);
+  ~WebFront();
+  const std::string& url() const { return url_; }
+
+ private:
+  void serve_page(const std::filesystem::path& page);
+  void serve_calls();
+  using Body = httplib::ContentReader;
+  void call(const httplib::Request& request, httplib::Response& response, const Body& body);
+  grpc::Status check(const httplib::Request& request, std::string& tenant) const;
+
+  grpc::GenericStub stub_;
+  spdlog::logger& logger_;
+  const bool only_this_machine_;
+  std::optional<BearerTokens> tokens_;
+  std::unique_ptr<httplib::Server> server_;
+  std::string url_;
+  std::thread thread_;
+};
+
+}  // namespace alvor

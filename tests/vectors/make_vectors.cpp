@@ -1,0 +1,60 @@
+// make_vectors DIRECTORY: writes the test vectors, when the format of frames has changed. They are the same at each run.
+
+#include "proto/codec.h"
+#include "solution/solution_log.h"
+#include "solution/solution_mirror.h"
+#include "tests/server/growing_leaves.h"
+#include "tests/vectors/vectors.h"
+
+#include <iostream>
+
+namespace alvor {
+namespace {
+
+struct Case {
+  const char* name;
+  Detail detail;
+  std::uint32_t roots;
+  std::size_t leaves_per_frame;
+  int revisions;
+};
+
+/// One watch: frames of a few leaves, while revisions are made between them.
+void write(const Case& how, const std::filesystem::path& directory) {
+  SolutionLog log;
+  SolutionMirror mirror;
+  GrowingLeaves leaves(how.roots, 7);
+  std::vector<v1::WatchSolveResponse> frames;
+  Cursor cursor;
+  for (int left = how.revisions;;) {
+    if (left > 0 && frames.size() % 3 == 0) {
+      Step step;
+      step.displayed_error = 0.01;
+      log.publish(leaves.next(), step);
+      --left;
+    }
+    const Delta delta = log.since(cursor, how.detail, how.leaves_per_frame);
+    cursor = delta.next;
+    encode(delta, frames.emplace_back());
+    if (const auto fault = mirror.apply(delta)) throw std::runtime_error(*fault);
+    if (left == 0 && delta.whole()) break;
+  }
+  const auto path = directory / how.name;
+  std::ofstream(path.string() + ".frames", std::ios::binary) << vectors::bytes_of(frames);
+  std::ofstream(path.string() + ".leaves", std::ios::binary) << vectors::bytes_of(mirror.leaves());
+}
+
+}  // namespace
+}  // namespace alvor
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: make_vectors DIRECTORY\n";
+    return 2;
+  }
+  using alvor::Detail;
+  for (const alvor::Case& how :
+       {alvor::Case{"display", Detail::display, 30, 50, 20}, alvor::Case{"exact", Detail::exact, 30, 50, 20},
+        alvor::Case{"deep", Detail::display, 1, 1000, 60}, alvor::Case{"one_page", Detail::exact, 2000, 5000, 2}})
+    alvor::write(how, argv[1]);
+}

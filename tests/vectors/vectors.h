@@ -1,0 +1,55 @@
+#pragma once
+// Frames that every mirror must apply alike: FILE.frames, each a length of 32 bits (little-endian) and a WatchSolveResponse, and
+// FILE.leaves, what a mirror then holds: an id of 64 bits and three float32 of each leaf, in order.
+
+#include "alvor/v1/solve_service.pb.h"
+#include "solution/leaf_value.h"
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace alvor::vectors {
+
+inline void append(std::string& bytes, const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); }
+
+inline std::string bytes_of(const std::vector<LeafValue>& leaves) {
+  std::string bytes;
+  for (const LeafValue& leaf : leaves) {
+    append(bytes, leaf.patch.bits());
+    for (const float band : {leaf.irradiance.r, leaf.irradiance.g, leaf.irradiance.b}) append(bytes, band);
+  }
+  return bytes;
+}
+
+inline std::string bytes_of(const std::vector<v1::WatchSolveResponse>& frames) {
+  std::string bytes;
+  for (const v1::WatchSolveResponse& frame : frames) {
+    append(bytes, static_cast<std::uint32_t>(frame.ByteSizeLong()));
+    frame.AppendToString(&bytes);
+  }
+  return bytes;
+}
+
+inline std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline std::vector<v1::WatchSolveResponse> read_frames(const std::filesystem::path& file) {
+  const std::string bytes = read(file);
+  std::vector<v1::WatchSolveResponse> frames;
+  for (std::size_t at = 0; at + 4 <= bytes.size();) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + at, 4);
+    if (length > bytes.size() - at - 4 || !frames.emplace_back().ParseFromArray(bytes.data() + at + 4, static_cast<int>(length)))
+      return {};
+    at += 4 + length;
+  }
+  return frames;
+}
+
+}  // namespace alvor::vectors
