@@ -1,0 +1,52 @@
+// What the page and the worker that mirrors a solve tell each other.
+
+import type { Step } from "./gen/alvor/v1/solve_service_pb";
+import type { SurfaceChange } from "./mirror/surface";
+
+export interface Vector {
+  x: number;
+  y: number;
+  z: number;
+}
+
+export type ToWorker =
+  | { kind: "watch"; origin: string; solve: string; token: string; rate: number }
+  /** The last change is on the screen: the next may come. */
+  | { kind: "drawn" }
+  | { kind: "probe"; origin: Vector; direction: Vector };
+
+/** Of the lit surfaces, for exposure and scales; 0 where nothing is lit. */
+export interface Brightness {
+  exposure: number;
+  lowIrradiance: number;
+  highIrradiance: number;
+}
+
+export interface Counters {
+  revision: number;
+  leaves: number;
+  frames: number;
+  bytes: number;
+  /** When the newest frame arrived, in ms of performance.timeOrigin + now(). */
+  arrived: number;
+  /** The longest that one frame kept the worker, ms. */
+  longestFrame: number;
+}
+
+export interface Reading {
+  face: number;
+  level: number;
+  material: string;
+  place: Vector;
+  irradiance: [number, number, number];
+  radiosity: [number, number, number];
+}
+
+export type FromWorker =
+  | { kind: "mesh"; centre: [number, number, number]; extent: number; corners: Float32Array; counts: Uint8Array; materials: Float32Array }
+  | { kind: "change"; change: SurfaceChange; isWhole: boolean; brightness: Brightness; counters: Counters }
+  | { kind: "steps"; steps: Step[]; isFirst: boolean }
+  | { kind: "connection"; state: "connected" | "lost" | "resumed" | "begun anew" | "closing"; reason: string }
+  | { kind: "ended" }
+  | { kind: "refused"; reason: string; needsToken: boolean }
+  | { kind: "probed"; reading: Reading | null };

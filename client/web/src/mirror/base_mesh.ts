@@ -1,0 +1,179 @@
+// The root patches that patch ids refer to, as ReadMesh sends them.
+
+import type { Material, ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
+import { GRID } from "./mirror";
+
+export interface Point {
+  /** On the root's finest grid: u = i / GRID, v = j / GRID. */
+  i: number;
+  j: number;
+}
+
+/** Corners are numbered through all roots: corner c of root r is firstCorner[r] + c, and so is the edge that begins there. */
+export class BaseMesh {
+  readonly rootCount: number;
+  readonly firstCorner: Uint32Array;
+  /** x, y, z of each corner, metres, from the middle of the mesh. */
+  readonly corners: Float64Array;
+  readonly centre: [number, number, number];
+  /** Longest side of the box around all, metres. */
+  readonly extent: number;
+  readonly material: Uint32Array;
+  readonly sceneFace: Uint32Array;
+  readonly materials: Material[];
+  /** Of each root, m2. */
+  readonly area: Float64Array;
+  /** The edge on the other side, or -1. */
+  private readonly opposite: Int32Array;
+  private readonly smooth: Uint8Array;
+  /** Corners in one place have one number, and so have those around which the surface is smooth. */
+  private readonly place: Uint32Array;
+  private readonly smoothPlace: Uint32Array;
+
+  constructor(messages: ReadMeshResponse[]) {
+    const counts = messages.flatMap((message) => message.cornerCounts);
+    this.rootCount = counts.length;
+    this.firstCorner = new Uint32Array(counts.length + 1);
+    counts.forEach((count, root) => (this.firstCorner[root + 1] = this.firstCorner[root] + count));
+    this.material = Uint32Array.from(messages.flatMap((message) => message.materials));
+    this.sceneFace = Uint32Array.from(messages.flatMap((message) => message.sceneFaces));
+    this.materials = messages[0]?.sceneMaterials ?? [];
+    this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
+    ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
+    const cornerCount = this.firstCorner[this.rootCount];
+    this.opposite = new Int32Array(cornerCount).fill(-1);
+    this.smooth = new Uint8Array(cornerCount);
+    let corner = 0;
+    for (const message of messages) for (const code of message.neighbours) this.setNeighbour(corner++, Number(code));
+    this.place = this.joined(() => true);
+    this.smoothPlace = this.joined((edge) => this.smooth[edge] !== 0);
+    this.area = Float64Array.from({ length: this.rootCount }, (_, root) => this.areaOf(root));
+  }
+
+  cornersOf(root: number): number {
+    return this.firstCorner[root + 1] - this.firstCorner[root];
+  }
+
+  /** Writes x, y, z of a point of a root to `out[at]`. Neighbours agree on shared points. */
+  position(root: number, { i, j }: Point, out: Float32Array | Float64Array, at: number): void {
+    const u = i / GRID;
+    const v = j / GRID;
+    const c = 3 * this.firstCorner[root];
+    const p = this.corners;
+    if (this.cornersOf(root) === 3) {
+      const w = 1 - u - v;
+      for (let x = 0; x < 3; ++x) out[at + x] = p[c + x] * w + p[c + 3 + x] * u + p[c + 6 + x] * v;
+    } else {
+      for (let x = 0; x < 3; ++x)
+        out[at + x] =
+          (p[c + x] * (1 - u) + p[c + 3 + x] * u) * (1 - v) + (p[c + 9 + x] * (1 - u) + p[c + 6 + x] * u) * v;
+    }
+  }
+
+  /** Two numbers: points in one place have the first in common, those around which the surface is smooth the second. */
+  keysOf(root: number, point: Point): [number, number] {
+    const edges = this.edgesAt(root, point);
+    if (edges.length === 0) {
+      const key = (root * GRID + point.i) * GRID + point.j;
+      return [key, key];
+    }
+    const first = this.firstCorner[root];
+    if (edges.length === 2) {
+      // Both edges meet at the corner where the later one begins.
+      const corner = edges[0] === 0 && edges[1] === this.cornersOf(root) - 1 ? 0 : edges[1];
+      return [CORNERS - this.place[first + corner], SMOOTH_CORNERS - this.smoothPlace[first + corner]];
+    }
+    const edge = first + edges[0];
+    const along = this.along(root, edges[0], point);
+    const here = edgeKey(edge, along);
+    const other = this.opposite[edge];
+    if (other < 0 || edge < other) return [here, this.isJoined(edge) ? here : here - CREASES];
+    const there = edgeKey(other, GRID - along);
+    return [there, this.isJoined(edge) ? there : here - CREASES];
+  }
+
+  private isJoined(edge: number): boolean {
+    return this.opposite[edge] >= 0 && this.smooth[edge] !== 0;
+  }
+
+  private edgesAt(root: number, { i, j }: Point): number[] {
+    const on =
+      this.cornersOf(root) === 4
+        ? [j === 0, i === GRID, j === GRID, i === 0]
+        : [j === 0, i + j === GRID, i === 0];
+    return on.flatMap((is, edge) => (is ? [edge] : []));
+  }
+
+  private along(root: number, edge: number, { i, j }: Point): number {
+    return this.cornersOf(root) === 4 ? [i, j, GRID - i, GRID - j][edge] : [i, j, GRID - j][edge];
+  }
+
+  private setNeighbour(edge: number, code: number): void {
+    if (code === 0) return;
+    const word = code - 1;
+    this.smooth[edge] = word & 1;
+    this.opposite[edge] = this.firstCorner[Math.floor(word / 8)] + ((word >> 1) & 3);
+  }
+
+  private rootOfCorner(corner: number): number {
+    let low = 0;
+    let high = this.rootCount;
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (this.firstCorner[middle] <= corner) low = middle;
+      else high = middle;
+    }
+    return low;
+  }
+
+  private after(corner: number): number {
+    const root = this.rootOfCorner(corner);
+    return corner + 1 === this.firstCorner[root + 1] ? this.firstCorner[root] : corner + 1;
+  }
+
+  /** Of each corner the smallest one that edges of this kind lead to. */
+  private joined(joins: (edge: number) => boolean): Uint32Array {
+    const group = Uint32Array.from(this.opposite, (_, corner) => corner);
+    const find = (corner: number): number => {
+      while (group[corner] !== corner) corner = group[corner] = group[group[corner]];
+      return corner;
+    };
+    const join = (a: number, b: number) => {
+      const [low, high] = [find(a), find(b)].sort((x, y) => x - y);
+      group[high] = low;
+    };
+    this.opposite.forEach((other, edge) => {
+      if (other < 0 || !joins(edge)) return;
+      join(edge, this.after(other));
+      join(this.after(edge), other);
+    });
+    return group.map((_, corner) => find(corner));
+  }
+
+  private areaOf(root: number): number {
+    const corner = (c: number) => this.corners.subarray(3 * (this.firstCorner[root] + c));
+    const [a, b, c] = [corner(0), corner(1), corner(2)];
+    const d = this.cornersOf(root) === 4 ? corner(3) : a;
+    const p = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+    const q = this.cornersOf(root) === 4 ? [d[0] - b[0], d[1] - b[1], d[2] - b[2]] : [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    return Math.hypot(p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]) / 2;
+  }
+}
+
+// Keys of points inside roots are not negative; the others lie in ranges below.
+const edgeKey = (edge: number, along: number) => -(edge * GRID + along) - 1;
+const CREASES = 2 ** 46;
+const CORNERS = -(2 ** 50);
+const SMOOTH_CORNERS = -(2 ** 51);
+
+function moveToMiddle(corners: Float64Array): { centre: [number, number, number]; extent: number } {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  corners.forEach((x, n) => {
+    low[n % 3] = Math.min(low[n % 3], x);
+    high[n % 3] = Math.max(high[n % 3], x);
+  });
+  const centre: [number, number, number] = [0, 1, 2].map((k) => (low[k] + high[k]) / 2) as [number, number, number];
+  corners.forEach((x, n) => (corners[n] = x - centre[n % 3]));
+  return { centre, extent: Math.max(...high.map((x, k) => x - low[k])) };
+}

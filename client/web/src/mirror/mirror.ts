@@ -1,0 +1,154 @@
+// The other end of the stream: a quadtree of leaves for each root patch, built from frames. The same as SolutionMirror of C++.
+
+import { BadFrame, levelOf, MAX_LEVEL, type Leaves } from "./leaves";
+import { StateHash } from "./state_hash";
+
+/** Side of a root patch on the finest grid. */
+export const GRID = 1 << MAX_LEVEL;
+
+/** Told of what changes, in order. */
+export interface MirrorListener {
+  /** A leaf became four; `first` is the first of them. */
+  onSplit(node: number, first: number): void;
+  onValue(node: number): void;
+}
+
+/** Roots come first, in the order of the mesh; the four children of a node are neighbours. */
+export class Mirror {
+  /** Of each node: its first child, or 0 for a leaf. */
+  firstChild: Int32Array;
+  root: Uint32Array;
+  /** Irradiance of leaves, W/m2, three of each node. */
+  rgb: Float32Array;
+  nodeCount: number;
+  leafCount = 0;
+  private path: Uint32Array;
+  private known: Uint8Array;
+  private hash = new StateHash();
+
+  constructor(
+    readonly rootCount: number,
+    private readonly listener?: MirrorListener,
+  ) {
+    const room = Math.max(64, 2 * rootCount);
+    this.firstChild = new Int32Array(room);
+    this.root = new Uint32Array(room);
+    this.path = new Uint32Array(room);
+    this.rgb = new Float32Array(3 * room);
+    this.known = new Uint8Array(rootCount);
+    this.nodeCount = rootCount;
+    for (let n = 0; n < rootCount; ++n) {
+      this.root[n] = n;
+      this.path[n] = 2 ** 30;
+    }
+  }
+
+  /** Of all leaves that something was said about: two halves, as the server's frames have it. */
+  get stateHash(): bigint {
+    return this.hash.bits;
+  }
+
+  levelOf(node: number): number {
+    return levelOf(this.path[node]);
+  }
+
+  /** Whole or, where it throws BadFrame, not at all. */
+  apply(leaves: Leaves): void {
+    for (let n = 0; n < leaves.count; ++n) this.check(leaves.face[n], leaves.path[n]);
+    for (let n = 0; n < leaves.count; ++n) {
+      const node = this.grow(leaves.face[n], leaves.path[n]);
+      this.hash.remove(this.root[node], this.path[node], this.rgb, 3 * node);
+      for (let band = 0; band < 3; ++band) this.rgb[3 * node + band] = leaves.rgb[3 * n + band];
+      this.hash.add(this.root[node], this.path[node], this.rgb, 3 * node);
+      this.listener?.onValue(node);
+    }
+  }
+
+  /** The leaf that contains a place of a root: coordinates of the finest patches of its quadtree path. */
+  leafAt(root: number, path: number): number {
+    let node = root;
+    for (let level = 1; this.firstChild[node] !== 0; ++level) node = this.firstChild[node] + childIndex(path, level);
+    return node;
+  }
+
+  /** All leaves that something was said about, in the order of their ids. */
+  *leaves(): Generator<{ face: number; path: number; rgb: [number, number, number] }> {
+    for (let root = 0; root < this.rootCount; ++root) if (this.known[root]) yield* this.leavesOf(root);
+  }
+
+  private *leavesOf(node: number): Generator<{ face: number; path: number; rgb: [number, number, number] }> {
+    const first = this.firstChild[node];
+    if (first === 0) {
+      const at = 3 * node;
+      yield { face: this.root[node], path: this.path[node], rgb: [this.rgb[at], this.rgb[at + 1], this.rgb[at + 2]] };
+    } else {
+      for (let k = 0; k < 4; ++k) yield* this.leavesOf(first + k);
+    }
+  }
+
+  private check(face: number, path: number): void {
+    if (face >= this.rootCount) throw new BadFrame(`root patch ${face} is not in the mesh`);
+    let node = face;
+    const level = levelOf(path);
+    for (let l = 1; l <= level && this.firstChild[node] !== 0; ++l) node = this.firstChild[node] + childIndex(path, l);
+    if (this.firstChild[node] !== 0) throw new BadFrame("a patch is split further here");
+  }
+
+  /** The node of this id, splitting down to it; siblings inherit. */
+  private grow(face: number, path: number): number {
+    const level = levelOf(path);
+    if (!this.known[face]) {
+      this.known[face] = 1;
+      this.leafCount += 1;
+      this.hash.add(face, this.path[face], this.rgb, 3 * face);
+    }
+    let node = face;
+    for (let l = 1; l <= level; ++l) {
+      if (this.firstChild[node] === 0) this.split(node, l);
+      node = this.firstChild[node] + childIndex(path, l);
+    }
+    return node;
+  }
+
+  private split(node: number, childLevel: number): void {
+    const first = this.nodeCount;
+    this.reserve(first + 4);
+    this.nodeCount += 4;
+    this.leafCount += 3;
+    this.firstChild[node] = first;
+    const half = 4 ** (MAX_LEVEL - childLevel);
+    this.hash.remove(this.root[node], this.path[node], this.rgb, 3 * node);
+    for (let k = 0; k < 4; ++k) {
+      const child = first + k;
+      this.root[child] = this.root[node];
+      this.path[child] = this.path[node] - 4 * half + (2 * k + 1) * half;
+      this.rgb.copyWithin(3 * child, 3 * node, 3 * node + 3);
+      this.hash.add(this.root[child], this.path[child], this.rgb, 3 * child);
+    }
+    this.listener?.onSplit(node, first);
+  }
+
+  private reserve(count: number): void {
+    if (count <= this.firstChild.length) return;
+    const room = Math.max(count, Math.ceil(1.5 * this.firstChild.length));
+    this.firstChild = grown(this.firstChild, Int32Array, room);
+    this.root = grown(this.root, Uint32Array, room);
+    this.path = grown(this.path, Uint32Array, room);
+    this.rgb = grown(this.rgb, Float32Array, 3 * room);
+  }
+}
+
+/** Which child of its ancestor at `level` - 1 contains the patch of this path. */
+export function childIndex(path: number, level: number): number {
+  return (path >>> (2 * (MAX_LEVEL - level) + 1)) & 3;
+}
+
+export function grown<T extends Int32Array | Uint32Array | Float32Array | Uint8Array>(
+  old: T,
+  Kind: new (length: number) => T,
+  room: number,
+): T {
+  const larger = new Kind(room);
+  larger.set(old as never);
+  return larger;
+}

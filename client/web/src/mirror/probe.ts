@@ -1,0 +1,99 @@
+// What lies where a ray first meets a front.
+
+import type { Reading, Vector } from "../messages";
+import type { BaseMesh } from "./base_mesh";
+import { type Mirror, GRID } from "./mirror";
+
+interface Hit {
+  root: number;
+  distance: number;
+  u: number;
+  v: number;
+}
+
+/** `origin` is measured from the middle of the mesh. */
+export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction: Vector): Reading | null {
+  const hit = firstFront(mesh, origin, direction);
+  if (!hit) return null;
+  const isQuad = mesh.cornersOf(hit.root) === 4;
+  const node = mirror.leafAt(hit.root, isQuad ? quadPath(hit.u, hit.v) : trianglePath(hit.u, hit.v));
+  const material = mesh.materials[mesh.material[hit.root]];
+  const irradiance = [0, 1, 2].map((band) => mirror.rgb[3 * node + band]) as [number, number, number];
+  const e = material.emission!;
+  const rho = material.reflectance!;
+  const along = (x: "x" | "y" | "z", n: number) => mesh.centre[n] + origin[x] + hit.distance * direction[x];
+  return {
+    face: mesh.sceneFace[hit.root],
+    level: mirror.levelOf(node),
+    material: material.name,
+    place: { x: along("x", 0), y: along("y", 1), z: along("z", 2) },
+    irradiance,
+    radiosity: [e.r + rho.r * irradiance[0], e.g + rho.g * irradiance[1], e.b + rho.b * irradiance[2]],
+  };
+}
+
+function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector): Hit | null {
+  let best: Hit | null = null;
+  for (let root = 0; root < mesh.rootCount; ++root) {
+    const first = 3 * mesh.firstCorner[root];
+    const corner = (c: number): Vector => ({
+      x: mesh.corners[first + 3 * c],
+      y: mesh.corners[first + 3 * c + 1],
+      z: mesh.corners[first + 3 * c + 2],
+    });
+    for (const [b, c] of mesh.cornersOf(root) === 4 ? [[1, 2], [2, 3]] : [[1, 2]]) {
+      const met = meet(corner(0), corner(b), corner(c), origin, direction);
+      if (!met || (best && met.distance >= best.distance)) continue;
+      // In the quad's own coordinates, as if it were a parallelogram on either side of the diagonal; exact where it is one.
+      const [u, v] = mesh.cornersOf(root) === 3 ? [met.b, met.c] : b === 1 ? [met.b + met.c, met.c] : [met.b, met.b + met.c];
+      best = { root, distance: met.distance, u, v };
+    }
+  }
+  return best;
+}
+
+const minus = (a: Vector, b: Vector): Vector => ({ x: a.x - b.x, y: a.y - b.y, z: a.z - b.z });
+const dot = (a: Vector, b: Vector) => a.x * b.x + a.y * b.y + a.z * b.z;
+const cross = (a: Vector, b: Vector): Vector => ({
+  x: a.y * b.z - a.z * b.y,
+  y: a.z * b.x - a.x * b.z,
+  z: a.x * b.y - a.y * b.x,
+});
+
+/** Weights of the second and third corner (Möller and Trumbore 1997); fronts only. */
+function meet(a: Vector, b: Vector, c: Vector, origin: Vector, direction: Vector) {
+  const ab = minus(b, a);
+  const ac = minus(c, a);
+  const p = cross(direction, ac);
+  const determinant = dot(ab, p);
+  if (!(determinant > 0)) return null;
+  const from = minus(origin, a);
+  const weightB = dot(from, p) / determinant;
+  const q = cross(from, ab);
+  const weightC = dot(direction, q) / determinant;
+  const distance = dot(ac, q) / determinant;
+  return weightB >= 0 && weightC >= 0 && weightB + weightC <= 1 && distance > 0 ? { distance, b: weightB, c: weightC } : null;
+}
+
+/** Of the finest patch there, as bits of an id. */
+function quadPath(u: number, v: number): number {
+  const cell = (x: number) => Math.min(GRID - 1, Math.max(0, Math.floor(x * GRID)));
+  let path = 0;
+  for (let bit = GRID / 2; bit >= 1; bit /= 2) path = path * 4 + Number((cell(u) & bit) !== 0) + 2 * Number((cell(v) & bit) !== 0);
+  return 2 * path + 1;
+}
+
+function trianglePath(u: number, v: number): number {
+  let path = 0;
+  for (let size = GRID / 2; size >= 1; size /= 2) {
+    u *= 2;
+    v *= 2;
+    let child = 3;
+    if (u >= 1) (child = 1), (u -= 1);
+    else if (v >= 1) (child = 2), (v -= 1);
+    else if (u + v < 1) child = 0;
+    else (u = 1 - u), (v = 1 - v);
+    path = path * 4 + child;
+  }
+  return 2 * path + 1;
+}

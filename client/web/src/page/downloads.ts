@@ -1,0 +1,53 @@
+// What a person can take home.
+
+import { BufferAttribute, BufferGeometry, Mesh, MeshBasicMaterial } from "three";
+import { GLTFExporter } from "three/addons/exporters/GLTFExporter.js";
+import type { Step } from "../gen/alvor/v1/solve_service_pb";
+import { secondsOf } from "./time";
+
+/** As `alvor solve --report` writes it. */
+export function reportOf(steps: readonly Step[]): Blob {
+  const lines = steps.map((step) =>
+    [secondsOf(step.elapsed), step.step, step.shots, step.rays, step.leaves, step.unshotFraction, step.estimatedError].join(),
+  );
+  return new Blob([["elapsed_s,step,shots,rays,leaves,unshot_fraction,estimated_error", ...lines, ""].join("\n")], {
+    type: "text/csv",
+  });
+}
+
+/** Triangles with radiosity and irradiance as float32 attributes, and a colour for viewers that know neither. */
+export async function glbOf(drawn: BufferGeometry, materials: Float32Array, exposure: number): Promise<Blob> {
+  const geometry = new BufferGeometry();
+  const values = drawn.getAttribute("value");
+  const bands = () => new Float32Array(3 * values.count);
+  const [irradiance, radiosity, colour] = [bands(), bands(), bands()];
+  for (let n = 0; n < values.count; ++n)
+    for (let band = 0; band < 3; ++band) {
+      const at = 3 * n + band;
+      const material = 8 * values.getW(n) + band;
+      irradiance[at] = values.getComponent(n, band);
+      radiosity[at] = materials[material] + materials[material + 4] * irradiance[at];
+      colour[at] = Math.min(1, exposure * radiosity[at]);
+    }
+  geometry.setAttribute("position", drawn.getAttribute("position"));
+  geometry.setAttribute("color", new BufferAttribute(colour, 3));
+  geometry.setAttribute("_irradiance", new BufferAttribute(irradiance, 3));
+  geometry.setAttribute("_radiosity", new BufferAttribute(radiosity, 3));
+  geometry.setIndex(trianglesOf(drawn));
+  const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true }));
+  const glb = (await new GLTFExporter().parseAsync(mesh, { binary: true })) as ArrayBuffer;
+  return new Blob([glb], { type: "model/gltf-binary" });
+}
+
+/** Without those that closed middles leave without area. */
+function trianglesOf(drawn: BufferGeometry): number[] {
+  const index = drawn.index!.array;
+  const position = drawn.getAttribute("position");
+  const same = (a: number, b: number) => [0, 1, 2].every((x) => position.getComponent(a, x) === position.getComponent(b, x));
+  const kept: number[] = [];
+  for (let n = 0; n < index.length; n += 3) {
+    const [a, b, c] = [index[n], index[n + 1], index[n + 2]];
+    if (!same(a, b) && !same(b, c) && !same(c, a)) kept.push(a, b, c);
+  }
+  return kept;
+}

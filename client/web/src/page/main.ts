@@ -1,0 +1,416 @@
+// The page: what a person does becomes calls to the server and what the room shows.
+
+import { Code, ConnectError } from "@connectrpc/connect";
+import { connect, reasonOf } from "../api";
+import type { Scene } from "../gen/alvor/v1/scene_service_pb";
+import { PlannedFeature_Kind, Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
+import type { Brightness, Counters, FromWorker, Reading, ToWorker } from "../messages";
+import { Cameras } from "../view/cameras";
+import { Room, type Look, type Tone } from "../view/room";
+import { Chart } from "./chart";
+import { byId, bytes, listItem, round, save } from "./dom";
+import { glbOf, reportOf } from "./downloads";
+import { showLegend } from "./legend";
+import { secondsOf } from "./time";
+
+const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "enfilade"];
+const RATE_HZ = 20;
+const POLL_MS = 1000;
+
+const input = (id: string) => byId<HTMLInputElement>(id);
+const select = (id: string) => byId<HTMLSelectElement>(id);
+const button = (id: string) => byId<HTMLButtonElement>(id);
+
+let token = sessionStorage.getItem("token") ?? "";
+const api = connect(location.origin, () => token);
+const room = new Room(byId<HTMLCanvasElement>("room"));
+const chart = new Chart(byId("chart"));
+let isStale = true;
+const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), () => (isStale = true));
+
+let scene: Scene | undefined;
+let solve: Solve | undefined;
+let worker: Worker | undefined;
+let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1 };
+let counters: Counters | undefined;
+let materials = new Float32Array();
+/** When a frame that is not on the screen yet arrived. */
+let arrivedUnseen: number | undefined;
+
+/** For whoever wants to know how the page does: tests, and the curious. */
+const measured = { latency: 0, worstLatency: 0, frames: 0, slots: 0, longestTask: 0 };
+Object.assign(window, { alvor: measured });
+if (PerformanceObserver.supportedEntryTypes.includes("longtask"))
+  new PerformanceObserver((list) => {
+    for (const entry of list.getEntries()) measured.longestTask = Math.max(measured.longestTask, entry.duration);
+  }).observe({ type: "longtask" });
+
+function say(text: string, kind: "good" | "bad" = "good"): void {
+  byId("state").textContent = text;
+  byId("state").dataset.kind = kind;
+}
+
+/** Runs what a person asked for, and says why it could not be. */
+async function attempt(action: () => Promise<void>): Promise<void> {
+  try {
+    await action();
+  } catch (error) {
+    if (error instanceof ConnectError && error.code === Code.Unauthenticated) byId("token-label").hidden = false;
+    say(reasonOf(error), "bad");
+  }
+}
+
+// Scenes
+
+async function open(files: File[]): Promise<void> {
+  say(`Reading ${files.map((file) => file.name).join(", ")}`);
+  const { readSceneFiles } = await import("../scene_files");
+  setScene(await api.createScene(await readSceneFiles(files)));
+  await start();
+  void listStored();
+}
+
+async function openExample(name: string): Promise<void> {
+  const parts = await Promise.all(
+    ["obj", "mtl"].map(async (extension) => {
+      const response = await fetch(`./scenes/${name}.${extension}`);
+      if (!response.ok) throw new Error(`the example ${name} is not here`);
+      return new File([await response.blob()], `${name}.${extension}`);
+    }),
+  );
+  await open(parts);
+}
+
+function setScene(next: Scene): void {
+  scene = next;
+  byId("title").textContent = `${next.displayName || next.name}, ${next.faceCount} faces`;
+  byId("warnings").replaceChildren(...next.warnings.map(listItem));
+  button("start").disabled = false;
+}
+
+async function listStored(): Promise<void> {
+  const { scenes } = await api.scenes.listScenes({ pageSize: 100 });
+  const options = scenes.map((stored) => new Option(`${stored.displayName || stored.name} (${stored.faceCount} faces)`, stored.name));
+  select("stored").replaceChildren(new Option("Choose…", ""), ...options);
+}
+
+// Solves
+
+async function start(): Promise<void> {
+  if (!scene || !byId<HTMLFormElement>("solve-form").reportValidity()) return;
+  const seconds = input("time").valueAsNumber;
+  const spec = {
+    tolerance: input("tolerance").valueAsNumber / 100,
+    maxDepth: input("depth").valueAsNumber,
+    maxElements: BigInt(input("elements").valueAsNumber),
+    strategy: Number(select("strategy").value),
+    timeLimit: seconds > 0 ? { seconds: BigInt(Math.floor(seconds)), nanos: Math.round((seconds % 1) * 1e9) } : undefined,
+  };
+  attach(await api.solves.createSolve({ parent: scene.name, solve: { spec } }));
+  history.pushState(null, "", `#${solve!.name}`);
+}
+
+/** Shows a solve that may be running, or have ended. */
+function attach(next: Solve): void {
+  worker?.terminate();
+  setSolve(next);
+  chart.begin(next.spec?.tolerance || 0.02);
+  counters = undefined;
+  room.begin();
+  Object.assign(measured, { latency: 0, worstLatency: 0, frames: 0, slots: 0, longestTask: 0 });
+  worker = new Worker(new URL("../worker.ts", import.meta.url), { type: "module" });
+  worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
+  send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ });
+  byId("hint").hidden = true;
+}
+
+function send(message: ToWorker): void {
+  worker?.postMessage(message);
+}
+
+async function attachToAddress(): Promise<void> {
+  const name = decodeURIComponent(location.hash.slice(1));
+  if (!name.includes("/solves/") || name === solve?.name) return;
+  const found = await api.solves.getSolve({ name });
+  setScene(await api.scenes.getScene({ name: name.slice(0, name.indexOf("/solves/")) }));
+  attach(found);
+}
+
+const STATES: Record<Solve_State, string> = {
+  [Solve_State.STATE_UNSPECIFIED]: "",
+  [Solve_State.QUEUED]: "Waiting for its turn",
+  [Solve_State.RUNNING]: "Solving",
+  [Solve_State.PAUSED]: "Paused",
+  [Solve_State.SUCCEEDED]: "Done",
+  [Solve_State.CANCELLED]: "Cancelled",
+  [Solve_State.FAILED]: "Failed",
+};
+const FINAL = [Solve_State.SUCCEEDED, Solve_State.CANCELLED, Solve_State.FAILED];
+
+function setSolve(next: Solve): void {
+  const isNews = next.state !== solve?.state || next.name !== solve.name;
+  solve = next;
+  const hasEnded = FINAL.includes(next.state);
+  button("pause").disabled = hasEnded;
+  button("cancel").disabled = hasEnded;
+  button("pause").textContent = next.state === Solve_State.PAUSED ? "Resume" : "Pause";
+  if (isNews) say(STATES[next.state] + (hasEnded && next.endReason ? `: ${next.endReason}` : ""));
+  if (next.plan) showPlan(next);
+}
+
+function showPlan(next: Solve): void {
+  const lines = next.plan!.features.map((feature) => {
+    const name = PlannedFeature_Kind[feature.kind].toLowerCase().replaceAll("_", " ");
+    return `${name}: ${feature.on ? "on" : "off"}. ${feature.reason} ${feature.cost}`;
+  });
+  if (byId("features").childElementCount !== lines.length) byId("features").replaceChildren(...lines.map(listItem));
+}
+
+setInterval(() => {
+  if (!solve || FINAL.includes(solve.state)) return;
+  const asked = solve.name;
+  api.solves
+    .getSolve({ name: asked })
+    .then((found) => found.name === solve?.name && setSolve(found))
+    .catch(() => undefined); // the watch says that the connection is lost
+}, POLL_MS);
+
+// The worker
+
+function take(message: FromWorker): void {
+  switch (message.kind) {
+    case "mesh":
+      materials = message.materials as Float32Array<ArrayBuffer>;
+      room.setMaterials(materials);
+      room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
+      cameras.frame(message.corners, message.counts, message.extent);
+      return;
+    case "change":
+      room.take(message.change);
+      ({ brightness, counters } = message);
+      arrivedUnseen = counters.arrived;
+      for (const id of ["pin", "save-glb", "save-png", "save-report"]) button(id).disabled = false;
+      isStale = true;
+      return;
+    case "steps":
+      chart.add(message.steps);
+      room.setAmbient(message.steps.at(-1)?.ambientIrradiance ?? { r: 0, g: 0, b: 0 });
+      return showCounters();
+    case "connection":
+      return showConnection(message.state, message.reason);
+    case "ended":
+      return void attempt(async () => setSolve(await api.solves.getSolve({ name: solve!.name })));
+    case "refused":
+      if (message.needsToken) byId("token-label").hidden = false;
+      return say(message.reason, "bad");
+    case "probed":
+      return showReading(message.reading);
+  }
+}
+
+function showConnection(state: Extract<FromWorker, { kind: "connection" }>["state"], reason: string): void {
+  if (state === "lost") say("Connection lost, trying again", "bad");
+  if (state === "closing") say(`The server stops (${reason}); trying again`);
+  if (state === "resumed") say(`Connected again, going on from ${reason}`);
+  if (state === "begun anew") say(`Connected again, from the beginning: ${reason}`);
+}
+
+function showCounters(): void {
+  const step = chart.all.at(-1);
+  if (!step) return;
+  const seconds = secondsOf(step.elapsed);
+  const rows: [string, string][] = [
+    ["Estimated error", `${(100 * step.estimatedError).toPrecision(3)} %`],
+    ["Unshot light", `${(100 * step.unshotFraction).toPrecision(3)} %`],
+    ["Run time", `${round(seconds)} s`],
+    ["Leaves", step.leaves.toLocaleString()],
+    ["Rays", Number(step.rays).toLocaleString()],
+    ["Rays a second", seconds > 0 ? round(Number(step.rays) / seconds) : ""],
+    ["Received", counters ? bytes(counters.bytes) : ""],
+    ["Revision", counters ? String(counters.revision) : ""],
+    ["Frame to screen", `${Math.round(measured.latency)} ms`],
+    ["Newest frame", counters ? `${round((performance.timeOrigin + performance.now() - counters.arrived) / 1000)} s ago` : ""],
+  ];
+  const cells = rows.flatMap(([term, text]) => {
+    const dt = document.createElement("dt");
+    const dd = document.createElement("dd");
+    dt.textContent = term;
+    dd.textContent = text;
+    return [dt, dd];
+  });
+  byId("counters").replaceChildren(...cells);
+}
+
+function showReading(reading: Reading | null): void {
+  byId("reading").hidden = reading === null;
+  if (!reading) return;
+  const bands = (values: number[]) => values.map(round).join(", ");
+  const { x, y, z } = reading.place;
+  byId("reading").textContent = [
+    `Irradiance ${bands(reading.irradiance)} W/m²`,
+    `Radiosity ${bands(reading.radiosity)} W/m²`,
+    `Face ${reading.face}, level ${reading.level}, ${reading.material}`,
+    `at ${bands([x, y, z])} m`,
+  ].join("\n");
+}
+
+// Looking
+
+function look(): Look {
+  const low = brightness.lowIrradiance;
+  const high = Math.max(brightness.highIrradiance, 1e-30);
+  const logarithmic = select("scale").value === "log";
+  return {
+    falseColour: select("show").value === "irradiance",
+    tone: select("tone").value as Tone,
+    exposure: brightness.exposure * 2 ** input("exposure").valueAsNumber,
+    low: logarithmic ? Math.max(low, high * 1e-4) : 0,
+    high,
+    logarithmic,
+    mesh: input("mesh").checked,
+    ambient: input("ambient").checked,
+  };
+}
+
+function comparison(): "off" | "ambient" | "pinned" {
+  return select("comparison").value as "off" | "ambient" | "pinned";
+}
+
+const UNITS = { w: { name: "W/m²", factor: 1 }, lx: { name: "lx-like", factor: 179 } };
+
+function draw(): void {
+  const now = look();
+  room.render(now, comparison(), input("split").valueAsNumber);
+  byId("legend").hidden = !now.falseColour;
+  if (now.falseColour) showLegend(now.low, now.high, now.logarithmic, UNITS[select("unit").value as keyof typeof UNITS]);
+  byId("compare").hidden = comparison() === "off";
+  byId("split-left").textContent = comparison() === "ambient" ? "Without ambient term" : "The moment kept";
+  byId("split-right").textContent = comparison() === "ambient" ? "With ambient term" : "Now";
+}
+
+let drawnAt = performance.now();
+let countedAt = 0;
+function animate(time: number): void {
+  requestAnimationFrame(animate);
+  cameras.advance((time - drawnAt) / 1000);
+  drawnAt = time;
+  if (time - countedAt > 250) {
+    countedAt = time;
+    showCounters();
+  }
+  if (!isStale) return;
+  isStale = false;
+  draw();
+  if (arrivedUnseen === undefined) return;
+  measured.latency = performance.timeOrigin + performance.now() - arrivedUnseen;
+  measured.worstLatency = Math.max(measured.worstLatency, measured.latency);
+  measured.frames += 1;
+  measured.slots = room.slotCount;
+  arrivedUnseen = undefined;
+  send({ kind: "drawn" });
+}
+
+// What a person can do
+
+function listen(): void {
+  const stale = () => (isStale = true);
+  input("files").addEventListener("change", () => attempt(() => open([...(input("files").files ?? [])])));
+  select("examples").append(...EXAMPLES.map((name) => new Option(name.replaceAll("_", " "), name)));
+  select("examples").addEventListener("change", () => attempt(() => openExample(select("examples").value)));
+  select("stored").addEventListener("change", () =>
+    attempt(async () => {
+      setScene(await api.scenes.getScene({ name: select("stored").value }));
+      const { solves } = await api.solves.listSolves({ parent: scene!.name, pageSize: 1 });
+      if (solves.length === 0) return start();
+      location.hash = solves[0].name;
+    }),
+  );
+  input("token").addEventListener("change", () => {
+    token = input("token").value;
+    sessionStorage.setItem("token", token);
+    void attempt(begin);
+  });
+  for (const id of ["scene-form", "view-form"]) byId(id).addEventListener("submit", (event) => event.preventDefault());
+  byId("solve-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    void attempt(start);
+  });
+  button("pause").addEventListener("click", () =>
+    attempt(async () => {
+      const name = solve!.name;
+      setSolve(await (solve!.state === Solve_State.PAUSED ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name })));
+    }),
+  );
+  button("cancel").addEventListener("click", () =>
+    attempt(async () => setSolve(await api.solves.cancelSolve({ name: solve!.name }))),
+  );
+  byId("view-form").addEventListener("input", stale);
+  input("split").addEventListener("input", stale);
+  input("exposure").addEventListener("input", () => {
+    byId("exposure-stops").textContent = `${input("exposure").value} EV`;
+  });
+  select("camera").addEventListener("change", () => cameras.walk(select("camera").value === "walk"));
+  button("pin").addEventListener("click", () => {
+    room.pin();
+    select("comparison").value = "pinned";
+    stale();
+  });
+  window.addEventListener("resize", stale);
+  new ResizeObserver(stale).observe(byId("stage"));
+  window.addEventListener("hashchange", () => attempt(attachToAddress));
+  listenToDrops();
+  listenToClicks();
+  listenToDownloads();
+}
+
+function listenToDrops(): void {
+  const stage = byId("stage");
+  document.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    stage.classList.add("dropping");
+  });
+  document.addEventListener("dragleave", () => stage.classList.remove("dropping"));
+  document.addEventListener("drop", (event) => {
+    event.preventDefault();
+    stage.classList.remove("dropping");
+    const files = [...(event.dataTransfer?.files ?? [])];
+    if (files.length > 0) void attempt(() => open(files));
+  });
+}
+
+/** A click reads a surface; a drag turns the room. */
+function listenToClicks(): void {
+  const canvas = byId<HTMLCanvasElement>("room");
+  let pressed = { x: 0, y: 0 };
+  const read = (x: number, y: number) => send({ kind: "probe", ...room.ray(x, y) });
+  canvas.addEventListener("pointerdown", (event) => (pressed = { x: event.clientX, y: event.clientY }));
+  canvas.addEventListener("click", (event) => {
+    if (Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > 4) return;
+    const box = canvas.getBoundingClientRect();
+    read((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
+  });
+  canvas.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") read(0.5, 0.5); // the middle of the picture
+    if (event.key === "Escape") byId("reading").hidden = true;
+  });
+}
+
+function listenToDownloads(): void {
+  button("save-png").addEventListener("click", () => {
+    draw();
+    byId<HTMLCanvasElement>("room").toBlob((picture) => picture && save("room.png", picture));
+  });
+  button("save-report").addEventListener("click", () => save("report.csv", reportOf(chart.all)));
+  button("save-glb").addEventListener("click", () =>
+    attempt(async () => save("room.glb", await glbOf(room.exported(), materials, look().exposure))),
+  );
+}
+
+async function begin(): Promise<void> {
+  await listStored();
+  await attachToAddress();
+}
+
+listen();
+requestAnimationFrame(animate);
+void attempt(begin);

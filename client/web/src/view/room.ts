@@ -1,0 +1,264 @@
+// The room on the screen: the surface's slots in GPU buffers that are written by ranges, one draw call.
+
+import * as THREE from "three";
+import type { Vector } from "../messages";
+import { SLOT_INDICES, SLOT_VERTICES, type Change, type SurfaceChange } from "../mirror/surface";
+import { colourMap } from "./colour_map";
+import { FRAGMENT, VERTEX } from "./shaders";
+
+export type Tone = "aces" | "reinhard" | "linear";
+
+/** How the surface is shown. */
+export interface Look {
+  falseColour: boolean;
+  tone: Tone;
+  /** Factor from radiosity to what the tone curve takes. */
+  exposure: number;
+  /** Irradiance of the scale's ends, W/m2. */
+  low: number;
+  high: number;
+  logarithmic: boolean;
+  mesh: boolean;
+  ambient: boolean;
+}
+
+const TONES: Record<Tone, number> = { aces: 0, reinhard: 1, linear: 2 };
+
+/** Positions and values of slots as the GPU has them. */
+class Slots {
+  readonly geometry = new THREE.BufferGeometry();
+  private room = 0;
+
+  constructor() {
+    this.reserve(4096);
+    this.geometry.setDrawRange(0, 0);
+  }
+
+  get positions(): THREE.BufferAttribute {
+    return this.geometry.getAttribute("position") as THREE.BufferAttribute;
+  }
+
+  get values(): THREE.BufferAttribute {
+    return this.geometry.getAttribute("value") as THREE.BufferAttribute;
+  }
+
+  take(change: SurfaceChange): void {
+    this.reserve(change.slotCount);
+    write(this.positions, change.positions, 3 * SLOT_VERTICES);
+    write(this.values, change.values, 4 * SLOT_VERTICES);
+    this.geometry.setDrawRange(0, change.slotCount * SLOT_INDICES);
+  }
+
+  /** What is drawn now, in buffers of its own. */
+  copy(): THREE.BufferGeometry {
+    const copy = new THREE.BufferGeometry();
+    const count = this.geometry.drawRange.count;
+    const vertices = (count / SLOT_INDICES) * SLOT_VERTICES;
+    copy.setAttribute("position", new THREE.BufferAttribute(this.positions.array.slice(0, 3 * vertices), 3));
+    copy.setAttribute("value", new THREE.BufferAttribute(this.values.array.slice(0, 4 * vertices), 4));
+    copy.setIndex(new THREE.BufferAttribute(this.geometry.index!.array.slice(0, count), 1));
+    return copy;
+  }
+
+  dispose(): void {
+    this.geometry.dispose();
+  }
+
+  private reserve(slots: number): void {
+    if (slots <= this.room) return;
+    const old = this.room > 0 ? { positions: this.positions.array, values: this.values.array } : undefined;
+    this.geometry.dispose();
+    this.room = Math.max(slots, 2 * this.room);
+    const vertices = this.room * SLOT_VERTICES;
+    const positions = new Float32Array(3 * vertices);
+    const values = new Float32Array(4 * vertices);
+    if (old) {
+      positions.set(old.positions);
+      values.set(old.values);
+    }
+    this.geometry.setAttribute("position", dynamic(positions, 3));
+    this.geometry.setAttribute("value", dynamic(values, 4));
+    this.geometry.setIndex(new THREE.BufferAttribute(indices(this.room), 1));
+  }
+}
+
+function dynamic(array: Float32Array, size: number): THREE.BufferAttribute {
+  return new THREE.BufferAttribute(array, size).setUsage(THREE.DynamicDrawUsage);
+}
+
+function indices(slots: number): Uint32Array {
+  const all = new Uint32Array(slots * SLOT_INDICES);
+  for (let slot = 0, at = 0; slot < slots; ++slot) {
+    const centre = slot * SLOT_VERTICES;
+    for (let k = 0; k < 4; ++k) {
+      const corner = centre + 1 + k;
+      const middle = centre + 5 + k;
+      const next = centre + 1 + ((k + 1) % 4);
+      for (const vertex of [centre, corner, middle, centre, middle, next]) all[at++] = vertex;
+    }
+  }
+  return all;
+}
+
+function write(attribute: THREE.BufferAttribute, change: Change, stride: number): void {
+  let from = 0;
+  for (let n = 0; n < change.ranges.length; n += 2) {
+    const start = change.ranges[n] * stride;
+    const length = change.ranges[n + 1] * stride;
+    attribute.array.set(change.data.subarray(from, from + length), start);
+    attribute.addUpdateRange(start, length);
+    from += length;
+  }
+  if (from > 0) attribute.needsUpdate = true;
+}
+
+export class Room {
+  readonly camera = new THREE.PerspectiveCamera(40, 1, 0.01, 100);
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private slots = new Slots();
+  private readonly surface: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
+  private pinned?: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
+  private ambient = new THREE.Vector3();
+  private pinnedAmbient = new THREE.Vector3();
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.autoClear = false;
+    this.surface = this.drawable(this.slots.geometry);
+  }
+
+  /** `materials`: emission and reflectance of each, four floats each. */
+  setMaterials(materials: Float32Array): void {
+    const count = Math.max(1, materials.length / 8);
+    const width = Math.min(count, 1024);
+    const height = Math.ceil(count / width);
+    const data = new Float32Array(8 * width * height);
+    data.set(materials);
+    const texture = new THREE.DataTexture(data, 2 * width, height, THREE.RGBAFormat, THREE.FloatType);
+    texture.needsUpdate = true;
+    this.surface.material.uniforms.materials.value = texture;
+    this.surface.material.uniforms.materialsWide.value = width;
+  }
+
+  /** A new surface comes. */
+  begin(): void {
+    this.slots.dispose();
+    this.slots = new Slots();
+    this.surface.geometry = this.slots.geometry;
+    this.unpin();
+  }
+
+  take(change: SurfaceChange): void {
+    this.slots.take(change);
+  }
+
+  get slotCount(): number {
+    return this.slots.geometry.drawRange.count / SLOT_INDICES;
+  }
+
+  setAmbient({ r, g, b }: { r: number; g: number; b: number }): void {
+    this.ambient.set(r, g, b);
+  }
+
+  /** Keeps what is seen now, for comparison. */
+  pin(): void {
+    this.unpin();
+    this.pinned = this.drawable(this.slots.copy());
+    this.pinned.material.uniforms = { ...this.surface.material.uniforms, ambient: { value: this.pinnedAmbient } };
+    this.pinnedAmbient.copy(this.ambient);
+  }
+
+  unpin(): void {
+    if (!this.pinned) return;
+    this.scene.remove(this.pinned);
+    this.pinned.geometry.dispose();
+    this.pinned = undefined;
+  }
+
+  /** Left of `split` (0 to 1) is what was pinned, or the surface without the ambient term. */
+  render(look: Look, comparison: "off" | "ambient" | "pinned", split: number): void {
+    this.fit();
+    this.renderer.setScissorTest(false);
+    this.renderer.setClearColor(0x000000, 0);
+    this.renderer.clear();
+    const { width, height } = this.renderer.getSize(new THREE.Vector2());
+    if (comparison === "off") return this.draw(look, this.surface);
+    const edge = Math.round(split * width);
+    this.renderer.setScissorTest(true);
+    this.renderer.setScissor(0, 0, edge, height);
+    if (comparison === "ambient") this.draw({ ...look, ambient: false }, this.surface);
+    else this.draw(look, this.pinned ?? this.surface);
+    this.renderer.setScissor(edge, 0, width - edge, height);
+    this.draw(look, this.surface);
+  }
+
+  /** From the eye through a point of the canvas, 0 to 1 from its upper left corner. */
+  ray(x: number, y: number): { origin: Vector; direction: Vector } {
+    const through = new THREE.Vector3(2 * x - 1, 1 - 2 * y, 0.5).unproject(this.camera);
+    return { origin: this.camera.position.clone(), direction: through.sub(this.camera.position).normalize() };
+  }
+
+  /** As drawn; bands as float32 attributes, as `alvor solve` writes them. */
+  exported(): THREE.BufferGeometry {
+    return this.slots.copy();
+  }
+
+  private draw(look: Look, which: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>): void {
+    this.surface.visible = which === this.surface;
+    if (this.pinned) this.pinned.visible = which === this.pinned;
+    const { uniforms } = which.material;
+    uniforms.ambient.value = !look.ambient ? new THREE.Vector3() : which === this.surface ? this.ambient : this.pinnedAmbient;
+    uniforms.falseColour.value = look.falseColour;
+    uniforms.tone.value = TONES[look.tone];
+    uniforms.exposure.value = look.exposure;
+    uniforms.scale.value.set(look.low, look.high);
+    uniforms.logarithmic.value = look.logarithmic;
+    uniforms.outlines.value = look.mesh;
+    which.material.uniformsNeedUpdate = true;
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  private fit(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (width === 0 || height === 0 || (size.x === width && size.y === height)) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+
+  private drawable(geometry: THREE.BufferGeometry): THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial> {
+    const material = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: {
+        materials: { value: null },
+        materialsWide: { value: 1 },
+        colours: { value: colourTexture() },
+        ambient: { value: new THREE.Vector3() },
+        falseColour: { value: false },
+        tone: { value: 0 },
+        exposure: { value: 1 },
+        scale: { value: new THREE.Vector2(0, 1) },
+        logarithmic: { value: false },
+        outlines: { value: false },
+      },
+    });
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.frustumCulled = false;
+    this.scene.add(mesh);
+    return mesh;
+  }
+}
+
+function colourTexture(): THREE.DataTexture {
+  const data = new Uint8Array(4 * 256);
+  for (let n = 0; n < 256; ++n) data.set([...colourMap(n / 255), 255], 4 * n);
+  const texture = new THREE.DataTexture(data, 256, 1);
+  texture.magFilter = texture.minFilter = THREE.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}

@@ -1,0 +1,68 @@
+// Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices.
+
+export const VERTEX = `
+precision highp float;
+precision highp sampler2D;
+uniform mat4 modelViewMatrix;
+uniform mat4 projectionMatrix;
+uniform sampler2D materials;
+uniform int materialsWide;
+in vec3 position;
+in vec4 value;
+out vec3 irradiance;
+out float centre;
+flat out vec3 emission;
+flat out vec3 reflectance;
+void main() {
+  int material = int(value.w + 0.5);
+  ivec2 at = ivec2(2 * (material % materialsWide), material / materialsWide);
+  emission = texelFetch(materials, at, 0).rgb;
+  reflectance = texelFetch(materials, at + ivec2(1, 0), 0).rgb;
+  irradiance = value.rgb;
+  centre = gl_VertexID % 9 == 0 ? 1.0 : 0.0;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+export const FRAGMENT = `
+precision highp float;
+precision highp sampler2D;
+uniform sampler2D colours;
+uniform vec3 ambient;
+uniform bool falseColour;
+uniform int tone;
+uniform float exposure;
+uniform vec2 scale;
+uniform bool logarithmic;
+uniform bool outlines;
+in vec3 irradiance;
+in float centre;
+flat in vec3 emission;
+flat in vec3 reflectance;
+out vec4 pixel;
+
+vec3 toned(vec3 x) {
+  x = min(x, vec3(1000.0));
+  if (tone == 0) return min(vec3(1.0), x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14));  // Narkowicz 2015
+  if (tone == 1) return x / (1.0 + dot(x, vec3(0.2126, 0.7152, 0.0722)));  // Reinhard et al. 2002, by luminance
+  return x;
+}
+vec3 srgb(vec3 x) {
+  x = clamp(x, 0.0, 1.0);
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+}
+float place(float h) {
+  if (logarithmic) return log(max(h, 1e-30) / scale.x) / log(scale.y / scale.x);
+  return (h - scale.x) / max(scale.y - scale.x, 1e-30);
+}
+void main() {
+  vec3 h = irradiance + ambient;
+  vec3 colour;
+  if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;
+  else colour = srgb(toned(exposure * (emission + reflectance * h)));
+  if (outlines) {
+    float line = 1.0 - smoothstep(0.5, 1.5, centre / fwidth(centre));
+    float bright = dot(colour, vec3(0.299, 0.587, 0.114));
+    colour = mix(colour, vec3(bright > 0.5 ? 0.0 : 1.0), 0.45 * line);
+  }
+  pixel = vec4(colour, 1.0);
+}`;

@@ -1,0 +1,207 @@
+// Mirrors one solve away from the page's thread: frames are decoded, applied and made ready to be drawn here.
+
+import { Code, ConnectError } from "@connectrpc/connect";
+import { connect, reasonOf, type Api } from "./api";
+import { Detail, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
+import type { Counters, FromWorker, ToWorker } from "./messages";
+import { BaseMesh } from "./mirror/base_mesh";
+import { brightnessOf } from "./mirror/brightness";
+import { BadFrame, decodeLeaves } from "./mirror/leaves";
+import { Mirror } from "./mirror/mirror";
+import { probe } from "./mirror/probe";
+import { Surface } from "./mirror/surface";
+
+const tell = (message: FromWorker, transfer: Transferable[] = []) => postMessage(message, { transfer });
+const now = () => performance.timeOrigin + performance.now();
+const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+
+const LONGEST_UNSEEN_MS = 250; // a state of many pages is shown in parts
+const LONGEST_WAIT_MS = 5000;
+
+class Watch {
+  private mesh!: BaseMesh;
+  private mirror!: Mirror;
+  private surface!: Surface;
+  private epoch = "";
+  private revision = 0n;
+  private isWhole = true;
+  private ambient: [number, number, number] = [0, 0, 0];
+  private isDrawn = true;
+  private isChanged = false;
+  private shownAt = 0;
+  private readonly counters: Counters = { revision: 0, leaves: 0, frames: 0, bytes: 0, arrived: 0, longestFrame: 0 };
+  private readonly api: Api;
+  private readonly solve: string;
+  private readonly rate: number;
+
+  constructor({ origin, token, solve, rate }: Extract<ToWorker, { kind: "watch" }>) {
+    this.api = connect(
+      origin,
+      () => token,
+      (count) => (this.counters.bytes += count),
+    );
+    this.solve = solve;
+    this.rate = rate;
+  }
+
+  async run(): Promise<void> {
+    for (let wait = 100, lost = false; ; wait = Math.min(2 * wait, LONGEST_WAIT_MS)) {
+      try {
+        if (!this.mesh) await this.readMesh();
+        const onFirst = () => {
+          this.tellConnected(lost);
+          wait = 100;
+          lost = false;
+        };
+        if (await this.follow(onFirst)) return;
+        lost = true;
+      } catch (error) {
+        if (!this.canTryAgain(error)) throw error;
+        tell({ kind: "connection", state: "lost", reason: reasonOf(error) });
+        lost = true;
+      }
+      await pause(wait);
+    }
+  }
+
+  drawn(): void {
+    this.isDrawn = true;
+    this.show();
+  }
+
+  probe(message: Extract<ToWorker, { kind: "probe" }>): void {
+    const reading = this.mirror ? probe(this.mesh, this.mirror, message.origin, message.direction) : null;
+    tell({ kind: "probed", reading });
+  }
+
+  private canTryAgain(error: unknown): boolean {
+    if (error instanceof BadFrame) {
+      this.forget();
+      return true;
+    }
+    const code = ConnectError.from(error).code;
+    return [Code.Unavailable, Code.Unknown, Code.Aborted, Code.Internal, Code.DeadlineExceeded, Code.Canceled].includes(code);
+  }
+
+  private tellConnected(wasLost: boolean): void {
+    const state = !wasLost ? "connected" : this.revision > 0n ? "resumed" : "begun anew";
+    tell({ kind: "connection", state, reason: `revision ${this.revision}` });
+  }
+
+  private async readMesh(): Promise<void> {
+    const name = this.solve.slice(0, this.solve.indexOf("/solves/"));
+    const messages = [];
+    for await (const message of this.api.scenes.readMesh({ name })) messages.push(message);
+    this.mesh = new BaseMesh(messages);
+    this.forget();
+    const { centre, extent } = this.mesh;
+    const materials = Float32Array.from(
+      this.mesh.materials.flatMap(({ emission: e, reflectance: r }) => [e!.r, e!.g, e!.b, 0, r!.r, r!.g, r!.b, 0]),
+    );
+    const counts = Uint8Array.from({ length: this.mesh.rootCount }, (_, root) => this.mesh.cornersOf(root));
+    tell({ kind: "mesh", centre, extent, corners: Float32Array.from(this.mesh.corners), counts, materials });
+  }
+
+  private forget(): void {
+    this.surface = new Surface(this.mesh);
+    this.mirror = new Mirror(this.mesh.rootCount, this.surface);
+    this.surface.attach(this.mirror);
+    this.revision = 0n;
+    this.isWhole = true;
+  }
+
+  /** Until the solve has ended (true) or the server closes the watch (false). */
+  private async follow(onFirst: () => void): Promise<boolean> {
+    if (!this.isWhole) this.forget(); // between two revisions: equal to none that a server knows
+    const frames = this.api.solves.watchSolve({
+      name: this.solve,
+      epoch: this.epoch,
+      baseRevision: this.revision,
+      detail: Detail.DISPLAY,
+      maxRateHertz: this.rate,
+    });
+    let count = 0n;
+    for await (const frame of frames) {
+      if (++count === 1n) onFirst();
+      if (frame.closing) {
+        tell({ kind: "connection", state: "closing", reason: frame.closing.reason });
+        return false;
+      }
+      this.take(frame);
+      // A watch that has ended needs no answer.
+      this.api.solves
+        .acknowledgeFrame({ watchId: frame.watchId, revision: frame.toRevision, frameCount: count })
+        .catch(() => undefined);
+      if (frame.ended) {
+        this.show();
+        tell({ kind: "ended" });
+        return true;
+      }
+    }
+    throw new ConnectError("the stream broke off", Code.Unavailable);
+  }
+
+  private take(frame: WatchSolveResponse): void {
+    const began = performance.now();
+    if (frame.reset) {
+      this.forget();
+      tell({ kind: "connection", state: "begun anew", reason: "the server does not know what was seen so far" });
+    }
+    if (frame.fromRevision !== this.revision) throw new BadFrame("a frame does not follow the one before it");
+    const isFirst = this.revision === 0n;
+    if (frame.leaves && frame.leaves.count > 0) {
+      this.mirror.apply(decodeLeaves(frame.leaves));
+      this.isChanged = true;
+    }
+    this.epoch = frame.epoch;
+    this.isWhole = frame.toRevision === frame.headRevision || (frame.leaves?.count ?? 0) === 0 || frame.toRevision > this.revision;
+    this.revision = frame.toRevision;
+    if (frame.stateHash !== undefined && frame.stateHash !== this.mirror.stateHash)
+      throw new BadFrame("the state has another hash than the server's");
+    if (frame.steps.length > 0) {
+      const { r, g, b } = frame.steps.at(-1)!.ambientIrradiance ?? { r: 0, g: 0, b: 0 };
+      this.ambient = [r, g, b];
+      tell({ kind: "steps", steps: frame.steps, isFirst });
+    }
+    this.count(began);
+    if (this.isWhole || now() - this.shownAt > LONGEST_UNSEEN_MS) this.show();
+  }
+
+  private count(began: number): void {
+    const { counters } = this;
+    counters.revision = Number(this.revision);
+    counters.leaves = this.mirror.leafCount;
+    counters.frames += 1;
+    counters.arrived = now();
+    counters.longestFrame = Math.max(counters.longestFrame, performance.now() - began);
+  }
+
+  /** What changed, once what was sent before is on the screen. */
+  private show(): void {
+    if (!this.isDrawn || !this.isChanged) return;
+    this.isDrawn = this.isChanged = false;
+    this.shownAt = now();
+    const change = this.surface.flush();
+    const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
+    const { positions, values } = change;
+    tell({ kind: "change", change, isWhole: this.isWhole, brightness, counters: { ...this.counters } }, [
+      positions.ranges.buffer,
+      positions.data.buffer,
+      values.ranges.buffer,
+      values.data.buffer,
+    ]);
+  }
+}
+
+let watch: Watch | undefined;
+
+onmessage = ({ data }: MessageEvent<ToWorker>) => {
+  if (data.kind === "drawn") watch?.drawn();
+  if (data.kind === "probe") watch?.probe(data);
+  if (data.kind !== "watch") return;
+  watch = new Watch(data);
+  watch.run().catch((error) => {
+    const needsToken = ConnectError.from(error).code === Code.Unauthenticated;
+    tell({ kind: "refused", reason: reasonOf(error), needsToken });
+  });
+};

@@ -1,0 +1,155 @@
+import { create } from "@bufbuild/protobuf";
+import { describe, expect, it } from "vitest";
+import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
+import { BaseMesh } from "../../src/mirror/base_mesh";
+import type { Leaves } from "../../src/mirror/leaves";
+import { Mirror } from "../../src/mirror/mirror";
+import { SLOT_VERTICES, Surface, type SurfaceChange } from "../../src/mirror/surface";
+
+const across = (root: number, edge: number, smooth: boolean) => BigInt(1 + 8 * root + 2 * edge + Number(smooth));
+
+/** Two unit squares and a triangle beside each other in a plane, and a wall that stands at the first. */
+function mesh(): BaseMesh {
+  const none = 0n;
+  return new BaseMesh([
+    create(ReadMeshResponseSchema, {
+      cornerCounts: [4, 4, 3, 4],
+      materials: [0, 0, 0, 1],
+      sceneFaces: [0, 1, 2, 3],
+      cornerCoordinates: [
+        ...[0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0],
+        ...[1, 0, 0, 2, 0, 0, 2, 1, 0, 1, 1, 0],
+        ...[2, 0, 0, 3, 0, 0, 2, 1, 0],
+        ...[0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1],
+      ],
+      neighbours: [
+        ...[none, across(1, 3, true), none, across(3, 0, false)],
+        ...[none, across(2, 2, true), none, across(0, 1, true)],
+        ...[none, none, across(1, 1, true)],
+        ...[across(0, 3, false), none, none, none],
+      ],
+    }),
+  ]);
+}
+
+const path = (children: number[]) =>
+  children.reduce((bits, child, n) => bits + child * 4 ** (15 - n - 1) * 2, 0) + 4 ** (15 - children.length);
+
+function leaves(list: [number, number[], number][]): Leaves {
+  return {
+    count: list.length,
+    face: Uint32Array.from(list.map((leaf) => leaf[0])),
+    path: Uint32Array.from(list.map((leaf) => path(leaf[1]))),
+    rgb: Float32Array.from(list.flatMap((leaf) => [leaf[2], leaf[2], leaf[2]])),
+  };
+}
+
+/** What a viewer would hold after these changes. */
+class Drawn {
+  positions = new Float32Array(0);
+  values = new Float32Array(0);
+  slots = 0;
+
+  take(change: SurfaceChange): number {
+    this.slots = change.slotCount;
+    this.positions = copy(this.positions, change.positions, 3 * SLOT_VERTICES, this.slots);
+    this.values = copy(this.values, change.values, 4 * SLOT_VERTICES, this.slots);
+    return change.values.data.length / (4 * SLOT_VERTICES);
+  }
+
+  /** Sides of drawn triangles that belong to one only. */
+  freeSides(): string[] {
+    const sides = new Map<string, number>();
+    const key = (vertex: number) => [0, 1, 2].map((x) => this.positions[3 * vertex + x]).join();
+    for (let slot = 0; slot < this.slots; ++slot)
+      for (const [a, b, c] of triangles(slot * SLOT_VERTICES)) {
+        const names = [a, b, c].map(key);
+        if (new Set(names).size < 3) continue;
+        for (let n = 0; n < 3; ++n) {
+          const side = [names[n], names[(n + 1) % 3]].sort().join(" ");
+          sides.set(side, (sides.get(side) ?? 0) + 1);
+        }
+      }
+    return [...sides].filter(([, count]) => count === 1).map(([side]) => side);
+  }
+
+  /** Values of the vertices at a place. */
+  at(x: number, y: number, z: number, centre: number[]): Set<number> {
+    const found = new Set<number>();
+    for (let v = 0; v < this.slots * SLOT_VERTICES; ++v)
+      if (Math.hypot(...[x, y, z].map((c, k) => this.positions[3 * v + k] + centre[k] - c)) < 1e-6)
+        found.add(this.values[4 * v]);
+    return found;
+  }
+}
+
+const triangles = (first: number) =>
+  [0, 1, 2, 3].flatMap((k) => [
+    [first, first + 1 + k, first + 5 + k],
+    [first, first + 5 + k, first + 1 + ((k + 1) % 4)],
+  ]);
+
+function copy(old: Float32Array, change: { ranges: Uint32Array; data: Float32Array }, stride: number, slots: number) {
+  const all = new Float32Array(slots * stride);
+  all.set(old);
+  let from = 0;
+  for (let n = 0; n < change.ranges.length; n += 2) {
+    const length = change.ranges[n + 1] * stride;
+    all.set(change.data.subarray(from, from + length), change.ranges[n] * stride);
+    from += length;
+  }
+  return all;
+}
+
+function drawn(base: BaseMesh) {
+  const surface = new Surface(base);
+  const mirror = new Mirror(base.rootCount, surface);
+  surface.attach(mirror);
+  const picture = new Drawn();
+  return { surface, mirror, picture };
+}
+
+/** How many sides the outline of the whole has: 3 of the first square, 2 of the second, 2 of the triangle, 3 of the wall. */
+const OUTLINE = 2 + 2 + 2 + 3;
+
+describe("the surface", () => {
+  it("has no crack where leaves of different levels meet, at creases too", () => {
+    const { surface, mirror, picture } = drawn(mesh());
+    picture.take(surface.flush());
+    expect(picture.freeSides()).toHaveLength(OUTLINE);
+    mirror.apply(leaves([[0, [0], 1], [0, [1], 2], [0, [2], 3], [0, [3], 4], [1, [], 5], [2, [], 6], [3, [], 7]]));
+    picture.take(surface.flush());
+    // The first square's two outer sides are halves now; what is inside is joined.
+    expect(picture.freeSides()).toHaveLength(OUTLINE + 2);
+    mirror.apply(leaves([[1, [0], 5], [1, [1], 5], [1, [2], 5], [1, [3], 5], [2, [2], 6], [2, [3], 6]]));
+    picture.take(surface.flush());
+    expect(picture.freeSides()).toHaveLength(OUTLINE + 2 + 2 + 2);
+  });
+
+  it("goes on smoothly within a plane and not around a crease", () => {
+    const base = mesh();
+    const { surface, mirror, picture } = drawn(base);
+    mirror.apply(leaves([[0, [], 1], [1, [], 3], [2, [], 3], [3, [], 9]]));
+    picture.take(surface.flush());
+    expect(picture.at(1, 0, 0, base.centre)).toEqual(new Set([2]));
+    expect(picture.at(0, 0, 0, base.centre)).toEqual(new Set([1, 9]));
+  });
+
+  it("writes again only what changed", () => {
+    const { surface, mirror, picture } = drawn(mesh());
+    const deep = [0, 1, 2, 3].flatMap((a) => [0, 1, 2, 3].map((b) => [0, [a, b], 1] as [number, number[], number]));
+    mirror.apply(leaves([...deep, [1, [], 1], [2, [], 1], [3, [], 1]]));
+    picture.take(surface.flush());
+    expect(surface.flush().values.data).toHaveLength(0);
+    mirror.apply(leaves([[2, [], 2]]));
+    expect(picture.take(surface.flush())).toBeLessThan(8);
+  });
+
+  it("gives places that are lit by nothing no part in their neighbours", () => {
+    const base = mesh();
+    const { surface, mirror, picture } = drawn(base);
+    mirror.apply(leaves([[0, [], 0], [1, [], 3], [2, [], 3], [3, [], 9]]));
+    picture.take(surface.flush());
+    expect(picture.at(1, 0, 0, base.centre)).toEqual(new Set([3]));
+  });
+});
