@@ -13,6 +13,7 @@ namespace {
 
 constexpr int most_connections = 256;               // each has a thread, which mostly sleeps
 constexpr std::chrono::milliseconds patience(500);  // until it is looked whether the browser has gone
+constexpr std::size_t most_unwanted_bytes = 64 << 20;
 constexpr const char* content_type = "application/grpc-web+proto";
 
 const httplib::Headers headers{
@@ -66,8 +67,8 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
       only_this_machine_(is_loopback(options.address)),
       tokens_(tokens_of(*options.listen)),
       server_(make_server(*options.listen)) {
-  refuse_plaintext("--web", options.address, *options.listen);
   const Address address = parse(options.address);
+  refuse_plaintext("--web", options.address, *options.listen);
   server_->new_task_queue = [] { return new httplib::ThreadPool(most_connections); };
   server_->set_keep_alive_max_count(1'000'000);
   server_->set_default_headers(headers);
@@ -135,10 +136,13 @@ void WebFront::call(const httplib::Request& request, httplib::Response& response
   if (const auto timeout = parse_timeout(request.get_header_value("grpc-timeout")))
     options.deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::microseconds>(*timeout);
   const auto call = std::make_shared<WebCall>(stub_, options);
-  bool is_wanted = true;
-  const bool is_whole = body([&](const char* bytes, std::size_t count) { return is_wanted = call->take({bytes, count}); });
-  if (!is_whole && is_wanted) return;  // the browser has gone
-  if (is_wanted) call->end_request();
+  std::size_t unwanted = 0;  // what comes after the call has failed; an answer is read once the request is written
+  const bool is_whole = body([&](const char* bytes, std::size_t count) {
+    if (!call->take({bytes, count})) unwanted += count;
+    return unwanted < most_unwanted_bytes;
+  });
+  if (!is_whole) return;  // the browser has gone
+  if (unwanted == 0) call->end_request();
   response.set_chunked_content_provider(content_type, [call](std::size_t, httplib::DataSink& sink) {
     const auto bytes = call->next(patience);
     if (!bytes) return sink.done(), true;

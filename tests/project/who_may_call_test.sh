@@ -31,14 +31,38 @@ expect() {
   exit 1
 }
 
-serve --tokens tokens
+# status_of OPTIONS...: the status of gRPC that a browser is told.
+status_of() {
+  local url
+  url=$(sed -n 's/.*web page on //p' log)
+  printf '\0\0\0\0\0' | curl -s --cacert server.pem -H 'Content-Type: application/grpc-web+proto' --data-binary @- "$@" \
+    "${url}alvor.v1.SceneService/ListScenes" | tr -d '\0\r' | LC_ALL=C sed -n 's/.*grpc-status: \([0-9]*\).*/\1/p'
+}
+# expect_web STATUS OPTIONS...
+expect_web() {
+  local status
+  status=$(status_of "${@:2}" || true)
+  [ "$status" = "$1" ] && return
+  echo "expected '$1', got '$status' in a browser with: ${*:2}"
+  exit 1
+}
+
+mkdir page && echo > page/index.html
+web=(--web 127.0.0.1:0 --page page)
+serve --tokens tokens "${web[@]}"
+expect_web 0 -H "Authorization: Bearer open sesame"
+expect_web 16 -H "Authorization: Bearer close sesame"
+expect_web 16
 expect 0 "" --tls-ca server.pem --token-file token
 expect 5 "is missing" --tls-ca server.pem
 expect 5 "not a token" --tls-ca server.pem --token-file wrong_token
 expect 4 "cannot be reached" --tls-ca stranger.pem --token-file token
 expect 4 "cannot be reached"
 
-serve --tls-client-ca client.pem
+serve --tls-client-ca client.pem "${web[@]}"
+expect_web 0 --cert client.pem --key client.key
+expect_web "" --cert stranger.pem --key stranger.key
+expect_web ""
 expect 0 "" --tls-ca server.pem --tls-cert client.pem --tls-key client.key
 expect 4 "cannot be reached" --tls-ca server.pem --tls-cert stranger.pem --tls-key stranger.key
 expect 4 "cannot be reached" --tls-ca server.pem

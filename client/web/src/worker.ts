@@ -128,15 +128,15 @@ class Watch {
         return false;
       }
       this.take(frame);
-      // A watch that has ended needs no answer.
-      this.api.solves
-        .acknowledgeFrame({ watchId: frame.watchId, revision: frame.toRevision, frameCount: count })
-        .catch(() => undefined);
       if (frame.ended) {
         this.show();
         tell({ kind: "ended" });
         return true;
       }
+      // A watch that broke off meanwhile needs no answer.
+      this.api.solves
+        .acknowledgeFrame({ watchId: frame.watchId, revision: frame.toRevision, frameCount: count })
+        .catch(() => undefined);
     }
     throw new ConnectError("the stream broke off", Code.Unavailable);
   }

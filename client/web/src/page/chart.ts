@@ -5,7 +5,8 @@ import "uplot/dist/uPlot.min.css";
 import type { Step } from "../gen/alvor/v1/solve_service_pb";
 import { secondsOf } from "./time";
 
-const FLOOR = 1e-6; // of a share, on the logarithmic axis
+const FLOOR = 1e-5; // of a share, on the logarithmic axis
+const HEIGHT = 150;
 
 export class Chart {
   private readonly plot: uPlot;
@@ -15,26 +16,34 @@ export class Chart {
   constructor(private readonly host: HTMLElement) {
     const style = getComputedStyle(document.documentElement);
     const colour = (name: string) => style.getPropertyValue(name).trim();
-    const axis = { stroke: colour("--ink"), grid: { stroke: colour("--line") }, ticks: { stroke: colour("--line") } };
+    const thin = { stroke: colour("--line"), width: 1 };
+    const axis = { stroke: colour("--ink"), grid: thin, ticks: thin };
+    // A line for each power of ten is enough.
+    const powers = (all: number[]) => all.map((x) => (Number.isInteger(Math.log10(x)) ? x : null));
     const line = (label: string, name: string, dash?: number[]) => ({
       label,
       stroke: colour(name),
       width: 2,
       dash,
       points: { show: false },
-      value: (_: uPlot, x: number | null) => (x === null ? "" : `${(100 * x).toPrecision(3)} %`),
     });
     this.plot = new uPlot(
       {
         width: 320,
-        height: 200,
-        scales: { x: { time: false }, y: { distr: 3 } },
+        height: HEIGHT,
+        legend: { live: false },
+        scales: { x: { time: false }, y: { distr: 3, range: (_, __, high) => [FLOOR, Math.max(1, high)] } },
         axes: [
-          { ...axis, values: (_, all) => all.map((s) => `${s} s`) },
-          { ...axis, size: 60, values: (_, all) => all.map((x) => (x === null ? "" : `${Number((100 * x).toPrecision(2))} %`)) },
+          { ...axis, size: 32, values: (_, all) => all.map((s) => `${s} s`) },
+          {
+            ...axis,
+            size: 64,
+            filter: (_, all) => powers(all) as number[],
+            values: (_, all) => all.map((x) => (x === null ? "" : `${Number((100 * x).toPrecision(2))} %`)),
+          },
         ],
         series: [
-          { label: "Run time", value: (_, s) => (s === null ? "" : `${s.toPrecision(3)} s`) },
+          {},
           line("Estimated error", "--error"),
           line("Unshot light", "--unshot"),
           line("Shown within", "--shown"),
@@ -75,6 +84,6 @@ export class Chart {
 
   private fit(): void {
     const width = this.host.clientWidth;
-    if (width > 0) this.plot.setSize({ width, height: 200 });
+    if (width > 0) this.plot.setSize({ width, height: HEIGHT });
   }
 }

@@ -31,6 +31,7 @@ const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), () => 
 let scene: Scene | undefined;
 let solve: Solve | undefined;
 let worker: Worker | undefined;
+let nextWorker = makeWorker(); // ready before it is needed
 let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1 };
 let counters: Counters | undefined;
 let materials = new Float32Array();
@@ -113,15 +114,20 @@ async function start(): Promise<void> {
 /** Shows a solve that may be running, or have ended. */
 function attach(next: Solve): void {
   worker?.terminate();
+  worker = nextWorker;
+  nextWorker = makeWorker();
   setSolve(next);
   chart.begin(next.spec?.tolerance || 0.02);
   counters = undefined;
   room.begin();
   Object.assign(measured, { latency: 0, worstLatency: 0, frames: 0, slots: 0, longestTask: 0 });
-  worker = new Worker(new URL("../worker.ts", import.meta.url), { type: "module" });
   worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
   send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ });
   byId("hint").hidden = true;
+}
+
+function makeWorker(): Worker {
+  return new Worker(new URL("../worker.ts", import.meta.url), { type: "module" });
 }
 
 function send(message: ToWorker): void {

@@ -60,7 +60,7 @@ void main() {
   if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;
   else colour = srgb(toned(exposure * (emission + reflectance * h)));
   if (outlines) {
-    float line = 1.0 - smoothstep(0.5, 1.5, centre / fwidth(centre));
+    float line = 1.0 - smoothstep(0.0, 1.2, centre / fwidth(centre));
     float bright = dot(colour, vec3(0.299, 0.587, 0.114));
     colour = mix(colour, vec3(bright > 0.5 ? 0.0 : 1.0), 0.45 * line);
   }
