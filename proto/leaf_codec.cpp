@@ -117,9 +117,9 @@ class DisplayPredictor {
 
  private:
   std::uint32_t guess(std::uint32_t word, int shift) const {
-    const std::uint32_t band = before_ >> shift & 511;
+    const std::uint64_t band = before_ >> shift & 511;
     const int finer = static_cast<int>(before_ >> 27) - static_cast<int>(word >> 27);
-    return finer >= 0 ? std::min<std::uint32_t>(finer < 10 ? band << finer : 511, 511) : band >> std::min(-finer, 10);
+    return static_cast<std::uint32_t>(finer >= 0 ? std::min<std::uint64_t>(band << finer, 511) : band >> -finer);
   }
   // Differences modulo 512, small ones of either sign as small numbers.
   static std::uint32_t folded(std::uint32_t x) {

@@ -20,3 +20,4 @@ quietly npm run check
 quietly npx vite build --outDir "$out"
 mkdir -p "$out/scenes"
 cp ../../scenes/*.obj ../../scenes/*.mtl "$out/scenes"
+find "$out" -type f ! -name '*.gz' -exec gzip -9 -n -k -f {} +

@@ -9,7 +9,7 @@ packages=(
   libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libcpp-httplib-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev clang libclang-rt-14-dev
-  gnuplot-nox curl
+  gnuplot-nox curl chromium
   python3-grpcio python3-zstandard python3-protobuf
 )
 # Node.js may come from elsewhere, with npm inside.

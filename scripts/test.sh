@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
-# Sets up the machine, builds everything, runs all tests and feeds made-up bytes to what reads foreign ones. Arguments go to CTest.
+# Sets up the machine, builds everything, runs all tests, those in a browser too, and feeds made-up bytes to what reads foreign ones.
+# Arguments go to CTest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
 scripts/build.sh
+scripts/build_page.sh
 ctest --preset release "$@"
+(cd client/web && npm run --silent test && npm run --silent test:browser)
 scripts/fuzz.sh 20 1

@@ -42,6 +42,14 @@ Address parse(const std::string& address) {
   return {host, std::stoi(port)};
 }
 
+PageFiles read_page(const std::filesystem::path& directory) {
+  try {
+    return PageFiles(directory);
+  } catch (const std::invalid_argument& fault) {
+    throw std::invalid_argument(std::string("--web: ") + fault.what());
+  }
+}
+
 std::unique_ptr<httplib::Server> make_server(const ListenOptions& listen) {
   if (listen.certificate.empty()) return std::make_unique<httplib::Server>();
   const char* const client_ca = listen.client_ca.empty() ? nullptr : listen.client_ca.c_str();
@@ -66,6 +74,7 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
       logger_(logger),
       only_this_machine_(is_loopback(options.address)),
       tokens_(tokens_of(*options.listen)),
+      page_(read_page(options.page)),
       server_(make_server(*options.listen)) {
   const Address address = parse(options.address);
   refuse_plaintext("--web", options.address, *options.listen);
@@ -79,7 +88,7 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
     response.set_content("of another origin\n", "text/plain");
     return httplib::Server::HandlerResponse::Handled;
   });
-  serve_page(options.page);
+  serve_page();
   serve_calls();
   const int port = address.port == 0                                   ? server_->bind_to_any_port(address.host)
                    : server_->bind_to_port(address.host, address.port) ? address.port
@@ -97,12 +106,28 @@ WebFront::~WebFront() {
   thread_.join();
 }
 
-void WebFront::serve_page(const std::filesystem::path& page) {
-  if (!std::filesystem::exists(page / "index.html"))
-    throw std::invalid_argument("--web: there is no page in " + page.string() + ": scripts/build_page.sh makes it");
-  server_->set_mount_point("/", page.string());
-  server_->set_file_extension_and_mimetype_mapping("obj", "text/plain");
-  server_->set_file_extension_and_mimetype_mapping("mtl", "text/plain");
+void WebFront::serve_page() {
+  server_->Get("/.*", [this](const httplib::Request& request, httplib::Response& response) {
+    const PageFiles::File* file = page_.find(request.path);
+    if (!file) {
+      response.status = 404;
+      return;
+    }
+    response.set_header("ETag", file->etag);
+    if (request.get_header_value("If-None-Match") == file->etag) {
+      response.status = 304;
+      return;
+    }
+    const bool is_small = !file->gzip.empty() && request.get_header_value("Accept-Encoding").find("gzip") != std::string::npos;
+    if (is_small) response.set_header("Content-Encoding", "gzip");
+    response.set_header("Vary", "Accept-Encoding");
+    // By a provider, for httplib would compress what is set as content, again and again.
+    const std::string& bytes = is_small ? file->gzip : file->bytes;
+    response.set_content_provider(bytes.size(), file->content_type,
+                                  [&bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                    return sink.write(bytes.data() + offset, length);
+                                  });
+  });
 }
 
 void WebFront::serve_calls() {

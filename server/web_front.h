@@ -3,6 +3,7 @@
 
 #include "server/bearer_tokens.h"
 #include "server/listening.h"
+#include "server/page_files.h"
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
@@ -39,7 +40,7 @@ class WebFront {
   const std::string& url() const { return url_; }
 
  private:
-  void serve_page(const std::filesystem::path& page);
+  void serve_page();
   void serve_calls();
   using Body = httplib::ContentReader;
   void call(const httplib::Request& request, httplib::Response& response, const Body& body);
@@ -49,6 +50,7 @@ class WebFront {
   spdlog::logger& logger_;
   const bool only_this_machine_;
   std::optional<BearerTokens> tokens_;
+  const PageFiles page_;
   std::unique_ptr<httplib::Server> server_;
   std::string url_;
   std::thread thread_;

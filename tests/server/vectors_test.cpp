@@ -22,7 +22,7 @@ TEST_P(Vectors, LeadToTheSameLeavesInEveryMirror) {
   EXPECT_EQ(vectors::bytes_of(mirror.leaves()), vectors::read(path + ".leaves"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Vectors, testing::Values("display", "exact", "deep", "one_page"),
+INSTANTIATE_TEST_SUITE_P(All, Vectors, testing::Values("display", "exact", "deep", "one_page", "uneven"),
                          [](const auto& vector) { return std::string(vector.param); });
 
 }  // namespace

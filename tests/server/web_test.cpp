@@ -173,6 +173,19 @@ TEST_F(WebTest, OnlyThisOriginAndThisHostAreServed) {
   EXPECT_EQ(client->Get("/../bearer_tokens.h")->status, 404);
 }
 
+TEST_F(WebTest, ThePageIsSentCompressedAndOnlyOnce) {
+  std::ofstream(page / "index.html.gz") << "compressed";
+  const WebFront other({"127.0.0.1:0", page, &listen}, server->channel(), logger);
+  httplib::Client browser(other.url().substr(0, other.url().size() - 1));
+  browser.set_decompress(false);
+  const auto first = browser.Get("/", {{"Accept-Encoding", "gzip, br"}});
+  EXPECT_EQ(first->get_header_value("Content-Encoding"), "gzip");
+  EXPECT_EQ(first->body, "compressed");
+  EXPECT_EQ(browser.Get("/index.html", {{"Accept-Encoding", "identity"}})->body, "the page");
+  EXPECT_EQ(browser.Get("/", {{"If-None-Match", first->get_header_value("ETag")}})->status, 304);
+  EXPECT_EQ(browser.Get("/index.html.gz")->status, 404);
+}
+
 TEST_F(WebTest, NeedsAPageAndAnAddressOfItsOwn) {
   const auto refusal = [&](const WebOptions& options) {
     try {

@@ -17,7 +17,16 @@ struct Case {
   std::uint32_t roots;
   std::size_t leaves_per_frame;
   int revisions;
+  bool is_uneven = false;  ///< bands of zero, and neighbours a billion times as bright
 };
+
+void make_uneven(std::vector<LeafValue>& leaves) {
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    RgbF& value = leaves[n].irradiance;
+    value = value * std::ldexp(1.0f, -static_cast<int>(7 * n % 31));
+    (n % 4 == 0 ? value.r : n % 4 == 1 ? value.g : value.b) = 0;
+  }
+}
 
 /// One watch: frames of a few leaves, while revisions are made between them.
 void write(const Case& how, const std::filesystem::path& directory) {
@@ -30,7 +39,9 @@ void write(const Case& how, const std::filesystem::path& directory) {
     if (left > 0 && frames.size() % 3 == 0) {
       Step step;
       step.displayed_error = 0.01;
-      log.publish(leaves.next(), step);
+      std::vector<LeafValue> changed = leaves.next();
+      if (how.is_uneven) make_uneven(changed);
+      log.publish(changed, step);
       --left;
     }
     const Delta delta = log.since(cursor, how.detail, how.leaves_per_frame);
@@ -55,6 +66,7 @@ int main(int argc, char** argv) {
   using alvor::Detail;
   for (const alvor::Case& how :
        {alvor::Case{"display", Detail::display, 30, 50, 20}, alvor::Case{"exact", Detail::exact, 30, 50, 20},
-        alvor::Case{"deep", Detail::display, 1, 1000, 60}, alvor::Case{"one_page", Detail::exact, 2000, 5000, 2}})
+        alvor::Case{"deep", Detail::display, 1, 1000, 60}, alvor::Case{"one_page", Detail::exact, 2000, 5000, 2},
+        alvor::Case{"uneven", Detail::display, 200, 300, 6, true}})
     alvor::write(how, argv[1]);
 }

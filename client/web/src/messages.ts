@@ -29,8 +29,9 @@ export interface Counters {
   bytes: number;
   /** When the newest frame arrived, in ms of performance.timeOrigin + now(). */
   arrived: number;
-  /** The longest that one frame kept the worker, ms. */
-  longestFrame: number;
+  /** How long it took to decode and apply it, and to make ready what is drawn of it, ms. */
+  applying: number;
+  preparing: number;
 }
 
 export interface Reading {

@@ -29,7 +29,7 @@ class Watch {
   private isDrawn = true;
   private isChanged = false;
   private shownAt = 0;
-  private readonly counters: Counters = { revision: 0, leaves: 0, frames: 0, bytes: 0, arrived: 0, longestFrame: 0 };
+  private readonly counters: Counters = { revision: 0, leaves: 0, frames: 0, bytes: 0, arrived: 0, applying: 0, preparing: 0 };
   private readonly api: Api;
   private readonly solve: string;
   private readonly rate: number;
@@ -113,15 +113,24 @@ class Watch {
   /** Until the solve has ended (true) or the server closes the watch (false). */
   private async follow(onFirst: () => void): Promise<boolean> {
     if (!this.isWhole) this.forget(); // between two revisions: equal to none that a server knows
-    const frames = this.api.solves.watchSolve({
+    const givenUp = new AbortController();
+    try {
+      return await this.takeFrames(givenUp.signal, onFirst);
+    } finally {
+      givenUp.abort(); // a stream that nobody reads would hold its connection, of which there are six
+    }
+  }
+
+  private async takeFrames(signal: AbortSignal, onFirst: () => void): Promise<boolean> {
+    const request = {
       name: this.solve,
       epoch: this.epoch,
       baseRevision: this.revision,
       detail: Detail.DISPLAY,
       maxRateHertz: this.rate,
-    });
+    };
     let count = 0n;
-    for await (const frame of frames) {
+    for await (const frame of this.api.solves.watchSolve(request, { signal })) {
       if (++count === 1n) onFirst();
       if (frame.closing) {
         tell({ kind: "connection", state: "closing", reason: frame.closing.reason });
@@ -172,8 +181,8 @@ class Watch {
     counters.revision = Number(this.revision);
     counters.leaves = this.mirror.leafCount;
     counters.frames += 1;
-    counters.arrived = now();
-    counters.longestFrame = Math.max(counters.longestFrame, performance.now() - began);
+    counters.arrived = performance.timeOrigin + began;
+    counters.applying = performance.now() - began;
   }
 
   /** What changed, once what was sent before is on the screen. */
@@ -181,14 +190,18 @@ class Watch {
     if (!this.isDrawn || !this.isChanged) return;
     this.isDrawn = this.isChanged = false;
     this.shownAt = now();
+    const began = performance.now();
     const change = this.surface.flush();
     const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
-    const { positions, values } = change;
+    this.counters.preparing = performance.now() - began;
+    const { positions, values, triangles } = change;
     tell({ kind: "change", change, isWhole: this.isWhole, brightness, counters: { ...this.counters } }, [
       positions.ranges.buffer,
       positions.data.buffer,
       values.ranges.buffer,
       values.data.buffer,
+      triangles.ranges.buffer,
+      triangles.data.buffer,
     ]);
   }
 }

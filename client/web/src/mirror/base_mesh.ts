@@ -3,12 +3,6 @@
 import type { Material, ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
 import { GRID } from "./mirror";
 
-export interface Point {
-  /** On the root's finest grid: u = i / GRID, v = j / GRID. */
-  i: number;
-  j: number;
-}
-
 /** Corners are numbered through all roots: corner c of root r is firstCorner[r] + c, and so is the edge that begins there. */
 export class BaseMesh {
   readonly rootCount: number;
@@ -54,8 +48,8 @@ export class BaseMesh {
     return this.firstCorner[root + 1] - this.firstCorner[root];
   }
 
-  /** Writes x, y, z of a point of a root to `out[at]`. Neighbours agree on shared points. */
-  position(root: number, { i, j }: Point, out: Float32Array | Float64Array, at: number): void {
+  /** Writes x, y, z of a point of a root, u = i / GRID and v = j / GRID, to `out[at]`. Neighbours agree on shared points. */
+  position(root: number, i: number, j: number, out: Float32Array | Float64Array, at: number): void {
     const u = i / GRID;
     const v = j / GRID;
     const c = 3 * this.firstCorner[root];
@@ -70,42 +64,45 @@ export class BaseMesh {
     }
   }
 
-  /** Two numbers: points in one place have the first in common, those around which the surface is smooth the second. */
-  keysOf(root: number, point: Point): [number, number] {
-    const edges = this.edgesAt(root, point);
-    if (edges.length === 0) {
-      const key = (root * GRID + point.i) * GRID + point.j;
-      return [key, key];
-    }
+  /** Points in one place have this number in common. */
+  placeKey(root: number, i: number, j: number): number {
+    const edge = this.edgeAt(root, i, j);
+    if (edge < 0) return (root * GRID + i) * GRID + j;
     const first = this.firstCorner[root];
-    if (edges.length === 2) {
-      // Both edges meet at the corner where the later one begins.
-      const corner = edges[0] === 0 && edges[1] === this.cornersOf(root) - 1 ? 0 : edges[1];
-      return [CORNERS - this.place[first + corner], SMOOTH_CORNERS - this.smoothPlace[first + corner]];
+    const along = this.along(root, edge, i, j);
+    if (along === 0) return CORNERS - this.place[first + edge];
+    const other = this.opposite[first + edge];
+    return other < 0 || first + edge < other ? edgeKey(first + edge, along) : edgeKey(other, GRID - along);
+  }
+
+  /** Points around which the surface is smooth have this number in common; `place` is their place's. */
+  smoothKey(root: number, i: number, j: number, place: number): number {
+    const edge = this.edgeAt(root, i, j);
+    if (edge < 0) return place;
+    const first = this.firstCorner[root];
+    const along = this.along(root, edge, i, j);
+    if (along === 0) return SMOOTH_CORNERS - this.smoothPlace[first + edge];
+    return this.smooth[first + edge] !== 0 ? place : edgeKey(first + edge, along) - CREASES;
+  }
+
+  /** The edge of the root on which a point lies, of two the one that begins there; -1 inside. */
+  private edgeAt(root: number, i: number, j: number): number {
+    if (this.cornersOf(root) === 4) {
+      if (j === 0) return i === GRID ? 1 : 0;
+      if (i === GRID) return j === GRID ? 2 : 1;
+      if (j === GRID) return i === 0 ? 3 : 2;
+      return i === 0 ? 3 : -1;
     }
-    const edge = first + edges[0];
-    const along = this.along(root, edges[0], point);
-    const here = edgeKey(edge, along);
-    const other = this.opposite[edge];
-    if (other < 0 || edge < other) return [here, this.isJoined(edge) ? here : here - CREASES];
-    const there = edgeKey(other, GRID - along);
-    return [there, this.isJoined(edge) ? there : here - CREASES];
+    if (j === 0) return i === GRID ? 1 : 0;
+    if (i + j === GRID) return i === 0 ? 2 : 1;
+    return i === 0 ? 2 : -1;
   }
 
-  private isJoined(edge: number): boolean {
-    return this.opposite[edge] >= 0 && this.smooth[edge] !== 0;
-  }
-
-  private edgesAt(root: number, { i, j }: Point): number[] {
-    const on =
-      this.cornersOf(root) === 4
-        ? [j === 0, i === GRID, j === GRID, i === 0]
-        : [j === 0, i + j === GRID, i === 0];
-    return on.flatMap((is, edge) => (is ? [edge] : []));
-  }
-
-  private along(root: number, edge: number, { i, j }: Point): number {
-    return this.cornersOf(root) === 4 ? [i, j, GRID - i, GRID - j][edge] : [i, j, GRID - j][edge];
+  private along(root: number, edge: number, i: number, j: number): number {
+    if (edge === 0) return i;
+    if (edge === 1) return j;
+    if (this.cornersOf(root) === 4) return edge === 2 ? GRID - i : GRID - j;
+    return GRID - j;
   }
 
   private setNeighbour(edge: number, code: number): void {

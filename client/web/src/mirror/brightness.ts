@@ -57,12 +57,16 @@ export function brightnessOf(mesh: BaseMesh, mirror: Mirror, ambient: [number, n
   for (let node = 0; node < mirror.nodeCount; ++node) {
     if (mirror.firstChild[node] !== 0) continue;
     const root = mirror.root[node];
-    const area = mesh.area[root] / 4 ** mirror.levelOf(node);
-    const [hr, hg, hb] = [0, 1, 2].map((band) => mirror.rgb[3 * node + band] + ambient[band]);
-    const { emission: e, reflectance: rho } = mesh.materials[mesh.material[root]];
+    const area = mesh.area[root] * mirror.shareOf(node);
+    const { emission, reflectance } = mesh.materials[mesh.material[root]];
+    const e = emission!;
+    const rho = reflectance!;
+    const hr = mirror.rgb[3 * node] + ambient[0];
+    const hg = mirror.rgb[3 * node + 1] + ambient[1];
+    const hb = mirror.rgb[3 * node + 2] + ambient[2];
     irradiance.add(luminance(hr, hg, hb), area);
-    const b = luminance(e!.r + rho!.r * hr, e!.g + rho!.g * hg, e!.b + rho!.b * hb);
-    (luminance(e!.r, e!.g, e!.b) > 0 ? emitting : reflecting).add(b, area);
+    const b = luminance(e.r + rho.r * hr, e.g + rho.g * hg, e.b + rho.b * hb);
+    (e.r > 0 || e.g > 0 || e.b > 0 ? emitting : reflecting).add(b, area);
   }
   const seen = reflecting.isEmpty ? emitting : reflecting;
   if (seen.isEmpty) return { exposure: 1, lowIrradiance: 0, highIrradiance: 0 };

@@ -48,6 +48,12 @@ export class Mirror {
     return this.hash.bits;
   }
 
+  /** Of its root's area. */
+  shareOf(node: number): number {
+    const path = this.path[node];
+    return (path & -path) / 2 ** 30;
+  }
+
   levelOf(node: number): number {
     return levelOf(this.path[node]);
   }

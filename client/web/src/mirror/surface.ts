@@ -1,8 +1,8 @@
-// What is drawn of a mirror: for each leaf a slot of nine vertices, its centre, four corners and four middles of edges. A middle is opened
-// where a neighbour has a corner there, and lies in the corner before it elsewhere, so that no crack opens; a triangle's fourth corner
-// is its first. Only slots that changed are written again.
+// What is drawn of a mirror: for each leaf a slot of nine vertices, its centre, four corners and four middles of edges, and of eight
+// triangles around the centre. Middles are drawn where a neighbour has a corner, so that no crack opens; triangles that a slot does not need
+// have no area. Only slots that changed are written again.
 
-import type { BaseMesh, Point } from "./base_mesh";
+import type { BaseMesh } from "./base_mesh";
 import { type Mirror, type MirrorListener, GRID, grown } from "./mirror";
 
 export const SLOT_VERTICES = 9;
@@ -10,9 +10,9 @@ export const SLOT_INDICES = 24;
 const POINTS = 8;
 
 /** Slots that changed since the last time: pairs of the first and how many, and their new contents one after the other. */
-export interface Change {
+export interface Change<Data = Float32Array> {
   ranges: Uint32Array;
-  data: Float32Array;
+  data: Data;
 }
 
 export interface SurfaceChange {
@@ -21,7 +21,14 @@ export interface SurfaceChange {
   positions: Change;
   /** Irradiance r, g, b, W/m2, and the index of the material. */
   values: Change;
+  /** Three vertices of each triangle; of one without area three times the same. */
+  triangles: Change<Uint32Array>;
 }
+
+const QUAD_COLUMNS = [0, 1, 1, 0];
+const QUAD_ROWS = [0, 0, 1, 1];
+const TRIANGLE_COLUMNS = [0, 1, 0];
+const TRIANGLE_ROWS = [0, 0, 1];
 
 const VALUES = 1;
 const POSITIONS = 2;
@@ -40,6 +47,8 @@ export class Surface implements MirrorListener {
   private pointValue = new Float32Array(3 * 1024); // by smooth point
   private readonly dirtySlots = new DirtySet();
   private readonly dirtyPoints = new DirtySet();
+  private pointI = 0;
+  private pointJ = 0;
   private mirror!: Mirror;
 
   constructor(private readonly mesh: BaseMesh) {}
@@ -55,7 +64,7 @@ export class Surface implements MirrorListener {
   }
 
   onValue(node: number): void {
-    this.mark(this.slotOfNode[node], VALUES);
+    this.dirtySlots.add(this.slotOfNode[node], VALUES);
     for (let k = 0; k < POINTS; ++k) this.dirtyPoints.add(this.smooth.pointOf[POINTS * this.slotOfNode[node] + k], VALUES);
   }
 
@@ -73,23 +82,19 @@ export class Surface implements MirrorListener {
   flush(): SurfaceChange {
     for (const point of this.dirtyPoints.list) {
       this.evaluate(point);
-      this.smooth.forEach(point, (link) => this.mark(link >> 3, VALUES));
+      for (let link = this.smooth.head[point]; link >= 0; link = this.smooth.next[link]) this.dirtySlots.add(link >> 3, VALUES);
     }
     this.dirtyPoints.clear();
-    const all = this.dirtySlots.list.sort((a, b) => a - b);
+    const all = Int32Array.from(this.dirtySlots.list).sort();
     const moved = all.filter((slot) => this.dirtySlots.flags[slot] & POSITIONS);
     const change: SurfaceChange = {
       slotCount: this.slotCount,
-      positions: collect(moved, 3 * SLOT_VERTICES, (slot, out, at) => this.writePositions(slot, out, at)),
-      values: collect(all, 4 * SLOT_VERTICES, (slot, out, at) => this.writeValues(slot, out, at)),
+      positions: collect(moved, 3 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writePositions(slot, out, at)),
+      values: collect(all, 4 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeValues(slot, out, at)),
+      triangles: collect(moved, SLOT_INDICES, Uint32Array, (slot, out, at) => this.writeTriangles(slot, out, at)),
     };
     this.dirtySlots.clear();
     return change;
-  }
-
-  /** How many vertices could be drawn now without a crack: all of them once neighbours are one level apart at most. */
-  get slots(): number {
-    return this.slotCount;
   }
 
   private isQuad(node: number): boolean {
@@ -116,22 +121,19 @@ export class Surface implements MirrorListener {
     this.nodeOfSlot[slot] = node;
     this.slotOfNode[node] = slot;
     for (let k = 0; k < POINTS; ++k) this.link(slot, k);
-    this.mark(slot, VALUES | POSITIONS);
+    this.dirtySlots.add(slot, VALUES | POSITIONS);
   }
 
-  /** Corners 0 to 3, then the middles of the edges that begin at them. */
-  private point(node: number, k: number): Point {
-    const i = this.nodeI[node];
-    const j = this.nodeJ[node];
+  /** Sets pointI and pointJ. Corners 0 to 3, then the middles of the edges that begin at them. */
+  private findPoint(node: number, k: number): void {
     const size = this.nodeSize[node];
-    const corner = (c: number): Point =>
-      this.isQuad(node)
-        ? { i: i + (c === 1 || c === 2 ? size : 0), j: j + (c >= 2 ? size : 0) }
-        : { i: i + (c === 1 ? size : 0), j: j + (c === 2 ? size : 0) };
-    if (k < 4) return corner(k);
-    const a = corner(k - 4);
-    const b = corner((k - 3) % 4);
-    return { i: (a.i + b.i) / 2, j: (a.j + b.j) / 2 };
+    const last = this.isQuad(node) ? 4 : 3;
+    const columns = last === 4 ? QUAD_COLUMNS : TRIANGLE_COLUMNS;
+    const rows = last === 4 ? QUAD_ROWS : TRIANGLE_ROWS;
+    const a = (k & 3) % last;
+    const b = k < 4 ? a : (a + 1) % last;
+    this.pointI = this.nodeI[node] + ((columns[a] + columns[b]) * size) / 2;
+    this.pointJ = this.nodeJ[node] + ((rows[a] + rows[b]) * size) / 2;
   }
 
   /** A triangle's last corner and edge are none, and edges of the finest grid have no middle. */
@@ -148,9 +150,11 @@ export class Surface implements MirrorListener {
       this.smooth.leave(at);
       return;
     }
-    const [place, smooth] = this.mesh.keysOf(this.mirror.root[node], this.point(node, k));
+    this.findPoint(node, k);
+    const root = this.mirror.root[node];
+    const place = this.mesh.placeKey(root, this.pointI, this.pointJ);
     this.places.link(at, place);
-    this.smooth.link(at, smooth);
+    this.smooth.link(at, this.mesh.smoothKey(root, this.pointI, this.pointJ, place));
     this.reservePoints();
     const here = this.places.pointOf[at];
     if (k < 4 && this.cornersHere[here]++ === 0) this.openOrClose(here);
@@ -171,11 +175,11 @@ export class Surface implements MirrorListener {
 
   /** A corner came to this place, or the last went: middles there change. */
   private openOrClose(place: number): void {
-    this.places.forEach(place, (link) => {
-      if ((link & 7) < 4) return;
-      this.mark(link >> 3, VALUES | POSITIONS);
+    for (let link = this.places.head[place]; link >= 0; link = this.places.next[link]) {
+      if ((link & 7) < 4) continue;
+      this.dirtySlots.add(link >> 3, VALUES | POSITIONS);
       this.dirtyPoints.add(this.smooth.pointOf[link], VALUES);
-    });
+    }
   }
 
   private isOpen(link: number): boolean {
@@ -184,59 +188,70 @@ export class Surface implements MirrorListener {
 
   /** The mean of the leaves around a point, near ones first; those where exactly nothing arrives take no part. */
   private evaluate(point: number): void {
-    const sum = [0, 0, 0];
+    const { rgb, root } = this.mirror;
+    const { next } = this.smooth;
+    let r = 0;
+    let g = 0;
+    let b = 0;
     let weights = 0;
-    this.smooth.forEach(point, (link) => {
+    for (let link = this.smooth.head[point]; link >= 0; link = next[link]) {
       const isMiddle = (link & 7) >= 4;
-      if (isMiddle && !this.isOpen(link)) return;
+      if (isMiddle && !this.isOpen(link)) continue;
       const node = this.nodeOfSlot[link >> 3];
-      const [r, g, b] = [0, 1, 2].map((band) => this.mirror.rgb[3 * node + band]);
-      if (r === 0 && g === 0 && b === 0) return;
+      const at = 3 * node;
+      if (rgb[at] === 0 && rgb[at + 1] === 0 && rgb[at + 2] === 0) continue;
       const side = this.nodeSize[node];
-      const weight = (isMiddle ? 2 : 1) / (side * side * this.mesh.area[this.mirror.root[node]]);
-      sum[0] += weight * r;
-      sum[1] += weight * g;
-      sum[2] += weight * b;
+      const weight = (isMiddle ? 2 : 1) / (side * side * this.mesh.area[root[node]]);
+      r += weight * rgb[at];
+      g += weight * rgb[at + 1];
+      b += weight * rgb[at + 2];
       weights += weight;
-    });
-    for (let band = 0; band < 3; ++band) this.pointValue[3 * point + band] = weights > 0 ? sum[band] / weights : 0;
-  }
-
-  /** Which point vertex `v` of the slot (1 to 8) lies in: middles that are not open, and what a triangle has not, in a corner. */
-  private pointOfVertex(slot: number, v: number): number {
-    const k = v - 1;
-    const isTriangle = !this.isQuad(this.nodeOfSlot[slot]);
-    if (isTriangle && (k === 3 || k === 7)) return 0;
-    if (k < 4) return k;
-    return this.isOpen(POINTS * slot + k) ? k : k - 4;
+    }
+    const scale = weights > 0 ? 1 / weights : 0;
+    this.pointValue[3 * point] = scale * r;
+    this.pointValue[3 * point + 1] = scale * g;
+    this.pointValue[3 * point + 2] = scale * b;
   }
 
   private writePositions(slot: number, out: Float32Array, at: number): void {
     const node = this.nodeOfSlot[slot];
     const root = this.mirror.root[node];
-    this.mesh.position(root, this.centreOf(node), out, at);
-    for (let v = 1; v < SLOT_VERTICES; ++v)
-      this.mesh.position(root, this.point(node, this.pointOfVertex(slot, v)), out, at + 3 * v);
-  }
-
-  private centreOf(node: number): Point {
-    const offset = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
-    return { i: this.nodeI[node] + offset, j: this.nodeJ[node] + offset };
+    const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
+    this.mesh.position(root, this.nodeI[node] + middle, this.nodeJ[node] + middle, out, at);
+    for (let k = 0; k < POINTS; ++k) {
+      this.findPoint(node, k);
+      this.mesh.position(root, this.pointI, this.pointJ, out, at + 3 * (k + 1));
+    }
   }
 
   private writeValues(slot: number, out: Float32Array, at: number): void {
     const node = this.nodeOfSlot[slot];
     const material = this.mesh.material[this.mirror.root[node]];
-    for (let v = 0; v < SLOT_VERTICES; ++v) {
-      const from = v === 0 ? 3 * node : 3 * this.smooth.pointOf[POINTS * slot + this.pointOfVertex(slot, v)];
-      const values = v === 0 ? this.mirror.rgb : this.pointValue;
-      for (let band = 0; band < 3; ++band) out[at + 4 * v + band] = values[from + band];
-      out[at + 4 * v + 3] = material;
+    const { pointOf } = this.smooth;
+    for (let v = 0; v < SLOT_VERTICES; ++v, at += 4) {
+      const point = v === 0 ? -1 : pointOf[POINTS * slot + v - 1];
+      const values = point < 0 ? this.mirror.rgb : this.pointValue;
+      const from = point < 0 ? 3 * node : 3 * point;
+      out[at] = values[from];
+      out[at + 1] = values[from + 1];
+      out[at + 2] = values[from + 2];
+      out[at + 3] = material;
     }
   }
 
-  private mark(slot: number, what: number): void {
-    this.dirtySlots.add(slot, what);
+  private writeTriangles(slot: number, out: Uint32Array, at: number): void {
+    const corners = this.isQuad(this.nodeOfSlot[slot]) ? 4 : 3;
+    const centre = SLOT_VERTICES * slot;
+    out.fill(centre, at, at + SLOT_INDICES);
+    for (let k = 0; k < corners; ++k, at += 6) {
+      const next = centre + 1 + ((k + 1) % corners);
+      const isOpen = this.isOpen(POINTS * slot + 4 + k);
+      out[at + 1] = centre + 1 + k;
+      out[at + 2] = isOpen ? centre + 5 + k : next;
+      if (!isOpen) continue;
+      out[at + 4] = centre + 5 + k;
+      out[at + 5] = next;
+    }
   }
 
   private reserveNodes(count: number): void {
@@ -261,9 +276,10 @@ class PointTable {
   count = 0;
   /** By link: the point, or -1. */
   pointOf = new Int32Array(POINTS * 1024);
-  private next = new Int32Array(POINTS * 1024);
+  /** Of a point its first link, of a link the one after it, or -1. */
+  head = new Int32Array(1024);
+  next = new Int32Array(POINTS * 1024);
   private previous = new Int32Array(POINTS * 1024);
-  private head = new Int32Array(1024);
   private readonly index = new Map<number, number>();
 
   link(link: number, key: number): void {
@@ -297,11 +313,6 @@ class PointTable {
     this.pointOf[link] = -1;
   }
 
-  forEach(point: number, visit: (link: number) => void): void {
-    if (point < 0) return;
-    for (let link = this.head[point]; link >= 0; link = this.next[link]) visit(link);
-  }
-
   private reserve(link: number): void {
     if (link < this.pointOf.length) return;
     this.pointOf = grown(this.pointOf, Int32Array, 2 * link);
@@ -330,7 +341,12 @@ class DirtySet {
 
 const GAP = 8; // unchanged slots between two changed ones that are sent along
 
-function collect(slots: number[], stride: number, write: (slot: number, out: Float32Array, at: number) => void): Change {
+function collect<Data extends Float32Array | Uint32Array>(
+  slots: Int32Array,
+  stride: number,
+  Kind: new (length: number) => Data,
+  write: (slot: number, out: Data, at: number) => void,
+): Change<Data> {
   const ranges: number[] = [];
   for (const slot of slots) {
     const last = ranges.length - 2;
@@ -339,7 +355,7 @@ function collect(slots: number[], stride: number, write: (slot: number, out: Flo
   }
   let total = 0;
   for (let n = 1; n < ranges.length; n += 2) total += ranges[n];
-  const data = new Float32Array(total * stride);
+  const data = new Kind(total * stride);
   let at = 0;
   for (let n = 0; n < ranges.length; n += 2)
     for (let slot = ranges[n]; slot < ranges[n] + ranges[n + 1]; ++slot, at += stride) write(slot, data, at);

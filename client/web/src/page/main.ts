@@ -38,8 +38,21 @@ let materials = new Float32Array();
 /** When a frame that is not on the screen yet arrived. */
 let arrivedUnseen: number | undefined;
 
-/** For whoever wants to know how the page does: tests, and the curious. */
-const measured = { latency: 0, worstLatency: 0, frames: 0, slots: 0, longestTask: 0 };
+/** For whoever wants to know how the page does: tests, and the curious. Milliseconds. */
+const nothing = {
+  solve: "",
+  hasEnded: false, // and its last state was told
+  firstLit: 0, // after a file was opened
+  latency: 0, // of the newest frame, from its arrival to the screen
+  latencies: [] as number[],
+  applying: 0,
+  preparing: 0,
+  frames: 0,
+  slots: 0,
+  longestTask: 0,
+};
+const measured = structuredClone(nothing);
+let openedAt = 0;
 Object.assign(window, { alvor: measured });
 if (PerformanceObserver.supportedEntryTypes.includes("longtask"))
   new PerformanceObserver((list) => {
@@ -64,6 +77,7 @@ async function attempt(action: () => Promise<void>): Promise<void> {
 // Scenes
 
 async function open(files: File[]): Promise<void> {
+  openedAt = performance.now();
   say(`Reading ${files.map((file) => file.name).join(", ")}`);
   const { readSceneFiles } = await import("../scene_files");
   setScene(await api.createScene(await readSceneFiles(files)));
@@ -118,9 +132,9 @@ function attach(next: Solve): void {
   nextWorker = makeWorker();
   setSolve(next);
   chart.begin(next.spec?.tolerance || 0.02);
-  counters = undefined;
+  counters = arrivedUnseen = undefined;
   room.begin();
-  Object.assign(measured, { latency: 0, worstLatency: 0, frames: 0, slots: 0, longestTask: 0 });
+  Object.assign(measured, structuredClone(nothing), { solve: next.name });
   worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
   send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ });
   byId("hint").hidden = true;
@@ -205,6 +219,7 @@ function take(message: FromWorker): void {
     case "connection":
       return showConnection(message.state, message.reason);
     case "ended":
+      measured.hasEnded = true;
       return void attempt(async () => setSolve(await api.solves.getSolve({ name: solve!.name })));
     case "refused":
       if (message.needsToken) byId("token-label").hidden = false;
@@ -262,14 +277,18 @@ function showReading(reading: Reading | null): void {
 
 // Looking
 
+/** Of the newest state, or of when a person chose to keep it. */
+let exposure = 1;
+
 function look(): Look {
+  if (input("automatic").checked) exposure = brightness.exposure;
   const low = brightness.lowIrradiance;
   const high = Math.max(brightness.highIrradiance, 1e-30);
   const logarithmic = select("scale").value === "log";
   return {
     falseColour: select("show").value === "irradiance",
     tone: select("tone").value as Tone,
-    exposure: brightness.exposure * 2 ** input("exposure").valueAsNumber,
+    exposure: exposure * 2 ** input("exposure").valueAsNumber,
     low: logarithmic ? Math.max(low, high * 1e-4) : 0,
     high,
     logarithmic,
@@ -309,8 +328,10 @@ function animate(time: number): void {
   draw();
   if (arrivedUnseen === undefined) return;
   measured.latency = performance.timeOrigin + performance.now() - arrivedUnseen;
-  measured.worstLatency = Math.max(measured.worstLatency, measured.latency);
-  measured.frames += 1;
+  measured.latencies.push(measured.latency);
+  measured.applying = counters!.applying;
+  measured.preparing = counters!.preparing;
+  if (measured.frames++ === 0) measured.firstLit = performance.now() - openedAt;
   measured.slots = room.slotCount;
   arrivedUnseen = undefined;
   send({ kind: "drawn" });

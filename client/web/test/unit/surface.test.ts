@@ -4,7 +4,7 @@ import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb"
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import type { Leaves } from "../../src/mirror/leaves";
 import { Mirror } from "../../src/mirror/mirror";
-import { SLOT_VERTICES, Surface, type SurfaceChange } from "../../src/mirror/surface";
+import { SLOT_INDICES, SLOT_VERTICES, Surface, type SurfaceChange } from "../../src/mirror/surface";
 
 const across = (root: number, edge: number, smooth: boolean) => BigInt(1 + 8 * root + 2 * edge + Number(smooth));
 
@@ -46,14 +46,16 @@ function leaves(list: [number, number[], number][]): Leaves {
 
 /** What a viewer would hold after these changes. */
 class Drawn {
-  positions = new Float32Array(0);
-  values = new Float32Array(0);
+  positions: Float32Array = new Float32Array(0);
+  values: Float32Array = new Float32Array(0);
+  triangles: Uint32Array = new Uint32Array(0);
   slots = 0;
 
   take(change: SurfaceChange): number {
     this.slots = change.slotCount;
     this.positions = copy(this.positions, change.positions, 3 * SLOT_VERTICES, this.slots);
     this.values = copy(this.values, change.values, 4 * SLOT_VERTICES, this.slots);
+    this.triangles = copy(this.triangles, change.triangles, SLOT_INDICES, this.slots);
     return change.values.data.length / (4 * SLOT_VERTICES);
   }
 
@@ -61,41 +63,39 @@ class Drawn {
   freeSides(): string[] {
     const sides = new Map<string, number>();
     const key = (vertex: number) => [0, 1, 2].map((x) => this.positions[3 * vertex + x]).join();
-    for (let slot = 0; slot < this.slots; ++slot)
-      for (const [a, b, c] of triangles(slot * SLOT_VERTICES)) {
-        const names = [a, b, c].map(key);
-        if (new Set(names).size < 3) continue;
-        for (let n = 0; n < 3; ++n) {
-          const side = [names[n], names[(n + 1) % 3]].sort().join(" ");
-          sides.set(side, (sides.get(side) ?? 0) + 1);
-        }
+    for (let n = 0; n < this.triangles.length; n += 3) {
+      const names = [...this.triangles.subarray(n, n + 3)].map(key);
+      if (new Set(names).size < 3) continue;
+      for (let k = 0; k < 3; ++k) {
+        const side = [names[k], names[(k + 1) % 3]].sort().join(" ");
+        sides.set(side, (sides.get(side) ?? 0) + 1);
       }
+    }
     return [...sides].filter(([, count]) => count === 1).map(([side]) => side);
   }
 
-  /** Values of the vertices at a place. */
+  /** Values of the drawn vertices at a place. */
   at(x: number, y: number, z: number, centre: number[]): Set<number> {
     const found = new Set<number>();
-    for (let v = 0; v < this.slots * SLOT_VERTICES; ++v)
+    for (const v of this.triangles)
       if (Math.hypot(...[x, y, z].map((c, k) => this.positions[3 * v + k] + centre[k] - c)) < 1e-6)
         found.add(this.values[4 * v]);
     return found;
   }
 }
 
-const triangles = (first: number) =>
-  [0, 1, 2, 3].flatMap((k) => [
-    [first, first + 1 + k, first + 5 + k],
-    [first, first + 5 + k, first + 1 + ((k + 1) % 4)],
-  ]);
-
-function copy(old: Float32Array, change: { ranges: Uint32Array; data: Float32Array }, stride: number, slots: number) {
-  const all = new Float32Array(slots * stride);
-  all.set(old);
+function copy<Data extends Float32Array | Uint32Array>(
+  old: Data,
+  change: { ranges: Uint32Array; data: Data },
+  stride: number,
+  slots: number,
+): Data {
+  const all = new (old.constructor as new (length: number) => Data)(slots * stride);
+  all.set(old as never);
   let from = 0;
   for (let n = 0; n < change.ranges.length; n += 2) {
     const length = change.ranges[n + 1] * stride;
-    all.set(change.data.subarray(from, from + length), change.ranges[n] * stride);
+    all.set(change.data.subarray(from, from + length) as never, change.ranges[n] * stride);
     from += length;
   }
   return all;

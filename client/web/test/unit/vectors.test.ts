@@ -31,7 +31,7 @@ function bytesOf(mirror: Mirror): Buffer {
 }
 
 describe("the mirror", () => {
-  it.each(["display", "exact", "deep", "one_page"])("holds what the C++ mirror holds after the frames of %s", (name) => {
+  it.each(["display", "exact", "deep", "one_page", "uneven"])("holds what the C++ mirror holds after the frames of %s", (name) => {
     const mirror = new Mirror(2000);
     const frames = framesOf(name);
     expect(frames.length).toBeGreaterThan(0);
