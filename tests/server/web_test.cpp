@@ -80,6 +80,19 @@ class WebTest : public testing::Test {
     for (v1::CreateSceneRequest message; slicer.next(*message.mutable_chunk());) body += framed(message);
     return call("SceneService/CreateScene", body);
   }
+  /// One that has published something; what it takes to watch it.
+  v1::WatchSolveRequest begin_solve() {
+    v1::Scene scene;
+    EXPECT_TRUE(scene.ParseFromString(create(squares(3)).messages.at(0)));
+    v1::CreateSolveRequest make;
+    make.set_parent(scene.name());
+    v1::Solve solve;
+    EXPECT_TRUE(solve.ParseFromString(call("SolveService/CreateSolve", framed(make)).messages.at(0)));
+    stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
+    v1::WatchSolveRequest watch;
+    watch.set_name(solve.name());
+    return watch;
+  }
 
   const std::filesystem::path page = std::filesystem::temp_directory_path() / ("alvor_page_" + std::to_string(getpid()));
   spdlog::logger logger{"silent", std::make_shared<spdlog::sinks::null_sink_mt>()};
@@ -109,16 +122,8 @@ TEST_F(WebTest, RefusalsAreTrailersOfGrpc) {
 }
 
 TEST_F(WebTest, AWatchIsStreamedUntilTheSolveHasEnded) {
-  v1::Scene scene;
-  ASSERT_TRUE(scene.ParseFromString(create(squares(3)).messages.at(0)));
-  v1::CreateSolveRequest make;
-  make.set_parent(scene.name());
-  v1::Solve solve;
-  ASSERT_TRUE(solve.ParseFromString(call("SolveService/CreateSolve", framed(make)).messages.at(0)));
-  stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
+  const v1::WatchSolveRequest watch = begin_solve();
   stage.finish();
-  v1::WatchSolveRequest watch;
-  watch.set_name(solve.name());
   const Answer frames = call("SolveService/WatchSolve", framed(watch));
   EXPECT_EQ(frames.trailers, "grpc-status: 0\r\n");
   v1::WatchSolveResponse last;
@@ -128,20 +133,12 @@ TEST_F(WebTest, AWatchIsStreamedUntilTheSolveHasEnded) {
 }
 
 TEST_F(WebTest, WhoLeavesEndsItsWatch) {
-  v1::Scene scene;
-  ASSERT_TRUE(scene.ParseFromString(create(squares(3)).messages.at(0)));
-  v1::CreateSolveRequest make;
-  make.set_parent(scene.name());
-  v1::Solve solve;
-  ASSERT_TRUE(solve.ParseFromString(call("SolveService/CreateSolve", framed(make)).messages.at(0)));
-  stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
+  const v1::WatchSolveRequest watch = begin_solve();
   const auto watchers = [&] {
     for (const auto& family : server->metrics()->Collect())
       if (family.name == "alvor_watchers") return family.metric[0].gauge.value;
     return -1.0;
   };
-  v1::WatchSolveRequest watch;
-  watch.set_name(solve.name());
   httplib::Request request;
   request.method = "POST";
   request.path = "/alvor.v1.SolveService/WatchSolve";

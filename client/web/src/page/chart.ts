@@ -19,7 +19,7 @@ export class Chart {
     const thin = { stroke: colour("--line"), width: 1 };
     const axis = { stroke: colour("--ink"), grid: thin, ticks: thin };
     // A line for each power of ten is enough.
-    const powers = (all: number[]) => all.map((x) => (Number.isInteger(Math.log10(x)) ? x : null));
+    const powers = (_: uPlot, all: number[]) => all.map((x) => (Number.isInteger(Math.log10(x)) ? x : null)) as number[];
     const line = (label: string, name: string, dash?: number[]) => ({
       label,
       stroke: colour(name),
@@ -38,7 +38,9 @@ export class Chart {
           {
             ...axis,
             size: 64,
-            filter: (_, all) => powers(all) as number[],
+            filter: powers,
+            grid: { ...thin, filter: powers },
+            ticks: { ...thin, filter: powers },
             values: (_, all) => all.map((x) => (x === null ? "" : `${Number((100 * x).toPrecision(2))} %`)),
           },
         ],

@@ -3,15 +3,15 @@
 import { Code, ConnectError } from "@connectrpc/connect";
 import { connect, reasonOf } from "../api";
 import type { Scene } from "../gen/alvor/v1/scene_service_pb";
-import { PlannedFeature_Kind, Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
-import type { Brightness, Counters, FromWorker, Reading, ToWorker } from "../messages";
+import { Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
+import type { Brightness, Counters, FromWorker, ToWorker } from "../messages";
 import { Cameras } from "../view/cameras";
-import { Room, type Look, type Tone } from "../view/room";
+import { Room } from "../view/room";
 import { Chart } from "./chart";
-import { byId, bytes, listItem, round, save } from "./dom";
+import { byId, listItem, save } from "./dom";
 import { glbOf, reportOf } from "./downloads";
-import { showLegend } from "./legend";
-import { secondsOf } from "./time";
+import { showCounters, showPlan, showReading } from "./figures";
+import { draw, lookOf } from "./viewing";
 
 const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "enfilade"];
 const RATE_HZ = 20;
@@ -175,15 +175,7 @@ function setSolve(next: Solve): void {
   button("cancel").disabled = hasEnded;
   button("pause").textContent = next.state === Solve_State.PAUSED ? "Resume" : "Pause";
   if (isNews) say(STATES[next.state] + (hasEnded && next.endReason ? `: ${next.endReason}` : ""));
-  if (next.plan) showPlan(next);
-}
-
-function showPlan(next: Solve): void {
-  const lines = next.plan!.features.map((feature) => {
-    const name = PlannedFeature_Kind[feature.kind].toLowerCase().replaceAll("_", " ");
-    return `${name}: ${feature.on ? "on" : "off"}. ${feature.reason} ${feature.cost}`;
-  });
-  if (byId("features").childElementCount !== lines.length) byId("features").replaceChildren(...lines.map(listItem));
+  if (next.plan) showPlan(next.plan);
 }
 
 setInterval(() => {
@@ -215,7 +207,7 @@ function take(message: FromWorker): void {
     case "steps":
       chart.add(message.steps);
       room.setAmbient(message.steps.at(-1)?.ambientIrradiance ?? { r: 0, g: 0, b: 0 });
-      return showCounters();
+      return tellCounters();
     case "connection":
       return showConnection(message.state, message.reason);
     case "ended":
@@ -229,88 +221,16 @@ function take(message: FromWorker): void {
   }
 }
 
+function tellCounters(): void {
+  const step = chart.all.at(-1);
+  if (step) showCounters(step, counters, measured.latency);
+}
+
 function showConnection(state: Extract<FromWorker, { kind: "connection" }>["state"], reason: string): void {
-  if (state === "lost") say("Connection lost, trying again", "bad");
+  if (state === "lost") say(`Connection lost (${reason}), trying again`, "bad");
   if (state === "closing") say(`The server stops (${reason}); trying again`);
   if (state === "resumed") say(`Connected again, going on from ${reason}`);
   if (state === "begun anew") say(`Connected again, from the beginning: ${reason}`);
-}
-
-function showCounters(): void {
-  const step = chart.all.at(-1);
-  if (!step) return;
-  const seconds = secondsOf(step.elapsed);
-  const rows: [string, string][] = [
-    ["Estimated error", `${(100 * step.estimatedError).toPrecision(3)} %`],
-    ["Unshot light", `${(100 * step.unshotFraction).toPrecision(3)} %`],
-    ["Run time", `${round(seconds)} s`],
-    ["Leaves", step.leaves.toLocaleString()],
-    ["Rays", Number(step.rays).toLocaleString()],
-    ["Rays a second", seconds > 0 ? round(Number(step.rays) / seconds) : ""],
-    ["Received", counters ? bytes(counters.bytes) : ""],
-    ["Revision", counters ? String(counters.revision) : ""],
-    ["Frame to screen", `${Math.round(measured.latency)} ms`],
-    ["Newest frame", counters ? `${round((performance.timeOrigin + performance.now() - counters.arrived) / 1000)} s ago` : ""],
-  ];
-  const cells = rows.flatMap(([term, text]) => {
-    const dt = document.createElement("dt");
-    const dd = document.createElement("dd");
-    dt.textContent = term;
-    dd.textContent = text;
-    return [dt, dd];
-  });
-  byId("counters").replaceChildren(...cells);
-}
-
-function showReading(reading: Reading | null): void {
-  byId("reading").hidden = reading === null;
-  if (!reading) return;
-  const bands = (values: number[]) => values.map(round).join(", ");
-  const { x, y, z } = reading.place;
-  byId("reading").textContent = [
-    `Irradiance ${bands(reading.irradiance)} W/m²`,
-    `Radiosity ${bands(reading.radiosity)} W/m²`,
-    `Face ${reading.face}, level ${reading.level}, ${reading.material}`,
-    `at ${bands([x, y, z])} m`,
-  ].join("\n");
-}
-
-// Looking
-
-/** Of the newest state, or of when a person chose to keep it. */
-let exposure = 1;
-
-function look(): Look {
-  if (input("automatic").checked) exposure = brightness.exposure;
-  const low = brightness.lowIrradiance;
-  const high = Math.max(brightness.highIrradiance, 1e-30);
-  const logarithmic = select("scale").value === "log";
-  return {
-    falseColour: select("show").value === "irradiance",
-    tone: select("tone").value as Tone,
-    exposure: exposure * 2 ** input("exposure").valueAsNumber,
-    low: logarithmic ? Math.max(low, high * 1e-4) : 0,
-    high,
-    logarithmic,
-    mesh: input("mesh").checked,
-    ambient: input("ambient").checked,
-  };
-}
-
-function comparison(): "off" | "ambient" | "pinned" {
-  return select("comparison").value as "off" | "ambient" | "pinned";
-}
-
-const UNITS = { w: { name: "W/m²", factor: 1 }, lx: { name: "lx-like", factor: 179 } };
-
-function draw(): void {
-  const now = look();
-  room.render(now, comparison(), input("split").valueAsNumber);
-  byId("legend").hidden = !now.falseColour;
-  if (now.falseColour) showLegend(now.low, now.high, now.logarithmic, UNITS[select("unit").value as keyof typeof UNITS]);
-  byId("compare").hidden = comparison() === "off";
-  byId("split-left").textContent = comparison() === "ambient" ? "Without ambient term" : "The moment kept";
-  byId("split-right").textContent = comparison() === "ambient" ? "With ambient term" : "Now";
 }
 
 let drawnAt = performance.now();
@@ -321,11 +241,11 @@ function animate(time: number): void {
   drawnAt = time;
   if (time - countedAt > 250) {
     countedAt = time;
-    showCounters();
+    tellCounters();
   }
   if (!isStale) return;
   isStale = false;
-  draw();
+  draw(room, brightness);
   if (arrivedUnseen === undefined) return;
   measured.latency = performance.timeOrigin + performance.now() - arrivedUnseen;
   measured.latencies.push(measured.latency);
@@ -424,12 +344,12 @@ function listenToClicks(): void {
 
 function listenToDownloads(): void {
   button("save-png").addEventListener("click", () => {
-    draw();
+    draw(room, brightness);
     byId<HTMLCanvasElement>("room").toBlob((picture) => picture && save("room.png", picture));
   });
   button("save-report").addEventListener("click", () => save("report.csv", reportOf(chart.all)));
   button("save-glb").addEventListener("click", () =>
-    attempt(async () => save("room.glb", await glbOf(room.exported(), materials, look().exposure))),
+    attempt(async () => save("room.glb", await glbOf(room.exported(), materials, lookOf(brightness).exposure))),
   );
 }
 

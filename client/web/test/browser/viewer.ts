@@ -7,6 +7,7 @@ export type { Page } from "playwright-core";
 // The picture is drawn by SwiftShader: machines that test have no graphics card.
 const ARGUMENTS = [
   "--no-sandbox",
+  "--disable-dev-shm-usage",
   "--use-angle=swiftshader",
   "--enable-unsafe-swiftshader",
   "--enable-precise-memory-info",
@@ -24,6 +25,7 @@ export function openBrowser(): Promise<Browser> {
 /** Fails the test on what the page logs as an error, lost connections excepted. */
 export async function openPage(browser: Browser, url: string, size = { width: 1280, height: 720 }): Promise<Page> {
   const page = await browser.newPage({ viewport: size });
+  page.setDefaultTimeout(60_000);
   page.on("pageerror", (error) => {
     throw error;
   });

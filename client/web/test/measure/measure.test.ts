@@ -95,7 +95,6 @@ describe("the page's figures", () => {
     await page.emulateMedia({ colorScheme: "dark" });
     await page.reload();
     await waitForState(page, "Done");
-    await page.locator("#plan").click();
     await page.waitForTimeout(500);
     await picture(page, "4_done");
     await page.close();

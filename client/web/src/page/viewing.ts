@@ -1,0 +1,45 @@
+// How a person chose to look at the room.
+
+import type { Brightness } from "../messages";
+import type { Look, Room, Tone } from "../view/room";
+import { byId } from "./dom";
+import { showLegend } from "./legend";
+
+const input = (id: string) => byId<HTMLInputElement>(id);
+const select = (id: string) => byId<HTMLSelectElement>(id);
+
+/** Of the newest state, or of when a person chose to keep it. */
+let exposure = 1;
+
+export function lookOf(brightness: Brightness): Look {
+  if (input("automatic").checked) exposure = brightness.exposure;
+  const low = brightness.lowIrradiance;
+  const high = Math.max(brightness.highIrradiance, 1e-30);
+  const logarithmic = select("scale").value === "log";
+  return {
+    falseColour: select("show").value === "irradiance",
+    tone: select("tone").value as Tone,
+    exposure: exposure * 2 ** input("exposure").valueAsNumber,
+    low: logarithmic ? Math.max(low, high * 1e-4) : 0,
+    high,
+    logarithmic,
+    mesh: input("mesh").checked,
+    ambient: input("ambient").checked,
+  };
+}
+
+function comparison(): "off" | "ambient" | "pinned" {
+  return select("comparison").value as "off" | "ambient" | "pinned";
+}
+
+const UNITS = { w: { name: "W/m²", factor: 1 }, lx: { name: "lx-like", factor: 179 } };
+
+export function draw(room: Room, brightness: Brightness): void {
+  const now = lookOf(brightness);
+  room.render(now, comparison(), input("split").valueAsNumber);
+  byId("legend").hidden = !now.falseColour;
+  if (now.falseColour) showLegend(now.low, now.high, now.logarithmic, UNITS[select("unit").value as keyof typeof UNITS]);
+  byId("compare").hidden = comparison() === "off";
+  byId("split-left").textContent = comparison() === "ambient" ? "Without ambient term" : "The moment kept";
+  byId("split-right").textContent = comparison() === "ambient" ? "With ambient term" : "Now";
+}
