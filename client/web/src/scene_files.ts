@@ -155,5 +155,6 @@ function quadOf(geometry: BufferGeometry, [a, b, c]: number[], [d, e, f]: number
   const normals = corners.map((corner, n) =>
     corners[(n + 1) % 4].clone().sub(corner).cross(corners[(n + 2) % 4].clone().sub(corners[(n + 1) % 4])).normalize(),
   );
-  return normals.every((normal) => normal.dot(normals[0]) > 1 - 1e-9) ? [a, b, c, f] : undefined;
+  // Hardly bent ones too: the server cuts what is not planar.
+  return normals.every((normal) => normal.dot(normals[0]) > 0.99) ? [a, b, c, f] : undefined;
 }

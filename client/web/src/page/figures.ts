@@ -10,7 +10,7 @@ const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignif
 export function showPlan(plan: Plan): void {
   const lines = plan.features.map((feature) => {
     const name = PlannedFeature_Kind[feature.kind].toLowerCase().replaceAll("_", " ");
-    return `${name}: ${feature.on ? "on" : "off"}. ${feature.reason} ${feature.cost}`;
+    return `${name}: ${feature.on ? "on" : "off"}. ${feature.reason}; ${feature.cost}`;
   });
   if (byId("features").childElementCount !== lines.length) byId("features").replaceChildren(...lines.map(listItem));
 }

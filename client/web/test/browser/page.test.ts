@@ -133,6 +133,26 @@ describe("the page", () => {
     await page.close();
   });
 
+  it("gives what it shows to take home, as files that it can read", async () => {
+    const page = await openPage(browser, server.url);
+    await page.setInputFiles("#files", CORNELL);
+    await waitForState(page, "Done");
+    const save = async (id: string) => {
+      const [download] = await Promise.all([page.waitForEvent("download"), page.click(id)]);
+      return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+    };
+    const [glb, png, report] = [await save("#save-glb"), await save("#save-png"), await save("#save-report")];
+    expect(glb.bytes.subarray(0, 4).toString()).toBe("glTF");
+    expect(png.bytes.subarray(1, 4).toString()).toBe("PNG");
+    const lines = report.bytes.toString().trim().split("\n");
+    expect(lines[0]).toBe("elapsed_s,step,shots,rays,leaves,unshot_fraction,estimated_error");
+    expect(Number(lines.at(-1)!.split(",")[6])).toBeLessThan(0.02);
+    await page.setInputFiles("#files", { name: glb.name, mimeType: "model/gltf-binary", buffer: glb.bytes });
+    // It was read and sent; but it is a solution, of light and not of reflectance.
+    await waitForState(page, "reflectance 1 is outside [0, 1)");
+    await page.close();
+  });
+
   it("goes on by itself after the server was killed", async () => {
     const name = await slowSolve(600);
     const page = await openPage(browser, `${server.url}#${name}`);

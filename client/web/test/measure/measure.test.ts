@@ -37,10 +37,10 @@ const picture = (page: Page, name: string) => page.screenshot({ path: new URL(`$
 function tiles(side: number): Quad[] {
   const floor = Array.from({ length: side * side }, (_, n): Quad => {
     const [x, z] = [n % side, Math.floor(n / side)];
-    return { corners: [[x, 0, z], [x, 0, z + 1], [x + 1, 0, z + 1], [x + 1, 0, z]], reflectance: [0.5, 0.5, 0.5] };
+    return { corners: [[x, 0, z], [x, 0, z + 1], [x + 1, 0, z + 1], [x + 1, 0, z]], reflectance: [0.9, 0.9, 0.9] };
   });
   const at = (x: number, z: number): [number, number, number] => [x * side, 0.4 * side, z * side];
-  const lamp: Quad = { corners: [at(0.3, 0.3), at(0.7, 0.3), at(0.7, 0.7), at(0.3, 0.7)], emission: [900, 900, 900], reflectance: [0.6, 0.6, 0.6] };
+  const lamp: Quad = { corners: [at(0.3, 0.3), at(0.7, 0.3), at(0.7, 0.7), at(0.3, 0.7)], emission: [900, 900, 900], reflectance: [0.9, 0.9, 0.9] };
   return [...floor, lamp];
 }
 
@@ -103,13 +103,13 @@ describe("the page's figures", () => {
   it("keeps up with 100 000 leaves", async () => {
     const stored = await createScene(server.api, tiles(317));
     const stepPause = { seconds: 0n, nanos: 900_000_000 };
-    const spec = { maxDepth: 0, tolerance: 0.01, strategy: 1, stepPause, timeLimit: { seconds: 25n } };
+    const spec = { maxDepth: 0, tolerance: 0.0005, strategy: 1, stepPause, timeLimit: { seconds: 10n } };
     const solve = await server.api.solves.createSolve({ parent: stored.name, solve: { spec } });
     const page = await openPage(browser, `${server.url}#${solve.name}`);
     await page.locator("#state", { hasText: /Done|Cancelled/ }).waitFor({ timeout: 100_000 });
     const { latencies, applying, preparing, longestTask, slots } = await measuredBy(page);
     expect(slots).toBeGreaterThan(100_000);
-    note("a frame of 100 490 leaves from its arrival to the screen, median, drawn without a graphics card", "100 ms", `${ms(quantile(latencies, 0.5))} of ${latencies.length}`);
+    note("a frame of 100 490 leaves from its arrival to the screen, median, drawn without a graphics card", "100 ms", `${ms(quantile(latencies, 0.5))} (90 % within ${ms(quantile(latencies, 0.9))}, of ${latencies.length})`);
     note("of that: decoding and applying, making ready (in the worker), last frame", "", `${ms(applying)}, ${ms(preparing)}`);
     note("longest task of the page's thread meanwhile", "50 ms", ms(longestTask));
     await page.close();
