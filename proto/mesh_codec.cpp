@@ -28,10 +28,13 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
 
 bool MeshSlicer::next(v1::ReadMeshResponse& message) {
   message.Clear();
-  const std::size_t end = std::min(mesh_.roots().size(), next_ + roots_at_a_time_);
-  if (next_ == end) return false;
-  if (next_ == 0)
-    for (const Material& material : mesh_.materials()) *message.add_scene_materials() = encode(material);
+  const std::span<const Material> materials = mesh_.materials();
+  for (; next_material_ < materials.size(); ++next_material_) {
+    if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_) return true;
+    *message.add_scene_materials() = encode(materials[next_material_]);
+  }
+  const std::size_t end = std::min(mesh_.roots().size(), next_ + items_at_a_time_);
+  if (next_ == end) return message.scene_materials_size() > 0;
   for (; next_ < end; ++next_) append(mesh_, static_cast<std::uint32_t>(next_), message);
   return true;
 }

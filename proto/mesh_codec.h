@@ -6,18 +6,18 @@
 
 namespace alvor {
 
-/// Cuts the root patches of a mesh into messages well below gRPC's limit of 4 MB. The mesh must outlive it.
+/// Cuts the materials, then the root patches of a mesh into messages well below gRPC's limit of 4 MB. The mesh must outlive it.
 class MeshSlicer {
  public:
-  explicit MeshSlicer(const BaseMesh& mesh, std::size_t roots_at_a_time = 10'000)
-      : mesh_(mesh), roots_at_a_time_(roots_at_a_time) {}
+  explicit MeshSlicer(const BaseMesh& mesh, std::size_t items_at_a_time = 10'000)
+      : mesh_(mesh), items_at_a_time_(items_at_a_time) {}
   /// False, leaving `message` empty, after the last.
   bool next(v1::ReadMeshResponse& message);
 
  private:
   const BaseMesh& mesh_;
-  const std::size_t roots_at_a_time_;
-  std::size_t next_ = 0;
+  const std::size_t items_at_a_time_;
+  std::size_t next_ = 0, next_material_ = 0;
 };
 
 }  // namespace alvor

@@ -10,12 +10,14 @@ class Counting final : public grpc::experimental::Interceptor {
  public:
   Counting(CallCounts& counts, std::string method) : counts_(counts), method_(std::move(method)) {}
   void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
-    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS))
-      counts_.note(method_, methods->GetSendStatus().error_code());
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) note(methods->GetSendStatus().error_code());
     methods->Proceed();
   }
 
  private:
+  /// Clients may make up as many methods as they like.
+  void note(grpc::StatusCode code) { counts_.note(code == grpc::UNIMPLEMENTED ? "other" : method_, code); }
+
   CallCounts& counts_;
   const std::string method_;
 };

@@ -19,7 +19,7 @@ std::string tenant_of(const grpc::ServerContextBase& context) {
 }
 
 const std::string& tenant_key() {
-  static const std::string key = "alvor-tenant-" + random_id('k') + random_id('k');
+  static const std::string key = "alvor-tenant-" + random_id('k') + random_id('k') + "-bin";  // names may have any bytes
   return key;
 }
 

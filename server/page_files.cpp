@@ -36,6 +36,7 @@ PageFiles::PageFiles(const std::filesystem::path& directory) {
     const auto& path = entry.path();
     if (!entry.is_regular_file() || path.extension() == ".gz") continue;
     std::string bytes = read(path);
+    if (bytes.empty()) throw std::invalid_argument(path.string() + " is empty");
     std::string etag = '"' + sha256(bytes).substr(0, 16) + '"';
     files_["/" + path.lexically_relative(directory).generic_string()] = {content_type_of(path), std::move(etag), std::move(bytes),
                                                                          read(path.string() + ".gz")};

@@ -229,6 +229,7 @@ void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::fun
   lineage_ = std::move(next.lineage);
   *facts_.mutable_last_step() = next.facts.last_step();
   *facts_.mutable_checkpoint_time() = next.facts.checkpoint_time();
+  if (change) change(facts_);  // before another can keep what was true until now
 }
 
 void StoredSolve::show(const Plan& plan) {

@@ -4,6 +4,7 @@
 #include "server/web_call.h"
 
 #include <httplib.h>
+#include <sys/socket.h>
 
 #include <stdexcept>
 
@@ -58,7 +59,19 @@ std::unique_ptr<httplib::Server> make_server(const ListenOptions& listen) {
   return server;
 }
 
-/// What an HTTP client says that has no business here has a status of HTTP, not of gRPC.
+/// For what HTTP itself refuses. The connection ends with it: what may follow the headers is not read, and must not be taken for
+/// the next request.
+void refuse(httplib::Response& response, int status) {
+  response.status = status;
+  response.set_content_provider("text/plain", [](std::size_t, httplib::DataSink&) { return false; });
+}
+
+bool is_call(const std::string& path) {
+  const std::size_t slash = path.find('/', 1);
+  return slash != std::string::npos && slash > 1 && slash + 1 < path.size() && path.find('/', slash + 1) == std::string::npos &&
+         path.find('.') < slash;
+}
+
 bool is_foreign(const httplib::Request& request, bool only_this_machine) {
   const std::string host = request.get_header_value("Host");
   if (only_this_machine && !is_loopback(host.find(':') == std::string::npos ? host + ":80" : host)) return true;
@@ -82,10 +95,14 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
   server_->set_keep_alive_max_count(1'000'000);
   server_->set_default_headers(headers);
   server_->set_tcp_nodelay(true);
+  server_->set_socket_options([](int socket) {
+    const int yes = 1;  // not SO_REUSEPORT: two servers must not share an address unknowingly
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   server_->set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-    if (!is_foreign(request, only_this_machine_)) return httplib::Server::HandlerResponse::Unhandled;
-    response.status = 403;
-    response.set_content("of another origin\n", "text/plain");
+    const int status = refusal_of(request);
+    if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
+    refuse(response, status);
     return httplib::Server::HandlerResponse::Handled;
   });
   serve_page();
@@ -97,11 +114,27 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
     throw std::invalid_argument("--web: cannot listen on " + options.address + ": the address is in use or not of this machine");
   url_ = (options.listen->certificate.empty() ? "http://" : "https://") +
          options.address.substr(0, options.address.rfind(':') + 1) + std::to_string(port) + "/";
-  thread_ = std::thread([this] { server_->listen_after_bind(); });
+  thread_ = std::thread([this] {
+    server_->listen_after_bind();
+    has_ended_ = true;
+  });
+}
+
+/// Before anything of a body is read: the status of HTTP, or 0. httplib would keep bodies of what it does not route, and knows no
+/// bounds for ranges.
+int WebFront::refusal_of(const httplib::Request& request) const {
+  if (is_foreign(request, only_this_machine_)) return 403;
+  const bool is_get = request.method == "GET" || request.method == "HEAD";
+  if (!is_get && request.method != "POST") return 405;
+  if (!is_get) return is_call(request.path) ? 0 : 404;
+  const bool has_body = request.has_header("Transfer-Encoding") ||
+                        (request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0");
+  if (has_body) return 400;
+  return request.has_header("Range") ? 416 : 0;
 }
 
 WebFront::~WebFront() {
-  while (!server_->is_running()) std::this_thread::yield();  // it would not be heard before
+  while (!server_->is_running() && !has_ended_) std::this_thread::yield();  // it would not be heard before
   server_->stop();
   thread_.join();
 }
@@ -125,6 +158,7 @@ void WebFront::serve_page() {
     const std::string& bytes = is_small ? file->gzip : file->bytes;
     response.set_content_provider(bytes.size(), file->content_type,
                                   [&bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                    if (offset > bytes.size() || length > bytes.size() - offset) return false;
                                     return sink.write(bytes.data() + offset, length);
                                   });
   });
@@ -150,14 +184,17 @@ grpc::Status WebFront::check(const httplib::Request& request, std::string& tenan
 
 void WebFront::call(const httplib::Request& request, httplib::Response& response, const Body& body) {
   const std::string type = request.get_header_value("Content-Type");
-  if (type != content_type && type != "application/grpc-web") {
-    response.status = 415;
-    return;
-  }
+  if (type != content_type && type != "application/grpc-web") return refuse(response, 415);
   WebCall::Options options;
   options.method = request.path;
-  if (const grpc::Status status = check(request, options.tenant); !status.ok())
+  if (const grpc::Status status = check(request, options.tenant); !status.ok()) {
+    const bool is_whole = body([read = std::size_t{0}](const char*, std::size_t count) mutable {
+      read += count;
+      return read < most_unwanted_bytes;
+    });
+    if (!is_whole) return refuse(response, 401);
     return response.set_content(trailers_of(status), content_type);
+  }
   if (const auto timeout = parse_timeout(request.get_header_value("grpc-timeout")))
     options.deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::microseconds>(*timeout);
   const auto call = std::make_shared<WebCall>(stub_, options);
@@ -166,7 +203,7 @@ void WebFront::call(const httplib::Request& request, httplib::Response& response
     if (!call->take({bytes, count})) unwanted += count;
     return unwanted < most_unwanted_bytes;
   });
-  if (!is_whole) return;  // the browser has gone
+  if (!is_whole) return refuse(response, 400);  // the browser has gone, or goes on and on
   if (unwanted == 0) call->end_request();
   response.set_chunked_content_provider(content_type, [call](std::size_t, httplib::DataSink& sink) {
     const auto bytes = call->next(patience);

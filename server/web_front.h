@@ -9,6 +9,7 @@
 #include <grpcpp/grpcpp.h>
 #include <spdlog/logger.h>
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -40,6 +41,7 @@ class WebFront {
   const std::string& url() const { return url_; }
 
  private:
+  int refusal_of(const httplib::Request& request) const;
   void serve_page();
   void serve_calls();
   using Body = httplib::ContentReader;
@@ -54,6 +56,7 @@ class WebFront {
   std::unique_ptr<httplib::Server> server_;
   std::string url_;
   std::thread thread_;
+  std::atomic<bool> has_ended_ = false;
 };
 
 }  // namespace alvor

@@ -17,6 +17,7 @@ const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 const LONGEST_UNSEEN_MS = 250; // a state of many pages is shown in parts
 const LONGEST_WAIT_MS = 5000;
+const LONGEST_SILENCE_MS = 30_000; // there is a bookmark every ten seconds
 
 class Watch {
   private mesh!: BaseMesh;
@@ -29,6 +30,7 @@ class Watch {
   private isDrawn = true;
   private isChanged = false;
   private shownAt = 0;
+  private silence?: ReturnType<typeof setTimeout>;
   private readonly counters: Counters = { revision: 0, leaves: 0, frames: 0, bytes: 0, arrived: 0, applying: 0, preparing: 0 };
   private readonly api: Api;
   private readonly solve: string;
@@ -115,13 +117,14 @@ class Watch {
     if (!this.isWhole) this.forget(); // between two revisions: equal to none that a server knows
     const givenUp = new AbortController();
     try {
-      return await this.takeFrames(givenUp.signal, onFirst);
+      return await this.takeFrames(givenUp, onFirst);
     } finally {
+      clearTimeout(this.silence);
       givenUp.abort(); // a stream that nobody reads would hold its connection, of which there are six
     }
   }
 
-  private async takeFrames(signal: AbortSignal, onFirst: () => void): Promise<boolean> {
+  private async takeFrames(givenUp: AbortController, onFirst: () => void): Promise<boolean> {
     const request = {
       name: this.solve,
       epoch: this.epoch,
@@ -130,7 +133,9 @@ class Watch {
       maxRateHertz: this.rate,
     };
     let count = 0n;
-    for await (const frame of this.api.solves.watchSolve(request, { signal })) {
+    for await (const frame of this.api.solves.watchSolve(request, { signal: givenUp.signal })) {
+      clearTimeout(this.silence);
+      this.silence = setTimeout(() => givenUp.abort(), LONGEST_SILENCE_MS);
       if (++count === 1n) onFirst();
       if (frame.closing) {
         tell({ kind: "connection", state: "closing", reason: frame.closing.reason });
@@ -142,10 +147,10 @@ class Watch {
         tell({ kind: "ended" });
         return true;
       }
-      // A watch that broke off meanwhile needs no answer.
+      // Of a frame that is not acknowledged the server would wait for ever; a watch that broke off meanwhile needs no answer.
       this.api.solves
         .acknowledgeFrame({ watchId: frame.watchId, revision: frame.toRevision, frameCount: count })
-        .catch(() => undefined);
+        .catch((error) => ConnectError.from(error).code === Code.NotFound || givenUp.abort());
     }
     throw new ConnectError("the stream broke off", Code.Unavailable);
   }

@@ -31,7 +31,7 @@ export class BaseMesh {
     counts.forEach((count, root) => (this.firstCorner[root + 1] = this.firstCorner[root] + count));
     this.material = Uint32Array.from(messages.flatMap((message) => message.materials));
     this.sceneFace = Uint32Array.from(messages.flatMap((message) => message.sceneFaces));
-    this.materials = messages[0]?.sceneMaterials ?? [];
+    this.materials = messages.flatMap((message) => message.sceneMaterials);
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
     const cornerCount = this.firstCorner[this.rootCount];

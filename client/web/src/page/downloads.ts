@@ -15,8 +15,8 @@ export function reportOf(steps: readonly Step[]): Blob {
   });
 }
 
-/** Triangles with radiosity and irradiance as float32 attributes, and a colour for viewers that know neither. */
-export async function glbOf(drawn: BufferGeometry, materials: Float32Array, exposure: number): Promise<Blob> {
+/** `drawn` is measured from `centre`. Triangles with radiosity and irradiance as float32 attributes, and a colour for viewers that know neither. */
+export async function glbOf(drawn: BufferGeometry, centre: [number, number, number], materials: Float32Array, exposure: number): Promise<Blob> {
   const geometry = new BufferGeometry();
   const values = drawn.getAttribute("value");
   const bands = () => new Float32Array(3 * values.count);
@@ -35,6 +35,7 @@ export async function glbOf(drawn: BufferGeometry, materials: Float32Array, expo
   geometry.setAttribute("_radiosity", new BufferAttribute(radiosity, 3));
   geometry.setIndex(trianglesOf(drawn));
   const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true }));
+  mesh.position.set(...centre);
   const glb = (await new GLTFExporter().parseAsync(mesh, { binary: true })) as ArrayBuffer;
   return new Blob([glb], { type: "model/gltf-binary" });
 }

@@ -12,7 +12,8 @@ export function showPlan(plan: Plan): void {
     const name = PlannedFeature_Kind[feature.kind].toLowerCase().replaceAll("_", " ");
     return `${name}: ${feature.on ? "on" : "off"}. ${feature.reason}; ${feature.cost}`;
   });
-  if (byId("features").childElementCount !== lines.length) byId("features").replaceChildren(...lines.map(listItem));
+  const text = lines.join("");
+  if (byId("features").textContent !== text) byId("features").replaceChildren(...lines.map(listItem));
 }
 
 /** `latency`: of the newest frame, from its arrival to the screen, ms. */

@@ -35,6 +35,7 @@ let nextWorker = makeWorker(); // ready before it is needed
 let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1 };
 let counters: Counters | undefined;
 let materials = new Float32Array();
+let centre: [number, number, number] = [0, 0, 0];
 /** When a frame that is not on the screen yet arrived. */
 let arrivedUnseen: number | undefined;
 
@@ -42,6 +43,7 @@ let arrivedUnseen: number | undefined;
 const nothing = {
   solve: "",
   hasEnded: false, // and its last state was told
+  isWaiting: false, // for a frame to be drawn
   firstLit: 0, // after a file was opened
   latency: 0, // of the newest frame, from its arrival to the screen
   latencies: [] as number[],
@@ -134,8 +136,13 @@ function attach(next: Solve): void {
   chart.begin(next.spec?.tolerance || 0.02);
   counters = arrivedUnseen = undefined;
   room.begin();
+  room.setAmbient({ r: 0, g: 0, b: 0 });
+  isStale = true;
+  byId("reading").hidden = true;
+  for (const id of ["pin", "save-glb", "save-png", "save-report"]) button(id).disabled = true;
   Object.assign(measured, structuredClone(nothing), { solve: next.name });
   worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
+  worker.onerror = () => say("The page has changed on the server: load it again", "bad");
   send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ });
   byId("hint").hidden = true;
 }
@@ -152,7 +159,9 @@ async function attachToAddress(): Promise<void> {
   const name = decodeURIComponent(location.hash.slice(1));
   if (!name.includes("/solves/") || name === solve?.name) return;
   const found = await api.solves.getSolve({ name });
-  setScene(await api.scenes.getScene({ name: name.slice(0, name.indexOf("/solves/")) }));
+  const its = await api.scenes.getScene({ name: name.slice(0, name.indexOf("/solves/")) });
+  if (decodeURIComponent(location.hash.slice(1)) !== name) return; // another was asked for meanwhile
+  setScene(its);
   attach(found);
 }
 
@@ -166,6 +175,11 @@ const STATES: Record<Solve_State, string> = {
   [Solve_State.FAILED]: "Failed",
 };
 const FINAL = [Solve_State.SUCCEEDED, Solve_State.CANCELLED, Solve_State.FAILED];
+
+/** What the server says of a solve that may not be shown any more. */
+function update(found: Solve): void {
+  if (found.name === solve?.name) setSolve(found);
+}
 
 function setSolve(next: Solve): void {
   const isNews = next.state !== solve?.state || next.name !== solve.name;
@@ -183,7 +197,7 @@ setInterval(() => {
   const asked = solve.name;
   api.solves
     .getSolve({ name: asked })
-    .then((found) => found.name === solve?.name && setSolve(found))
+    .then(update)
     .catch(() => undefined); // the watch says that the connection is lost
 }, POLL_MS);
 
@@ -193,6 +207,7 @@ function take(message: FromWorker): void {
   switch (message.kind) {
     case "mesh":
       materials = message.materials as Float32Array<ArrayBuffer>;
+      centre = message.centre;
       room.setMaterials(materials);
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
       cameras.frame(message.corners, message.counts, message.extent);
@@ -201,18 +216,21 @@ function take(message: FromWorker): void {
       room.take(message.change);
       ({ brightness, counters } = message);
       arrivedUnseen = counters.arrived;
+      measured.isWaiting = true;
       for (const id of ["pin", "save-glb", "save-png", "save-report"]) button(id).disabled = false;
       isStale = true;
       return;
     case "steps":
+      if (message.isFirst) chart.begin(solve?.spec?.tolerance || 0.02);
       chart.add(message.steps);
+      isStale = true;
       room.setAmbient(message.steps.at(-1)?.ambientIrradiance ?? { r: 0, g: 0, b: 0 });
       return tellCounters();
     case "connection":
       return showConnection(message.state, message.reason);
     case "ended":
       measured.hasEnded = true;
-      return void attempt(async () => setSolve(await api.solves.getSolve({ name: solve!.name })));
+      return void attempt(async () => update(await api.solves.getSolve({ name: solve!.name })));
     case "refused":
       if (message.needsToken) byId("token-label").hidden = false;
       return say(message.reason, "bad");
@@ -254,6 +272,7 @@ function animate(time: number): void {
   if (measured.frames++ === 0) measured.firstLit = performance.now() - openedAt;
   measured.slots = room.slotCount;
   arrivedUnseen = undefined;
+  measured.isWaiting = false;
   send({ kind: "drawn" });
 }
 
@@ -275,7 +294,10 @@ function listen(): void {
   input("token").addEventListener("change", () => {
     token = input("token").value;
     sessionStorage.setItem("token", token);
-    void attempt(begin);
+    void attempt(async () => {
+      await begin();
+      if (solve && !measured.hasEnded) attach(solve);
+    });
   });
   for (const id of ["scene-form", "view-form"]) byId(id).addEventListener("submit", (event) => event.preventDefault());
   byId("solve-form").addEventListener("submit", (event) => {
@@ -285,11 +307,11 @@ function listen(): void {
   button("pause").addEventListener("click", () =>
     attempt(async () => {
       const name = solve!.name;
-      setSolve(await (solve!.state === Solve_State.PAUSED ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name })));
+      update(await (solve!.state === Solve_State.PAUSED ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name })));
     }),
   );
   button("cancel").addEventListener("click", () =>
-    attempt(async () => setSolve(await api.solves.cancelSolve({ name: solve!.name }))),
+    attempt(async () => update(await api.solves.cancelSolve({ name: solve!.name }))),
   );
   byId("view-form").addEventListener("input", stale);
   input("split").addEventListener("input", stale);
@@ -349,7 +371,7 @@ function listenToDownloads(): void {
   });
   button("save-report").addEventListener("click", () => save("report.csv", reportOf(chart.all)));
   button("save-glb").addEventListener("click", () =>
-    attempt(async () => save("room.glb", await glbOf(room.exported(), materials, lookOf(brightness).exposure))),
+    attempt(async () => save("room.glb", await glbOf(room.exported(), centre, materials, lookOf(brightness).exposure))),
   );
 }
 

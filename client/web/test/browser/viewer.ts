@@ -43,6 +43,8 @@ export async function waitForState(page: Page, words: string): Promise<void> {
 export interface Measured {
   solve: string;
   hasEnded: boolean;
+  /** A frame is here that is not on the screen yet. */
+  isWaiting: boolean;
   /** From the opening of a file to the first picture. */
   firstLit: number;
   /** From a frame's arrival to the picture: of each. */
@@ -58,6 +60,14 @@ export const measuredBy = (page: Page) => page.evaluate(() => (window as unknown
 
 export async function waitForFrames(page: Page, count: number): Promise<void> {
   await page.waitForFunction((n) => (window as unknown as { alvor: Measured }).alvor.frames >= n, count);
+}
+
+/** Until all of this solve is on the screen. */
+export async function waitForEnd(page: Page, solve: string): Promise<void> {
+  await page.waitForFunction((name) => {
+    const { alvor } = window as unknown as { alvor: Measured };
+    return alvor.solve === name && alvor.hasEnded && alvor.frames > 0 && !alvor.isWaiting;
+  }, solve);
 }
 
 export type Pixel = [number, number, number];
