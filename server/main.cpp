@@ -164,7 +164,7 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
 std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server& server, spdlog::logger& logger) {
   if (options.web.empty()) return nullptr;
   const alvor::WebOptions web{options.web, options.page, &options.listen};
-  auto front = std::make_unique<alvor::WebFront>(web, server.InProcessChannel({}), logger);
+  auto front = std::make_unique<alvor::WebFront>(web, server.InProcessChannel({}));
   logger.info("web page on {}", front->url());
   return front;
 }

@@ -252,13 +252,13 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
     std::scoped_lock hold(lock_);
     say_end(facts_);
   };
+  if (!keeping_.archive) return show_end();
   try {
-    if (keeping_.archive) keep_checkpoint({}, say_end);
+    keep_checkpoint({}, say_end);
   } catch (...) {
     show_end();
     throw;
   }
-  show_end();
 }
 
 void StoredSolve::note_running() {

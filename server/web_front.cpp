@@ -6,6 +6,7 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
+#include <regex>
 #include <stdexcept>
 
 namespace alvor {
@@ -16,6 +17,7 @@ constexpr int most_connections = 256;               // each has a thread, which 
 constexpr std::chrono::milliseconds patience(500);  // until it is looked whether the browser has gone
 constexpr std::size_t most_unwanted_bytes = 64 << 20;
 constexpr const char* content_type = "application/grpc-web+proto";
+constexpr const char* call_pattern = R"(/([a-z0-9.]+\.[A-Za-z]+/[A-Za-z]+))";
 
 const httplib::Headers headers{
     {"Content-Security-Policy",
@@ -67,9 +69,8 @@ void refuse(httplib::Response& response, int status) {
 }
 
 bool is_call(const std::string& path) {
-  const std::size_t slash = path.find('/', 1);
-  return slash != std::string::npos && slash > 1 && slash + 1 < path.size() && path.find('/', slash + 1) == std::string::npos &&
-         path.find('.') < slash;
+  static const std::regex pattern(call_pattern);
+  return std::regex_match(path, pattern);
 }
 
 bool is_foreign(const httplib::Request& request, bool only_this_machine) {
@@ -82,9 +83,8 @@ bool is_foreign(const httplib::Request& request, bool only_this_machine) {
 
 }  // namespace
 
-WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel, spdlog::logger& logger)
+WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel)
     : stub_(std::move(channel)),
-      logger_(logger),
       only_this_machine_(is_loopback(options.address)),
       tokens_(tokens_of(*options.listen)),
       page_(read_page(options.page)),
@@ -165,10 +165,8 @@ void WebFront::serve_page() {
 }
 
 void WebFront::serve_calls() {
-  server_->Post(R"(/([a-z0-9.]+\.[A-Za-z]+/[A-Za-z]+))",
-                [this](const httplib::Request& request, httplib::Response& response, const httplib::ContentReader& body) {
-                  call(request, response, body);
-                });
+  server_->Post(call_pattern, [this](const httplib::Request& request, httplib::Response& response,
+                                     const httplib::ContentReader& body) { call(request, response, body); });
 }
 
 /// Who calls; UNAUTHENTICATED where that must be said and is not.
@@ -187,23 +185,17 @@ void WebFront::call(const httplib::Request& request, httplib::Response& response
   if (type != content_type && type != "application/grpc-web") return refuse(response, 415);
   WebCall::Options options;
   options.method = request.path;
-  if (const grpc::Status status = check(request, options.tenant); !status.ok()) {
-    const bool is_whole = body([read = std::size_t{0}](const char*, std::size_t count) mutable {
-      read += count;
-      return read < most_unwanted_bytes;
-    });
-    if (!is_whole) return refuse(response, 401);
-    return response.set_content(trailers_of(status), content_type);
-  }
+  const grpc::Status refusal = check(request, options.tenant);
   if (const auto timeout = parse_timeout(request.get_header_value("grpc-timeout")))
     options.deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::microseconds>(*timeout);
-  const auto call = std::make_shared<WebCall>(stub_, options);
+  const auto call = refusal.ok() ? std::make_shared<WebCall>(stub_, options) : nullptr;
   std::size_t unwanted = 0;  // what comes after the call has failed; an answer is read once the request is written
   const bool is_whole = body([&](const char* bytes, std::size_t count) {
-    if (!call->take({bytes, count})) unwanted += count;
+    if (!call || !call->take({bytes, count})) unwanted += count;
     return unwanted < most_unwanted_bytes;
   });
-  if (!is_whole) return refuse(response, 400);  // the browser has gone, or goes on and on
+  if (!is_whole) return refuse(response, call ? 400 : 401);  // the browser has gone, or goes on and on
+  if (!call) return response.set_content(trailers_of(refusal), content_type);
   if (unwanted == 0) call->end_request();
   response.set_chunked_content_provider(content_type, [call](std::size_t, httplib::DataSink& sink) {
     const auto bytes = call->next(patience);

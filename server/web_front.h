@@ -7,7 +7,6 @@
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
-#include <spdlog/logger.h>
 
 #include <atomic>
 #include <filesystem>
@@ -36,7 +35,7 @@ struct WebOptions {
 class WebFront {
  public:
   /// `channel` leads to a server in this process. Throws std::invalid_argument naming the option.
-  WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel, spdlog::logger& logger);
+  WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel);
   ~WebFront();
   const std::string& url() const { return url_; }
 
@@ -49,7 +48,6 @@ class WebFront {
   grpc::Status check(const httplib::Request& request, std::string& tenant) const;
 
   grpc::GenericStub stub_;
-  spdlog::logger& logger_;
   const bool only_this_machine_;
   std::optional<BearerTokens> tokens_;
   const PageFiles page_;

@@ -11,8 +11,6 @@
 #include <gtest/gtest.h>
 #include <httplib.h>
 #include <prometheus/metric_family.h>
-#include <spdlog/sinks/null_sink.h>
-#include <spdlog/spdlog.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -59,7 +57,7 @@ class WebTest : public testing::Test {
     ServiceOptions service;
     service.solves.solver = stage.solver();
     server = std::make_unique<TestServer>(service);
-    front = std::make_unique<WebFront>(WebOptions{"127.0.0.1:0", page, &listen}, server->channel(), logger);
+    front = std::make_unique<WebFront>(WebOptions{"127.0.0.1:0", page, &listen}, server->channel());
     client = std::make_unique<httplib::Client>(front->url().substr(0, front->url().size() - 1));
   }
   ~WebTest() override {
@@ -97,7 +95,6 @@ class WebTest : public testing::Test {
   }
 
   const std::filesystem::path page = std::filesystem::temp_directory_path() / ("alvor_page_" + std::to_string(getpid()));
-  spdlog::logger logger{"silent", std::make_shared<spdlog::sinks::null_sink_mt>()};
   ListenOptions listen;
   StagedSolver stage;
   std::unique_ptr<TestServer> server;
@@ -177,7 +174,7 @@ TEST_F(WebTest, OnlyThisOriginAndThisHostAreServed) {
 
 TEST_F(WebTest, ThePageIsSentCompressedAndOnlyOnce) {
   std::ofstream(page / "index.html.gz") << "compressed";
-  const WebFront other({"127.0.0.1:0", page, &listen}, server->channel(), logger);
+  const WebFront other({"127.0.0.1:0", page, &listen}, server->channel());
   httplib::Client browser(other.url().substr(0, other.url().size() - 1));
   browser.set_decompress(false);
   const auto first = browser.Get("/", {{"Accept-Encoding", "gzip, br"}});
@@ -220,7 +217,7 @@ TEST_F(WebTest, WhatFollowsARefusedRequestIsNotTakenForAnother) {
 TEST_F(WebTest, NeedsAPageAndAnAddressOfItsOwn) {
   const auto refusal = [&](const WebOptions& options) {
     try {
-      WebFront(options, server->channel(), logger);
+      WebFront(options, server->channel());
     } catch (const std::invalid_argument& fault) {
       return std::string(fault.what());
     }

@@ -26,6 +26,9 @@ export function connect(origin: string, token: () => string, onBytes: (count: nu
   };
 }
 
+/** `scenes/{scene}` of `scenes/{scene}/solves/{solve}`. */
+export const sceneOf = (solve: string) => solve.slice(0, solve.indexOf("/solves/"));
+
 export type Api = ReturnType<typeof connect>;
 
 function counted(onBytes: (count: number) => void): typeof fetch {

@@ -24,8 +24,6 @@ export interface Brightness {
 
 export interface Counters {
   revision: number;
-  leaves: number;
-  frames: number;
   bytes: number;
   /** When the newest frame arrived, in ms of performance.timeOrigin + now(). */
   arrived: number;
@@ -45,7 +43,7 @@ export interface Reading {
 
 export type FromWorker =
   | { kind: "mesh"; centre: [number, number, number]; extent: number; corners: Float32Array; counts: Uint8Array; materials: Float32Array }
-  | { kind: "change"; change: SurfaceChange; isWhole: boolean; brightness: Brightness; counters: Counters }
+  | { kind: "change"; change: SurfaceChange; brightness: Brightness; counters: Counters }
   | { kind: "steps"; steps: Step[]; isFirst: boolean }
   | { kind: "connection"; state: "connected" | "lost" | "resumed" | "begun anew" | "closing"; reason: string }
   | { kind: "ended" }

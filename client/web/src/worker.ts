@@ -1,7 +1,7 @@
 // Mirrors one solve away from the page's thread: frames are decoded, applied and made ready to be drawn here.
 
 import { Code, ConnectError } from "@connectrpc/connect";
-import { connect, reasonOf, type Api } from "./api";
+import { connect, reasonOf, sceneOf, type Api } from "./api";
 import { Detail, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
@@ -31,7 +31,7 @@ class Watch {
   private isChanged = false;
   private shownAt = 0;
   private silence?: ReturnType<typeof setTimeout>;
-  private readonly counters: Counters = { revision: 0, leaves: 0, frames: 0, bytes: 0, arrived: 0, applying: 0, preparing: 0 };
+  private readonly counters: Counters = { revision: 0, bytes: 0, arrived: 0, applying: 0, preparing: 0 };
   private readonly api: Api;
   private readonly solve: string;
   private readonly rate: number;
@@ -91,9 +91,8 @@ class Watch {
   }
 
   private async readMesh(): Promise<void> {
-    const name = this.solve.slice(0, this.solve.indexOf("/solves/"));
     const messages = [];
-    for await (const message of this.api.scenes.readMesh({ name })) messages.push(message);
+    for await (const message of this.api.scenes.readMesh({ name: sceneOf(this.solve) })) messages.push(message);
     this.mesh = new BaseMesh(messages);
     this.forget();
     const { centre, extent } = this.mesh;
@@ -184,8 +183,6 @@ class Watch {
   private count(began: number): void {
     const { counters } = this;
     counters.revision = Number(this.revision);
-    counters.leaves = this.mirror.leafCount;
-    counters.frames += 1;
     counters.arrived = performance.timeOrigin + began;
     counters.applying = performance.now() - began;
   }
@@ -200,7 +197,7 @@ class Watch {
     const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
     this.counters.preparing = performance.now() - began;
     const { positions, values, triangles } = change;
-    tell({ kind: "change", change, isWhole: this.isWhole, brightness, counters: { ...this.counters } }, [
+    tell({ kind: "change", change, brightness, counters: { ...this.counters } }, [
       positions.ranges.buffer,
       positions.data.buffer,
       values.ranges.buffer,

@@ -3,6 +3,10 @@ export function byId<T extends HTMLElement>(id: string): T {
   return document.getElementById(id) as T;
 }
 
+export const input = (id: string) => byId<HTMLInputElement>(id);
+export const select = (id: string) => byId<HTMLSelectElement>(id);
+export const button = (id: string) => byId<HTMLButtonElement>(id);
+
 export function listItem(text: string): HTMLLIElement {
   const item = document.createElement("li");
   item.textContent = text;

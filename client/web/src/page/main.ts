@@ -1,14 +1,14 @@
 // The page: what a person does becomes calls to the server and what the room shows.
 
 import { Code, ConnectError } from "@connectrpc/connect";
-import { connect, reasonOf } from "../api";
+import { connect, reasonOf, sceneOf } from "../api";
 import type { Scene } from "../gen/alvor/v1/scene_service_pb";
 import { Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
 import type { Brightness, Counters, FromWorker, ToWorker } from "../messages";
 import { Cameras } from "../view/cameras";
 import { Room } from "../view/room";
 import { Chart } from "./chart";
-import { byId, listItem, save } from "./dom";
+import { button, byId, input, listItem, save, select } from "./dom";
 import { glbOf, reportOf } from "./downloads";
 import { showCounters, showPlan, showReading } from "./figures";
 import { draw, lookOf } from "./viewing";
@@ -17,9 +17,7 @@ const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "
 const RATE_HZ = 20;
 const POLL_MS = 1000;
 
-const input = (id: string) => byId<HTMLInputElement>(id);
-const select = (id: string) => byId<HTMLSelectElement>(id);
-const button = (id: string) => byId<HTMLButtonElement>(id);
+const NO_AMBIENT = { r: 0, g: 0, b: 0 };
 
 let token = sessionStorage.getItem("token") ?? "";
 const api = connect(location.origin, () => token);
@@ -133,18 +131,26 @@ function attach(next: Solve): void {
   worker = nextWorker;
   nextWorker = makeWorker();
   setSolve(next);
-  chart.begin(next.spec?.tolerance || 0.02);
+  beginChart();
   counters = arrivedUnseen = undefined;
   room.begin();
-  room.setAmbient({ r: 0, g: 0, b: 0 });
+  room.setAmbient(NO_AMBIENT);
   isStale = true;
   byId("reading").hidden = true;
-  for (const id of ["pin", "save-glb", "save-png", "save-report"]) button(id).disabled = true;
+  allowSaving(false);
   Object.assign(measured, structuredClone(nothing), { solve: next.name });
   worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
   worker.onerror = () => say("The page has changed on the server: load it again", "bad");
   send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ });
   byId("hint").hidden = true;
+}
+
+function beginChart(): void {
+  chart.begin(solve?.spec?.tolerance || 0.02);
+}
+
+function allowSaving(isAllowed: boolean): void {
+  for (const id of ["pin", "save-glb", "save-png", "save-report"]) button(id).disabled = !isAllowed;
 }
 
 function makeWorker(): Worker {
@@ -155,12 +161,14 @@ function send(message: ToWorker): void {
   worker?.postMessage(message);
 }
 
+const addressed = () => decodeURIComponent(location.hash.slice(1));
+
 async function attachToAddress(): Promise<void> {
-  const name = decodeURIComponent(location.hash.slice(1));
+  const name = addressed();
   if (!name.includes("/solves/") || name === solve?.name) return;
   const found = await api.solves.getSolve({ name });
-  const its = await api.scenes.getScene({ name: name.slice(0, name.indexOf("/solves/")) });
-  if (decodeURIComponent(location.hash.slice(1)) !== name) return; // another was asked for meanwhile
+  const its = await api.scenes.getScene({ name: sceneOf(name) });
+  if (addressed() !== name) return; // another was asked for meanwhile
   setScene(its);
   attach(found);
 }
@@ -194,9 +202,8 @@ function setSolve(next: Solve): void {
 
 setInterval(() => {
   if (!solve || FINAL.includes(solve.state)) return;
-  const asked = solve.name;
   api.solves
-    .getSolve({ name: asked })
+    .getSolve({ name: solve.name })
     .then(update)
     .catch(() => undefined); // the watch says that the connection is lost
 }, POLL_MS);
@@ -217,14 +224,14 @@ function take(message: FromWorker): void {
       ({ brightness, counters } = message);
       arrivedUnseen = counters.arrived;
       measured.isWaiting = true;
-      for (const id of ["pin", "save-glb", "save-png", "save-report"]) button(id).disabled = false;
+      allowSaving(true);
       isStale = true;
       return;
     case "steps":
-      if (message.isFirst) chart.begin(solve?.spec?.tolerance || 0.02);
+      if (message.isFirst) beginChart();
       chart.add(message.steps);
       isStale = true;
-      room.setAmbient(message.steps.at(-1)?.ambientIrradiance ?? { r: 0, g: 0, b: 0 });
+      room.setAmbient(message.steps.at(-1)?.ambientIrradiance ?? NO_AMBIENT);
       return tellCounters();
     case "connection":
       return showConnection(message.state, message.reason);

@@ -2,11 +2,8 @@
 
 import type { Brightness } from "../messages";
 import type { Look, Room, Tone } from "../view/room";
-import { byId } from "./dom";
+import { byId, input, select } from "./dom";
 import { showLegend } from "./legend";
-
-const input = (id: string) => byId<HTMLInputElement>(id);
-const select = (id: string) => byId<HTMLSelectElement>(id);
 
 /** Of the newest state, or of when a person chose to keep it. */
 let exposure = 1;

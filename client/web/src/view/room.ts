@@ -119,7 +119,7 @@ export class Room {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !isDrawnByProcessor(), preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.autoClear = false;
-    this.surface = this.drawable(this.slots.geometry);
+    this.surface = this.drawable(this.slots.geometry, newMaterial());
   }
 
   /** `materials`: emission and reflectance of each, four floats each. */
@@ -158,8 +158,7 @@ export class Room {
   /** Keeps what is seen now, for comparison. */
   pin(): void {
     this.unpin();
-    this.pinned = this.drawable(this.slots.copy());
-    this.pinned.material.uniforms = { ...this.surface.material.uniforms, ambient: { value: this.pinnedAmbient } };
+    this.pinned = this.drawable(this.slots.copy(), this.surface.material);
     this.pinnedAmbient.copy(this.ambient);
   }
 
@@ -222,29 +221,36 @@ export class Room {
     this.camera.updateProjectionMatrix();
   }
 
-  private drawable(geometry: THREE.BufferGeometry): THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial> {
-    const material = new THREE.RawShaderMaterial({
-      glslVersion: THREE.GLSL3,
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
-      uniforms: {
-        materials: { value: null },
-        materialsWide: { value: 1 },
-        colours: { value: colourTexture() },
-        ambient: { value: new THREE.Vector3() },
-        falseColour: { value: false },
-        tone: { value: 0 },
-        exposure: { value: 1 },
-        scale: { value: new THREE.Vector2(0, 1) },
-        logarithmic: { value: false },
-        outlines: { value: false },
-      },
-    });
+  /** The material is one for all: draw() sets it for the one that is visible. */
+  private drawable(
+    geometry: THREE.BufferGeometry,
+    material: THREE.RawShaderMaterial,
+  ): THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial> {
     const mesh = new THREE.Mesh(geometry, material);
     mesh.frustumCulled = false;
     this.scene.add(mesh);
     return mesh;
   }
+}
+
+function newMaterial(): THREE.RawShaderMaterial {
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    uniforms: {
+      materials: { value: null },
+      materialsWide: { value: 1 },
+      colours: { value: colourTexture() },
+      ambient: { value: new THREE.Vector3() },
+      falseColour: { value: false },
+      tone: { value: 0 },
+      exposure: { value: 1 },
+      scale: { value: new THREE.Vector2(0, 1) },
+      logarithmic: { value: false },
+      outlines: { value: false },
+    },
+  });
 }
 
 function colourTexture(): THREE.DataTexture {

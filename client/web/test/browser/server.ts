@@ -35,7 +35,6 @@ export class Server {
     return connect(this.url.slice(0, -1), () => "");
   }
 
-  /** Resident, bytes. */
   get pid(): number {
     return this.process.pid!;
   }
