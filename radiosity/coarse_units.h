@@ -20,8 +20,9 @@ struct CoarseUnits {
 /// The ancestors of patches in their quadtrees, as deep as no more than `most` are reached; the roots, if they are more.
 CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most);
 
-/// Joins units to pairs, each with the one that it sees most of and that is still alone, and again, until they are at most `most` (pairwise
-/// aggregation, Notay 2010) or none see each other.
-void join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most);
+/// Joins units to pairs, each with the one that it sees most of and that is still alone, and again, until they are at most `most`
+/// (pairwise aggregation, Notay 2010) or none see each other. Where that goes slowly the others join pairs, as in smoothed
+/// aggregation (Vanek et al. 1996). Returns the rounds that took; each looks at all hits.
+int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most);
 
 }  // namespace alvor

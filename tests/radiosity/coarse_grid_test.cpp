@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace alvor {
@@ -56,6 +57,18 @@ TEST(CoarseUnits, PairsJoinThoseThatSeeEachOtherAndNoOthers) {
   join_pairs(units, hits.of(system), 1);
   ASSERT_EQ(units.count, 2u);
   for (std::size_t p = 0; p < units.of_patch.size(); ++p) EXPECT_EQ(units.of_patch[p], units.of_patch[p % 2]);
+}
+
+TEST(CoarseUnits, ManyThatSeeOnlyOneJoinItInFewRounds) {
+  System system(1, 500);
+  std::ranges::fill(system.hit_leaf, system.patches[0].first_leaf);
+  CoarseUnits units;
+  units.count = system.patches.size();
+  units.of_patch.resize(units.count);
+  std::iota(units.of_patch.begin(), units.of_patch.end(), 0u);
+  const Hits hits(system);
+  EXPECT_LE(join_pairs(units, hits.of(system), 1), 3);
+  EXPECT_EQ(units.count, 1u);
 }
 
 TEST(CoarseGrid, OfAllPatchesIsTheSolution) {
