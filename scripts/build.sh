@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# build.sh [TARGET...]: configures with the preset $PRESET (release) and builds, quietly unless something is wrong.
+# build.sh [TARGET...]: configures with the preset $PRESET (release) and $CMAKE_OPTIONS and builds, quietly unless something is wrong.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -7,8 +7,10 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 quietly() { "$@" > "$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
 
-export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+# What was compiled in one checkout need not be in another, nor in an image.
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros} CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 preset=${PRESET:-release}
 echo "Building (the first time takes some minutes)"
-quietly cmake --preset "$preset"
+read -ra options <<< "${CMAKE_OPTIONS:-}"
+quietly cmake --preset "$preset" "${options[@]}"
 quietly cmake --build --preset "$preset" ${1:+--target "$@"}

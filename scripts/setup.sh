@@ -1,24 +1,36 @@
 #!/usr/bin/env bash
-# Installs what Alvor is built, tested and shown with on Debian 12: only what is missing, and quietly.
+# setup.sh [PART...]: installs what Alvor needs on Debian 12, only what is missing, and quietly. Parts: `compile`, `page` for building it, `test`,
+# which shows too, and `containers`. All but the last if none is named.
 set -euo pipefail
 
-packages=(
+compile=(
   g++ cmake ninja-build ccache mold pkg-config
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
   libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libcpp-httplib-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
+)
+page=()
+# Node.js may come from elsewhere, with npm inside.
+command -v node > /dev/null || page+=(nodejs)
+command -v npm > /dev/null || page+=(npm)
+test=(
   libgtest-dev libgmock-dev clang libclang-rt-14-dev
   gnuplot-nox curl chromium
   python3-grpcio python3-zstandard python3-protobuf
 )
-# Node.js may come from elsewhere, with npm inside.
-command -v node > /dev/null || packages+=(nodejs)
-command -v npm > /dev/null || packages+=(npm)
+containers=(
+  podman podman-compose buildah runc netavark aardvark-dns iptables iproute2 catatonit debootstrap
+  curl openssl python3-pytest python3-grpcio python3-zstandard python3-protobuf
+)
 
+[ $# -gt 0 ] || set -- compile page test
 missing=()
-for package in "${packages[@]}"; do
-  [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2> /dev/null)" = installed ] || missing+=("$package")
+for part; do
+  declare -n packages=$part
+  for package in "${packages[@]}"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2> /dev/null)" = installed ] || missing+=("$package")
+  done
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
