@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <thread>
 
 namespace alvor {
 
@@ -65,11 +66,29 @@ void read_pages(Request request, Call&& call, Append&& append) {
 
 RpcError::RpcError(const grpc::Status& status) : std::runtime_error(text_of(status)), code(status.error_code()) {}
 
-Client::Client(std::shared_ptr<grpc::Channel> channel)
-    : channel_(std::move(channel)), scenes_(v1::SceneService::NewStub(channel_)), solves_(v1::SolveService::NewStub(channel_)) {}
+Client::Client(std::shared_ptr<grpc::Channel> channel, std::chrono::milliseconds patience)
+    : channel_(std::move(channel)),
+      patience_(patience),
+      scenes_(v1::SceneService::NewStub(channel_)),
+      solves_(v1::SolveService::NewStub(channel_)) {}
 
 bool Client::wait_until_connected(std::chrono::milliseconds patience) const {
   return channel_->WaitForConnected(std::chrono::system_clock::now() + patience);
+}
+
+bool Client::Patience::wait() {
+  constexpr std::chrono::milliseconds first_pause{50}, longest_pause{2000}, slice{100};
+  const auto now = Clock::now();
+  if (!failing_since_) {
+    failing_since_ = now;
+    pause_ = first_pause;
+  }
+  const auto end = *failing_since_ + client_.patience_, pause_end = std::min<Clock::time_point>(now + pause_, end);
+  pause_ = std::min(2 * pause_, longest_pause);
+  while (!stop_.stop_requested() && Clock::now() < pause_end) std::this_thread::sleep_for(first_pause);
+  while (!stop_.stop_requested() && Clock::now() < end)
+    if (client_.wait_until_connected(slice)) return true;
+  return false;
 }
 
 v1::Scene Client::create_scene(const Scene& scene, const std::string& display_name) {

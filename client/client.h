@@ -11,9 +11,11 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace alvor {
@@ -27,20 +29,39 @@ struct RpcError : std::runtime_error {
 /// Blocking calls; each throws RpcError. Safe to use from several threads.
 class Client {
  public:
-  explicit Client(std::shared_ptr<grpc::Channel> channel);
+  static constexpr std::chrono::seconds default_patience{5};
+  /// A lost server is waited for for `patience`.
+  explicit Client(std::shared_ptr<grpc::Channel> channel, std::chrono::milliseconds patience = default_patience);
 
   /// False if no connection was made within `patience`.
   bool wait_until_connected(std::chrono::milliseconds patience) const;
-  /// Runs `body` once more where it threw that the server could not be reached, if it can be again within a while: a server that
-  /// hangs up every time is as good as none. For what may be sent twice.
+  /// Runs `body` once more where it threw that the server could not be reached, and again, until that has gone on for as long as
+  /// this client is patient: a server that hangs up every time is as good as none. For what may be sent twice. `body` may say
+  /// that it got on.
   template <class Body>
-  auto with_patience(Body&& body) const {
-    for (int tries = 1;; ++tries) try {
-        return body();
+  auto with_patience(Body&& body, std::stop_token stop = {}) const {
+    for (Patience patience(*this, std::move(stop));;) try {
+        if constexpr (std::is_invocable_v<Body, Patience&>) return body(patience);
+        else return body();
       } catch (const RpcError& error) {
-        if (error.code != grpc::UNAVAILABLE || tries == most_tries || !wait_until_connected(patience_for_server)) throw;
+        if (error.code != grpc::UNAVAILABLE || !patience.wait()) throw;
       }
   }
+  /// With a server that does not answer.
+  class Patience {
+   public:
+    Patience(const Client& client, std::stop_token stop) : client_(client), stop_(std::move(stop)) {}
+    void note_success() { failing_since_.reset(); }
+    /// For the next try, longer each time, and until there is a connection. False when it is at its end, or was stopped.
+    bool wait();
+
+   private:
+    using Clock = std::chrono::steady_clock;
+    const Client& client_;
+    std::stop_token stop_;
+    std::optional<Clock::time_point> failing_since_;
+    std::chrono::milliseconds pause_{};
+  };
 
   /// Sends `scene` in chunks well below the message limit. Where the connection is lost it goes on, or starts again, and never
   /// makes two.
@@ -77,9 +98,8 @@ class Client {
   v1::Scene upload(const v1::CreateSceneRequest& first, const Scene& scene);
   std::uint64_t received_chunks(const std::string& request_id);
 
-  static constexpr int most_tries = 5;
-  static constexpr std::chrono::seconds patience_for_server{5};
   std::shared_ptr<grpc::Channel> channel_;
+  std::chrono::milliseconds patience_;
   std::unique_ptr<v1::SceneService::Stub> scenes_;
   std::unique_ptr<v1::SolveService::Stub> solves_;
 };

@@ -17,6 +17,8 @@ enum class SolvePriority { low, normal, high };
 struct SolveControl {
   /// Obeyed within one batch of rays or shots; leaves a usable solution in the log.
   std::stop_token stop;
+  /// Obeyed as soon: the solve ends with the last step that it published.
+  std::stop_token short_of_memory;
   /// Obeyed at the next place from which the solve can go on as if it had not been interrupted: `save` is then called once more.
   std::stop_token park;
 

@@ -237,10 +237,13 @@ class Run {
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || is_.error.total() < near_the_end * options_.tolerance);
   }
   /// Whatever is under way is given up: from the middle of an exchange a solve would go on otherwise.
-  bool must_break_off() const { return control_.stop.stop_requested() || clock_.elapsed_s() > options_.time_limit_s; }
+  bool must_break_off() const {
+    return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() || clock_.elapsed_s() > options_.time_limit_s;
+  }
   bool must_stop() const { return control_.park.stop_requested() || must_break_off(); }
   StopReason stop_reason() const {
     if (control_.stop.stop_requested()) return StopReason::cancelled;
+    if (control_.short_of_memory.stop_requested()) return StopReason::memory;
     return clock_.elapsed_s() > options_.time_limit_s ? StopReason::time_limit : StopReason::parked;
   }
   StopReason limit_reached() const {
@@ -276,6 +279,7 @@ std::string_view text(StopReason reason) {
     case StopReason::max_leaves: return "leaf limit reached";
     case StopReason::max_depth: return "depth limit reached";
     case StopReason::time_limit: return "time limit reached";
+    case StopReason::memory: return "memory limit reached";
     case StopReason::cancelled: return "cancelled";
     case StopReason::dark: return "no light";
     case StopReason::stalled: return "light goes round too slowly";

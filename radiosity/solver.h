@@ -40,7 +40,7 @@ struct SolveOptions {
 
 /// `stalled`: light went round so slowly, or rounding so far, that what is left unshot exceeds the tolerance; the estimated error
 /// says by how much. `parked`: SolveControl::park was obeyed.
-enum class StopReason { tolerance, max_leaves, max_depth, time_limit, cancelled, dark, stalled, parked };
+enum class StopReason { tolerance, max_leaves, max_depth, time_limit, memory, cancelled, dark, stalled, parked };
 /// "tolerance", "leaf limit", ... for people.
 std::string_view text(StopReason reason);
 

@@ -10,7 +10,7 @@ compile=(
   libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libcpp-httplib-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
 )
-page=()
+page=(protobuf-compiler libprotobuf-dev)
 # Node.js may come from elsewhere, with npm inside.
 command -v node > /dev/null || page+=(nodejs)
 command -v npm > /dev/null || page+=(npm)

@@ -1,6 +1,8 @@
 // alvord: the Alvor server.
 
+#include "server/health.h"
 #include "server/listening.h"
+#include "server/memory_guard.h"
 #include "server/service.h"
 #include "server/task_queue.h"
 #include "server/web_front.h"
@@ -9,7 +11,6 @@
 #include <grpc/support/log.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
-#include <grpcpp/health_check_service_interface.h>
 #include <prometheus/exposer.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -32,6 +33,8 @@ struct Options {
   int max_solves = alvor::SolveStoreOptions{}.max_running;
   double checkpoint_interval_s = 10;
   std::string metrics;
+  std::string health, probe;
+  std::uint64_t memory_limit = alvor::allowed_memory();
   std::string web, page = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web").string();
   alvor::Quota quota;
   std::string log_level = "info";
@@ -59,12 +62,27 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  app.add_option(
+         "--memory-limit", options.memory_limit,
+         "Bytes (also K, M, G) at which work is refused or ends, before the system would end the server; 0 for none; else "
+         "what the control group or the machine has")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app.add_option("--health", options.health,
+                 "HOST:PORT to tell health on (grpc.health.v1), without TLS and tokens, for probes (only where calls are taken)");
+  app.add_option("--probe", options.probe, "Only ask a server's --health HOST:PORT; fails unless it serves");
   app.add_option("--metrics", options.metrics, "HOST:PORT to tell Prometheus on, at /metrics (not at all)");
   app.add_option("--web", options.web, "HOST:PORT to serve the page and gRPC-Web for browsers on (not at all)");
   app.add_option("--page", options.page, "Directory of that page")->capture_default_str();
   app.add_option("--log-level", options.log_level, "How much to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
+  // Containers are told by variables: ALVORD_LISTEN is --listen.
+  for (CLI::Option* option : app.get_options()) {
+    std::string name = "ALVORD_" + option->get_single_name();
+    for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (name != "ALVORD_HELP" && name != "ALVORD_PROBE") option->envname(name);
+  }
 }
 
 std::shared_ptr<spdlog::logger> make_logger(const std::string& level) {
@@ -109,21 +127,18 @@ std::unique_ptr<grpc::Server> start(alvor::Service& service, const alvor::Listen
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5'000);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);  // clients may do as much
   builder.AddListeningPort(listen.address, alvor::credentials_of(listen), &port);
   service.register_with(builder);
   auto server = builder.BuildAndStart();
   return port > 0 ? std::move(server) : nullptr;
 }
 
-void set_serving(grpc::Server& server, bool serving) {
-  server.GetHealthCheckService()->SetServingStatus(serving);
-  for (const char* name : {"alvor.v1.SceneService", "alvor.v1.SolveService"})
-    server.GetHealthCheckService()->SetServingStatus(name, serving);
-}
-
-void stop(alvor::Service& service, grpc::Server& server) {
+// Those who ask about health are told first; what is under way then ends.
+void stop(alvor::Service& service, grpc::Server& server, alvor::HealthPort* health) {
   using namespace std::chrono_literals;
-  set_serving(server, false);
+  if (health) alvor::set_serving(health->server(), false);
+  alvor::set_serving(server, false);
   service.shut_down();
   server.Shutdown(std::chrono::system_clock::now() + 3s);
 }
@@ -175,6 +190,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   service_options.solves.logger = logger;
   service_options.solves.keeping.interval = seconds(options.checkpoint_interval_s);
   service_options.quota = options.quota;
+  service_options.memory = alvor::MemoryGuard(options.memory_limit);
   std::unique_ptr<alvor::Archive> archive;
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
   service_options.archive = archive.get();
@@ -187,13 +203,21 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   }
   const auto exposer = expose(options.metrics, service);
   const auto web = serve_web(options, *server, *logger);
-  set_serving(*server, true);
+  const auto health = options.health.empty() ? nullptr : std::make_unique<alvor::HealthPort>(options.health);
+  alvor::set_serving(*server, true);
+  if (health) alvor::set_serving(health->server(), true);
   const Heartbeat heartbeat(archive.get());
   logger->info("listening on {}:{}", options.listen.address.substr(0, options.listen.address.rfind(':')), port);
   logger->info("stopping: {}", wait_for_stop(signals));
-  stop(service, *server);
+  stop(service, *server, health.get());
   logger->info("stopped");
   return 0;
+}
+
+int probe(const std::string& address) {
+  const std::string fault = alvor::probe_health(address);
+  if (!fault.empty()) std::cerr << "alvord: not serving: " << fault << '\n';
+  return fault.empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -210,6 +234,7 @@ int main(int argc, char** argv) {
   }
   const auto logger = make_logger(options.log_level);
   quieten_grpc();
+  if (!options.probe.empty()) return probe(options.probe);
   try {
     return serve(options, signals, logger);
   } catch (const std::invalid_argument& fault) {

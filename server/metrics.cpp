@@ -3,6 +3,7 @@
 #include "proto/codec.h"
 #include "proto/status_name.h"
 #include "server/call_counts.h"
+#include "server/memory_guard.h"
 #include "server/solve_store.h"
 #include "server/watches.h"
 
@@ -83,6 +84,7 @@ std::vector<MetricFamily> Metrics::Collect() const {
   counter("alvor_checkpoint_bytes_total", "Bytes of these.", static_cast<double>(keeping_.bytes));
   counter("alvor_checkpoint_failures_total", "Checkpoints that could not be kept.", static_cast<double>(keeping_.failures));
   gauge("process_resident_memory_bytes", "Memory that is in use.", resident_bytes());
+  gauge("alvor_memory_limit_bytes", "Memory that may be in use; 0 is no limit.", static_cast<double>(memory_.limit()));
   counter("process_cpu_seconds_total", "Processor time.", cpu_seconds());
   return all;
 }

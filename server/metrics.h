@@ -15,6 +15,7 @@ class SceneStore;
 class SolveStore;
 class Watches;
 class CallCounts;
+class MemoryGuard;
 struct KeepingCounts;
 
 /// Everything is looked up when it is asked for; nothing is counted while light is solved. Thread-safe; everything it is given
@@ -22,8 +23,8 @@ struct KeepingCounts;
 class Metrics : public prometheus::Collectable {
  public:
   Metrics(const SceneStore& scenes, const SolveStore& solves, const Watches& watches, const CallCounts& calls,
-          const KeepingCounts& keeping)
-      : scenes_(scenes), solves_(solves), watches_(watches), calls_(calls), keeping_(keeping) {}
+          const KeepingCounts& keeping, const MemoryGuard& memory)
+      : scenes_(scenes), solves_(solves), watches_(watches), calls_(calls), keeping_(keeping), memory_(memory) {}
   std::vector<prometheus::MetricFamily> Collect() const override;
 
  private:
@@ -38,6 +39,7 @@ class Metrics : public prometheus::Collectable {
   const Watches& watches_;
   const CallCounts& calls_;
   const KeepingCounts& keeping_;
+  const MemoryGuard& memory_;
   mutable std::mutex lock_;
   mutable std::map<std::string, Seen> seen_;
   mutable std::uint64_t shots_ = 0, rays_ = 0;  ///< since the server was started, of solves that are gone too

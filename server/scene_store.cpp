@@ -12,6 +12,7 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t longest_display_name = 256;
+constexpr std::uint64_t bytes_a_corner = 250;  // of a scene with its mesh, while it is built
 
 bool emits(const BaseMesh& mesh) {
   return std::ranges::any_of(mesh.roots(),
@@ -66,7 +67,8 @@ std::shared_ptr<const SceneContent> SceneContents::find(const std::string& sha25
   return add(sha256, std::move(scene), std::move(mesh));
 }
 
-SceneStore::SceneStore(Archive* archive, const Quota& quota) : archive_(archive), quota_(quota), contents_(archive) {
+SceneStore::SceneStore(Archive* archive, const Quota& quota, MemoryGuard memory)
+    : archive_(archive), quota_(quota), memory_(memory), contents_(archive) {
   if (!archive) return;
   for (const Archive::SceneRow& row : archive->scenes()) {
     insert(std::make_shared<StoredScene>(row.number, Caller{row.tenant, row.request_id}, row.facts, contents_, nullptr));
@@ -78,6 +80,7 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
   if (display_name.size() > longest_display_name)
     throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
   if (const auto fault = find_fault(scene)) throw invalid_argument(fault->text());
+  memory_.admit("scene", bytes_a_corner * scene.corners.size());
   BaseMesh mesh(scene);
   if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");
   v1::Scene facts = facts_of(scene, mesh, display_name);

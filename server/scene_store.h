@@ -4,6 +4,7 @@
 #include "alvor/v1/scene_service.pb.h"
 #include "meshing/base_mesh.h"
 #include "server/archive.h"
+#include "server/memory_guard.h"
 #include "server/paging.h"
 #include "server/request_ids.h"
 
@@ -67,10 +68,10 @@ struct SceneUse {
 class SceneStore {
  public:
   /// Begins with the scenes of the archive, if there is one, and keeps all others there. It must outlive the store.
-  explicit SceneStore(Archive* archive = nullptr, const Quota& quota = {});
+  explicit SceneStore(Archive* archive = nullptr, const Quota& quota = {}, MemoryGuard memory = MemoryGuard());
 
-  /// INVALID_ARGUMENT names what is wrong with the scene. The mesh is built on the calling thread. The same request again gets
-  /// the same scene. When it returns the scene is kept.
+  /// INVALID_ARGUMENT names what is wrong with the scene, RESOURCE_EXHAUSTED says of what there is too much. The mesh is built on
+  /// the calling thread. The same request again gets the same scene. When it returns the scene is kept.
   std::shared_ptr<const StoredScene> add(Scene scene, const std::string& display_name, const Caller& caller = {});
   /// NOT_FOUND.
   std::shared_ptr<const StoredScene> find(const std::string& name, const std::string& tenant = {}) const;
@@ -88,6 +89,7 @@ class SceneStore {
 
   Archive* const archive_;
   const Quota quota_;
+  const MemoryGuard memory_;
   mutable SceneContents contents_;
   std::mutex adding_;  ///< one scene is written at a time
   mutable std::mutex lock_;

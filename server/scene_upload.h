@@ -2,6 +2,7 @@
 // A scene on its way in.
 
 #include "proto/codec.h"
+#include "server/memory_guard.h"
 #include "server/scene_store.h"
 
 #include <chrono>
@@ -16,6 +17,7 @@ struct UploadLimits {
   std::uint64_t corners_of_face = 5000;                                    ///< cutting up a polygon takes the square of them
   std::uint64_t bytes_of_name = 1000;                                      ///< of a material
   std::uint64_t materials = 1'000'000;  ///< an empty one is two bytes on the wire, but not in memory
+  MemoryGuard memory;
 };
 
 /// One CreateScene call without the network. Not thread-safe. Throws StatusError; the upload is then over.

@@ -22,7 +22,14 @@ SolveStoreOptions solve_options(const ServiceOptions& service, const std::string
   options.keeping.archive = service.archive;
   options.keeping.epoch = epoch;
   options.quota = service.quota;
+  options.memory = service.memory;
   return options;
+}
+
+UploadLimits upload_limits(const ServiceOptions& service) {
+  UploadLimits limits = service.upload;
+  limits.memory = service.memory;
+  return limits;
 }
 
 }  // namespace
@@ -33,11 +40,12 @@ struct Service::Parts {
       : watches(random_id('e'), options.quota.watchers),
         solve_store_options(solve_options(options, watches.epoch())),
         logger(solve_store_options.logger),
-        scenes(options.archive, options.quota),
+        scenes(options.archive, options.quota, options.memory),
         solves(solve_store_options, scenes),
-        scene_service(scenes, options.upload, building, *logger),
+        scene_service(scenes, upload_limits(options), building, *logger),
         solve_service(scenes, solves, watches, *logger),
-        metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts)) {}
+        metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts,
+                                          solve_store_options.memory)) {}
 
   CallCounts calls;
   Watches watches;

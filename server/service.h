@@ -15,6 +15,7 @@ struct ServiceOptions {
   UploadLimits upload;
   Archive* archive = nullptr;  ///< must outlive the service; null: all is in memory
   Quota quota;                 ///< of each tenant
+  MemoryGuard memory;
   /// Without a logger the service is silent.
   SolveStoreOptions solves;
 };

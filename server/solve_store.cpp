@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <google/protobuf/util/message_differencer.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <system_error>
@@ -13,6 +14,18 @@
 namespace alvor {
 
 namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t bytes_a_face =
+    2000;                             // of a solve that has begun: its part of the scene, mesh, tree of boxes and first rows
+constexpr auto between_looks = 50ms;  // at the memory, which grows by less than 1 MB/ms
+
+std::uint64_t least_memory(const StoredScene& scene) { return bytes_a_face * scene.facts.face_count(); }
+
+bool goes_before(const StoredSolve& a, const StoredSolve& b) {
+  return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
+}
 
 void report_end(spdlog::logger& logger, const v1::Solve& solve) {
   const Step step = decode(solve.last_step());
@@ -35,6 +48,7 @@ void refuse_ended(const StoredSolve& solve) {
 }  // namespace
 
 SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : options_(std::move(options)) {
+  if (options_.memory.limit() > 0) watch_memory();
   if (!options_.keeping.archive) return;
   std::scoped_lock hold(lock_);
   for (Archive::SolveRow& row : options_.keeping.archive->solves()) {
@@ -73,6 +87,7 @@ std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveS
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
   if (auto known = repeated(caller, scene.scene->facts.name(), spec)) return known;
   check_capacity(caller.tenant, how);
+  options_.memory.admit("solve", least_memory(*scene.scene));
   auto solve = std::make_shared<StoredSolve>(next_number_, scene.scene, caller, spec, how, options_.keeping);
   solve->keep();
   ++next_number_;
@@ -113,12 +128,12 @@ void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& n
            std::to_string(options_.quota.leaves) + " are allowed");
 }
 
-/// As many as may run do, by priority and age. Requires: the lock.
+/// As many as may run do, by priority and age; beside others only where there is memory. Requires: the lock.
 void SolveStore::start_waiting() {
   join_finished();
   while (!stopping_ && running_ < options_.max_running) {
     Entry* const next = next_waiting();
-    if (!next) return;
+    if (!next || (running_ > 0 && !options_.memory.has_room(least_memory(*next->scene.scene)))) return;
     try {
       start(*next);
     } catch (const std::system_error& fault) {
@@ -129,19 +144,36 @@ void SolveStore::start_waiting() {
 }
 
 SolveStore::Entry* SolveStore::next_waiting() {
-  const auto is_before = [](const StoredSolve& a, const StoredSolve& b) {
-    return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
-  };
   Entry* first = nullptr;
   for (auto& [name, entry] : solves_)
-    if (!entry.is_running && entry.solve->state() == v1::Solve::QUEUED && (!first || is_before(*entry.solve, *first->solve)))
+    if (!entry.is_running && entry.solve->state() == v1::Solve::QUEUED && (!first || goes_before(*entry.solve, *first->solve)))
       first = &entry;
   return first;
+}
+
+void SolveStore::watch_memory() {
+  if (options_.memory.is_short()) relieve_memory();
+  watching_memory_.post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
+}
+
+/// The solve that came last must end with what it has, one after the other until there is room.
+void SolveStore::relieve_memory() {
+  std::scoped_lock hold(lock_);
+  Entry* last = nullptr;
+  for (auto& [name, entry] : solves_) {
+    if (!entry.is_running) continue;
+    if (entry.short_of_memory.stop_requested()) return;  // it is just ending
+    if (!last || goes_before(*last->solve, *entry.solve)) last = &entry;
+  }
+  if (!last) return;
+  options_.logger->warn("memory is short: solve {} must end", last->solve->name);
+  last->short_of_memory.request_stop();
 }
 
 void SolveStore::start(Entry& entry) {
   entry.cancel = {};
   entry.park = {};
+  entry.short_of_memory = {};
   // It cannot begin before the lock is given back.
   std::thread thread([this, &entry] { run(entry); });
   threads_.emplace(thread.get_id(), std::move(thread));
@@ -157,13 +189,15 @@ void SolveStore::run(Entry& entry) {
     return entry.solve;
   }();
   be_as_nice_as(solve->priority);
-  const RunControl control{entry.cancel.get_token(), entry.park.get_token(), abandon_.get_token()};
+  const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),
+                           abandon_.get_token()};
   const auto is_paused = [&] {
     std::scoped_lock hold(lock_);
     return entry.shall_pause;
   };
   solve->run(options_.solver, control, is_paused,
              [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", solve->name, fault); });
+  malloc_trim(0);  // a limit counts what the allocator keeps for later
   report_end(*options_.logger, solve->describe());
   std::scoped_lock hold(lock_);
   settle(entry);

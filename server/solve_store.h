@@ -1,8 +1,10 @@
 #pragma once
 // The solves that a server holds, and the threads they run on.
 
+#include "server/memory_guard.h"
 #include "server/solve_spec.h"
 #include "server/stored_solve.h"
+#include "server/task_queue.h"
 
 #include <condition_variable>
 #include <map>
@@ -23,6 +25,7 @@ struct SolveStoreOptions {
   int max_waiting = 1000;  ///< beyond those
   SolveLimits limits;
   Quota quota;
+  MemoryGuard memory;
   Solver solver = solve_as_planned;
   Keeping keeping;
   std::chrono::steady_clock::duration patience =
@@ -38,8 +41,8 @@ class SolveStore {
   /// As shut_down().
   ~SolveStore();
 
-  /// Starts at once on a thread of its own, or waits. RESOURCE_EXHAUSTED when too many wait, INVALID_ARGUMENT names the field of
-  /// the spec. The same request again gets the same solve. When it returns the solve is kept.
+  /// Starts at once on a thread of its own, or waits. RESOURCE_EXHAUSTED when too many wait or memory is short, INVALID_ARGUMENT
+  /// names the field of the spec. The same request again gets the same solve. When it returns the solve is kept.
   std::shared_ptr<StoredSolve> create(SceneUse scene, const v1::SolveSpec& spec, const Caller& caller = {});
   /// NOT_FOUND.
   std::shared_ptr<StoredSolve> find(const std::string& name, const std::string& tenant = {}) const;
@@ -63,7 +66,7 @@ class SolveStore {
   struct Entry {
     SceneUse scene;
     std::shared_ptr<StoredSolve> solve;
-    std::stop_source cancel, park;
+    std::stop_source cancel, park, short_of_memory;
     bool is_running = false;
     bool shall_pause = false, shall_cancel = false;
   };
@@ -74,6 +77,8 @@ class SolveStore {
   std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec);
   void check_capacity(const std::string& tenant, const SolveOptions& next) const;
   void start_waiting();
+  void watch_memory();
+  void relieve_memory();
   Entry* next_waiting();
   void start(Entry& entry);
   void run(Entry& entry);
@@ -91,6 +96,7 @@ class SolveStore {
   std::stop_source abandon_;
   std::map<std::thread::id, std::thread> threads_;
   std::vector<std::thread::id> finished_;  ///< have nothing left to do but to end
+  TaskQueue watching_memory_;              ///< uses all of the above
 };
 
 }  // namespace alvor

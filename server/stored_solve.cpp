@@ -178,6 +178,7 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   auto next_checkpoint = Clock::now() + keeping_.interval;
   SolveControl control;
   control.stop = run.cancel;
+  control.short_of_memory = run.short_of_memory;
   control.park = run.park;
   control.checkpoint = from;
   control.priority = priority == v1::PRIORITY_LOW    ? SolvePriority::low

@@ -36,6 +36,7 @@ struct Keeping {
 /// How a run is steered.
 struct RunControl {
   std::stop_token cancel;
+  std::stop_token short_of_memory;
   std::stop_token park;
   std::stop_token abandon;  ///< with `cancel`: the solve shall go on from its last checkpoint when the server is started again
 };

@@ -46,7 +46,14 @@ class Observer {
 // The watch remembers where it stands, so a new connection goes on from there.
 v1::Solve watch_through(Client& client, const std::string& name, Client::Watch& watch,
                         const std::function<void(const Client::Watch&)>& on_frame, std::stop_token stop) {
-  return client.with_patience([&] { return client.watch_solve(name, watch, on_frame, stop); });
+  const auto watch_on = [&](Client::Patience& patience) {
+    const auto note_frame = [&](const Client::Watch& now) {
+      patience.note_success();
+      on_frame(now);
+    };
+    return client.watch_solve(name, watch, note_frame, stop);
+  };
+  return client.with_patience(watch_on, stop);
 }
 
 void try_to_cancel(Client& client, const std::string& name) {

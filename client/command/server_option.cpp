@@ -13,6 +13,12 @@ CLI::Option& add_server_option(CLI::App& command, ServerChoice& server, const st
   key->needs(certificate);
   certificate->needs(key);
   add_file("--token-file", server.token_file, "A file with the token to show to the server")->needs(ca);
+  command
+      .add_option("--patience", server.patience_s,
+                  "Seconds to go on trying when the server is lost (not when it was never there)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(address)
+      ->capture_default_str();
   return *address;
 }
 

@@ -12,6 +12,7 @@ struct ServerChoice {
   std::string ca;                ///< PEM file of who signs servers' certificates: TLS
   std::string certificate, key;  ///< PEM files, where the server asks for them
   std::string token_file;        ///< its first line is sent with every call
+  double patience_s = 300;       ///< with a server that was lost
   bool is_given() const { return !address.empty(); }
 };
 

@@ -1,0 +1,38 @@
+# The Alvor server and its page. From the project's root: docker build -f docker/server.Dockerfile -t alvor-server .
+
+FROM debian:bookworm-slim AS page
+WORKDIR /alvor
+COPY scripts/setup.sh scripts/
+RUN scripts/setup.sh page
+COPY scripts/build_page.sh scripts/
+COPY proto proto
+COPY scenes scenes
+COPY client/web client/web
+RUN scripts/build_page.sh
+
+FROM debian:bookworm-slim AS build
+WORKDIR /alvor
+COPY scripts/setup.sh scripts/
+RUN scripts/setup.sh compile
+COPY . .
+RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord && strip build/release/bin/alvor build/release/bin/alvord
+
+FROM debian:bookworm-slim
+RUN apt-get update -qq && \
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+      libcpp-httplib0.11 libembree3-3 libgrpc++1.51 libopenmesh1 libprometheus-cpp-pull1.0 libprotobuf32 libspdlog1.10 libsqlite3-0 \
+      libssl3 libtbb12 libzstd1 && \
+    rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
+    echo 'alvor:x:10001:10001::/var/lib/alvor:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
+    install -d -o 10001 -g 10001 -m 700 /var/lib/alvor
+COPY --from=page /alvor/build/release/bin/web /usr/local/share/alvor/web
+COPY --from=build /alvor/build/release/bin/alvord /usr/local/bin/
+RUN alvord --help > /dev/null
+
+# Each option has a variable of its name; what is given to the container's command goes before it.
+ENV ALVORD_LISTEN=0.0.0.0:50051 ALVORD_DATA=/var/lib/alvor ALVORD_HEALTH=0.0.0.0:50052 ALVORD_PAGE=/usr/local/share/alvor/web
+USER 10001:10001
+VOLUME /var/lib/alvor
+EXPOSE 50051 50052 8080 9464
+HEALTHCHECK --interval=10s --timeout=5s --start-period=30s CMD ["alvord", "--probe", "127.0.0.1:50052"]
+ENTRYPOINT ["alvord"]

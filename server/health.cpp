@@ -1,0 +1,45 @@
+#include "server/health.h"
+
+#include "grpc/health/v1/health.grpc.pb.h"
+
+#include <grpcpp/grpcpp.h>
+#include <grpcpp/health_check_service_interface.h>
+
+#include <chrono>
+#include <stdexcept>
+
+namespace alvor {
+
+namespace health = grpc::health::v1;
+
+HealthPort::HealthPort(const std::string& address) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::ServerBuilder builder;
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port_);
+  server_ = builder.BuildAndStart();
+  if (!server_ || port_ == 0)
+    throw std::invalid_argument("--health: cannot listen on " + address + ": the address is in use or not of this machine");
+  set_serving(*server_, false);
+}
+
+HealthPort::~HealthPort() { server_->Shutdown(std::chrono::system_clock::now()); }
+
+void set_serving(grpc::Server& server, bool is_serving) {
+  grpc::HealthCheckServiceInterface& service = *server.GetHealthCheckService();
+  service.SetServingStatus(is_serving);
+  for (const char* name : {"alvor.v1.SceneService", "alvor.v1.SolveService"}) service.SetServingStatus(name, is_serving);
+}
+
+std::string probe_health(const std::string& address) {
+  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(3));
+  health::HealthCheckResponse response;
+  const grpc::Status status = health::Health::NewStub(channel)->Check(&context, health::HealthCheckRequest(), &response);
+  if (!status.ok()) return status.error_message();
+  if (response.status() == health::HealthCheckResponse::SERVING) return "";
+  return health::HealthCheckResponse::ServingStatus_Name(response.status());
+}
+
+}  // namespace alvor

@@ -1,0 +1,35 @@
+#pragma once
+// Whether the server takes calls (grpc.health.v1), for those who ask it in order to restart it or to send no more clients.
+
+#include <grpcpp/server.h>
+
+#include <memory>
+#include <string>
+
+namespace alvor {
+
+/// Health and nothing else, on an address of its own: without TLS and tokens, which most probes do not have. NOT_SERVING at
+/// first.
+class HealthPort {
+ public:
+  /// Throws std::invalid_argument if it cannot listen there.
+  explicit HealthPort(const std::string& address);
+  ~HealthPort();
+  HealthPort(const HealthPort&) = delete;
+  HealthPort& operator=(const HealthPort&) = delete;
+
+  grpc::Server& server() { return *server_; }
+  int port() const { return port_; }
+
+ private:
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+/// Of the server as a whole and of each of its services.
+void set_serving(grpc::Server& server, bool is_serving);
+
+/// Empty if the HealthPort at `address` says SERVING, else why not.
+std::string probe_health(const std::string& address);
+
+}  // namespace alvor

@@ -1,0 +1,72 @@
+#include "server/memory_guard.h"
+
+#include "server/status_error.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace alvor {
+
+namespace {
+
+constexpr auto unlimited = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t page_size() { return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)); }
+
+/// A limit is a number; "max" and what cannot be read are none.
+std::uint64_t limit_in(const std::string& file) {
+  std::uint64_t bytes = 0;
+  return std::ifstream(file) >> bytes && bytes > 0 ? bytes : unlimited;
+}
+
+/// Inside a container its own group is the root of what it sees.
+std::uint64_t limit_of_group() {
+  std::uint64_t least = unlimited;
+  std::ifstream groups("/proc/self/cgroup");  // lines ID:CONTROLLERS:PATH
+  for (std::string line; std::getline(groups, line);) {
+    std::istringstream fields(line);
+    std::string id, controllers, path;
+    std::getline(std::getline(std::getline(fields, id, ':'), controllers, ':'), path);
+    const bool is_v2 = controllers.empty();
+    if (!is_v2 && controllers.find("memory") == std::string::npos) continue;
+    const std::string root = is_v2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
+    const std::string file = is_v2 ? "/memory.max" : "/memory.limit_in_bytes";
+    least = std::min({least, limit_in(root + file), limit_in(root + path + file)});
+  }
+  return least;
+}
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
+}  // namespace
+
+std::uint64_t held_bytes() {
+  std::uint64_t all = 0, resident = 0, of_files = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident >> of_files;
+  return (resident - std::min(resident, of_files)) * page_size();
+}
+
+std::uint64_t allowed_memory() {
+  const std::uint64_t machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_size();
+  return std::min(machine, limit_of_group());
+}
+
+bool MemoryGuard::has_room(std::uint64_t bytes) const {
+  if (limit_ == 0) return true;
+  const std::uint64_t used = used_(), most = limit_ / 4 * 3;
+  return used <= most && bytes <= most - used;
+}
+
+void MemoryGuard::admit(const std::string& what, std::uint64_t bytes) const {
+  if (has_room(bytes)) return;
+  throw StatusError(grpc::RESOURCE_EXHAUSTED, what + ": needs about " + megabytes(bytes) + " of memory; " + megabytes(used_()) +
+                                                  " of " + megabytes(limit_) + " are in use");
+}
+
+bool MemoryGuard::is_short() const { return limit_ > 0 && used_() > limit_ / 8 * 7; }
+
+}  // namespace alvor

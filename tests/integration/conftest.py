@@ -1,0 +1,175 @@
+"""What scenarios have in common, and the table of what was seen of them."""
+
+import itertools
+import json
+import os
+import pathlib
+import subprocess
+import time
+import urllib.request
+
+import pytest
+
+from hosts import NETWORK, SHIPPED, Host, podman, run, until
+
+SCENES = "/usr/local/share/alvor/scenes"
+
+
+def pytest_addoption(parser):
+  parser.addoption("--table", help="where to write what was seen of each scenario, as Markdown")
+
+
+class Server(Host):
+  """alvord on a volume of its own, which a later one may take over."""
+
+  def __init__(self, name, *command, options=(), volume=None):
+    self.volume = volume or f"{name}-data"
+    storage = ["--volume", f"{self.volume}:/var/lib/alvor"]
+    super().__init__(name, "alvor-server", ["--metrics", "0.0.0.0:9464", *command], [*storage, *options])
+    self.await_health()
+
+  def await_health(self):
+    return until(self.is_healthy, 20, f"{self.name} serves; it says: {self.log()[-1000:]}")
+
+  def is_healthy(self):
+    return subprocess.run(["podman", "healthcheck", "run", self.name], capture_output=True).returncode == 0
+
+  def start(self):
+    super().start()
+    self.await_health()
+
+  def metric(self, name):
+    with urllib.request.urlopen(f"http://{self.ip}:9464/metrics", timeout=5) as page:
+      for line in page.read().decode().splitlines():
+        if line.startswith(name + " "):
+          return float(line.split()[-1])
+    raise AssertionError(f"no metric {name}")
+
+
+class Client(Host):
+  """alvor. What it writes to /out is in `out`."""
+
+  def __init__(self, name, out, *command, options=()):
+    self.out = out
+    super().__init__(name, "alvor-client", command, ["--volume", f"{out}:/out", *options])
+
+
+class World:
+  """All hosts of a scenario."""
+
+  def __init__(self, folder):
+    self.folder = folder
+    self.folder.chmod(0o777)
+    self.hosts = []
+    self.volumes = []
+    self.numbers = itertools.count(1)
+
+  def server(self, *command, plaintext=True, name="server", **more):
+    made = Server(name, *(["--insecure"] if plaintext else []), *command, **more)
+    self.hosts.append(made)
+    self.volumes.append(made.volume)
+    return made
+
+  def client(self, *command, **more):
+    made = Client(f"client{next(self.numbers)}", self.folder, *command, **more)
+    self.hosts.append(made)
+    return made
+
+  def desk(self, options=()):
+    """A host whose user types commands."""
+    return self.client("infinity", options=["--entrypoint", "sleep", *options])
+
+  def replace(self, server, *command):
+    """By another on the same volume, with another address."""
+    server.remove_but_keep_data()
+    return self.server(*command, volume=server.volume)
+
+  def scene(self, quads, name="grid.obj"):
+    """A file with a lamp over a floor of so many quads."""
+    side = round(quads ** 0.5)
+    lines = ["mtllib grid.mtl", "v 0 0 9", "v 0 1 9", "v 1 1 9", "v 1 0 9", "usemtl lamp", "f 1 2 3 4", "usemtl grey"]
+    lines += [f"v {x} {y} 0" for y in range(side + 1) for x in range(side + 1)]
+    for y in range(side):
+      for x in range(side):
+        a = 5 + y * (side + 1) + x
+        lines.append(f"f {a} {a + 1} {a + side + 2} {a + side + 1}")
+    (self.folder / "grid.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
+    (self.folder / name).write_text("\n".join(lines) + "\n")
+    return f"/out/{name}"
+
+  def remove(self):
+    for host in reversed(self.hosts):
+      host.remove()
+    for volume in set(self.volumes):
+      podman("volume", "rm", "--force", volume)
+
+
+def alvor(desk, *words, server="server:50051", check=True, timeout=120):
+  """Types a command at a desk. Returns its exit status, and what it printed and complained."""
+  done = subprocess.run(["podman", "exec", desk.name, "alvor", *map(str, words), "--server", server],
+                        capture_output=True, text=True, timeout=timeout)
+  assert not check or done.returncode == 0, f"alvor {' '.join(map(str, words))}: {done.returncode}\n{done.stderr}"
+  return done.returncode, done.stdout, done.stderr
+
+
+def solves(desk, **more):
+  """Newest first."""
+  return json.loads(alvor(desk, "solves", "list", "--json", **more)[1])
+
+
+def the_solve(desk, seconds=20):
+  """The name of the only one, once it is there."""
+  until(lambda: solves(desk), seconds, "there is a solve")
+  return solves(desk)[0]["name"]
+
+
+def solve(desk, name):
+  return json.loads(alvor(desk, "solves", "get", name, "--json")[1])
+
+
+@pytest.fixture(scope="session", autouse=True)
+def network():
+  podman("network", "create", NETWORK)
+  yield
+  podman("network", "rm", "--force", NETWORK)
+
+
+@pytest.fixture
+def world(tmp_path):
+  made = World(tmp_path)
+  yield made
+  if os.environ.get("ALVOR_SHOW_LOGS"):
+    for host in made.hosts:
+      print(f"---- {host.name}\n{host.log()}")
+  made.remove()
+
+
+ROWS = []
+
+
+@pytest.fixture
+def observed(request):
+  """Say what was observed: a list of texts."""
+  seen = []
+  begin = time.monotonic()
+  yield seen
+  scenario, promise = " ".join(request.node.function.__doc__.split()).split(": ", 1)
+  held = request.node.passed if hasattr(request.node, "passed") else False
+  ROWS.append((scenario.format(**getattr(getattr(request.node, "callspec", None), "params", {})), promise,
+               "; ".join(seen) if held else "NOT HELD", round(time.monotonic() - begin)))
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item, call):
+  report = (yield).get_result()
+  if report.when == "call":
+    item.passed = report.passed
+
+
+def pytest_sessionfinish(session):
+  path = session.config.getoption("--table")
+  if not path or not ROWS:
+    return
+  lines = ["| scenario | promise | observed | s |", "|---|---|---|---|"]
+  lines += [f"| {scenario} | {promise} | {seen} | {seconds} |" for scenario, promise, seen, seconds in ROWS]
+  pathlib.Path(path).write_text("\n" + "\n".join(lines) + "\n\n")

@@ -1,0 +1,49 @@
+"""The images as they ship."""
+
+import subprocess
+
+from hosts import podman, run, until
+
+
+def test_images(world, observed):
+  """Images: are small, run as nobody in particular on a read-only root, tell their health and stop when asked."""
+  sizes = {}
+  for image in ("alvor-server", "alvor-client"):
+    sizes[image] = int(podman("image", "inspect", "--format", "{{.Size}}", image)) / 1e6
+    assert podman("image", "inspect", "--format", "{{.User}}", image) == "10001:10001"
+  assert sizes["alvor-server"] <= 250
+  for tool in ("g++", "cmake", "npm"):
+    found = podman("run", "--rm", "--entrypoint", "sh", "alvor-server", "-c", f"command -v {tool}", check=False)
+    assert found == "", f"{tool} is in the image"
+  server = world.server()
+  writing = subprocess.run(["podman", "exec", server.name, "touch", "/x"], capture_output=True, text=True)
+  assert "Read-only" in writing.stderr
+  assert server.is_healthy()
+  assert server.stop() == 0
+  assert not server.is_healthy()
+  observed.append(f"server {sizes['alvor-server']:.0f} MB, client {sizes['alvor-client']:.0f} MB; SIGTERM: exit status 0")
+
+
+def test_refuses_to_be_open_by_accident(world, observed):
+  """Image without options: does not take calls of others without TLS."""
+  said = subprocess.run(["podman", "run", "--rm", "alvor-server"], capture_output=True, text=True, timeout=60)
+  assert said.returncode == 2 and "--insecure" in said.stderr
+  observed.append("exit status 2, and says what to do")
+
+
+def test_compose(tmp_path, observed):
+  """docker/compose.yaml: server, page, metrics, and a client that writes pictures, as it stands."""
+  compose = ["podman-compose", "--project-name", "alvor-compose", "--file", "docker/compose.yaml"]
+  try:
+    run(*compose, "up", "--detach", "--no-build", timeout=120)
+    client = podman("ps", "--all", "--filter", "name=alvor-compose_client", "--format", "{{.Names}}")
+    until(lambda: podman("inspect", "--format", "{{.State.Status}}", client) == "exited", 60, "the client ends")
+    assert podman("inspect", "--format", "{{.State.ExitCode}}", client) == "0", podman("logs", client)
+    podman("cp", f"{client}:/out", tmp_path)
+    pictures = list(tmp_path.glob("out/film/*.png"))
+    assert len(pictures) > 5 and (tmp_path / "out/cornell_box.glb").exists()
+    assert "<title>" in run("curl", "--silent", "--fail", "http://127.0.0.1:8080/")
+    assert "alvor_scenes 1" in run("curl", "--silent", "--fail", "http://127.0.0.1:9464/metrics")
+    observed.append(f"{len(pictures)} pictures and a GLB; page and metrics answer")
+  finally:
+    run(*compose, "down", "--volumes", timeout=120, check=False)
