@@ -35,6 +35,8 @@ class Client {
 
   /// False if no connection was made within `patience`.
   bool wait_until_connected(std::chrono::milliseconds patience) const;
+  /// The server has gone, or is going and cancels what it still has: only then it does so by itself.
+  static bool is_lost(const RpcError& error) { return error.code == grpc::UNAVAILABLE || error.code == grpc::CANCELLED; }
   /// Runs `body` once more where it threw that the server could not be reached, and again, until that has gone on for as long as
   /// this client is patient: a server that hangs up every time is as good as none. For what may be sent twice. `body` may say
   /// that it got on.
@@ -44,7 +46,7 @@ class Client {
         if constexpr (std::is_invocable_v<Body, Patience&>) return body(patience);
         else return body();
       } catch (const RpcError& error) {
-        if (error.code != grpc::UNAVAILABLE || !patience.wait()) throw;
+        if (!is_lost(error) || !patience.wait()) throw;
       }
   }
   /// With a server that does not answer.

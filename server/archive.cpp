@@ -17,6 +17,7 @@ namespace alvor {
 namespace {
 
 constexpr int version = 1;
+constexpr std::int64_t bytes_of_ballast = 4 << 20;  // as much as waits in the write-ahead log at most
 const std::string place = "the server's data directory: ";
 enum Kind { log_of = 0, state_of = 1 };
 
@@ -46,6 +47,32 @@ std::string reason_of(const SQLite::Exception& fault) {
     case SQLITE_NOTADB: return "alvor.db in it is no database";
     case SQLITE_CORRUPT: return "alvor.db in it is damaged";
     default: return fault.what();
+  }
+}
+
+/// Makes it where there is none.
+std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& directory) {
+  const std::string at = "--data: '" + directory.string() + "': ";
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw std::invalid_argument(at + failed.message());
+  try {
+    auto database =
+        std::make_unique<SQLite::Database>((directory / "alvor.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    // A lock for as long as the database is open: two servers must not resume the same solves. What is deleted is not written
+    // over: that would take as much room as it had.
+    database->exec(
+        "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; "
+        "PRAGMA secure_delete = FAST;");
+    const int found = database->execAndGet("PRAGMA user_version").getInt();
+    if (found > version) throw std::invalid_argument(at + "was written by a newer version of alvord");
+    SQLite::Transaction change(*database, SQLite::TransactionBehavior::IMMEDIATE);
+    if (found == 0) database->exec(schema);
+    database->exec("PRAGMA user_version = " + std::to_string(version));
+    change.commit();
+    return database;
+  } catch (const SQLite::Exception& fault) {
+    throw std::invalid_argument(at + reason_of(fault));
   }
 }
 
@@ -111,28 +138,9 @@ auto Archive::guarded(Body&& body) {
   }
 }
 
-Archive::Archive(const std::filesystem::path& directory) : alive_(directory / "alive") {
-  const auto refuse = [&](const std::string& reason) {
-    throw std::invalid_argument("--data: '" + directory.string() + "': " + reason);
-  };
+Archive::Archive(const std::filesystem::path& directory)
+    : alive_(directory / "alive"), database_(open_database(directory)), ballast_(directory / "ballast", bytes_of_ballast) {
   std::error_code failed;
-  std::filesystem::create_directories(directory, failed);
-  if (failed) refuse(failed.message());
-  try {
-    database_ =
-        std::make_unique<SQLite::Database>((directory / "alvor.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    // A lock for as long as the database is open: two servers must not resume the same solves.
-    database_->exec(
-        "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
-    const int found = database_->execAndGet("PRAGMA user_version").getInt();
-    if (found > version) refuse("was written by a newer version of alvord");
-    SQLite::Transaction change(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-    if (found == 0) database_->exec(schema);
-    database_->exec("PRAGMA user_version = " + std::to_string(version));
-    change.commit();
-  } catch (const SQLite::Exception& fault) {
-    refuse(reason_of(fault));
-  }
   const auto last = std::filesystem::last_write_time(alive_, failed);
   if (!failed)
     seen_alive_ = std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(last));
@@ -234,8 +242,22 @@ Scene Archive::content(const std::string& sha256) {
   });
 }
 
+/// On a full disk the ballast gives the room.
+template <class Body>
+void Archive::guarded_without_room(Body&& body) {
+  try {
+    return guarded(body);
+  } catch (const StatusError& refusal) {
+    if (refusal.code != grpc::RESOURCE_EXHAUSTED) throw;
+  }
+  ballast_.drop();
+  guarded(body);
+  guarded([](SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(TRUNCATE)"); });
+  ballast_.take_up();
+}
+
 void Archive::remove_scene(std::uint64_t number) {
-  guarded([&](SQLite::Database& database) {
+  guarded_without_room([&](SQLite::Database& database) {
     SQLite::Transaction change(database, SQLite::TransactionBehavior::IMMEDIATE);
     SQLite::Statement remove(database, "DELETE FROM scenes WHERE number = ?");
     remove.bind(1, key(number));
@@ -312,7 +334,7 @@ void Archive::update(const SolveRow& row, const Checkpoint& checkpoint) {
 }
 
 void Archive::remove_solve(std::uint64_t number) {
-  guarded([&](SQLite::Database& database) {
+  guarded_without_room([&](SQLite::Database& database) {
     SQLite::Statement remove(database, "DELETE FROM solves WHERE number = ?");
     remove.bind(1, key(number));
     remove.exec();

@@ -4,6 +4,7 @@
 #include "alvor/v1/scene_service.pb.h"
 #include "alvor/v1/solve_service.pb.h"
 #include "meshing/scene.h"
+#include "server/ballast.h"
 #include "server/status_error.h"
 
 #include <chrono>
@@ -61,6 +62,7 @@ class Archive {
   /// Content that is there already, known by facts.content_sha256, is not kept twice.
   void add(const SceneRow& row, const Scene& content);
   Scene content(const std::string& sha256);
+  /// Also where the disk is full.
   void remove_scene(std::uint64_t number);
 
   /// Of a scene that was added.
@@ -79,6 +81,8 @@ class Archive {
  private:
   template <class Body>
   auto guarded(Body&& body);
+  template <class Body>
+  void guarded_without_room(Body&& body);
   void put_facts(const SolveRow& row);
   void put_pieces(std::uint64_t solve, int kind, const std::vector<std::string>& pieces);
   std::vector<std::byte> pieces(std::uint64_t solve, int kind);
@@ -86,6 +90,7 @@ class Archive {
   const std::filesystem::path alive_;
   std::mutex lock_;
   std::unique_ptr<SQLite::Database> database_;
+  const Ballast ballast_;
   std::optional<std::chrono::system_clock::time_point> seen_alive_;
 };
 

@@ -7,6 +7,7 @@ namespace {
 ExitStatus status_of(grpc::StatusCode code) {
   switch (code) {
     case grpc::StatusCode::UNAVAILABLE:
+    case grpc::StatusCode::CANCELLED:
     case grpc::StatusCode::DEADLINE_EXCEEDED: return ExitStatus::unreachable;
     case grpc::StatusCode::INVALID_ARGUMENT: return ExitStatus::usage;
     case grpc::StatusCode::NOT_FOUND: return ExitStatus::bad_scene;

@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import os
 import pathlib
 import subprocess
 import time
@@ -10,7 +9,7 @@ import urllib.request
 
 import pytest
 
-from hosts import NETWORK, SHIPPED, Host, podman, run, until
+from hosts import NETWORK, Host, podman, until
 
 SCENES = "/usr/local/share/alvor/scenes"
 
@@ -20,12 +19,12 @@ def pytest_addoption(parser):
 
 
 class Server(Host):
-  """alvord on a volume of its own, which a later one may take over."""
+  """alvord, on a volume that a later one finds as it was left."""
+  VOLUME = "alvor-test-data"
 
-  def __init__(self, name, *command, options=(), volume=None):
-    self.volume = volume or f"{name}-data"
-    storage = ["--volume", f"{self.volume}:/var/lib/alvor"]
-    super().__init__(name, "alvor-server", ["--metrics", "0.0.0.0:9464", *command], [*storage, *options])
+  def __init__(self, *command, options=()):
+    storage = ["--volume", f"{self.VOLUME}:/var/lib/alvor"]
+    super().__init__("server", "alvor-server", ["--metrics", "0.0.0.0:9464", *command], [*storage, *options])
     self.await_health()
 
   def await_health(self):
@@ -61,13 +60,12 @@ class World:
     self.folder = folder
     self.folder.chmod(0o777)
     self.hosts = []
-    self.volumes = []
     self.numbers = itertools.count(1)
 
-  def server(self, *command, plaintext=True, name="server", **more):
-    made = Server(name, *(["--insecure"] if plaintext else []), *command, **more)
+  def server(self, *command, **more):
+    """There is one at a time."""
+    made = Server(*command, **more)
     self.hosts.append(made)
-    self.volumes.append(made.volume)
     return made
 
   def client(self, *command, **more):
@@ -79,14 +77,8 @@ class World:
     """A host whose user types commands."""
     return self.client("infinity", options=["--entrypoint", "sleep", *options])
 
-  def replace(self, server, *command):
-    """By another on the same volume, with another address."""
-    server.remove_but_keep_data()
-    return self.server(*command, volume=server.volume)
-
-  def scene(self, quads, name="grid.obj"):
-    """A file with a lamp over a floor of so many quads."""
-    side = round(quads ** 0.5)
+  def scene(self, side, name="grid.obj"):
+    """A file with a lamp over a floor of side x side quads."""
     lines = ["mtllib grid.mtl", "v 0 0 9", "v 0 1 9", "v 1 1 9", "v 1 0 9", "usemtl lamp", "f 1 2 3 4", "usemtl grey"]
     lines += [f"v {x} {y} 0" for y in range(side + 1) for x in range(side + 1)]
     for y in range(side):
@@ -100,8 +92,7 @@ class World:
   def remove(self):
     for host in reversed(self.hosts):
       host.remove()
-    for volume in set(self.volumes):
-      podman("volume", "rm", "--force", volume)
+    podman("volume", "rm", "--force", Server.VOLUME)
 
 
 def alvor(desk, *words, server="server:50051", check=True, timeout=120):
@@ -129,18 +120,18 @@ def solve(desk, name):
 
 @pytest.fixture(scope="session", autouse=True)
 def network():
-  podman("network", "create", NETWORK)
+  podman("network", "create", "--disable-dns", NETWORK)
   yield
   podman("network", "rm", "--force", NETWORK)
 
 
 @pytest.fixture
-def world(tmp_path):
+def world(tmp_path, request):
   made = World(tmp_path)
   yield made
-  if os.environ.get("ALVOR_SHOW_LOGS"):
+  if not request.node.passed:
     for host in made.hosts:
-      print(f"---- {host.name}\n{host.log()}")
+      print(f"---- {host.name}\n{host.log()[-3000:]}")
   made.remove()
 
 
@@ -154,9 +145,8 @@ def observed(request):
   begin = time.monotonic()
   yield seen
   scenario, promise = " ".join(request.node.function.__doc__.split()).split(": ", 1)
-  held = request.node.passed if hasattr(request.node, "passed") else False
   ROWS.append((scenario.format(**getattr(getattr(request.node, "callspec", None), "params", {})), promise,
-               "; ".join(seen) if held else "NOT HELD", round(time.monotonic() - begin)))
+               "; ".join(seen) if request.node.passed else "NOT HELD", round(time.monotonic() - begin)))
 
 
 @pytest.hookimpl(hookwrapper=True)

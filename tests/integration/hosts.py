@@ -1,11 +1,12 @@
 """Hosts on a private network, which are containers, and what may befall them. Needs root."""
 
 import contextlib
+import ipaddress
 import json
 import subprocess
 import time
 
-NETWORK = "alvor-test"
+NETWORK = "alvor-test"  # without its own name service: podman's (aardvark-dns 1.4) is silent for seconds whenever a container comes or goes
 SHIPPED = ["--read-only", "--read-only-tmpfs=false", "--cap-drop=all", "--security-opt=no-new-privileges"]
 
 
@@ -30,12 +31,20 @@ def until(condition, seconds, what):
   return time.monotonic() - begin
 
 
+def server_address():
+  """Of the host that all others know as `server`."""
+  subnet = json.loads(podman("network", "inspect", NETWORK))[0]["subnets"][0]["subnet"]
+  return str(ipaddress.ip_network(subnet)[200])
+
+
 class Host:
   """A container. `options` are podman's, `command` is what its image's program is told."""
 
   def __init__(self, name, image, command=(), options=()):
     self.name = name
-    podman("run", "--detach", "--name", name, "--network", NETWORK, *SHIPPED, *options, image, *command)
+    # The same card too: others remember it with the address for half a minute.
+    address = ["--ip", server_address(), "--mac-address", "02:00:00:00:00:01"] if name == "server" else ["--add-host", f"server:{server_address()}"]
+    podman("run", "--detach", "--name", name, "--network", NETWORK, *address, *SHIPPED, *options, image, *command)
 
   def inspect(self, field):
     return podman("inspect", "--format", "{{" + field + "}}", self.name)
@@ -68,11 +77,8 @@ class Host:
   def start(self):
     podman("start", self.name)
 
-  def remove_but_keep_data(self):
-    podman("rm", "--force", "--ignore", "--time", 0, self.name)
-
   def remove(self):
-    podman("rm", "--force", "--ignore", "--time", 0, "--volumes", self.name)
+    podman("rm", "--force", "--ignore", "--time", 0, self.name)
 
   @contextlib.contextmanager
   def paused(self):

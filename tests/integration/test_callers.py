@@ -39,7 +39,7 @@ def test_tls_and_tokens(world, observed):
   tokens(world.folder, "ann")
   (world.folder / "wrong.token").write_text("secret of nobody\n")
   mount = [f"--volume={world.folder}:/tls:ro"]
-  server = world.server(*TLS, "--tokens", "/tls/tokens", plaintext=False, options=mount)
+  server = world.server(*TLS, "--tokens", "/tls/tokens", options=mount)
   desk = world.desk()
   asked = lambda *options: alvor(desk, "scenes", "list", *options, check=False)
   assert asked(*as_tenant("ann"))[0] == 0
@@ -48,9 +48,8 @@ def test_tls_and_tokens(world, observed):
   assert asked("--tls-ca", "/out/server.pem")[0] == 5
   assert wrong_certificate[0] == 4
   assert asked()[0] == 4, "plaintext"
-  server.remove_but_keep_data()
-  world.server("--tls-cert", "/tls/expired.pem", "--tls-key", "/tls/expired.key", plaintext=False, options=mount, name="server",
-               volume=server.volume)
+  server.remove()
+  world.server("--tls-cert", "/tls/expired.pem", "--tls-key", "/tls/expired.key", options=mount)
   assert asked("--tls-ca", "/out/expired.pem")[0] == 4
   observed.append("wrong token, none: 5; wrong certificate, expired certificate, plaintext: 4; with the right ones: 0")
 
@@ -59,7 +58,7 @@ def test_quotas(world, observed):
   """Two tenants at their quotas: each is refused beyond its own, neither sees nor stops the other."""
   certificate(world.folder, "server")
   tokens(world.folder, "ann", "bob")
-  world.server(*TLS, "--tokens", "/tls/tokens", "--quota-scenes", "2", plaintext=False, options=[f"--volume={world.folder}:/tls:ro"])
+  world.server(*TLS, "--tokens", "/tls/tokens", "--quota-scenes", "2", options=[f"--volume={world.folder}:/tls:ro"])
   desk = world.desk()
   submit = lambda who, scene: alvor(desk, "solve", f"{SCENES}/{scene}.obj", "--max-depth", 0, *as_tenant(who), check=False)
   for who in ("ann", "bob"):
@@ -79,15 +78,15 @@ def test_clock_skew(world, observed):
   skewed = lambda days: [f"--volume={FAKETIME}:/faketime:ro", "--env=LD_PRELOAD=/faketime/libfaketimeMT.so.1", f"--env=FAKETIME={days:+}d",
                          "--env=FAKETIME_DONT_FAKE_MONOTONIC=1"]
   mount = f"--volume={world.folder}:/tls:ro"
-  server = world.server(*TLS, plaintext=False, options=[mount, *skewed(1)])
+  server = world.server(*TLS, options=[mount, *skewed(1)])
   desk = world.desk()
   trusted = ["--tls-ca", "/out/server.pem"]
   command = ["solve", f"{SCENES}/cornell_box.obj", "--tolerance", "0.02"]
   alvor(desk, *command, "-o", "ahead.glb", *trusted)
   slow = world.client(*command, "--pace", "0.5", "--server", "server:50051", *trusted, "-o", "slow.glb", options=skewed(-1))
   assert server.stop() == 0
-  server.remove_but_keep_data()
-  world.server(*TLS, plaintext=False, options=[mount, *skewed(-1)], name="server", volume=server.volume)
+  server.remove()
+  world.server(*TLS, options=[mount, *skewed(-1)])
   assert slow.wait(90) == 0
   both = json.loads(alvor(desk, "solves", "list", "--json", *trusted)[1])
   assert all(0 <= each["work_lost_s"] < 30 and 0 < each["elapsed_s"] < 60 for each in both), both

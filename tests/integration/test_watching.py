@@ -25,7 +25,7 @@ def start_slow_solve(world, seconds, *options):
 
 def test_remote_solve(world, observed):
   """Remote submission: a scene solved on another host gives the same bytes as at home."""
-  world.server()
+  world.server("--insecure")
   desk = world.desk()
   alvor(desk, "solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.05", "-o", "remote.glb")
   local = world.client("solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.05", "-o", "local.glb")
@@ -36,7 +36,7 @@ def test_remote_solve(world, observed):
 
 def test_three_watchers(world, observed):
   """Three watchers, one joining late: all have the same bytes at the end."""
-  world.server()
+  world.server("--insecure")
   own = start_slow_solve(world, 12)
   desk = world.desk()
   name = the_solve(desk)
@@ -52,7 +52,7 @@ def test_three_watchers(world, observed):
 
 def test_killed_server(world, observed):
   """Server killed (-9) mid-solve and started again: the solve goes on, watchers come back by themselves, nothing acknowledged is lost."""
-  server = world.server("--checkpoint-interval", "0.5")
+  server = world.server("--insecure", "--checkpoint-interval", "0.5")
   own = start_slow_solve(world, 20)
   desk = world.desk()
   name = the_solve(desk)
@@ -80,7 +80,7 @@ def lag_is_gone(server, watchers):
 @pytest.mark.parametrize("seconds,limit", [(5, 10), (60, 10)])
 def test_cut_cable(world, observed, seconds, limit):
   """Network cut for {seconds} s: the watcher has caught up within 10 s, and the solver did not wait for it."""
-  server = world.server()
+  server = world.server("--insecure")
   own = start_slow_solve(world, seconds + 30)
   desk = world.desk()
   name = the_solve(desk)
@@ -102,7 +102,7 @@ def test_cut_cable(world, observed, seconds, limit):
 
 def test_paused_client(world, observed):
   """Client container paused for 30 s: it goes on from where it was, and others do not notice."""
-  server = world.server()
+  server = world.server("--insecure")
   own = start_slow_solve(world, 60)
   desk = world.desk()
   name = the_solve(desk)
@@ -119,7 +119,7 @@ def test_paused_client(world, observed):
 
 def test_poor_link(world, observed):
   """Link of 1 MB/s that loses 5 %: the watcher ends with the same bytes, and the solver does not slow."""
-  world.server()
+  world.server("--insecure")
   desk = world.desk()
   command = ["solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.02"]
   alvor(desk, *command)
