@@ -89,6 +89,10 @@ class World:
     (self.folder / name).write_text("\n".join(lines) + "\n")
     return f"/out/{name}"
 
+  def show_logs(self):
+    for host in self.hosts:
+      print(f"---- {host.name}\n{host.log()[-3000:]}")
+
   def remove(self):
     for host in reversed(self.hosts):
       host.remove()
@@ -130,23 +134,27 @@ def world(tmp_path, request):
   made = World(tmp_path)
   yield made
   if not request.node.passed:
-    for host in made.hosts:
-      print(f"---- {host.name}\n{host.log()[-3000:]}")
+    made.show_logs()
   made.remove()
 
 
 ROWS = []
 
 
+class Observed(list):
+  """Texts, and how long it took if not as long as the test."""
+  seconds = None
+
+
 @pytest.fixture
 def observed(request):
-  """Say what was observed: a list of texts."""
-  seen = []
+  """Say here what was observed."""
+  seen = Observed()
   begin = time.monotonic()
   yield seen
   scenario, promise = " ".join(request.node.function.__doc__.split()).split(": ", 1)
-  ROWS.append((scenario.format(**getattr(getattr(request.node, "callspec", None), "params", {})), promise,
-               "; ".join(seen) if request.node.passed else "NOT HELD", round(time.monotonic() - begin)))
+  ROWS.append((scenario, promise, "; ".join(seen) if request.node.passed else "NOT HELD",
+               round(seen.seconds or time.monotonic() - begin)))
 
 
 @pytest.hookimpl(hookwrapper=True)

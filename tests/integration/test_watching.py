@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from conftest import SCENES, alvor, solve, solves, the_solve
+from conftest import SCENES, World, alvor, solve, solves, the_solve
 from hosts import until
 
 
@@ -17,10 +17,10 @@ def start_watching(world, name, out, **more):
   return world.client("watch", name, "--server", "server:50051", "-o", out, **more)
 
 
-def start_slow_solve(world, seconds, *options):
-  """Of the Cornell box, with a pause after each of its steps, of which there are about twenty."""
-  return world.client("solve", f"{SCENES}/cornell_box.obj", "--server", "server:50051", "--tolerance", "0.01", "--pace",
-                      seconds / 20, "-o", "own.glb", *options)
+def start_slow_solve(world, seconds, scene="cornell_box", tolerance=0.01, steps=20):
+  """With a pause after each of its steps, of which there are about as many."""
+  return world.client("solve", f"{SCENES}/{scene}.obj", "--server", "server:50051", "--tolerance", tolerance, "--pace", seconds / steps,
+                      "-o", "own.glb")
 
 
 def test_remote_solve(world, observed):
@@ -53,12 +53,12 @@ def test_three_watchers(world, observed):
 def test_killed_server(world, observed):
   """Server killed (-9) mid-solve and started again: the solve goes on, watchers come back by themselves, nothing acknowledged is lost."""
   server = world.server("--insecure", "--checkpoint-interval", "0.5")
-  own = start_slow_solve(world, 20)
+  own = start_slow_solve(world, 15)
   desk = world.desk()
   name = the_solve(desk)
   watcher = start_watching(world, name, "watched.glb")
   before = alvor(desk, "scenes", "list", "--json")[1]
-  until(lambda: server.metric("alvor_checkpoints_total") >= 2, 20, "there are checkpoints")
+  until(lambda: server.metric("alvor_checkpoints_total") >= 5, 20, "there are checkpoints")
   server.kill()
   time.sleep(8)
   server.start()
@@ -77,51 +77,77 @@ def lag_is_gone(server, watchers):
   return server.metric("alvor_watchers") == watchers and server.metric("alvor_watcher_lag_revisions") <= 1
 
 
-@pytest.mark.parametrize("seconds,limit", [(5, 10), (60, 10)])
-def test_cut_cable(world, observed, seconds, limit):
-  """Network cut for {seconds} s: the watcher has caught up within 10 s, and the solver did not wait for it."""
-  server = world.server("--insecure")
-  own = start_slow_solve(world, seconds + 30)
-  desk = world.desk()
-  name = the_solve(desk)
-  watcher = start_watching(world, name, "watched.glb")
-  until(lambda: lag_is_gone(server, 2), 10, "both watch")
-  revision_before = solve(desk, name)["shots"]
-  with watcher.cable_pulled():
-    time.sleep(seconds)
-    assert solve(desk, name)["shots"] > revision_before, "the solve goes on"
-  caught_up = until(lambda: lag_is_gone(server, 2), limit, "the watcher has caught up")
-  assert solve(desk, name)["state"] == "RUNNING"
-  assert own.wait(60) == 0 and watcher.wait(30) == 0
-  assert digest(world, "own.glb") == digest(world, "watched.glb")
-  alvor(desk, "solve", f"{SCENES}/cornell_box.obj", "--tolerance", "0.01", "--pace", "0.01")
-  cut, alone = (each["elapsed_s"] for each in reversed(solves(desk)))
-  assert cut < 1.5 * alone, "the solver's own time, pauses not counted"
-  observed.append(f"caught up after {caught_up:.1f} s; equal files; solver's time {cut / alone:.2f} of one without watchers that are cut")
+@pytest.fixture(scope="module")
+def troubled(tmp_path_factory):
+  """One solve of a minute and a half, and what became of three that watched it: of one the cable was cut for a minute, of one for 5 s, and one
+  was paused for 30 s, while a solve that is the same in all but that goes unwatched."""
+  world, begin = World(tmp_path_factory.mktemp("troubled")), time.monotonic()
+  try:
+    return {**trouble(world), "seconds": time.monotonic() - begin}
+  except Exception:
+    world.show_logs()
+    raise
+  finally:
+    world.remove()
 
 
-def test_paused_client(world, observed):
-  """Client container paused for 30 s: it goes on from where it was, and others do not notice."""
+def trouble(world):
   server = world.server("--insecure")
-  own = start_slow_solve(world, 60)
-  desk = world.desk()
-  name = the_solve(desk)
-  watcher = start_watching(world, name, "watched.glb")
-  until(lambda: lag_is_gone(server, 2), 10, "both watch")
-  with watcher.paused():
-    time.sleep(30)
-    assert server.metric("alvor_watchers") == 1, "the server has given it up"
-  caught_up = until(lambda: lag_is_gone(server, 2), 10, "the watcher has caught up")
-  assert own.wait(60) == 0 and watcher.wait(30) == 0
-  assert digest(world, "own.glb") == digest(world, "watched.glb")
-  observed.append(f"given up by the server after 15 s, back {caught_up:.1f} s after it woke; equal files")
+  slow = lambda: start_slow_solve(world, 85, "enfilade", 0.03, 44)
+  desk, unwatched = world.desk(), slow()
+  alone = the_solve(desk)
+  unwatched.kill()
+  own = slow()
+  until(lambda: len(solves(desk)) == 2, 20, "both are there")
+  name = solves(desk)[0]["name"]
+  cut, short, paused = (start_watching(world, name, f"{file}.glb") for file in ("cut", "short", "paused"))
+  seen = {}
+  until(lambda: lag_is_gone(server, 4), 10, "all watch")
+  shots = solve(desk, name)["shots"]
+  with cut.cable_pulled():
+    begin = time.monotonic()
+    with paused.paused():
+      time.sleep(30)
+      seen["given up"] = server.metric("alvor_watchers") == 2
+    seen["paused"] = until(lambda: lag_is_gone(server, 3), 10, "the one that was paused has caught up")
+    with short.cable_pulled():
+      time.sleep(5)
+    seen["short"] = until(lambda: lag_is_gone(server, 3), 10, "the one that was cut off for 5 s has caught up")
+    time.sleep(max(0, begin + 60 - time.monotonic()))
+    seen["went on"] = solve(desk, name)["shots"] > shots
+  seen["cut"] = until(lambda: lag_is_gone(server, 4), 10, "the one that was cut off for 60 s has caught up")
+  seen["was running"] = solve(desk, name)["state"] == "RUNNING"
+  assert [host.wait(60) for host in (own, cut, short, paused)] == [0] * 4
+  until(lambda: solve(desk, alone)["state"] == "SUCCEEDED", 20, "the other has ended")
+  seen["slower"] = solve(desk, name)["elapsed_s"] / solve(desk, alone)["elapsed_s"]
+  seen["equal"] = {file: digest(world, f"{file}.glb") == digest(world, "own.glb") for file in ("cut", "short", "paused")}
+  return seen
+
+
+def test_cut_for_5_s(troubled, observed):
+  """Network cut for 5 s: the watcher has caught up within 10 s, and has the same bytes at the end."""
+  assert troubled["equal"]["short"]
+  observed.seconds = troubled["seconds"]
+  observed.append(f"caught up after {troubled['short']:.1f} s; equal files; the seconds are those of the next two too")
+
+
+def test_cut_for_60_s(troubled, observed):
+  """Network cut for 60 s: the same, and the solver does not wait: its own time is less than half more than that of one that nobody watches."""
+  assert troubled["equal"]["cut"] and troubled["went on"] and troubled["was running"] and troubled["slower"] < 1.5
+  observed.append(f"caught up after {troubled['cut']:.1f} s; equal files; the solver's time {troubled['slower']:.2f} of the other's")
+
+
+def test_paused_client(troubled, observed):
+  """Client container paused for 30 s: the server gives it up, it goes on from where it was, and has the same bytes at the end."""
+  assert troubled["equal"]["paused"] and troubled["given up"]
+  observed.append(f"caught up {troubled['paused']:.1f} s after it woke; equal files")
 
 
 def test_poor_link(world, observed):
   """Link of 1 MB/s that loses 5 %: the watcher ends with the same bytes, and the solver does not slow."""
   world.server("--insecure")
   desk = world.desk()
-  command = ["solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.02"]
+  command = ["solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.03"]
   alvor(desk, *command)
   poor = world.client("infinity", options=["--entrypoint", "sleep"])
   poor.slow_down(1, 0.05)
