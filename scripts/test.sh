@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Sets up the machine, builds everything, runs all tests, those in a browser too, and feeds made-up bytes to what reads foreign ones.
+# Sets up the machine, builds everything, runs all tests, those in a browser too, feeds made-up bytes to what reads foreign ones, and pulls plugs in
+# containers where it can.
 # Arguments go to CTest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,3 +11,4 @@ scripts/build_page.sh
 ctest --preset release "$@"
 (cd client/web && npm run --silent test && npm run --silent test:browser)
 scripts/fuzz.sh 20 1
+scripts/test-containers.sh

@@ -17,13 +17,25 @@ HealthPort::HealthPort(const std::string& address) {
   grpc::ServerBuilder builder;
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port_);
+  unused_ = builder.AddCompletionQueue();
   server_ = builder.BuildAndStart();
-  if (!server_ || port_ == 0)
+  if (!server_ || port_ == 0) {
+    drain();
     throw std::invalid_argument("--health: cannot listen on " + address + ": the address is in use or not of this machine");
+  }
   set_serving(*server_, false);
 }
 
-HealthPort::~HealthPort() { server_->Shutdown(std::chrono::system_clock::now()); }
+HealthPort::~HealthPort() {
+  server_->Shutdown(std::chrono::system_clock::now());
+  drain();
+}
+
+void HealthPort::drain() {
+  unused_->Shutdown();
+  void* tag = nullptr;
+  for (bool ok = false; unused_->Next(&tag, &ok);) {}
+}
 
 void set_serving(grpc::Server& server, bool is_serving) {
   grpc::HealthCheckServiceInterface& service = *server.GetHealthCheckService();

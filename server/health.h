@@ -1,6 +1,7 @@
 #pragma once
 // Whether the server takes calls (grpc.health.v1), for those who ask it in order to restart it or to send no more clients.
 
+#include <grpcpp/completion_queue.h>
 #include <grpcpp/server.h>
 
 #include <memory>
@@ -22,7 +23,10 @@ class HealthPort {
   int port() const { return port_; }
 
  private:
+  void drain();
+
   int port_ = 0;
+  std::unique_ptr<grpc::ServerCompletionQueue> unused_;  ///< gRPC wants one where no service of ours does
   std::unique_ptr<grpc::Server> server_;
 };
 

@@ -184,6 +184,18 @@ std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server&
   return front;
 }
 
+std::string with_port(const std::string& address, int port) {
+  return address.substr(0, address.rfind(':') + 1) + std::to_string(port);
+}
+
+// Null without an address.
+std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, spdlog::logger& logger) {
+  if (address.empty()) return nullptr;
+  auto health = std::make_unique<alvor::HealthPort>(address);
+  logger.info("health on {}", with_port(address, health->port()));
+  return health;
+}
+
 int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
   alvor::ServiceOptions service_options;
   service_options.solves.max_running = options.max_solves;
@@ -203,11 +215,11 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   }
   const auto exposer = expose(options.metrics, service);
   const auto web = serve_web(options, *server, *logger);
-  const auto health = options.health.empty() ? nullptr : std::make_unique<alvor::HealthPort>(options.health);
+  const auto health = serve_health(options.health, *logger);
   alvor::set_serving(*server, true);
   if (health) alvor::set_serving(health->server(), true);
   const Heartbeat heartbeat(archive.get());
-  logger->info("listening on {}:{}", options.listen.address.substr(0, options.listen.address.rfind(':')), port);
+  logger->info("listening on {}", with_port(options.listen.address, port));
   logger->info("stopping: {}", wait_for_stop(signals));
   stop(service, *server, health.get());
   logger->info("stopped");

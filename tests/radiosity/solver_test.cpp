@@ -142,6 +142,21 @@ TEST(Solver, StrategyThatCannotBringTheLightRoundSaysSo) {
   EXPECT_EQ(solve(mesh, {}, log, {}).reason, StopReason::tolerance);
 }
 
+TEST(Solver, ShortOfMemoryItEndsWithTheLastStepThatItPublished) {
+  const BaseMesh mesh(lit_room());
+  SolutionLog log;
+  std::stop_source memory;
+  const auto handle = log.listen([&] {
+    if (log.head() == 6) memory.request_stop();
+  });
+  SolveControl control;
+  control.short_of_memory = memory.get_token();
+  const SolveOptions options;
+  EXPECT_EQ(solve_as_planned(mesh, Plan(mesh, options), options, log, control).reason, StopReason::memory);
+  log.forget(handle);
+  EXPECT_EQ(log.head(), 6u);
+}
+
 TEST(Solver, StopRequestLeavesAUsableSolution) {
   const BaseMesh mesh(lit_room());
   SolutionLog log;

@@ -11,9 +11,8 @@ class Alvord : public ChildProcess {
   explicit Alvord(std::vector<std::string> arguments, const std::string& variable = "ALVOR_TEST=1")
       : ChildProcess(command(std::move(arguments)), STDERR_FILENO, variable) {}
 
-  /// Reads the log up to the line that tells the address.
-  std::string address() {
-    const std::string words = "listening on ";
+  /// Reads the log up to the line that tells the address after `words`.
+  std::string address(const std::string& words = "listening on ") {
     for (std::string next = line(); !next.empty(); next = line())
       if (const auto at = next.find(words); at != std::string::npos) {
         next.pop_back();  // the line's end

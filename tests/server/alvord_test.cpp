@@ -79,6 +79,43 @@ TEST(AlvordProgram, StopsCleanlyWhileItSolvesAndIsWatched) {
   EXPECT_EQ(alvord.exit_status(), 0);
 }
 
+/// `alvord --probe` of the address: its status, and its first line.
+std::pair<int, std::string> probed(const std::string& address) {
+  Alvord probe({"--probe", address});
+  std::string line = probe.line();
+  return {probe.exit_status(), line};
+}
+
+TEST(AlvordProgram, TellsItsHealthToProbesOnAPortOfItsOwn) {
+  std::string health;
+  {
+    Alvord alvord({"--listen", "127.0.0.1:0", "--health", "127.0.0.1:0"});
+    health = alvord.address("health on ");
+    ASSERT_NE(alvord.address(), "");
+    EXPECT_EQ(probed(health), std::pair(0, std::string()));
+    alvord.kill();
+  }
+  EXPECT_EQ(probed(health).first, 1) << "nobody is there";
+  Alvord alvord({"--listen", "127.0.0.1:0", "--health", health});
+  ASSERT_NE(alvord.address(), "");
+  grpc::ClientContext context;
+  v1::ListScenesResponse scenes;
+  const auto other = v1::SceneService::NewStub(grpc::CreateChannel(health, grpc::InsecureChannelCredentials()));
+  EXPECT_EQ(other->ListScenes(&context, {}, &scenes).error_code(), grpc::UNIMPLEMENTED) << "health and nothing else";
+  Alvord second({"--listen", "127.0.0.1:0", "--health", health});
+  EXPECT_EQ(second.line(), "alvord: --health: cannot listen on " + health + ": the address is in use or not of this machine\n");
+  EXPECT_EQ(second.exit_status(), 2);
+}
+
+TEST(AlvordProgram, TakesOptionsFromTheEnvironmentAndTheCommandLineFirst) {
+  Alvord told({}, "ALVORD_LISTEN=127.0.0.1:0");
+  EXPECT_TRUE(told.address().starts_with("127.0.0.1:"));
+  Alvord wrong({}, "ALVORD_MAX_SOLVES=none");
+  EXPECT_EQ(wrong.exit_status(), 2);
+  Alvord overruled({"--listen", "127.0.0.1:0"}, "ALVORD_LISTEN=nowhere:1");
+  EXPECT_TRUE(overruled.address().starts_with("127.0.0.1:"));
+}
+
 TEST(AlvordProgram, PortInUseIsOneLineAndStatusOne) {
   Alvord first({"--listen", "127.0.0.1:0"});
   const std::string address = first.address();

@@ -1,0 +1,109 @@
+#include "server/memory_guard.h"
+
+#include "server/solve_store.h"
+#include "tests/server/refusal.h"
+#include "tests/server/sample_scenes.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/null_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <thread>
+
+namespace alvor {
+namespace {
+
+constexpr std::uint64_t mebibyte = 1 << 20;
+std::atomic<std::uint64_t> used = 0;
+std::uint64_t used_memory() { return used; }
+
+TEST(MemoryGuard, AdmitsUpToThreeQuartersAndIsShortBeyondSevenEighths) {
+  const MemoryGuard guard(800 * mebibyte, used_memory);
+  used = 400 * mebibyte;
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { guard.admit("scene", 200 * mebibyte); }), "");
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { guard.admit("scene", 201 * mebibyte); }),
+            "scene: needs about 201 MiB of memory; 400 MiB of 800 MiB are in use");
+  used = 601 * mebibyte;
+  EXPECT_FALSE(guard.has_room(0));
+  used = 700 * mebibyte;
+  EXPECT_FALSE(guard.is_short());
+  used = 701 * mebibyte;
+  EXPECT_TRUE(guard.is_short());
+}
+
+TEST(MemoryGuard, WithoutALimitThereIsAlwaysRoom) {
+  EXPECT_TRUE(MemoryGuard().has_room(~std::uint64_t{0}));
+  EXPECT_FALSE(MemoryGuard().is_short());
+}
+
+TEST(MemoryGuard, SomethingIsAllowedAndLessIsHeld) {
+  EXPECT_GT(held_bytes(), 0u);
+  EXPECT_GT(allowed_memory(), held_bytes());
+}
+
+TEST(MemoryGuard, HeldBytesAreThoseThatWereTaken) {
+  const std::uint64_t before = held_bytes();
+  const std::vector<char> taken(64 * mebibyte, 'x');
+  EXPECT_NEAR(static_cast<double>(held_bytes() - before), static_cast<double>(taken.size()), 8.0 * mebibyte);
+}
+
+/// Goes on until it is told to end, and gives back memory then.
+SolveOutcome wait_for_end(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
+  log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
+  while (!control.short_of_memory.stop_requested() && !control.stop.stop_requested()) std::this_thread::yield();
+  if (control.stop.stop_requested()) return {.reason = StopReason::cancelled};
+  used = 0;
+  return {.reason = StopReason::memory};
+}
+
+class ShortMemoryTest : public testing::Test {
+ protected:
+  static SolveStoreOptions options() {
+    SolveStoreOptions options;
+    options.solver = wait_for_end;
+    options.memory = MemoryGuard(800 * mebibyte, used_memory);
+    options.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
+    return options;
+  }
+  static void SetUpTestSuite() { used = 0; }
+  std::shared_ptr<StoredSolve> create(v1::Priority priority) {
+    v1::SolveSpec spec;
+    spec.set_priority(priority);
+    return solves.create(scenes.use(scene), spec);
+  }
+
+  SceneStore scenes;
+  std::string scene = scenes.add(squares(2), "")->facts.name();
+  SolveStore solves{options(), scenes};
+};
+
+TEST_F(ShortMemoryTest, LastAndLeastSolveEndsWithWhatItHas) {
+  const auto low = create(v1::PRIORITY_LOW), first = create(v1::PRIORITY_NORMAL), last = create(v1::PRIORITY_NORMAL);
+  used = 790 * mebibyte;
+  while (!low->ended()) std::this_thread::yield();
+  EXPECT_EQ(low->describe().end_reason(), "memory limit reached");
+  EXPECT_EQ(low->describe().state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(low->log().head(), 1u);
+  EXPECT_FALSE(last->ended());
+  used = 790 * mebibyte;
+  while (!last->ended()) std::this_thread::yield();
+  EXPECT_FALSE(first->ended());
+  used = 650 * mebibyte;
+  EXPECT_NE(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(v1::PRIORITY_HIGH); }).find("of memory"), std::string::npos);
+  used = 0;
+  EXPECT_EQ(create(v1::PRIORITY_HIGH)->state(), v1::Solve::RUNNING);
+}
+
+TEST(SceneStore, SceneThatIsTooLargeForTheMemoryIsRefused) {
+  used = 600 * mebibyte;
+  SceneStore scenes(nullptr, {}, MemoryGuard(800 * mebibyte, used_memory));
+  EXPECT_NE(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { scenes.add(squares(2), ""); }).find("scene: needs about"),
+            std::string::npos);
+  EXPECT_EQ(scenes.count(), 0u);
+  used = 0;
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { scenes.add(squares(2), ""); }), "");
+}
+
+}  // namespace
+}  // namespace alvor
