@@ -96,8 +96,12 @@ v1::Scene Client::create_scene(const Scene& scene, const std::string& display_na
   first.mutable_scene()->set_display_name(as_utf8(display_name));
   first.set_request_id(random_id());
   bool has_begun = false;
-  return with_patience([&] {
-    if (has_begun) first.set_resume_after_chunks(received_chunks(first.request_id()));
+  return with_patience([&](Patience& patience) {
+    if (has_begun) {
+      const std::uint64_t received = received_chunks(first.request_id());
+      if (received > first.resume_after_chunks()) patience.note_success();
+      first.set_resume_after_chunks(received);
+    }
     has_begun = true;
     return upload(first, scene);
   });

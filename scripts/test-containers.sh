@@ -22,20 +22,28 @@ scripts/setup.sh containers
 work=$PWD/build/containers
 mkdir -p "$work"
 configure_podman
+why=$(podman info 2>&1 > /dev/null) || skip "podman does not work here: ${why##*$'\n'}"
 note_network
-clean_up() { remove_containers $keep; restore_network; }
+tests=
+clean_up() {
+  [ -z "$tests" ] || kill "$tests" 2> /dev/null || true
+  remove_containers $keep || true
+  restore_network
+}
 trap clean_up EXIT
 trap 'exit 1' INT TERM HUP
-remove_containers 1  # of a run that was killed
+remove_containers 1 # of a run that was killed
 
 echo "Building the images"
-provide_base_image
+why=$(provide_base_image 2>&1) || skip "no base image: ${why##*$'\n'}"
 first=$(podman run --rm --network host "$base_image" true 2>&1) || skip "podman cannot run a container here: ${first##*$'\n'}"
 build_image server
 build_image client
 
 echo "Testing in containers"
-/usr/bin/python3 -m pytest -q -p no:cacheprovider tests/integration --table "$work/table.md" "$@"
+/usr/bin/python3 -m pytest -q -p no:cacheprovider tests/integration --table "$work/table.md" "$@" & tests=$!
+wait $tests
+tests=
 if [ $write = 1 ]; then
   sed -i -e '/^<!-- table -->/,/^<!-- end -->/{//!d}' -e "/^<!-- table -->/r $work/table.md" docs/integration.md
 fi

@@ -131,6 +131,12 @@ SceneBytes measure(const Scene& scene) {
 template <class Body>
 auto Archive::guarded(Body&& body) {
   std::scoped_lock hold(lock_);
+  return attempt(body);
+}
+
+/// Requires: the lock.
+template <class Body>
+auto Archive::attempt(Body&& body) {
   try {
     return body(*database_);
   } catch (const SQLite::Exception& fault) {
@@ -242,18 +248,22 @@ Scene Archive::content(const std::string& sha256) {
   });
 }
 
-/// On a full disk the ballast gives the room.
+/// On a full disk the ballast gives the room, and to nobody else.
 template <class Body>
 void Archive::guarded_without_room(Body&& body) {
+  std::scoped_lock hold(lock_);
   try {
-    return guarded(body);
+    return attempt(body);
   } catch (const StatusError& refusal) {
     if (refusal.code != grpc::RESOURCE_EXHAUSTED) throw;
   }
+  const struct WithoutBallast {
+    const Ballast& ballast;
+    ~WithoutBallast() { ballast.take_up(); }
+  } without{ballast_};
   ballast_.drop();
-  guarded(body);
-  guarded([](SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(TRUNCATE)"); });
-  ballast_.take_up();
+  attempt(body);
+  database_->tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
 void Archive::remove_scene(std::uint64_t number) {

@@ -82,6 +82,8 @@ class Archive {
   template <class Body>
   auto guarded(Body&& body);
   template <class Body>
+  auto attempt(Body&& body);
+  template <class Body>
   void guarded_without_room(Body&& body);
   void put_facts(const SolveRow& row);
   void put_pieces(std::uint64_t solve, int kind, const std::vector<std::string>& pieces);

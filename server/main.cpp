@@ -207,6 +207,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
   service_options.archive = archive.get();
   alvor::Service service(service_options);
+  const auto health = serve_health(options.health, *logger);
   int port = 0;
   const auto server = start(service, options.listen, port);
   if (!server) {
@@ -215,7 +216,6 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   }
   const auto exposer = expose(options.metrics, service);
   const auto web = serve_web(options, *server, *logger);
-  const auto health = serve_health(options.health, *logger);
   alvor::set_serving(*server, true);
   if (health) alvor::set_serving(health->server(), true);
   const Heartbeat heartbeat(archive.get());

@@ -110,16 +110,18 @@ std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const st
 }
 
 void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next) const {
-  std::uint64_t waiting = 0, own = 1, leaves = next.max_leaves;
+  std::uint64_t waiting = 0, queued = 0, own = 1, leaves = next.max_leaves;
   for (const auto& [name, entry] : solves_) {
     if (entry.solve->ended()) continue;
     waiting += !entry.is_running;
+    queued += !entry.is_running && entry.solve->state() == v1::Solve::QUEUED;
     if (entry.solve->creator.tenant != tenant) continue;
     ++own;
     leaves += entry.solve->options.max_leaves;
   }
   const auto refuse = [](const std::string& text) { throw StatusError(grpc::RESOURCE_EXHAUSTED, text); };
-  if (running_ >= options_.max_running && waiting >= static_cast<std::uint64_t>(options_.max_waiting))
+  const bool waits = running_ >= options_.max_running || queued > 0;
+  if (waits && waiting >= static_cast<std::uint64_t>(options_.max_waiting))
     refuse(std::to_string(waiting) + " solves are waiting, as many as this server allows");
   if (own > options_.quota.solves)
     refuse("solves: " + std::to_string(options_.quota.solves) + " have not ended, as many as are allowed");
@@ -189,13 +191,19 @@ void SolveStore::run(Entry& entry) {
     return entry.solve;
   }();
   be_as_nice_as(solve->priority);
+  // What the scene has become may be far more than it was: faces of many corners are cut up.
+  const Solver solver = [&](const BaseMesh& mesh, const Plan& plan, const SolveOptions& how, SolutionLog& log,
+                            const SolveControl& control) {
+    options_.memory.admit("solve", bytes_a_face * mesh.roots().size());
+    return options_.solver(mesh, plan, how, log, control);
+  };
   const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),
                            abandon_.get_token()};
   const auto is_paused = [&] {
     std::scoped_lock hold(lock_);
     return entry.shall_pause;
   };
-  solve->run(options_.solver, control, is_paused,
+  solve->run(solver, control, is_paused,
              [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", solve->name, fault); });
   malloc_trim(0);  // a limit counts what the allocator keeps for later
   report_end(*options_.logger, solve->describe());

@@ -45,7 +45,8 @@ class Observer {
 
 // The watch remembers where it stands, so a new connection goes on from there.
 v1::Solve watch_through(Client& client, const std::string& name, Client::Watch& watch,
-                        const std::function<void(const Client::Watch&)>& on_frame, std::stop_token stop) {
+                        const std::function<void(const Client::Watch&)>& on_frame, std::stop_token stop,
+                        std::stop_token stop_waiting) {
   const auto watch_on = [&](Client::Patience& patience) {
     const auto note_frame = [&](const Client::Watch& now) {
       patience.note_success();
@@ -53,7 +54,7 @@ v1::Solve watch_through(Client& client, const std::string& name, Client::Watch& 
     };
     return client.watch_solve(name, watch, note_frame, stop);
   };
-  return client.with_patience(watch_on, stop);
+  return client.with_patience(watch_on, std::move(stop_waiting));
 }
 
 void try_to_cancel(Client& client, const std::string& name) {
@@ -64,19 +65,25 @@ void try_to_cancel(Client& client, const std::string& name) {
   }
 }
 
-}  // namespace
-
-Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop) {
+/// `stop_waiting`: for a server that is lost.
+Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop,
+                std::stop_token stop_waiting) {
   Observer observer(options, tolerance_of(solve));
   Client::Watch watch;
   const auto on_frame = [&](const Client::Watch& now) { observer.see(now.mirror); };
-  v1::Solve ended = watch_through(client, solve.name(), watch, on_frame, stop);
+  v1::Solve ended = watch_through(client, solve.name(), watch, on_frame, std::move(stop), std::move(stop_waiting));
   return observer.conclude(std::move(ended), std::move(watch.mirror));
+}
+
+}  // namespace
+
+Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop) {
+  return follow(client, solve, options, stop, stop);
 }
 
 Followed follow_own(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop) {
   const std::stop_callback cancel(stop, [&] { try_to_cancel(client, solve.name()); });
-  return follow(client, solve, options, {});
+  return follow(client, solve, options, {}, stop);
 }
 
 }  // namespace alvor

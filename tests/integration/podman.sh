@@ -14,6 +14,7 @@ default_ulimits = ["nofile=$files:$files", "nproc=$processes:$processes"]
 runtime = "runc"
 cgroup_manager = "cgroupfs"
 events_logger = "file"
+tmp_dir = "$work/tmp"
 [network]
 network_backend = "netavark"
 network_config_dir = "$work/networks"
@@ -27,25 +28,29 @@ CONF
   export CONTAINERS_CONF=$work/containers.conf CONTAINERS_STORAGE_CONF=$work/storage.conf
 }
 
-# What netavark leaves behind on a host that did not use it.
+# What netavark leaves behind on a host that did not use it. Noted in a file, so that what a killed run left is undone by the next.
 note_network() {
-  forwarding=$(cat /proc/sys/net/ipv4/ip_forward)
-  used_netavark=$(iptables-save 2> /dev/null | grep -c NETAVARK || true)
+  [ -e "$work/network" ] && return
+  iptables-save 2> /dev/null | grep -q NETAVARK || cat /proc/sys/net/ipv4/ip_forward > "$work/network"
 }
 restore_network() {
-  local tables
-  if [ "$used_netavark" = 0 ]; then
+  local tables others
+  [ -e "$work/network" ] || return 0
+  others=$(env -u CONTAINERS_CONF -u CONTAINERS_STORAGE_CONF podman ps --quiet 2> /dev/null || true)
+  if [ -z "$others" ]; then # who came meanwhile needs them
     for tables in iptables ip6tables; do
       $tables-save 2> /dev/null | grep -v NETAVARK | $tables-restore 2> /dev/null || true
     done
+    cat "$work/network" > /proc/sys/net/ipv4/ip_forward
   fi
-  echo "$forwarding" > /proc/sys/net/ipv4/ip_forward
+  rm "$work/network"
 }
 
 # remove_containers KEEP: and networks; images too, unless KEEP is 1.
 remove_containers() {
   podman rm --all --force --time 0 > /dev/null 2>&1 || true
   podman network prune --force > /dev/null 2>&1 || true
+  podman volume rm --all --force > /dev/null 2>&1 || true
   [ "$1" = 1 ] && return
   podman rmi --all --force > /dev/null 2>&1 || true
   podman unmount --all > /dev/null 2>&1 || true

@@ -14,8 +14,8 @@ def test_images(world, observed):
     assert podman("image", "inspect", "--format", "{{.User}}", image) == "10001:10001"
   assert sizes["alvor-server"] <= 250
   for tool in ("g++", "cmake", "npm"):
-    found = podman("run", "--rm", "--entrypoint", "sh", "alvor-server", "-c", f"command -v {tool}", check=False)
-    assert found == "", f"{tool} is in the image"
+    found = podman("run", "--rm", "--entrypoint", "sh", "alvor-server", "-c", f"command -v {tool} || echo none")
+    assert found == "none", f"{tool} is in the image"
   server = world.server("--insecure")
   writing = subprocess.run(["podman", "exec", server.name, "touch", "/x"], capture_output=True, text=True)
   assert "Read-only" in writing.stderr

@@ -5,7 +5,7 @@ import json
 import threading
 
 from conftest import SCENES, alvor, solves
-from hosts import until
+from hosts import podman, until
 
 
 def test_memory_limit(world, observed):
@@ -44,6 +44,26 @@ def test_full_disk(world, observed):
     alvor(desk, "scenes", "delete", each["name"])
   alvor(desk, "solve", f"{SCENES}/cornell_box.obj")
   observed.append(f"14 MB: full after {kept} scenes (\"{said.strip().splitlines()[-1]}\"); all still listed; room again after deleting")
+
+
+def test_backup(world, observed):
+  """Backup of the data directory, restored into an empty volume: the same scenes, and solutions of the same bytes."""
+  server = world.server("--insecure")
+  desk = world.desk()
+  alvor(desk, "solve", f"{SCENES}/cornell_box.obj", "-o", "before.glb")
+  scenes = alvor(desk, "scenes", "list", "--json")[1]
+  name = solves(desk)[0]["name"]
+  assert server.stop() == 0
+  server.remove()
+  tar = ["run", "--rm", f"--volume={server.VOLUME}:/data", f"--volume={world.folder}:/backup", "debian:bookworm-slim", "tar", "-C", "/data"]
+  podman(*tar, "-czf", "/backup/alvor.tgz", ".")
+  podman("volume", "rm", server.VOLUME)
+  podman(*tar, "-xzf", "/backup/alvor.tgz")
+  world.server("--insecure")
+  assert alvor(desk, "scenes", "list", "--json")[1] == scenes
+  alvor(desk, "watch", name, "-o", "after.glb")
+  assert (world.folder / "before.glb").read_bytes() == (world.folder / "after.glb").read_bytes()
+  observed.append(f"{(world.folder / 'alvor.tgz').stat().st_size / 1e3:.0f} KB; equal files")
 
 
 def test_rolling_restarts(world, observed):

@@ -1,6 +1,7 @@
 """Submitting, watching, and what networks and machines do to it."""
 
 import hashlib
+import threading
 import time
 
 import pytest
@@ -41,7 +42,7 @@ def test_three_watchers(world, observed):
   desk = world.desk()
   name = the_solve(desk)
   early = [start_watching(world, name, f"early{n}.glb") for n in range(2)]
-  until(lambda: solve(desk, name)["elapsed_s"] > 0.1, 30, "half of it is done")
+  until(lambda: solve(desk, name)["leaves"] > 2000, 30, "it has been refined")
   late = start_watching(world, name, "late.glb")
   assert solve(desk, name)["state"] == "RUNNING"
   assert [host.wait(60) for host in (own, *early, late)] == [0, 0, 0, 0]
@@ -93,7 +94,7 @@ def troubled(tmp_path_factory):
 
 def trouble(world):
   server = world.server("--insecure")
-  slow = lambda: start_slow_solve(world, 85, "enfilade", 0.03, 44)
+  slow = lambda: start_slow_solve(world, 95, "enfilade", 0.03, 44)
   desk, unwatched = world.desk(), slow()
   alone = the_solve(desk)
   unwatched.kill()
@@ -148,12 +149,13 @@ def test_poor_link(world, observed):
   world.server("--insecure")
   desk = world.desk()
   command = ["solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.03"]
-  alvor(desk, *command)
-  poor = world.client("infinity", options=["--entrypoint", "sleep"])
+  poor = world.desk()
   poor.slow_down(1, 0.05)
+  good = threading.Thread(target=alvor, args=[desk, *command, "-o", "home.glb"])  # at the same time: both have the same machine
+  good.start()
+  until(lambda: solves(desk), 20, "the one with the good link has begun")
   alvor(poor, *command, "-o", "poor.glb")
-  at_home = world.client(*command, "-o", "home.glb")
-  assert at_home.wait(60) == 0
+  good.join()
   slow, free = (each["elapsed_s"] for each in solves(desk))
   assert slow < 1.5 * free
   assert digest(world, "poor.glb") == digest(world, "home.glb")
