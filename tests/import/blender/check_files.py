@@ -343,6 +343,10 @@ def check_gltf_settings(name, truth):
     lamps = {n["name"]: gltf["extensions"]["KHR_lights_punctual"]["lights"][n["extensions"]["KHR_lights_punctual"]["light"]]
              for n in gltf["nodes"] if "KHR_lights_punctual" in n.get("extensions", {})}
     for lamp in truth["lamps"]:
+        matrix = gltf_matrix(next(node for node in gltf["nodes"] if node["name"] == lamp["name"]))  # lamps are at the root
+        for what, column, sign in (("position_m", 3, 1), ("direction", 2, -1)):
+            found = z_up([sign * matrix[i][column] for i in range(3)])
+            expect(all(near(a, b, 1e-5) for a, b in zip(found, lamp[what])), f"{lamp['name']}: {what} {found}")
         if lamp["kind"] == "AREA":
             expect(lamp["name"] not in lamps, "an area lamp is exported after all")
             continue
