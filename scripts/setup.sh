@@ -21,7 +21,7 @@ test=(
 )
 containers=(
   podman podman-compose buildah runc netavark aardvark-dns iptables iproute2 catatonit debootstrap
-  curl openssl faketime python3-pytest python3-grpcio python3-zstandard python3-protobuf
+  curl openssl faketime python3-pytest
 )
 
 [ $# -gt 0 ] || set -- compile page test

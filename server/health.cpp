@@ -1,6 +1,7 @@
 #include "server/health.h"
 
 #include "grpc/health/v1/health.grpc.pb.h"
+#include "server/listening.h"
 
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
@@ -21,7 +22,7 @@ HealthPort::HealthPort(const std::string& address) {
   server_ = builder.BuildAndStart();
   if (!server_ || port_ == 0) {
     drain();
-    throw std::invalid_argument("--health: cannot listen on " + address + ": the address is in use or not of this machine");
+    throw std::invalid_argument("--health: " + cannot_listen(address));
   }
   set_serving(*server_, false);
 }

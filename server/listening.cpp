@@ -82,6 +82,14 @@ std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& opt
   return credentials;
 }
 
+std::string cannot_listen(const std::string& address) {
+  return "cannot listen on " + address + ": the address is in use or not of this machine";
+}
+
+std::string with_port(const std::string& address, int port) {
+  return address.substr(0, address.rfind(':') + 1) + std::to_string(port);
+}
+
 bool is_loopback(const std::string& address) {
   if (address.starts_with("unix:")) return true;
   const std::string host = address.substr(0, address.rfind(':'));

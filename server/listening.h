@@ -31,6 +31,12 @@ std::optional<BearerTokens> tokens_of(const ListenOptions& options);
 /// leave.
 void refuse_plaintext(const std::string& option, const std::string& address, const ListenOptions& options);
 
+/// What is said where a port cannot be had.
+std::string cannot_listen(const std::string& address);
+
+/// HOST:PORT with the port that was taken.
+std::string with_port(const std::string& address, int port);
+
 /// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a unix socket.
 bool is_loopback(const std::string& address);
 

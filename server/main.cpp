@@ -171,7 +171,7 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
     exposer->RegisterCollectable(service.metrics());
     return exposer;
   } catch (const std::exception&) {
-    throw std::invalid_argument("--metrics: cannot listen on " + address + ": the address is in use or not of this machine");
+    throw std::invalid_argument("--metrics: " + alvor::cannot_listen(address));
   }
 }
 
@@ -184,15 +184,11 @@ std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server&
   return front;
 }
 
-std::string with_port(const std::string& address, int port) {
-  return address.substr(0, address.rfind(':') + 1) + std::to_string(port);
-}
-
 // Null without an address.
 std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, spdlog::logger& logger) {
   if (address.empty()) return nullptr;
   auto health = std::make_unique<alvor::HealthPort>(address);
-  logger.info("health on {}", with_port(address, health->port()));
+  logger.info("health on {}", alvor::with_port(address, health->port()));
   return health;
 }
 
@@ -211,7 +207,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   int port = 0;
   const auto server = start(service, options.listen, port);
   if (!server) {
-    std::cerr << "alvord: cannot listen on " << options.listen.address << ": the address is in use or not of this machine\n";
+    std::cerr << "alvord: " << alvor::cannot_listen(options.listen.address) << '\n';
     return 1;
   }
   const auto exposer = expose(options.metrics, service);
@@ -219,7 +215,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   alvor::set_serving(*server, true);
   if (health) alvor::set_serving(health->server(), true);
   const Heartbeat heartbeat(archive.get());
-  logger->info("listening on {}", with_port(options.listen.address, port));
+  logger->info("listening on {}", alvor::with_port(options.listen.address, port));
   logger->info("stopping: {}", wait_for_stop(signals));
   stop(service, *server, health.get());
   logger->info("stopped");

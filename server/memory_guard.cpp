@@ -44,10 +44,15 @@ std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) 
 
 }  // namespace
 
+ResidentMemory resident_memory() {
+  std::uint64_t address_space = 0, all = 0, of_files = 0;
+  std::ifstream("/proc/self/statm") >> address_space >> all >> of_files;
+  return {all * page_size(), of_files * page_size()};
+}
+
 std::uint64_t held_bytes() {
-  std::uint64_t all = 0, resident = 0, of_files = 0;
-  std::ifstream("/proc/self/statm") >> all >> resident >> of_files;
-  return (resident - std::min(resident, of_files)) * page_size();
+  const ResidentMemory resident = resident_memory();
+  return resident.all - std::min(resident.all, resident.of_files);
 }
 
 std::uint64_t allowed_memory() {

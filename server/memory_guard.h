@@ -6,6 +6,13 @@
 
 namespace alvor {
 
+/// Of this process, in bytes.
+struct ResidentMemory {
+  std::uint64_t all = 0;
+  std::uint64_t of_files = 0;  ///< the system can take these back
+};
+ResidentMemory resident_memory();
+
 /// What this process has taken that nothing but memory can hold, in bytes.
 std::uint64_t held_bytes();
 

@@ -8,11 +8,9 @@
 #include "server/watches.h"
 
 #include <prometheus/metric_family.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 
 namespace alvor {
 
@@ -42,12 +40,6 @@ MetricFamily one(const char* name, const char* help, MetricType type, double val
   MetricFamily made = family(name, help, type);
   add(made, value);
   return made;
-}
-
-double resident_bytes() {
-  std::uint64_t all = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> all >> resident;
-  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 double cpu_seconds() {
@@ -83,7 +75,7 @@ std::vector<MetricFamily> Metrics::Collect() const {
           1e-6 * static_cast<double>(keeping_.microseconds));
   counter("alvor_checkpoint_bytes_total", "Bytes of these.", static_cast<double>(keeping_.bytes));
   counter("alvor_checkpoint_failures_total", "Checkpoints that could not be kept.", static_cast<double>(keeping_.failures));
-  gauge("process_resident_memory_bytes", "Memory that is in use.", resident_bytes());
+  gauge("process_resident_memory_bytes", "Memory that is in use.", static_cast<double>(resident_memory().all));
   gauge("alvor_memory_limit_bytes", "Memory that may be in use; 0 is no limit.", static_cast<double>(memory_.limit()));
   counter("process_cpu_seconds_total", "Processor time.", cpu_seconds());
   return all;

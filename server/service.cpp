@@ -6,7 +6,6 @@
 #include "server/scene_service.h"
 #include "server/solve_service.h"
 
-#include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
 
 namespace alvor {
@@ -17,8 +16,6 @@ constexpr int largest_message = 64 << 20;
 
 SolveStoreOptions solve_options(const ServiceOptions& service, const std::string& epoch) {
   SolveStoreOptions options = service.solves;
-  const auto nowhere = std::make_shared<spdlog::sinks::null_sink_mt>();
-  if (!options.logger) options.logger = std::make_shared<spdlog::logger>("silent", nowhere);
   options.keeping.archive = service.archive;
   options.keeping.epoch = epoch;
   options.quota = service.quota;

@@ -16,8 +16,7 @@ struct ServiceOptions {
   Archive* archive = nullptr;  ///< must outlive the service; null: all is in memory
   Quota quota;                 ///< of each tenant
   MemoryGuard memory;
-  /// Without a logger the service is silent.
-  SolveStoreOptions solves;
+  SolveStoreOptions solves;  ///< its logger is that of the whole service
 };
 
 /// Calls in this order: register_with, start the server, shut_down, shut the server down, destroy. A server that uses it must be

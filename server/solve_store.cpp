@@ -3,6 +3,7 @@
 #include "proto/codec.h"
 #include "server/status_error.h"
 
+#include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <google/protobuf/util/message_differencer.h>
@@ -47,8 +48,15 @@ void refuse_ended(const StoredSolve& solve) {
 
 }  // namespace
 
+std::shared_ptr<spdlog::logger> silent_logger() {
+  return std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
+}
+
 SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : options_(std::move(options)) {
-  if (options_.memory.limit() > 0) watch_memory();
+  if (options_.memory.limit() > 0) {
+    watching_memory_ = std::make_unique<TaskQueue>();
+    watching_memory_->post([this] { watch_memory(); });
+  }
   if (!options_.keeping.archive) return;
   std::scoped_lock hold(lock_);
   for (Archive::SolveRow& row : options_.keeping.archive->solves()) {
@@ -109,18 +117,17 @@ std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const st
   return known;
 }
 
-void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next) const {
-  std::uint64_t waiting = 0, queued = 0, own = 1, leaves = next.max_leaves;
+void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next) {
+  std::uint64_t waiting = 0, own = 1, leaves = next.max_leaves;
   for (const auto& [name, entry] : solves_) {
     if (entry.solve->ended()) continue;
     waiting += !entry.is_running;
-    queued += !entry.is_running && entry.solve->state() == v1::Solve::QUEUED;
     if (entry.solve->creator.tenant != tenant) continue;
     ++own;
     leaves += entry.solve->options.max_leaves;
   }
   const auto refuse = [](const std::string& text) { throw StatusError(grpc::RESOURCE_EXHAUSTED, text); };
-  const bool waits = running_ >= options_.max_running || queued > 0;
+  const bool waits = running_ >= options_.max_running || next_waiting();
   if (waits && waiting >= static_cast<std::uint64_t>(options_.max_waiting))
     refuse(std::to_string(waiting) + " solves are waiting, as many as this server allows");
   if (own > options_.quota.solves)
@@ -155,7 +162,7 @@ SolveStore::Entry* SolveStore::next_waiting() {
 
 void SolveStore::watch_memory() {
   if (options_.memory.is_short()) relieve_memory();
-  watching_memory_.post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
+  watching_memory_->post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
 }
 
 /// The solve that came last must end with what it has, one after the other until there is room.

@@ -20,6 +20,9 @@ class logger;
 
 namespace alvor {
 
+/// Of those who do not want to be told.
+std::shared_ptr<spdlog::logger> silent_logger();
+
 struct SolveStoreOptions {
   int max_running = 4;     ///< each uses all of the machine unless its spec says less; more of them only share it
   int max_waiting = 1000;  ///< beyond those
@@ -29,8 +32,8 @@ struct SolveStoreOptions {
   Solver solver = solve_as_planned;
   Keeping keeping;
   std::chrono::steady_clock::duration patience =
-      std::chrono::seconds(7);             ///< with solves that are to be parked when the server stops
-  std::shared_ptr<spdlog::logger> logger;  ///< never null
+      std::chrono::seconds(7);                               ///< with solves that are to be parked when the server stops
+  std::shared_ptr<spdlog::logger> logger = silent_logger();  ///< never null
 };
 
 /// Thread-safe. Throws StatusError. Solves of other tenants than the caller are NOT_FOUND.
@@ -75,7 +78,7 @@ class SolveStore {
     return const_cast<SolveStore&>(*this).entry(name, tenant);
   }
   std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec);
-  void check_capacity(const std::string& tenant, const SolveOptions& next) const;
+  void check_capacity(const std::string& tenant, const SolveOptions& next);
   void start_waiting();
   void watch_memory();
   void relieve_memory();
@@ -95,8 +98,8 @@ class SolveStore {
   bool stopping_ = false;
   std::stop_source abandon_;
   std::map<std::thread::id, std::thread> threads_;
-  std::vector<std::thread::id> finished_;  ///< have nothing left to do but to end
-  TaskQueue watching_memory_;              ///< uses all of the above
+  std::vector<std::thread::id> finished_;       ///< have nothing left to do but to end
+  std::unique_ptr<TaskQueue> watching_memory_;  ///< uses all of the above; null without a limit
 };
 
 }  // namespace alvor

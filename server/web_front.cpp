@@ -110,10 +110,8 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
   const int port = address.port == 0                                   ? server_->bind_to_any_port(address.host)
                    : server_->bind_to_port(address.host, address.port) ? address.port
                                                                        : -1;
-  if (port < 0)
-    throw std::invalid_argument("--web: cannot listen on " + options.address + ": the address is in use or not of this machine");
-  url_ = (options.listen->certificate.empty() ? "http://" : "https://") +
-         options.address.substr(0, options.address.rfind(':') + 1) + std::to_string(port) + "/";
+  if (port < 0) throw std::invalid_argument("--web: " + cannot_listen(options.address));
+  url_ = (options.listen->certificate.empty() ? "http://" : "https://") + with_port(options.address, port) + "/";
   thread_ = std::thread([this] {
     server_->listen_after_bind();
     has_ended_ = true;

@@ -1,5 +1,6 @@
 """What scenarios have in common, and the table of what was seen of them."""
 
+import hashlib
 import itertools
 import json
 import pathlib
@@ -9,7 +10,7 @@ import urllib.request
 
 import pytest
 
-from hosts import NETWORK, Host, podman, until
+from hosts import NETWORK, Host, podman, server_address, until
 
 SCENES = "/usr/local/share/alvor/scenes"
 
@@ -38,7 +39,7 @@ class Server(Host):
     self.await_health()
 
   def metric(self, name):
-    with urllib.request.urlopen(f"http://{self.ip}:9464/metrics", timeout=5) as page:
+    with urllib.request.urlopen(f"http://{server_address()}:9464/metrics", timeout=5) as page:
       for line in page.read().decode().splitlines():
         if line.startswith(name + " "):
           return float(line.split()[-1])
@@ -49,7 +50,6 @@ class Client(Host):
   """alvor. What it writes to /out is in `out`."""
 
   def __init__(self, name, out, *command, options=()):
-    self.out = out
     super().__init__(name, "alvor-client", command, ["--volume", f"{out}:/out", *options])
 
 
@@ -73,11 +73,14 @@ class World:
     self.hosts.append(made)
     return made
 
-  def desk(self, options=()):
+  def desk(self):
     """A host whose user types commands."""
-    return self.client("infinity", options=["--entrypoint", "sleep", *options])
+    return self.client("infinity", options=["--entrypoint", "sleep"])
 
-  def scene(self, side, name="grid.obj"):
+  def digest(self, file):
+    return hashlib.sha256((self.folder / file).read_bytes()).hexdigest()
+
+  def scene(self, side):
     """A file with a lamp over a floor of side x side quads."""
     lines = ["mtllib grid.mtl", "v 0 0 9", "v 0 1 9", "v 1 1 9", "v 1 0 9", "usemtl lamp", "f 1 2 3 4", "usemtl grey"]
     lines += [f"v {x} {y} 0" for y in range(side + 1) for x in range(side + 1)]
@@ -86,8 +89,8 @@ class World:
         a = 5 + y * (side + 1) + x
         lines.append(f"f {a} {a + 1} {a + side + 2} {a + side + 1}")
     (self.folder / "grid.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
-    (self.folder / name).write_text("\n".join(lines) + "\n")
-    return f"/out/{name}"
+    (self.folder / "grid.obj").write_text("\n".join(lines) + "\n")
+    return "/out/grid.obj"
 
   def show_logs(self):
     for host in self.hosts:
@@ -99,22 +102,32 @@ class World:
     podman("volume", "rm", "--force", Server.VOLUME)
 
 
-def alvor(desk, *words, server="server:50051", check=True, timeout=120):
+def alvor(desk, *words, check=True):
   """Types a command at a desk. Returns its exit status, and what it printed and complained."""
-  done = subprocess.run(["podman", "exec", desk.name, "alvor", *map(str, words), "--server", server],
-                        capture_output=True, text=True, timeout=timeout)
+  done = subprocess.run(["podman", "exec", desk.name, "alvor", *map(str, words), "--server", "server:50051"],
+                        capture_output=True, text=True, timeout=120)
   assert not check or done.returncode == 0, f"alvor {' '.join(map(str, words))}: {done.returncode}\n{done.stderr}"
   return done.returncode, done.stdout, done.stderr
 
 
-def solves(desk, **more):
+def reason(said):
+  """The last line of what a command complained."""
+  return said.strip().splitlines()[-1]
+
+
+def solves(desk, *options):
   """Newest first."""
-  return json.loads(alvor(desk, "solves", "list", "--json", **more)[1])
+  return json.loads(alvor(desk, "solves", "list", "--json", *options)[1])
 
 
-def the_solve(desk, seconds=20):
+def scenes(desk, *options):
+  """Newest first."""
+  return json.loads(alvor(desk, "scenes", "list", "--json", *options)[1])
+
+
+def the_solve(desk):
   """The name of the only one, once it is there."""
-  until(lambda: solves(desk), seconds, "there is a solve")
+  until(lambda: solves(desk), 20, "there is a solve")
   return solves(desk)[0]["name"]
 
 

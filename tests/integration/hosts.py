@@ -49,10 +49,6 @@ class Host:
   def inspect(self, field):
     return podman("inspect", "--format", "{{" + field + "}}", self.name)
 
-  @property
-  def ip(self):
-    return self.inspect(f'(index .NetworkSettings.Networks "{NETWORK}").IPAddress')
-
   def is_running(self):
     return self.inspect(".State.Running") == "true"
 
@@ -92,11 +88,15 @@ class Host:
     """Runs a command of this machine on the container's network."""
     return run("nsenter", "--target", self.inspect(".State.Pid"), "--net", *command)
 
+  def cable(self):
+    """The machine's side of its link."""
+    here = json.loads(self.within("ip", "-json", "link", "show", "eth0"))[0]["link_index"]
+    return next(link["ifname"] for link in json.loads(run("ip", "-json", "link")) if link["ifindex"] == here)
+
   @contextlib.contextmanager
   def cable_pulled(self):
-    """The machine's side of its link is down: nothing goes through and nobody is told, and the address stays."""
-    here = json.loads(self.within("ip", "-json", "link", "show", "eth0"))[0]["link_index"]
-    link = next(link["ifname"] for link in json.loads(run("ip", "-json", "link")) if link["ifindex"] == here)
+    """Nothing goes through and nobody is told, and the address stays."""
+    link = self.cable()
     run("ip", "link", "set", link, "down")
     try:
       yield
@@ -105,10 +105,8 @@ class Host:
 
   def slow_down(self, megabytes_per_s, loss):
     """Both ways."""
-    here = json.loads(self.within("ip", "-json", "link", "show", "eth0"))[0]["link_index"]
-    link = next(link["ifname"] for link in json.loads(run("ip", "-json", "link")) if link["ifindex"] == here)
     shape = ["root", "tbf", "rate", f"{8 * megabytes_per_s}mbit", "burst", "32kb", "latency", "400ms"]
     self.within("tc", "qdisc", "add", "dev", "eth0", *shape)
-    run("tc", "qdisc", "add", "dev", link, *shape)
+    run("tc", "qdisc", "add", "dev", self.cable(), *shape)
     for chain in ("INPUT", "OUTPUT"):
       self.within("iptables", "-A", chain, "-m", "statistic", "--mode", "random", "--probability", loss, "-j", "DROP")

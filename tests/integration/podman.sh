@@ -55,7 +55,7 @@ remove_containers() {
   podman rmi --all --force > /dev/null 2>&1 || true
   podman unmount --all > /dev/null 2>&1 || true
   findmnt -rno TARGET | grep -F "$work/" | sort -r | xargs -r umount -l 2> /dev/null || true
-  rm -rf "$work/storage" "$work/run" "$work/networks" "$work/base"
+  rm -rf "$work/storage" "$work/run" "$work/networks" "$work/tmp" "$work/base"
 }
 
 # The base image: from a registry, or, where none answers, made of the packages that this machine's apt is set up for.

@@ -1,18 +1,17 @@
 """Who may call, and how much they may have."""
 
 import hashlib
-import json
 import os
 
-from conftest import SCENES, alvor
+from conftest import SCENES, alvor, reason, scenes, solves
 from hosts import run, until
 
 FAKETIME = "/usr/lib/x86_64-linux-gnu/faketime"
 TLS = ["--tls-cert", "/tls/server.pem", "--tls-key", "/tls/server.key"]
 
 
-def certificate(folder, name, *, moment="now", days=7, authority=None):
-  """A key and a certificate for the host `server`, of an authority or its own, made at a moment that faketime(1) understands."""
+def certificate(folder, name, *, moment="now", days=7):
+  """A key and a certificate for the host `server`, its own authority, made at a moment that faketime(1) understands."""
   request = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", days, "-subj",
              f"/CN={name}", "-addext", "subjectAltName=DNS:server,IP:127.0.0.1", "-keyout", f"{name}.key", "-out", f"{name}.pem"]
   run("faketime", moment, *request, cwd=folder)
@@ -65,10 +64,10 @@ def test_quotas(world, observed):
     assert submit(who, "cornell_box")[0] == 0 and submit(who, "enfilade")[0] == 0
     status, _, said = submit(who, "vault")
     assert status == 5 and "scenes: 2 exist" in said
-  names = {who: {each["name"] for each in json.loads(alvor(desk, "scenes", "list", "--json", *as_tenant(who))[1])} for who in ("ann", "bob")}
+  names = {who: {each["name"] for each in scenes(desk, *as_tenant(who))} for who in ("ann", "bob")}
   assert len(names["ann"]) == len(names["bob"]) == 2 and not names["ann"] & names["bob"]
   assert alvor(desk, "scenes", "delete", names["ann"].pop(), *as_tenant("bob"), check=False)[0] == 3, "there is no such scene"
-  observed.append(f"the third scene of each: \"{submit('ann', 'vault')[2].strip().splitlines()[-1]}\"; no scene seen by both")
+  observed.append(f"the third scene of each: \"{reason(submit('ann', 'vault')[2])}\"; no scene seen by both")
 
 
 def test_clock_skew(world, observed):
@@ -83,15 +82,13 @@ def test_clock_skew(world, observed):
   command = ["solve", f"{SCENES}/cornell_box.obj", "--tolerance", "0.02"]
   alvor(desk, *command, "-o", "ahead.glb", *trusted)
   slow = world.client(*command, "--pace", "0.5", "--server", "server:50051", *trusted, "-o", "slow.glb", options=skewed(-1))
-  listed = lambda: json.loads(alvor(desk, "solves", "list", "--json", *trusted)[1])
-  until(lambda: len(listed()) == 2 and listed()[0]["shots"] > 0, 20, "the second solves")
+  until(lambda: len(solves(desk, *trusted)) == 2 and solves(desk, *trusted)[0]["shots"] > 0, 20, "the second solves")
   assert server.stop() == 0
   server.remove()
   world.server(*TLS, options=[mount, *skewed(-1)])
   assert slow.wait(90) == 0
-  both = listed()
+  both = solves(desk, *trusted)
   assert [each["restarts"] for each in both] == [1, 0]
   assert all(0 <= each["work_lost_s"] < 30 and 0 < each["elapsed_s"] < 60 for each in both), both
-  equal = (world.folder / "ahead.glb").read_bytes() == (world.folder / "slow.glb").read_bytes()
-  assert equal
+  assert world.digest("ahead.glb") == world.digest("slow.glb")
   observed.append("server a day ahead, then a day behind, client a day behind; equal files; no time lost or negative")

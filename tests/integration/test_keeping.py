@@ -1,10 +1,8 @@
 """What the server does when it must not, cannot or shall not go on."""
 
-import hashlib
-import json
 import threading
 
-from conftest import SCENES, alvor, solves
+from conftest import SCENES, alvor, reason, scenes, solves
 from hosts import podman, until
 
 
@@ -20,7 +18,7 @@ def test_memory_limit(world, observed):
   assert status == 5 and "of memory" in said, said
   alvor(desk, "solve", f"{SCENES}/cornell_box.obj")
   assert server.inspect(".State.OOMKilled") == "false" and server.is_healthy() and server.inspect(".RestartCount") == "0"
-  observed.append(f"256 MB: a solve ended at {ended['leaves']} leaves; 250 000 faces: \"{said.strip().splitlines()[-1]}\"; then a small scene solved")
+  observed.append(f"256 MB: a solve ended at {ended['leaves']} leaves; 250 000 faces: \"{reason(said)}\"; then a small scene solved")
 
 
 def test_full_disk(world, observed):
@@ -36,14 +34,14 @@ def test_full_disk(world, observed):
     kept += 1
   assert status == 5 and "full" in said, said
   assert 1 <= kept < 20
-  held = json.loads(alvor(desk, "scenes", "list", "--json")[1])
+  held = scenes(desk)
   assert len(held) >= kept and server.is_healthy()
   for each in solves(desk):
     alvor(desk, "solves", "delete", each["name"])
   for each in held:
     alvor(desk, "scenes", "delete", each["name"])
   alvor(desk, "solve", f"{SCENES}/cornell_box.obj")
-  observed.append(f"14 MB: full after {kept} scenes (\"{said.strip().splitlines()[-1]}\"); all still listed; room again after deleting")
+  observed.append(f"14 MB: full after {kept} scenes (\"{reason(said)}\"); all still listed; room again after deleting")
 
 
 def test_backup(world, observed):
@@ -51,7 +49,7 @@ def test_backup(world, observed):
   server = world.server("--insecure")
   desk = world.desk()
   alvor(desk, "solve", f"{SCENES}/cornell_box.obj", "-o", "before.glb")
-  scenes = alvor(desk, "scenes", "list", "--json")[1]
+  held = scenes(desk)
   name = solves(desk)[0]["name"]
   assert server.stop() == 0
   server.remove()
@@ -60,9 +58,9 @@ def test_backup(world, observed):
   podman("volume", "rm", server.VOLUME)
   podman(*tar, "-xzf", "/backup/alvor.tgz")
   world.server("--insecure")
-  assert alvor(desk, "scenes", "list", "--json")[1] == scenes
+  assert scenes(desk) == held
   alvor(desk, "watch", name, "-o", "after.glb")
-  assert (world.folder / "before.glb").read_bytes() == (world.folder / "after.glb").read_bytes()
+  assert world.digest("before.glb") == world.digest("after.glb")
   observed.append(f"{(world.folder / 'alvor.tgz').stat().st_size / 1e3:.0f} KB; equal files")
 
 
@@ -78,11 +76,12 @@ def test_rolling_restarts(world, observed):
       ends.append(alvor(desk, "solve", f"{SCENES}/cornell_box.obj", "--tolerance", "0.02", "--pace", "0.1", "-o", file, check=False))
 
   users = [threading.Thread(target=work, args=[user]) for user in range(3)]
+  at_work = lambda: any(user.is_alive() for user in users)
   for user in users:
     user.start()
   restarts = 0
-  while any(user.is_alive() for user in users) and restarts < 4:
-    until(lambda: any(each["state"] == "RUNNING" for each in solves(desk)) or not any(user.is_alive() for user in users), 20, "there is work")
+  while at_work() and restarts < 4:
+    until(lambda: any(each["state"] == "RUNNING" for each in solves(desk)) or not at_work(), 20, "there is work")
     assert server.stop() == 0
     server.remove()
     server = world.server("--insecure")
@@ -91,7 +90,7 @@ def test_rolling_restarts(world, observed):
     user.join(120)
   assert restarts >= 3
   assert [status for status, _, _ in ends] == [0] * 12, [said for status, _, said in ends if status]
-  digests = {hashlib.sha256(file.read_bytes()).hexdigest() for file in world.folder.glob("user*.glb")}
+  digests = {world.digest(file) for file in world.folder.glob("user*.glb")}
   assert len(digests) == 1
   parked = sum(each["restarts"] > 0 for each in solves(desk))
   assert parked > 0

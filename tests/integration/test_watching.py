@@ -1,21 +1,16 @@
 """Submitting, watching, and what networks and machines do to it."""
 
-import hashlib
 import threading
 import time
 
 import pytest
 
-from conftest import SCENES, World, alvor, solve, solves, the_solve
+from conftest import SCENES, World, alvor, scenes, solve, solves, the_solve
 from hosts import until
 
 
-def digest(world, name):
-  return hashlib.sha256((world.folder / name).read_bytes()).hexdigest()
-
-
-def start_watching(world, name, out, **more):
-  return world.client("watch", name, "--server", "server:50051", "-o", out, **more)
+def start_watching(world, name, out):
+  return world.client("watch", name, "--server", "server:50051", "-o", out)
 
 
 def start_slow_solve(world, seconds, scene="cornell_box", tolerance=0.01, steps=20):
@@ -31,7 +26,7 @@ def test_remote_solve(world, observed):
   alvor(desk, "solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.05", "-o", "remote.glb")
   local = world.client("solve", f"{SCENES}/enfilade.obj", "--tolerance", "0.05", "-o", "local.glb")
   assert local.wait(60) == 0
-  assert digest(world, "remote.glb") == digest(world, "local.glb")
+  assert world.digest("remote.glb") == world.digest("local.glb")
   observed.append(f"equal, {(world.folder / 'local.glb').stat().st_size} bytes; {solves(desk)[0]['leaves']} leaves")
 
 
@@ -46,7 +41,7 @@ def test_three_watchers(world, observed):
   late = start_watching(world, name, "late.glb")
   assert solve(desk, name)["state"] == "RUNNING"
   assert [host.wait(60) for host in (own, *early, late)] == [0, 0, 0, 0]
-  digests = {digest(world, f"{file}.glb") for file in ("own", "early0", "early1", "late")}
+  digests = {world.digest(f"{file}.glb") for file in ("own", "early0", "early1", "late")}
   assert len(digests) == 1
   observed.append("four equal files")
 
@@ -58,17 +53,17 @@ def test_killed_server(world, observed):
   desk = world.desk()
   name = the_solve(desk)
   watcher = start_watching(world, name, "watched.glb")
-  before = alvor(desk, "scenes", "list", "--json")[1]
+  before = scenes(desk)
   until(lambda: server.metric("alvor_checkpoints_total") >= 5, 20, "there are checkpoints")
   server.kill()
   time.sleep(8)
   server.start()
-  assert alvor(desk, "scenes", "list", "--json")[1] == before
+  assert scenes(desk) == before
   assert own.wait(60) == 0 and watcher.wait(60) == 0
   after = solve(desk, name)
   assert after["restarts"] == 1 and after["resumed_from_revision"] > 0
   alvor(desk, "solve", f"{SCENES}/cornell_box.obj", "--tolerance", "0.01", "-o", "undisturbed.glb")
-  assert digest(world, "own.glb") == digest(world, "watched.glb") == digest(world, "undisturbed.glb")
+  assert world.digest("own.glb") == world.digest("watched.glb") == world.digest("undisturbed.glb")
   observed.append(f"down for 8 s; went on from revision {after['resumed_from_revision']}, {after['work_lost_s']:.1f} s of work lost; "
                   "watchers' files equal that of an undisturbed solve")
 
@@ -121,7 +116,7 @@ def trouble(world):
   assert [host.wait(60) for host in (own, cut, short, paused)] == [0] * 4
   until(lambda: solve(desk, alone)["state"] == "SUCCEEDED", 20, "the other has ended")
   seen["slower"] = solve(desk, name)["elapsed_s"] / solve(desk, alone)["elapsed_s"]
-  seen["equal"] = {file: digest(world, f"{file}.glb") == digest(world, "own.glb") for file in ("cut", "short", "paused")}
+  seen["equal"] = {file: world.digest(f"{file}.glb") == world.digest("own.glb") for file in ("cut", "short", "paused")}
   return seen
 
 
@@ -158,5 +153,5 @@ def test_poor_link(world, observed):
   good.join()
   slow, free = (each["elapsed_s"] for each in solves(desk))
   assert slow < 1.5 * free
-  assert digest(world, "poor.glb") == digest(world, "home.glb")
+  assert world.digest("poor.glb") == world.digest("home.glb")
   observed.append(f"equal files; solver's time {slow / free:.2f} of that with a good link ({slow:.1f} s)")

@@ -33,6 +33,14 @@ struct Hits {
   std::vector<std::uint32_t> patch_of_leaf;
 };
 
+CoarseUnits one_for_each_patch(const System& system) {
+  CoarseUnits units;
+  units.count = system.patches.size();
+  units.of_patch.resize(units.count);
+  std::iota(units.of_patch.begin(), units.of_patch.end(), 0u);
+  return units;
+}
+
 TEST(CoarseUnits, AncestorsAreAsDeepAsTheirNumberAllows) {
   const std::vector<PatchId> patches{deep(0, {0, 0}), deep(0, {0, 1}), deep(0, {1}), deep(1, {}), deep(2, {3, 3})};
   EXPECT_EQ(ancestors(patches, 5).count, 5u);
@@ -49,10 +57,7 @@ TEST(CoarseUnits, PairsJoinThoseThatSeeEachOtherAndNoOthers) {
   for (std::size_t p = 0, h = 0; p < system.patches.size(); ++p)
     for (const std::size_t end = h + system.rows[p].hits.size(); h < end; ++h)
       system.hit_leaf[h] = system.patches[(2 * (h % 16) + p % 2) % 32].first_leaf;
-  CoarseUnits units;
-  units.count = system.patches.size();
-  units.of_patch.resize(units.count);
-  std::iota(units.of_patch.begin(), units.of_patch.end(), 0u);
+  CoarseUnits units = one_for_each_patch(system);
   const Hits hits(system);
   join_pairs(units, hits.of(system), 1);
   ASSERT_EQ(units.count, 2u);
@@ -62,10 +67,7 @@ TEST(CoarseUnits, PairsJoinThoseThatSeeEachOtherAndNoOthers) {
 TEST(CoarseUnits, ManyThatSeeOnlyOneJoinItInFewRounds) {
   System system(1, 500);
   std::ranges::fill(system.hit_leaf, system.patches[0].first_leaf);
-  CoarseUnits units;
-  units.count = system.patches.size();
-  units.of_patch.resize(units.count);
-  std::iota(units.of_patch.begin(), units.of_patch.end(), 0u);
+  CoarseUnits units = one_for_each_patch(system);
   const Hits hits(system);
   EXPECT_LE(join_pairs(units, hits.of(system), 1), 3);
   EXPECT_EQ(units.count, 1u);
@@ -73,10 +75,7 @@ TEST(CoarseUnits, ManyThatSeeOnlyOneJoinItInFewRounds) {
 
 TEST(CoarseGrid, OfAllPatchesIsTheSolution) {
   const System system(2, 40);
-  CoarseUnits units;
-  units.count = system.patches.size();
-  units.of_patch.resize(units.count);
-  std::iota(units.of_patch.begin(), units.of_patch.end(), 0u);
+  CoarseUnits units = one_for_each_patch(system);
   const Hits hits(system);
   std::vector<Rgb> emission;
   for (const ShootingLeaf& leaf : system.leaves) emission.push_back(leaf.unshot);

@@ -5,8 +5,6 @@
 #include "tests/server/sample_scenes.h"
 
 #include <gtest/gtest.h>
-#include <spdlog/sinks/null_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <atomic>
 #include <thread>
@@ -63,7 +61,6 @@ class ShortMemoryTest : public testing::Test {
     SolveStoreOptions options;
     options.solver = wait_for_end;
     options.memory = MemoryGuard(800 * mebibyte, used_memory);
-    options.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
     return options;
   }
   static void SetUpTestSuite() { used = 0; }

@@ -5,8 +5,6 @@
 #include "tests/server/staged_solver.h"
 
 #include <gtest/gtest.h>
-#include <spdlog/sinks/null_sink.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -23,7 +21,6 @@ class SolveStoreTest : public testing::Test {
     options.max_running = 2;
     options.max_waiting = 2;
     options.solver = stage.solver();
-    options.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
     return options;
   }
   std::shared_ptr<StoredSolve> create() { return solves.create(scenes.use(scene), {}); }
@@ -143,7 +140,6 @@ class KeptSolveTest : public testing::Test {
       outcome.reason = control.stop.stop_requested() ? StopReason::cancelled : StopReason::parked;
       return outcome;
     };
-    made.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
     made.keeping.archive = &archive;
     return made;
   }
@@ -209,7 +205,6 @@ TEST(SolveQuota, EndsWhatATenantMayStart) {
   options.quota.solves = 2;
   options.quota.leaves = 1000;
   options.solver = stage.solver();
-  options.logger = std::make_shared<spdlog::logger>("silent", std::make_shared<spdlog::sinks::null_sink_mt>());
   SolveStore solves(options, scenes);
   v1::SolveSpec spec;
   spec.set_max_elements(600);
