@@ -2,7 +2,9 @@
 
 #include "client/import_error.h"
 #include "client/placement.h"
+#include "client/scene_format.h"
 #include "client/texture_colour.h"
+#include "client/unsupported.h"
 
 #include <assimp/material.h>
 #include <assimp/scene.h>
@@ -29,14 +31,42 @@ std::optional<Rgb> mean_of_embedded(const aiTexture& texture) {
   return mean_colour({reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth});
 }
 
+/// What a format says, or what its programs have in common, of the unit and the axes of its numbers.
+struct Convention {
+  UpAxis up = UpAxis::y;
+  double metres_per_unit = 1;
+};
+
+Convention convention_of(const aiScene& source, const std::filesystem::path& path) {
+  Convention convention;
+  const std::string extension = lower_case_extension(path);
+  // Collada says its unit and up axis, and Assimp turns the scene y-up, in metres.
+  if (extension == ".stl" || extension == ".3ds" || extension == ".ply") convention.up = UpAxis::z;
+  if (extension == ".fbx" && source.mMetaData) {
+    int up = 1;
+    double centimetres = 1;
+    source.mMetaData->Get("UpAxis", up);
+    source.mMetaData->Get("UnitScaleFactor", centimetres);
+    convention.up = up == 2 ? UpAxis::z : UpAxis::y;
+    if (centimetres > 0) convention.metres_per_unit = centimetres / 100;
+  }
+  return convention;
+}
+
 /// Reads one file's materials and meshes into a scene.
 class AssimpReader {
  public:
-  AssimpReader(const aiScene& source, std::filesystem::path folder) : source_(source), folder_(std::move(folder)) {}
+  AssimpReader(const aiScene& source, std::filesystem::path folder, const Convention& convention)
+      : source_(source), folder_(std::move(folder)), convention_(convention) {}
 
   SceneFile read() {
     for (const aiMaterial* material : std::span(source_.mMaterials, source_.mNumMaterials)) add_material(*material);
     if (source_.mRootNode) add_tree(*source_.mRootNode);
+    Unsupported unsupported;
+    count_lights(unsupported);
+    count_materials(unsupported);
+    unsupported.append_warnings(file_.warnings);
+    file_.scene.up = convention_.up;
     return std::move(file_);
   }
 
@@ -77,7 +107,8 @@ class AssimpReader {
       const aiNode* node;
       Placement parent;
     };
-    std::vector<Pending> stack{{&root, {}}};
+    const double unit = convention_.metres_per_unit;
+    std::vector<Pending> stack{{&root, {{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}, {}}}};
     while (!stack.empty()) {
       const Pending next = stack.back();
       stack.pop_back();
@@ -115,8 +146,31 @@ class AssimpReader {
     return *default_material_;
   }
 
+  void count_lights(Unsupported& unsupported) const {
+    for (const aiLight* light : std::span(source_.mLights, source_.mNumLights)) switch (light->mType) {
+        case aiLightSource_POINT: ++unsupported.point_lights; break;
+        case aiLightSource_SPOT: ++unsupported.spot_lights; break;
+        case aiLightSource_DIRECTIONAL: ++unsupported.directional_lights; break;
+        case aiLightSource_AREA: ++unsupported.area_lights; break;
+        default: ++unsupported.other_lights;
+      }
+  }
+
+  void count_materials(Unsupported& unsupported) const {
+    const std::vector<bool> used = used_materials(file_.scene);
+    for (unsigned m = 0; m < source_.mNumMaterials; ++m) {
+      if (!used[m]) continue;
+      float opacity = 1, metallic = 0;
+      source_.mMaterials[m]->Get(AI_MATKEY_OPACITY, opacity);
+      source_.mMaterials[m]->Get(AI_MATKEY_METALLIC_FACTOR, metallic);
+      unsupported.transparent_materials += opacity < 1;
+      unsupported.metals += metallic > 0.5F;
+    }
+  }
+
   const aiScene& source_;
   std::filesystem::path folder_;
+  Convention convention_;
   SceneFile file_;
   std::optional<std::uint32_t> default_material_;
 };
@@ -148,7 +202,7 @@ SceneFile import_by_assimp(const std::filesystem::path& path) {
   // No post-processing: every step that joins, sorts or triangulates loses the file's faces or their order.
   const aiScene* source = importer.ReadFile(path.string(), 0);
   if (!source) throw ImportError("file", importer.GetErrorString());
-  return AssimpReader(*source, path.parent_path()).read();
+  return AssimpReader(*source, path.parent_path(), convention_of(*source, path)).read();
 }
 
 }  // namespace alvor

@@ -25,11 +25,16 @@ struct Box {
   }
 };
 
+/// Turns a y-up direction or place to the mesh's own axes, and back. Views are chosen as if all meshes were y-up.
+Vec3 from_upright(UpAxis up, Vec3 p) { return up == UpAxis::y ? p : Vec3{p.x, -p.z, p.y}; }
+Vec3 to_upright(UpAxis up, Vec3 p) { return up == UpAxis::y ? p : Vec3{p.x, p.z, -p.y}; }
+
 Box box_of(const DisplayMesh& mesh) {
-  Box box{mesh.positions[mesh.triangles[0][0]], mesh.positions[mesh.triangles[0][0]]};
+  const Vec3 first = to_upright(mesh.up, mesh.positions[mesh.triangles[0][0]]);
+  Box box{first, first};
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
-      const Vec3& p = mesh.positions[vertex];
+      const Vec3 p = to_upright(mesh.up, mesh.positions[vertex]);
       box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
       box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
     }
@@ -37,7 +42,7 @@ Box box_of(const DisplayMesh& mesh) {
   return box;
 }
 
-/// Casts trial rays and tells fronts from backs.
+/// Casts trial rays, given y-up, and tells fronts from backs.
 class Scout {
  public:
   Scout(const DisplayMesh& mesh, const TriangleCaster& caster) : mesh_(mesh), caster_(caster), box_(box_of(mesh)) {}
@@ -45,11 +50,12 @@ class Scout {
 
   /// What a ray meets first: +distance for a front, -distance for a back, 0 for nothing.
   double look(Vec3 origin, Vec3 direction) const {
-    const auto hit = caster_.cast(origin, direction);
+    const Vec3 along = from_upright(mesh_.up, direction);
+    const auto hit = caster_.cast(from_upright(mesh_.up, origin), along);
     if (!hit) return 0;
     const auto [a, b, c] = mesh_.triangles[hit->triangle];
     const Vec3 normal = cross(mesh_.positions[b] - mesh_.positions[a], mesh_.positions[c] - mesh_.positions[a]);
-    return dot(normal, direction) < 0 ? hit->distance : -hit->distance;
+    return dot(normal, along) < 0 ? hit->distance : -hit->distance;
   }
 
  private:
@@ -172,6 +178,25 @@ Camera view_from_outside(const Scout& scout, PictureSize size) {
   return best_of(scout, views);
 }
 
+Camera upright_camera(const Scout& scout, PictureSize size) {
+  constexpr std::array<Vec3, 6> ways{{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}}};
+  constexpr int horizontal = 4;
+  Side open;
+  double backs = 0;
+  for (int way = 0; way < 6; ++way) {
+    const Side side = look_through(scout, ways[way]);
+    if (way < horizontal && side.openness > open.openness + 0.01) open = side;
+    backs += side.backs / 6;
+  }
+  // A plane with things on it lets rays in from all sides, but shows no backs.
+  const bool is_room = backs > 0.4;
+  if (is_room && open.openness > 0.4) return view_through(scout.box(), open, size);
+  if (!is_room) return view_from_outside(scout, size);
+  // Where all corners are inside walls or furniture, fronts are better seen through the walls.
+  const Camera inside = view_inside(scout, size);
+  return worth(scout, inside) > 0.1 ? inside : view_from_outside(scout, size);
+}
+
 }  // namespace
 
 Viewfinder::Viewfinder(const Camera& camera) : eye_(camera.eye) {
@@ -191,23 +216,9 @@ Camera default_camera(const DisplayMesh& mesh, PictureSize size) {
 }
 
 Camera default_camera(const DisplayMesh& mesh, const TriangleCaster& caster, PictureSize size) {
-  const Scout scout(mesh, caster);
-  constexpr std::array<Vec3, 6> ways{{{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 1, 0}}};
-  constexpr int horizontal = 4;
-  Side open;
-  double backs = 0;
-  for (int way = 0; way < 6; ++way) {
-    const Side side = look_through(scout, ways[way]);
-    if (way < horizontal && side.openness > open.openness + 0.01) open = side;
-    backs += side.backs / 6;
-  }
-  // A plane with things on it lets rays in from all sides, but shows no backs.
-  const bool is_room = backs > 0.4;
-  if (is_room && open.openness > 0.4) return view_through(scout.box(), open, size);
-  if (!is_room) return view_from_outside(scout, size);
-  // Where all corners are inside walls or furniture, fronts are better seen through the walls.
-  const Camera inside = view_inside(scout, size);
-  return worth(scout, inside) > 0.1 ? inside : view_from_outside(scout, size);
+  Camera camera = upright_camera(Scout(mesh, caster), size);
+  for (Vec3* vector : {&camera.eye, &camera.target, &camera.up}) *vector = from_upright(mesh.up, *vector);
+  return camera;
 }
 
 }  // namespace alvor

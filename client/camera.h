@@ -35,8 +35,8 @@ struct PictureSize {
   int height = 768;
 };
 
-/// A view that shows the fronts of things, y up: through the open side of a room, as the Cornell box is shown; from a corner of
-/// a closed room; from outside and above for anything else. Requires: !mesh.triangles.empty().
+/// A view that shows the fronts of things, the mesh's up axis upright: through the open side of a room, as the Cornell box is
+/// shown; from a corner of a closed room; from outside and above for anything else. Requires: !mesh.triangles.empty().
 Camera default_camera(const DisplayMesh& mesh, PictureSize size = {});
 /// The same with a caster of the same triangles at hand.
 Camera default_camera(const DisplayMesh& mesh, const TriangleCaster& caster, PictureSize size);

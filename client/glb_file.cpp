@@ -102,13 +102,22 @@ json unlit_material() {
           {"extensions", {{"KHR_materials_unlit", json::object()}}}};
 }
 
-json document(const BinaryChunk& chunk, const json& attributes, std::size_t indices, const Vec3& origin) {
+json node_of(const Vec3& origin, UpAxis up) {
+  json node = {{"name", "solution"}, {"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}};
+  if (up == UpAxis::y) return node;
+  node["translation"] = {origin.x, origin.z, -origin.y};
+  node["rotation"] = z_up_rotation;
+  node["extras"] = {{up_key, "z"}};
+  return node;
+}
+
+json document(const BinaryChunk& chunk, const json& attributes, std::size_t indices, const json& node) {
   json root;
   root["asset"] = {{"version", "2.0"}, {"generator", "Alvor"}};
   root["extensionsUsed"] = json::array({"KHR_materials_unlit"});
   root["scene"] = 0;
   root["scenes"] = json::array({{{"nodes", {0}}}});
-  root["nodes"] = json::array({{{"name", "solution"}, {"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}}});
+  root["nodes"] = json::array({node});
   const json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
   root["meshes"] = json::array({{{"name", "solution"}, {"primitives", json::array({primitive})}}});
   root["materials"] = json::array({unlit_material()});
@@ -136,7 +145,7 @@ std::string encode_glb(const DisplayMesh& mesh) {
   BinaryChunk chunk;
   const json attributes = add_attributes(chunk, mesh, origin);
   const std::size_t indices = chunk.add_indices(mesh.triangles);
-  std::string text = document(chunk, attributes, indices, origin).dump();
+  std::string text = document(chunk, attributes, indices, node_of(origin, mesh.up)).dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

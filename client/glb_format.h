@@ -12,4 +12,8 @@ inline constexpr int float_component = 5126, uint_component = 5125, array_buffer
 /// Ours has 2 kB; a parsed tree takes many times its text.
 inline constexpr std::size_t largest_json = 1 << 20;
 
+/// glTF is y-up: the node of a z-up solution is turned by this, and its extras say so under this key.
+inline constexpr double z_up_rotation[4] = {-0.70710678118654752, 0, 0, 0.70710678118654752};
+inline constexpr const char* up_key = "alvor_up";
+
 }  // namespace alvor::glb

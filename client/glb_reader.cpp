@@ -148,6 +148,13 @@ std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::
   return triangles;
 }
 
+UpAxis up_axis(const json& root) {
+  const json& node = element(root, "nodes", 0);
+  const auto extras = node.is_object() ? node.find("extras") : node.end();
+  const bool is_z = extras != node.end() && extras->is_object() && extras->value(up_key, json()) == "z";
+  return is_z ? UpAxis::z : UpAxis::y;
+}
+
 Vec3 translation(const json& root) {
   const json& node = element(root, "nodes", 0);
   if (!node.is_object() || !node.contains("translation")) return {};
@@ -164,7 +171,10 @@ DisplayMesh decode_glb(std::string_view bytes) {
   const Chunks chunks = chunks_of(bytes);
   const json root = parse_text(chunks.text);
   DisplayMesh mesh;
-  mesh.positions = read_vectors<Vec3>(root, chunks.binary, "POSITION", translation(root));
+  mesh.up = up_axis(root);
+  const Vec3 shown = translation(root);
+  const Vec3 origin = mesh.up == UpAxis::z ? Vec3{shown.x, -shown.z, shown.y} : shown;
+  mesh.positions = read_vectors<Vec3>(root, chunks.binary, "POSITION", origin);
   mesh.normals = read_vectors<Vec3>(root, chunks.binary, "NORMAL", {});
   mesh.irradiance = read_vectors<RgbF>(root, chunks.binary, "_IRRADIANCE", {});
   mesh.radiosity = read_vectors<RgbF>(root, chunks.binary, "_RADIOSITY", {});

@@ -1,8 +1,7 @@
 #include "client/gltf_accessor.h"
 
 #include "client/import_error.h"
-
-#include <tiny_gltf.h>
+#include "client/tiny_gltf.h"
 
 #include <algorithm>
 #include <cstring>

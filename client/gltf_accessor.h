@@ -7,9 +7,10 @@
 #include <span>
 #include <vector>
 
-namespace tinygltf {
+namespace alvor_tinygltf {
 class Model;
 }
+namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 

@@ -1,14 +1,15 @@
 #include "client/gltf_file.h"
 
+#include "client/bytes.h"
+#include "client/file_beside.h"
+#include "client/glb_format.h"
 #include "client/import_error.h"
+#include "client/tiny_gltf.h"
+#include "client/whole_file.h"
 
-#include <tiny_gltf.h>
-
-#include <algorithm>
+#include <charconv>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
-#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,7 +17,8 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t glb_header = 20;  ///< of the file and of its first chunk, the JSON
+using nlohmann::json;
+
 constexpr int max_depth = 200;
 
 /// Extensions that change neither shape nor place, and so may be required of us.
@@ -25,62 +27,157 @@ bool is_harmless(const std::string& extension) {
          extension.starts_with("EXT_texture_") || extension == "KHR_mesh_quantization" || extension == "KHR_lights_punctual";
 }
 
-/// Keeps the encoded bytes, to be decoded when a material asks. Bytes of a buffer view are not touched: tinygltf does not check
-/// its range.
+void refuse_unknown_extensions(const tinygltf::Model& model) {
+  for (const std::string& extension : model.extensionsRequired)
+    if (!is_harmless(extension)) throw ImportError("file", "requires the extension " + extension + ", which is not supported");
+}
+
+/// The two parts of a glTF file. A text file has no binary part.
+struct Container {
+  std::string_view text;
+  std::optional<std::string_view> binary;
+};
+
+/// Takes the next chunk of a GLB off the front of `rest`.
+std::string_view take_chunk(std::string_view& rest, std::uint32_t type, const char* name) {
+  if (rest.size() < glb::chunk_header_size || value_at<std::uint32_t>(rest, 4) != type)
+    throw ImportError("file", std::string("has no ") + name + " chunk");
+  const std::size_t size = value_at<std::uint32_t>(rest, 0);
+  if (size > rest.size() - glb::chunk_header_size) throw ImportError("file", std::string("ends within its ") + name + " chunk");
+  const std::string_view chunk = rest.substr(glb::chunk_header_size, size);
+  rest.remove_prefix(glb::chunk_header_size + size);
+  return chunk;
+}
+
+Container container_of(std::string_view content) {
+  if (!content.starts_with("glTF")) return {content, {}};
+  if (content.size() < glb::file_header_size) throw ImportError("file", "ends within its header");
+  if (const auto version = value_at<std::uint32_t>(content, 4); version != 2)
+    throw ImportError("file", "is GLB of version " + std::to_string(version) + ", only 2 is supported");
+  std::string_view rest = content.substr(glb::file_header_size);
+  Container container{take_chunk(rest, glb::json_chunk, "JSON"), {}};
+  if (!rest.empty()) container.binary = take_chunk(rest, glb::binary_chunk, "BIN");
+  return container;
+}
+
+/// tinygltf copies values by recursion: a megabyte of brackets would overflow the stack.
+void refuse_deep(std::string_view text) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') ++i;
+    else if (c == '"') quoted = !quoted;
+    else if (!quoted && (c == '[' || c == '{') && ++depth > max_depth) throw ImportError("file", "its JSON is nested too deeply");
+    else if (!quoted && (c == ']' || c == '}')) --depth;
+  }
+}
+
+json parse(std::string_view text) {
+  refuse_deep(text);
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    throw ImportError("file", "its JSON is broken at byte " + std::to_string(error.byte));
+  }
+}
+
+bool is_data_uri(const std::string& uri) { return uri.starts_with("data:"); }
+
+std::string uri_of(const json& element) {
+  const auto uri = element.find("uri");
+  return uri != element.end() && uri->is_string() ? uri->get<std::string>() : std::string();
+}
+
+/// The bytes of the buffers that are not written into the JSON, as tinygltf asks for them: by the buffer's number.
+class Buffers {
+ public:
+  /// Reads what the JSON's buffers name, and puts the number of each in the place of its URI.
+  Buffers(json& gltf, std::optional<std::string_view> binary, const std::filesystem::path& folder) {
+    const auto buffers = gltf.find("buffers");
+    if (buffers == gltf.end() || !buffers->is_array()) return;
+    for (json& buffer : *buffers) {
+      bytes_.emplace_back();
+      if (!buffer.is_object()) continue;
+      const std::string place = "buffer " + std::to_string(bytes_.size() - 1), uri = uri_of(buffer);
+      if (is_data_uri(uri)) continue;
+      if (!uri.empty()) bytes_.back() = read_file_beside(folder, uri, place);
+      else if (binary && bytes_.size() == 1) bytes_.back() = *binary;
+      else throw ImportError(place, "names no file");
+      cut_to_length(bytes_.back(), buffer, place + (uri.empty() ? "" : " '" + uri + "'"));
+      buffer["uri"] = std::to_string(bytes_.size() - 1);
+    }
+  }
+
+  tinygltf::FsCallbacks callbacks() {
+    return {[](const std::string& name, void* self) { return of(self).find(name) != nullptr; },
+            [](const std::string& name, void*) { return name; },
+            [](std::vector<unsigned char>* out, std::string*, const std::string& name, void* self) {
+              const std::string* found = of(self).find(name);
+              if (found) out->assign(found->begin(), found->end());
+              return found != nullptr;
+            },
+            [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }, this};
+  }
+
+ private:
+  static Buffers& of(void* self) { return *static_cast<Buffers*>(self); }
+
+  /// A buffer may be shorter than what holds it, not longer.
+  static void cut_to_length(std::string& bytes, const json& buffer, const std::string& place) {
+    const auto length = buffer.find("byteLength");
+    if (length == buffer.end() || !length->is_number_unsigned()) throw ImportError(place, "has no byteLength");
+    const auto needed = length->get<std::uint64_t>();
+    if (needed > bytes.size())
+      throw ImportError(place, "is too short: " + std::to_string(bytes.size()) + " of " + std::to_string(needed) + " bytes");
+    bytes.resize(needed);
+  }
+
+  const std::string* find(const std::string& name) const {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    const bool known = error == std::errc() && end == name.data() + name.size() && number < bytes_.size();
+    return known ? &bytes_[number] : nullptr;
+  }
+
+  std::vector<std::string> bytes_;
+};
+
+/// Keeps an image of the JSON encoded, to be decoded when a material asks. Those of buffer views stay there: tinygltf does not
+/// check their range.
 bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                   void*) {
   if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
-std::string read_all(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw ImportError("file", "cannot be opened");
-  std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (content.size() > std::numeric_limits<std::uint32_t>::max()) throw ImportError("file", "is larger than 4 GB");
-  return content;
-}
-
-/// tinygltf descends into values by recursion: a megabyte of brackets would overflow the stack. Brackets in a GLB's binary part
-/// are not looked at, as the JSON part ends where its depth returns to 0.
-void refuse_deep(std::string_view json) {
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (quoted && c == '\\') ++i;
-    else if (c == '"') quoted = !quoted;
-    else if (!quoted && (c == '[' || c == '{') && ++depth > max_depth) throw ImportError("file", "its JSON is nested too deeply");
-    else if (!quoted && (c == ']' || c == '}') && --depth == 0) return;
+void read_images(tinygltf::Model& model, const std::filesystem::path& folder) {
+  for (std::size_t i = 0; i < model.images.size(); ++i) {
+    tinygltf::Image& image = model.images[i];
+    if (image.bufferView >= 0 || image.uri.empty() || !image.image.empty()) continue;
+    const std::string bytes = read_file_beside(folder, image.uri, "image " + std::to_string(i));
+    image.image.assign(bytes.begin(), bytes.end());
   }
-}
-
-void refuse_unknown_extensions(const tinygltf::Model& model) {
-  for (const std::string& extension : model.extensionsRequired)
-    if (!is_harmless(extension)) throw ImportError("file", "requires the extension " + extension + ", which is not supported");
-}
-
-bool load(tinygltf::Model& model, const std::string& content, bool binary, const std::string& folder, std::string& error) {
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_encoded, nullptr);
-  std::string warning;
-  const auto size = static_cast<unsigned>(content.size());
-  if (!binary) return loader.LoadASCIIFromString(&model, &error, &warning, content.data(), size, folder);
-  const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
-  return loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, size, folder);
 }
 
 }  // namespace
 
 tinygltf::Model load_gltf(const std::filesystem::path& path) {
-  const std::string content = read_all(path);
-  const bool binary = content.starts_with("glTF");
-  refuse_deep(std::string_view(content).substr(binary ? std::min(glb_header, content.size()) : 0));
+  const std::string content = read_whole_file(path);
+  const Container container = container_of(content);
+  json gltf = parse(container.text);
+  const std::filesystem::path folder = path.parent_path();
+  Buffers buffers(gltf, container.binary, folder);
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keep_encoded, nullptr);
+  loader.SetFsCallbacks(buffers.callbacks());
+  const std::string text = gltf.dump(-1, ' ', false, json::error_handler_t::replace);
   tinygltf::Model model;
-  std::string error;
-  if (!load(model, content, binary, path.parent_path().string(), error))
+  std::string error, warning;
+  if (!loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), ""))
     throw ImportError("file", error.empty() ? "is not glTF" : error);
   refuse_unknown_extensions(model);
+  read_images(model, folder);
   return model;
 }
 

@@ -2,9 +2,10 @@
 
 #include <filesystem>
 
-namespace tinygltf {
+namespace alvor_tinygltf {
 class Model;
 }
+namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 

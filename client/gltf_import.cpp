@@ -5,8 +5,8 @@
 #include "client/gltf_material.h"
 #include "client/import_error.h"
 #include "client/placement.h"
-
-#include <tiny_gltf.h>
+#include "client/tiny_gltf.h"
+#include "client/unsupported.h"
 
 #include <algorithm>
 #include <array>
@@ -107,6 +107,8 @@ class GltfReader {
   SceneFile read() {
     file_.scene.materials = read_gltf_materials(model_, file_.warnings);
     add_tree(root_nodes());
+    count_unsupported_materials();
+    unsupported_.append_warnings(file_.warnings);
     return std::move(file_);
   }
 
@@ -143,6 +145,7 @@ class GltfReader {
       stack.pop_back();
       const auto [node, placement] = enter(next);
       if (node->mesh >= 0) add_mesh(node->mesh, placement);
+      count_light(*node);
       push(node->children, placement);
     }
   }
@@ -210,8 +213,36 @@ class GltfReader {
     return *default_material_;
   }
 
+  /// KHR_lights_punctual.
+  void count_light(const tinygltf::Node& node) {
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end()) return;
+    const int light = extension->second.Has("light") ? extension->second.Get("light").GetNumberAsInt() : -1;
+    const std::string type = element(model_.lights, light, "light", "scene").type;
+    if (type == "point") ++unsupported_.point_lights;
+    else if (type == "spot") ++unsupported_.spot_lights;
+    else if (type == "directional") ++unsupported_.directional_lights;
+    else ++unsupported_.other_lights;
+  }
+
+  void count_unsupported_materials() {
+    const std::vector<bool> used = used_materials(file_.scene);
+    for (std::size_t m = 0; m < model_.materials.size(); ++m) {
+      if (!used[m]) continue;
+      const tinygltf::Material& material = model_.materials[m];
+      const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+      // Under a texture the factor is the default, 1, for what is not metal too.
+      const bool is_metal = surface.metallicFactor > 0.5 && surface.metallicRoughnessTexture.index < 0;
+      unsupported_.transparent_materials += !material.alphaMode.empty() && material.alphaMode != "OPAQUE";
+      unsupported_.metals += is_metal;
+      unsupported_.transmissive_materials += material.extensions.contains("KHR_materials_transmission") ||
+                                             material.extensions.contains("KHR_materials_diffuse_transmission");
+    }
+  }
+
   const tinygltf::Model& model_;
   std::vector<bool> seen_;
+  Unsupported unsupported_;
   SceneFile file_;
   std::optional<std::uint32_t> default_material_;
 };

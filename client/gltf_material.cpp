@@ -2,8 +2,7 @@
 
 #include "client/gltf_accessor.h"
 #include "client/texture_colour.h"
-
-#include <tiny_gltf.h>
+#include "client/tiny_gltf.h"
 
 #include <optional>
 

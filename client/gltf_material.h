@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-namespace tinygltf {
+namespace alvor_tinygltf {
 class Model;
 }
+namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 

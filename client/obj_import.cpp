@@ -4,6 +4,7 @@
 #include "client/obj_lines.h"
 #include "client/placement.h"
 #include "client/texture_colour.h"
+#include "client/unsupported.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE
@@ -24,6 +25,20 @@ constexpr std::array<std::string_view, 1> vertex_lines{"v"};
 constexpr std::array<std::string_view, 2> colour_lines{"Kd", "Ke"};
 
 Rgb rgb_of(const tinyobj::real_t (&bands)[3]) { return {bands[0], bands[1], bands[2]}; }
+
+/// The materials of an MTL text that have a line of this key.
+std::set<std::string> materials_with(std::string_view key, const std::string& text) {
+  std::set<std::string> names;
+  std::istringstream lines(text);
+  std::string line, word, material;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    if (!(words >> word)) continue;
+    if (word == "newmtl") std::getline(words >> std::ws, material);
+    else if (word == key) names.insert(material);
+  }
+  return names;
+}
 
 /// MTL files, checked before they are parsed.
 class MaterialLibrary : public tinyobj::MaterialReader {
@@ -50,11 +65,22 @@ class MaterialLibrary : public tinyobj::MaterialReader {
  private:
   void load(std::istream& stream, const std::string& file, std::vector<tinyobj::material_t>* materials,
             std::map<std::string, int>* index, std::string* error) {
-    std::istringstream lines(clean_lines(stream, colour_lines, file));
+    const std::string text = clean_lines(stream, colour_lines, file);
+    std::istringstream lines(text);
     const std::size_t known = materials->size();
     std::string warning;
     tinyobj::LoadMtl(index, materials, &lines, &warning, error);
+    fill_factors(std::span(*materials).subspan(known), text);
     for (std::size_t m = known; m < materials->size(); ++m) by_name_.emplace((*materials)[m].name, (*materials)[m]);
+  }
+
+  /// A texture without a colour (Blender writes such) counts whole.
+  static void fill_factors(std::span<tinyobj::material_t> materials, const std::string& text) {
+    const auto with_diffuse = materials_with("Kd", text), with_emission = materials_with("Ke", text);
+    for (tinyobj::material_t& material : materials) {
+      if (!material.diffuse_texname.empty() && !with_diffuse.contains(material.name)) std::ranges::fill(material.diffuse, 1.0);
+      if (!material.emissive_texname.empty() && !with_emission.contains(material.name)) std::ranges::fill(material.emission, 1.0);
+    }
   }
 
   std::filesystem::path folder_;
@@ -121,9 +147,12 @@ Rgb under_texture(const Rgb& factor, std::string file, const Material& material,
 }
 
 void fill_materials(SceneFile& file, const MaterialLibrary& library, const std::filesystem::path& folder) {
+  Unsupported unsupported;
   for (Material& material : file.scene.materials) {
     const tinyobj::material_t* found = library.find(material.name);
     if (found) {
+      unsupported.transparent_materials += found->dissolve < 1 || !found->alpha_texname.empty();
+      unsupported.metals += found->metallic > 0.5;
       material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, folder, file.warnings);
       material.emission =
           emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, folder, file.warnings));
@@ -133,6 +162,7 @@ void fill_materials(SceneFile& file, const MaterialLibrary& library, const std::
       material.name = "default";
     }
   }
+  unsupported.append_warnings(file.warnings);
 }
 
 void refuse_indices_beyond(const Scene& scene) {

@@ -19,15 +19,17 @@ constexpr std::string_view vertex_properties =
     "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 constexpr std::string_view face_properties = "property list uchar int vertex_indices\n";
+constexpr std::string_view z_up_comment = "comment z up\n";
 constexpr std::string_view last_line = "end_header\n";
 constexpr std::size_t vertex_size = 3 * sizeof(double) + 9 * sizeof(float) + 3;
 constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
 
 [[noreturn]] void fail(const std::string& place, const std::string& reason) { throw SolutionFileError(place + ": " + reason); }
 
-std::string header(std::size_t vertices, std::size_t faces) {
+std::string header(std::size_t vertices, std::size_t faces, UpAxis up) {
   std::string text(first_lines);
   text += "comment Alvor solution: metres, W/m2\n";
+  if (up == UpAxis::z) text += z_up_comment;
   text.append(vertex_element).append(std::to_string(vertices)).append("\n").append(vertex_properties);
   text.append(face_element).append(std::to_string(faces)).append("\n").append(face_properties);
   return text.append(last_line);
@@ -74,6 +76,7 @@ class Reader {
 struct Parts {
   std::string header;
   std::string_view body;
+  UpAxis up = UpAxis::y;
 };
 
 Parts parts_of(std::string_view bytes) {
@@ -83,6 +86,7 @@ Parts parts_of(std::string_view bytes) {
   Parts parts{{}, bytes.substr(end + 1 + last_line.size())};
   for (std::string_view rest = bytes.substr(0, end + 1); !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n') + 1);
+    if (line == z_up_comment) parts.up = UpAxis::z;
     if (!line.starts_with("comment")) parts.header += line;
     rest.remove_prefix(line.size());
   }
@@ -150,7 +154,7 @@ std::string encode_ply(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) fail("mesh", "has no triangles");
   if (mesh.positions.size() > std::numeric_limits<std::int32_t>::max()) fail("mesh", "has 2^31 vertices or more");
   const double exposure = automatic_exposure(mesh);
-  std::string bytes = header(mesh.positions.size(), mesh.triangles.size());
+  std::string bytes = header(mesh.positions.size(), mesh.triangles.size(), mesh.up);
   bytes.reserve(bytes.size() + mesh.positions.size() * vertex_size + mesh.triangles.size() * face_size);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     append_xyz<double>(bytes, mesh.positions[i]);
@@ -172,6 +176,7 @@ DisplayMesh decode_ply(std::string_view bytes) {
   if (parts.body.size() != counts.vertices * vertex_size + counts.faces * face_size)
     fail("body", "the size is not that of the vertices and faces the header counts");
   DisplayMesh mesh;
+  mesh.up = parts.up;
   Reader reader(parts.body);
   read_vertices(reader, counts.vertices, mesh);
   read_faces(reader, counts.faces, mesh);

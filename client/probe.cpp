@@ -1,7 +1,10 @@
 #include "client/probe.h"
 
+#include "client/gather.h"
 #include "client/whole_file.h"
 #include "radiosity/visibility.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -24,10 +27,35 @@ RgbF interpolated(const DisplayMesh& mesh, const std::vector<RgbF>& values, cons
   return narrow((1 - hit.u - hit.v) * widen(values[a]) + hit.u * widen(values[b]) + hit.v * widen(values[c]));
 }
 
-ProbeSample probe_one(const DisplayMesh& mesh, const TriangleCaster& caster, const ProbePoint& asked) {
+double extent_of(const DisplayMesh& mesh) {
+  Vec3 low = mesh.positions.front(), high = low;
+  for (const Vec3& p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+ProbeSample on_nearest_surface(const DisplayMesh& mesh, const TriangleCaster& caster, const ProbePoint& asked) {
+  ProbeSample sample{asked.point, asked.normal, not_a_value, not_a_value, std::numeric_limits<double>::infinity(), nan};
   const auto hit = caster.nearest(asked.point, normalized(asked.normal));
-  if (!hit) return {asked.point, asked.normal, not_a_value, not_a_value, false};
-  return {asked.point, asked.normal, interpolated(mesh, mesh.irradiance, *hit), interpolated(mesh, mesh.radiosity, *hit), true};
+  if (!hit) return sample;
+  sample.distance = hit->distance;
+  sample.irradiance = interpolated(mesh, mesh.irradiance, *hit);
+  sample.radiosity = interpolated(mesh, mesh.radiosity, *hit);
+  return sample;
+}
+
+/// Replaces what the nearest surface says by what arrives at the point itself.
+void gather_at(ProbeSample& sample, const Gatherer& gatherer, std::uint64_t stream) {
+  sample.irradiance = sample.radiosity = not_a_value;
+  const auto gathered = gatherer.gather(sample.point, normalized(sample.normal), stream);
+  sample.place = gathered ? ProbePlace::in_air : ProbePlace::enclosed;
+  if (!gathered) return;
+  sample.irradiance = narrow(gathered->irradiance);
+  sample.standard_error = gathered->standard_error;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -86,11 +114,24 @@ void append_numbers(std::string& text, std::initializer_list<double> numbers) {
 
 }  // namespace
 
-std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points) {
+std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const ProbePoint> points) {
   const TriangleCaster caster(mesh.positions, mesh.triangles);
   std::vector<ProbeSample> samples;
   samples.reserve(points.size());
-  for (const ProbePoint& point : points) samples.push_back(probe_one(mesh, caster, point));
+  for (const ProbePoint& point : points) samples.push_back(on_nearest_surface(mesh, caster, point));
+  return samples;
+}
+
+std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points) {
+  constexpr double on_surface = 1e-4;  // of the extent
+  const double reach = on_surface * extent_of(mesh);
+  const TriangleCaster caster(mesh.positions, mesh.triangles);
+  const Gatherer gatherer(mesh, caster);
+  std::vector<ProbeSample> samples(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) {
+    samples[n] = on_nearest_surface(mesh, caster, points[n]);
+    if (samples[n].distance > reach) gather_at(samples[n], gatherer, n);
+  });
   return samples;
 }
 
@@ -115,10 +156,13 @@ std::vector<ProbePoint> read_points(const std::filesystem::path& path) {
 }
 
 std::string samples_csv(std::span<const ProbeSample> samples) {
-  std::string text = "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b\n";
+  std::string text =
+      "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b,"
+      "distance,standard_error\n";
   for (const ProbeSample& s : samples) {
     append_numbers(text, {s.point.x, s.point.y, s.point.z, s.normal.x, s.normal.y, s.normal.z});
     append_numbers(text, {s.irradiance.r, s.irradiance.g, s.irradiance.b, s.radiosity.r, s.radiosity.g, s.radiosity.b});
+    append_numbers(text, {s.distance, s.standard_error});
     text.back() = '\n';
   }
   return text;

@@ -16,19 +16,35 @@ struct ProbePoint {
   Vec3 normal;  ///< need not be unit, but not zero
 };
 
-struct ProbeSample {
-  Vec3 point, normal;  ///< as asked
-  RgbF irradiance, radiosity;
-  bool found = false;  ///< false: no surface faces this way, and the values are NaN
+/// Where a point lies.
+enum class ProbePlace {
+  on_surface,  ///< of a face that looks the same way within 60 degrees, or within 1e-4 of the scene's extent of it
+  in_air,      ///< farther off
+  enclosed,    ///< inside a solid or outside the room: most of what can be seen from there are backs of surfaces
 };
 
-/// The nearest surface that faces the same way, interpolated within its triangle. One sample per point, in order.
+/// Values that do not apply are NaN.
+struct ProbeSample {
+  Vec3 point, normal;          ///< as asked
+  RgbF irradiance, radiosity;  ///< in air no radiosity, enclosed neither
+  double distance = 0;         ///< to the nearest surface that faces the same way, metres; infinite if there is none
+  double standard_error = 0;   ///< of the mean of the bands of what was gathered in air, W/m2; else NaN
+  ProbePlace place = ProbePlace::on_surface;
+};
+
+/// Returns one sample per point, in order: on a surface the solution there, interpolated within its triangle; in the air the
+/// irradiance of a small surface that looks along the normal (client/gather.h). Uses all cores; the same points give the same
+/// samples.
 std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points);
+
+/// Returns for each point, in order, the solution on the nearest surface that faces the same way, however far it is; its distance
+/// is infinite and its values are NaN where there is none.
+std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const ProbePoint> points);
 
 /// Lines `x,y,z,nx,ny,nz`; a header line and blank lines are skipped. Throws FileError (client/whole_file.h) that names the line.
 std::vector<ProbePoint> read_points(const std::filesystem::path& path);
 
-/// A header and one line per sample, W/m2.
+/// A header and one line per sample: W/m2, metres.
 std::string samples_csv(std::span<const ProbeSample> samples);
 
 }  // namespace alvor

@@ -1,13 +1,13 @@
 #include "client/scene_file.h"
 
 #include "client/assimp_import.h"
+#include "client/child_import.h"
 #include "client/gltf_import.h"
 #include "client/import_error.h"
 #include "client/obj_import.h"
-#include "client/quad_pairing.h"
+#include "client/scene_format.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <string_view>
 
@@ -15,7 +15,6 @@ namespace alvor {
 
 namespace {
 
-constexpr double clamped_reflectance = 0.95;
 /// Twice a face's area over the square of its outline's length, below which it is a line or a point.
 constexpr double flat = 1e-14;
 constexpr std::size_t max_line = 400;
@@ -29,11 +28,10 @@ void refuse_unreadable(const std::filesystem::path& path) {
 }
 
 SceneFile import_by_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case_extension(path);
   if (extension == ".obj") return import_obj(path);
   if (extension == ".gltf" || extension == ".glb") return import_gltf(path);
-  return import_by_assimp(path);
+  return import_in_child(path, import_by_assimp);
 }
 
 /// A band brought into [0, 1). What is not a number stays: it is a fault.
@@ -78,15 +76,6 @@ void refuse_faulty(const Scene& scene) {
     throw ImportError("scene", "all " + std::to_string(scene.faces.size()) + " faces are degenerate");
 }
 
-bool is_all_triangles(const Scene& scene) {
-  return std::ranges::all_of(scene.faces, [](const Face& face) { return face.corner_count == 3; });
-}
-
-void warn_if_dark(SceneFile& file) {
-  const auto emits = [&](const Face& face) { return !file.scene.materials[face.material].emission.is_zero(); };
-  if (std::ranges::none_of(file.scene.faces, emits)) file.warnings.push_back("no material emits: the solution will be black");
-}
-
 /// Libraries report in several lines, and quote the file, which may hold anything.
 std::string one_line(std::string_view text) {
   std::string line;
@@ -105,9 +94,6 @@ SceneFile import_checked(const std::filesystem::path& path) {
   SceneFile file = import_by_extension(path);
   clamp_reflectance(file);
   refuse_faulty(file.scene);
-  // A file of mixed polygons says what its triangles are; one of triangles only was cut by its exporter.
-  if (is_all_triangles(file.scene)) pair_triangles(file.scene);
-  warn_if_dark(file);
   for (std::string& warning : file.warnings) warning = one_line(warning);
   return file;
 }

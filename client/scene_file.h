@@ -20,10 +20,9 @@ struct SceneFileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads OBJ+MTL and what else Assimp reads well, and glTF 2.0 / GLB through tinygltf. Faces keep the order of the file; quads
-/// and polygons stay what they are; coplanar triangle pairs that importers made of quads become quads again. Node transforms are
-/// applied; radiance becomes emission (E = pi L). Reflectance of 1 or more is clamped to 0.95 with a warning. The scene has no
-/// fault (find_fault). Throws SceneFileError.
+/// Reads OBJ+MTL and what else Assimp reads well, and glTF 2.0 / GLB through tinygltf. Faces keep the order and
+/// the corners that they have in the file. Node transforms are applied; radiance becomes emission (E = pi L). Reflectance of 1 or
+/// more is clamped to 0.95 with a warning. The scene has no fault (find_fault). Throws SceneFileError.
 SceneFile read_scene_file(const std::filesystem::path& path);
 
 }  // namespace alvor

@@ -2,10 +2,9 @@
 
 #include "client/glb_file.h"
 #include "client/ply_file.h"
+#include "client/scene_format.h"
 #include "client/whole_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 namespace alvor {
@@ -17,8 +16,7 @@ struct Format {
 };
 
 Format format_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case_extension(path);
   if (extension == ".glb") return {encode_glb, decode_glb};
   if (extension == ".ply") return {encode_ply, decode_ply};
   throw SolutionFileError(path.string() + ": name: a solution file ends in .glb or .ply");

@@ -14,8 +14,8 @@ struct SolutionFileError : std::runtime_error {
 };
 
 /// By extension: .glb (float attributes _RADIOSITY and _IRRADIANCE, W/m2, and a tone-mapped COLOR_0 under an unlit material,
-/// positions relative to a node's translation) or .ply (binary little endian, the same as vertex properties). The file appears
-/// whole or not at all. Throws SolutionFileError.
+/// positions relative to a node's translation, the node turned where the solution is z-up) or .ply (binary little endian, the
+/// same as vertex properties). The file appears whole or not at all. Throws SolutionFileError.
 void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh);
 
 /// Reads what write_solution_file wrote. Throws SolutionFileError, also for any other GLB or PLY.

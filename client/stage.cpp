@@ -1,32 +1,13 @@
 #include "client/stage.h"
 
-#include <algorithm>
-
 namespace alvor {
-namespace {
 
-constexpr double float_step = 4e-6;  ///< of a distance: enough to leave a surface for certain in float32
-
-/// An upper bound of the distance between two vertices, at most twice as large.
-double extent_of(const DisplayMesh& mesh) {
-  double radius = 0;
-  for (const Vec3& p : mesh.positions) radius = std::max(radius, length(p - mesh.positions.front()));
-  return 2 * radius;
-}
-
-}  // namespace
-
-Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles), extent_(extent_of(mesh)) {}
+Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles) {}
 
 std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
-  constexpr int most_backs = 64;
-  for (int backs = 0; backs < most_backs; ++backs) {
-    const auto hit = caster_.cast(origin, direction);
-    if (!hit) return std::nullopt;
-    if (dot(area_vector(hit->triangle), direction) < 0) return Seen{hit->triangle, hit->u, hit->v};
-    origin += direction * (hit->distance * (1 + float_step) + float_step * extent_);
-  }
-  return std::nullopt;
+  const auto hit = caster_.cast_front(origin, direction);
+  if (!hit) return std::nullopt;
+  return Seen{hit->triangle, hit->u, hit->v};
 }
 
 void Stage::glance(const Camera& camera, const std::function<void(const Seen&)>& on_seen) const {

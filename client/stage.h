@@ -43,7 +43,6 @@ class Stage {
 
   const DisplayMesh& mesh_;
   TriangleCaster caster_;
-  double extent_;
 };
 
 }  // namespace alvor

@@ -2,6 +2,7 @@
 
 #include "meshing/polygon.h"
 #include "meshing/weld.h"
+#include "meshing/welded_faces.h"
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 
@@ -17,8 +18,7 @@ namespace {
 
 using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 
-constexpr double weld_tolerance = 1e-9;    // of the extent
-constexpr double degenerate_area = 1e-14;  // of the longest diagonal squared
+constexpr double weld_tolerance = 1e-9;  // of the extent
 const double smooth_cosine = std::cos(25 * std::numbers::pi / 180);
 
 struct Box {
@@ -32,27 +32,6 @@ struct Box {
   }
   double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
 };
-
-/// A face's corners after welding, without repetitions.
-std::vector<std::uint32_t> welded_ring(const Scene& scene, const Face& face, std::span<const std::uint32_t> first) {
-  std::vector<std::uint32_t> ring;
-  for (const std::uint32_t vertex : scene.corners_of(face))
-    if (ring.empty() || ring.back() != first[vertex]) ring.push_back(first[vertex]);
-  while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
-  return ring;
-}
-
-bool is_degenerate(std::span<const Vec3> polygon) {
-  double longest = 0;
-  for (const Vec3& p : polygon) longest = std::max(longest, length(p - polygon[0]));
-  return !(0.5 * length(double_area_vector(polygon)) > degenerate_area * longest * longest);
-}
-
-std::vector<Vec3> positions_of(const Scene& scene, std::span<const std::uint32_t> ring) {
-  std::vector<Vec3> at;
-  for (const std::uint32_t vertex : ring) at.push_back(scene.vertices[vertex]);
-  return at;
-}
 
 RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, const Piece& piece) {
   RootPatch root;
@@ -144,28 +123,21 @@ Vec3 RootPatch::at(double u, double v) const {
   return lerp(lerp(corners[0], corners[1], u), lerp(corners[3], corners[2], u), v);
 }
 
-BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials), absorption_(scene.absorption) {
+BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
+    : materials_(scene.materials), absorption_(scene.absorption), up_(scene.up) {
   Box used;
   for (const Face& face : scene.faces)
     for (const std::uint32_t vertex : scene.corners_of(face)) used.add(scene.vertices[vertex]);
-  const auto first = weld(scene.vertices, std::max(weld_tolerance * used.longest_side(), 1e-300));
-  for (std::uint32_t v = 0; v < first.size(); ++v) report_.welded_vertices += first[v] != v;
+  const auto welded = weld(scene.vertices, std::max(weld_tolerance * used.longest_side(), 1e-300));
+  for (std::uint32_t v = 0; v < welded.size(); ++v) report_.welded_vertices += welded[v] != v;
+
+  std::vector<WeldedFace> faces = weld_faces(scene, welded);
+  report_.degenerate_faces = scene.faces.size() - faces.size();
+  report_.duplicates = leave_out_duplicates(scene, faces);
+  if (options.join_triangles) join_triangle_pairs(scene, faces);
+  for (const WeldedFace& face : faces) add_roots(scene, face);
 
   Box box;
-  for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
-    const auto ring = welded_ring(scene, scene.faces[f], first);
-    const auto polygon = positions_of(scene, ring);
-    const std::size_t before = roots_.size();
-    if (ring.size() >= 3 && !is_degenerate(polygon))
-      for (const Piece& piece : pieces_of(polygon)) {
-        RootPatch root = make_root(scene, ring, piece);
-        root.material = scene.faces[f].material;
-        root.scene_face = f;
-        if (!is_degenerate(std::span(root.corners).first(root.corner_count))) roots_.push_back(root);
-      }
-    report_.degenerate_faces += roots_.size() == before;
-    report_.split_faces += roots_.size() > before + 1;
-  }
   for (const RootPatch& root : roots_)
     for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[c]);
   if (roots_.empty()) return;
@@ -175,6 +147,18 @@ BaseMesh::BaseMesh(const Scene& scene) : materials_(scene.materials), absorption
   pair_back_to_back();
   find_neighbours();
   add_backs();
+}
+
+void BaseMesh::add_roots(const Scene& scene, const WeldedFace& face) {
+  const std::size_t before = roots_.size();
+  for (const Piece& piece : pieces_of(positions_of(scene, face.ring))) {
+    RootPatch root = make_root(scene, face.ring, piece);
+    root.material = face.material;
+    root.input = face.input;
+    if (!is_degenerate(std::span(root.corners).first(root.corner_count))) roots_.push_back(root);
+  }
+  report_.degenerate_faces += roots_.size() == before;
+  report_.split_faces += roots_.size() > before + 1;
 }
 
 // Two faces in one place that look away from each other: rays could meet either, so they are told apart by where rays come from.

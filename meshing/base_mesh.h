@@ -2,6 +2,7 @@
 // The welded mesh of root patches that a scene becomes, with neighbours known across edges. OpenMesh lives behind it.
 
 #include "meshing/scene.h"
+#include "meshing/welded_faces.h"
 
 #include <array>
 #include <cstdint>
@@ -17,9 +18,9 @@ struct RootPatch {
   std::array<std::uint32_t, 4> vertex;  ///< welded vertex of each corner
   int corner_count = 3;                 ///< 3 or 4
   std::uint32_t material = 0;
-  std::uint32_t scene_face = 0;  ///< the face of the scene it came from
-  Vec3 normal;                   ///< unit, to the front
-  double area = 0;               ///< m2
+  InputFaces input;  ///< the face of the scene, or the two triangles of it, that it came from
+  Vec3 normal;       ///< unit, to the front
+  double area = 0;   ///< m2
 
   static constexpr std::uint32_t no_twin = ~0u;
   /// The other side of a two-sided face, or another face with the same corners the other way round. Its corners are ours in the
@@ -46,27 +47,35 @@ struct WeldReport {
   std::size_t degenerate_faces = 0;    ///< dropped: zero area or fewer than three distinct vertices
   std::size_t split_faces = 0;         ///< polygons cut into several roots: more than four corners, concave or not planar
   std::size_t non_manifold_faces = 0;  ///< joined without neighbours, because an edge already had two faces
+  DuplicateFaces duplicates;           ///< dropped: in the place of another
+};
+
+struct BaseMeshOptions {
+  /// Makes one root of two triangles that an exporter cut from a quad, in scenes of triangles only.
+  bool join_triangles = true;
 };
 
 /// Immutable once built; safe to read from any thread.
 class BaseMesh {
  public:
   /// Requires: !find_fault(scene). Vertices closer than 1e-9 of the extent of all faces are welded. The mesh may have no roots,
-  /// if all faces are degenerate. Roots keep the order of the faces; a two-sided face becomes two roots, the backs after all
-  /// fronts.
-  explicit BaseMesh(const Scene& scene);
+  /// if all faces are degenerate. Roots keep the order of the faces, a quad made of two triangles that of the first; a two-sided
+  /// face becomes two roots, the backs after all fronts.
+  explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
 
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
   const Rgb& absorption() const { return absorption_; }  ///< of the medium, see Scene
+  UpAxis up() const { return up_; }
   const WeldReport& weld_report() const { return report_; }
 
   Vec3 centre() const { return centre_; }    ///< of the bounding box of the roots, metres
   double extent() const { return extent_; }  ///< longest side of that box, metres; > 0 unless there are no roots
 
  private:
+  void add_roots(const Scene& scene, const WeldedFace& face);
   void pair_back_to_back();
   void find_neighbours();
   void add_backs();
@@ -74,6 +83,7 @@ class BaseMesh {
   std::vector<RootPatch> roots_;
   std::vector<Material> materials_;
   Rgb absorption_;
+  UpAxis up_;
   std::vector<std::array<std::optional<Neighbour>, 4>> neighbours_;
   WeldReport report_;
   Vec3 centre_;

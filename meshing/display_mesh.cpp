@@ -11,6 +11,10 @@ namespace alvor {
 
 namespace {
 
+/// How far each side of a two-sided face is moved to its front, of the extent: enough for float32 and for depth buffers, less
+/// than a pixel of any picture.
+constexpr double side_offset = 2e-5;
+
 /// What the leaves around a smooth vertex say about it.
 struct CornerSum {
   Rgb irradiance;
@@ -55,6 +59,7 @@ class Triangulation {
   }
 
   DisplayMesh build() {
+    out_.up = mesh_.up();
     for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);
     for (std::size_t n = 0; n < leaves_.size(); ++n) emit(n);
     return std::move(out_);
@@ -122,7 +127,8 @@ class Triangulation {
   }
 
   std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance) {
-    out_.positions.push_back(position);
+    const bool has_twin = mesh_.roots()[root].twin != RootPatch::no_twin;
+    out_.positions.push_back(has_twin ? position + side_offset * mesh_.extent() * normal : position);
     out_.normals.push_back(normal);
     out_.irradiance.push_back(narrow(irradiance));
     out_.radiosity.push_back(radiosity_of(mesh_.material_of(root), irradiance));

@@ -13,6 +13,9 @@
 
 namespace alvor {
 
+/// What importers and the API take a reflectance of 1 for: where all is reflected light goes round for ever.
+inline constexpr double clamped_reflectance = 0.95;
+
 struct Material {
   std::string name;
   Rgb emission;     ///< E: radiant exitance, W/m2 per band, >= 0
@@ -27,12 +30,16 @@ struct Face {
   std::uint32_t material = 0;
 };
 
+/// The axis that points up. It changes no light, only how pictures are drawn and which way a solution file stands.
+enum class UpAxis : std::uint8_t { y, z };
+
 struct Scene {
   std::vector<Vec3> vertices;          ///< metres
   std::vector<std::uint32_t> corners;  ///< indices of vertices
   std::vector<Face> faces;
   std::vector<Material> materials;
   Rgb absorption;  ///< of the medium that fills the scene, 1/m per band, >= 0: light fades by exp(-absorption r). 0: none
+  UpAxis up = UpAxis::y;
 
   std::span<const std::uint32_t> corners_of(const Face& face) const {
     return std::span(corners).subspan(face.first_corner, face.corner_count);

@@ -86,6 +86,7 @@ v1::Step encode(const Step& step) {
   message.set_estimated_error(step.estimated_error);
   *message.mutable_ambient_irradiance() = encode(step.ambient_irradiance);
   message.set_displayed_error(step.displayed_error);
+  message.set_unlit_fraction(step.unlit_fraction);
   return message;
 }
 
@@ -101,6 +102,7 @@ Step decode(const v1::Step& message) {
   step.estimated_error = message.estimated_error();
   step.ambient_irradiance = decode(message.ambient_irradiance());
   step.displayed_error = message.displayed_error();
+  step.unlit_fraction = message.unlit_fraction();
   return step;
 }
 
@@ -179,6 +181,7 @@ Material decode_material(const v1::Material& message) {
 std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   if (auto fault = fault_in(chunk)) return fault;
   if (chunk.has_absorption_per_meter()) scene_.absorption = decode(chunk.absorption_per_meter());
+  if (chunk.up_axis() != v1::UP_AXIS_UNSPECIFIED) scene_.up = chunk.up_axis() == v1::UP_AXIS_Z ? UpAxis::z : UpAxis::y;
   for (const v1::Material& material : chunk.materials()) scene_.materials.push_back(decode_material(material));
   for (int i = 0; i < chunk.vertex_coordinates_size(); i += 3)
     scene_.vertices.push_back({chunk.vertex_coordinates(i), chunk.vertex_coordinates(i + 1), chunk.vertex_coordinates(i + 2)});
@@ -228,6 +231,7 @@ bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   std::int64_t budget = max_bytes_ - 96;  // the absorption, the tags and lengths of the fields, and of the message around them
   const bool is_first = material_ == 0 && vertex_ == 0;
   if (is_first && !scene_.absorption.is_zero()) *chunk.mutable_absorption_per_meter() = encode(scene_.absorption);
+  if (is_first && scene_.up == UpAxis::z) chunk.set_up_axis(v1::UP_AXIS_Z);
   take_materials(chunk, budget);
   take_vertices(chunk, budget);
   take_faces(chunk, budget);

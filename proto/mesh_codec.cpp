@@ -17,7 +17,8 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
   const RootPatch& root = mesh.roots()[index];
   message.add_corner_counts(static_cast<std::uint32_t>(root.corner_count));
   message.add_materials(root.material);
-  message.add_scene_faces(root.scene_face);
+  message.add_scene_faces(root.input.first);
+  message.add_second_scene_faces(root.input.second == InputFaces::none ? 0 : 1 + root.input.second);
   for (int c = 0; c < root.corner_count; ++c) {
     for (const double x : {root.corners[c].x, root.corners[c].y, root.corners[c].z}) message.add_corner_coordinates(x);
     message.add_neighbours(encode(mesh.across(index, c)));
@@ -28,6 +29,7 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
 
 bool MeshSlicer::next(v1::ReadMeshResponse& message) {
   message.Clear();
+  if (next_ == 0 && next_material_ == 0 && mesh_.up() == UpAxis::z) message.set_up_axis(v1::UP_AXIS_Z);
   const std::span<const Material> materials = mesh_.materials();
   for (; next_material_ < materials.size(); ++next_material_) {
     if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_) return true;

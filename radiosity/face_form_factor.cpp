@@ -94,7 +94,7 @@ class RaySums {
     used_ = 0;
   }
   bool arrives(int lane) const {
-    if (hit_.root[lane] == HitPacket::nothing || scene_.mesh().roots()[hit_.root[lane]].scene_face != face_) return false;
+    if (hit_.root[lane] == HitPacket::nothing || scene_.mesh().roots()[hit_.root[lane]].input.first != face_) return false;
     const Float3& n = scene_.root(hit_.root[lane]).normal;
     return packet_.direction_x[lane] * n.x + packet_.direction_y[lane] * n.y + packet_.direction_z[lane] * n.z < 0;
   }
@@ -145,7 +145,7 @@ std::array<double, 4> spread_point(std::uint64_t n, const std::array<double, 4>&
 }  // namespace
 
 FaceFormFactors::FaceFormFactors(const Scene& scene, const FormFactorOptions& options)
-    : options_(options), mesh_(scene), faces_(scene, mesh_), blockers_(mesh_), scene_(mesh_) {}
+    : options_(options), mesh_(scene, {.join_triangles = false}), faces_(scene, mesh_), blockers_(mesh_), scene_(mesh_) {}
 
 MeasuredFormFactor FaceFormFactors::analytic(std::uint32_t from, std::uint32_t to) const {
   return timed("analytic", [&] {

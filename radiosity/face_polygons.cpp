@@ -23,8 +23,8 @@ FacePolygons::FacePolygons(const Scene& scene, const BaseMesh& mesh) : pieces_(s
   for (const RootPatch& root : mesh.roots()) {
     if (root.is_back) continue;
     const auto corners = std::span(root.corners).first(static_cast<std::size_t>(root.corner_count));
-    pieces_[root.scene_face].emplace_back(corners.begin(), corners.end());
-    area_[root.scene_face] += root.area;
+    pieces_[root.input.first].emplace_back(corners.begin(), corners.end());
+    area_[root.input.first] += root.area;
   }
   for (std::size_t f = 0; f < pieces_.size(); ++f) {
     if (pieces_[f].size() < 2 || scene.faces[f].corner_count > most_whole_corners) continue;

@@ -9,9 +9,10 @@
 namespace alvor {
 
 /// Convex faces stay whole, whatever their number of corners up to 64; others are in the pieces that the base mesh cut them into.
-/// Numbered as in the scene; degenerate faces have no pieces. Fronts only.
+/// Numbered as in the scene; degenerate and duplicate faces have no pieces. Fronts only.
 class FacePolygons {
  public:
+  /// Requires: `mesh` was built from `scene` without joining triangles, so that each root comes from one face.
   FacePolygons(const Scene& scene, const BaseMesh& mesh);
   /// One convex planar polygon a face.
   explicit FacePolygons(std::vector<std::vector<Vec3>> polygons);

@@ -10,7 +10,8 @@
 namespace alvor {
 
 /// A value per leaf: three bands side by side, or only one where all are equal. In double precision: where the reflectance is
-/// 0.999999, one part in 10^7 of what goes round once is a tenth of the solution. Different leaves may be set from different threads.
+/// 0.999999, one part in 10^7 of what goes round once is a tenth of the solution. Different leaves may be set from different
+/// threads.
 class LightByLeaf {
  public:
   LightByLeaf(std::size_t leaves, bool three_bands)

@@ -118,7 +118,7 @@ class Planner {
   PlannedFeature occlusion() const {
     if (emission_by_rows_) return off(sentence(by_rows(), ", so no shadow rays are sent"));
     if (standing_.blocker < mesh_.roots().size())
-      return on(sentence("face ", mesh_.roots()[standing_.blocker].scene_face, " has lit faces before and behind it, of ",
+      return on(sentence("face ", mesh_.roots()[standing_.blocker].input.first, " has lit faces before and behind it, of ",
                          faces(census_.faces)));
     return off(sentence("no face stands between others: each of ", faces(census_.faces),
                         " has all that is lit on one side of its plane"));

@@ -14,8 +14,8 @@ struct alignas(64) PatchPoints {
   float x[origins_per_patch], y[origins_per_patch], z[origins_per_patch];
 };
 
-/// Draws two numbers from `random`: all strata share one jitter (see origins_in). A stream used for nothing before gives a patch the same points
-/// whatever they are for, so what a row learned of an origin holds for direct light too.
+/// Draws two numbers from `random`: all strata share one jitter (see origins_in). A stream used for nothing before gives a patch
+/// the same points whatever they are for, so what a row learned of an origin holds for direct light too.
 PatchPoints sample_points(const LocalScene& scene, const PatchShape& patch, RandomStream& random);
 
 }  // namespace alvor

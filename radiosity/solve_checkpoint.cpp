@@ -110,6 +110,7 @@ void SolveState::save(PlainWriter& out) const {
   }
   save_at(leaves, direct_, out);
   save_flags(leaves, direct_is_known_, out);
+  save_flags(leaves, is_lit_, out);
   save_at(leaves, shot_, out);
   std::vector<PatchId> wanting;
   for (const NodeIndex row : wanting_rays_) wanting.push_back(row_forest_.id(row));
@@ -135,6 +136,7 @@ void SolveState::load(PlainReader& in) {
   }
   load_at(leaves, direct_, in, "direct light");
   load_flags(leaves, direct_is_known_, in);
+  load_flags(leaves, is_lit_, in);
   load_at(leaves, shot_, in, "shot light");
   for (const PatchId id : in.get_all<PatchId>()) {
     if (!id.is_valid() || id.root_face() >= mesh_.roots().size() || row_forest_.id(row_of(id)) != id)

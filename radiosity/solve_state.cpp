@@ -87,6 +87,7 @@ void SolveState::fit_to_nodes() {
   }
   direct_.resize(leaves);
   direct_is_known_.resize(leaves);
+  is_lit_.resize(leaves);
   shot_.resize(leaves);
   for (NodeIndex row = static_cast<NodeIndex>(row_centre_.size()); row < rows; ++row)
     row_centre_.push_back(centre_of(mesh_, row_forest_.shape(row)));
@@ -161,10 +162,33 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows_[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
 
+namespace {
+
+/// Sorts leaves so that any first part of them is spread over the scene: one leaf of each face first, and in no order of the
+/// faces, which is that of storeys and rooms.
+void spread(const PatchForest& forest, std::vector<NodeIndex>& leaves) {
+  std::vector<std::pair<std::uint64_t, NodeIndex>> order;
+  constexpr std::uint64_t later = std::uint64_t{1} << 63;
+  std::uint32_t face_before = ~0u;
+  for (const NodeIndex leaf : leaves) {
+    const PatchId id = forest.id(leaf);
+    const bool is_first = id.root_face() != face_before;
+    face_before = id.root_face();
+    order.emplace_back((mix_bits(id.bits()) & ~later) | (is_first ? 0 : later), leaf);
+  }
+  std::ranges::sort(order);
+  std::ranges::transform(order, leaves.begin(), &std::pair<std::uint64_t, NodeIndex>::second);
+}
+
+}  // namespace
+
 std::vector<Receiver> SolveState::unlit_receivers(std::vector<NodeIndex>& nodes) const {
+  std::vector<NodeIndex> leaves = leaf_forest_.leaves();
+  std::erase_if(leaves,
+                [&](NodeIndex leaf) { return direct_is_known_[leaf] || !plan_.may_be_lit(leaf_forest_.id(leaf).root_face()); });
+  spread(leaf_forest_, leaves);
   std::vector<Receiver> receivers;
-  for (const NodeIndex leaf : leaf_forest_.leaves()) {
-    if (direct_is_known_[leaf] || !plan_.may_be_lit(leaf_forest_.id(leaf).root_face())) continue;
+  for (const NodeIndex leaf : leaves) {
     const NodeIndex row = row_of(leaf_forest_.id(leaf));
     const bool same = row_forest_.id(row) == leaf_forest_.id(leaf);
     const auto none = static_cast<std::uint16_t>(rows_[row].is_hidden() ? 0xffff : 0);
@@ -184,6 +208,7 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     for (std::size_t n = first; n < first + count; ++n) {
       direct_[nodes[n]] = light[n];
       direct_is_known_[nodes[n]] = is_all;
+      if (!is_lit_[nodes[n]]) show_on_whole_face(nodes[n]);
     }
     waiting_power_ = std::max(0.0, waiting_power_ - power);
     after_each();
@@ -206,6 +231,27 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     if (emitters_.empty()) show(0, nodes.size(), 0, true);
   }
   waiting_power_ = 0;
+}
+
+/// Until the other leaves of the face have their own light they show that of this one.
+void SolveState::show_on_whole_face(NodeIndex leaf) {
+  std::vector<NodeIndex> leaves;
+  leaf_forest_.append_leaves_of(leaf_forest_.id(leaf).root_face(), leaves);
+  for (const NodeIndex other : leaves) {
+    if (is_lit_[other]) continue;
+    direct_[other] = direct_[leaf];
+    is_lit_[other] = true;
+  }
+}
+
+double SolveState::unlit_fraction() const {
+  double all = 0, unlit = 0;
+  for (const NodeIndex leaf : leaf_forest_.leaves()) {
+    if (!plan_.may_be_lit(leaf_forest_.id(leaf).root_face())) continue;
+    all += leaf_area_[leaf];
+    if (!is_lit_[leaf]) unlit += leaf_area_[leaf];
+  }
+  return all > 0 ? unlit / all : 0;
 }
 
 NodeIndex SolveState::leaf_node_of_row(NodeIndex row) const {
@@ -245,6 +291,7 @@ void SolveState::inherit(std::span<const NodeIndex> split) {
     for (int k = 0; k < 4; ++k) {
       shot_[leaf_forest_.child(parent, k)] = shot_[parent];
       direct_[leaf_forest_.child(parent, k)] = direct_[parent];
+      is_lit_[leaf_forest_.child(parent, k)] = is_lit_[parent];
     }
 }
 

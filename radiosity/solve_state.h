@@ -32,8 +32,8 @@ class SolveState {
   double emitted_power() const { return emitted_power_; }
   std::size_t leaf_count() const { return leaf_forest_.leaf_count(); }
 
-  /// Adds the rays that refine() asked for, and traces the rows that are not. Until it is done, `after_each` is called now and then,
-  /// where save() may be. Returns early where the budget is out; called again, it goes on from there.
+  /// Adds the rays that refine() asked for, and traces the rows that are not. Until it is done, `after_each` is called now and
+  /// then, where save() may be. Returns early where the budget is out; called again, it goes on from there.
   void trace_new_rows(const std::function<void()>& after_each = [] {});
   /// The same; what direct_ holds may then be shown.
   void add_new_direct_light(const std::function<void()>& after_each);
@@ -56,6 +56,8 @@ class SolveState {
   double unshot_power() const;
   /// The same, of the emitted power; 0 in the dark.
   double unshot_fraction() const { return emitted_power_ > 0 ? unshot_power() / emitted_power_ : 0; }
+  /// Share of the area of faces that light may reach on which no direct light is known yet.
+  double unlit_fraction() const;
   /// Display only, see Shooting::ambient_irradiance. Zero before the first shots.
   Rgb ambient_irradiance() const { return exchange_ ? emission_unit_ * exchange_->ambient_irradiance() : Rgb{}; }
   /// W/m2. All else that is asked of the state and its exchange is light and power in this unit, so that squares stay numbers
@@ -72,7 +74,8 @@ class SolveState {
   /// split and rows are not what errs most. Requires: estimate() just before.
   bool refine();
 
-  /// What it takes to go on from here with another state of the same mesh, plan and options. Between passes and where it is allowed.
+  /// What it takes to go on from here with another state of the same mesh, plan and options. Between passes and where it is
+  /// allowed.
   void save(PlainWriter& out) const;
   /// Requires: nothing was done yet. Throws BadBytes, and is then of no use.
   void load(PlainReader& in);
@@ -103,6 +106,7 @@ class SolveState {
   static Rgb largest_irradiance(const BaseMesh& mesh);
   bool rows_tell_what_is_lost() const;
   void find_hit_leaves(NodeIndex row);
+  void show_on_whole_face(NodeIndex leaf);
   std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   LightByLeaf radiosity() const;
@@ -147,6 +151,8 @@ class SolveState {
   // By node of leaf_forest_.
   std::vector<DirectLight> direct_;
   std::vector<bool> direct_is_known_;
+  std::vector<bool>
+      is_lit_;             ///< direct_ shows some light: that of all emitters, of the first ones, or of another leaf of the face
   std::vector<Rgb> shot_;  ///< what shots distributed so far, when they are how light is exchanged
   std::vector<Vec3> leaf_centre_;
   std::vector<double> leaf_area_;

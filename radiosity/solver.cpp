@@ -25,7 +25,7 @@ constexpr double publish_when = 0.75;     // of the unshot power at the last pub
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
 
-constexpr std::uint32_t checkpoint_version = 1;
+constexpr std::uint32_t checkpoint_version = 2;
 
 /// What a run knows besides its state.
 struct Progress {
@@ -190,6 +190,7 @@ class Run {
     step.leaves = state_.leaf_count();
     step.unshot_fraction = state_.unshot_fraction();
     step.estimated_error = is_.error.total();
+    step.unlit_fraction = state_.unlit_fraction();
     step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
     if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = state_.ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
@@ -238,7 +239,8 @@ class Run {
   }
   /// Whatever is under way is given up: from the middle of an exchange a solve would go on otherwise.
   bool must_break_off() const {
-    return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() || clock_.elapsed_s() > options_.time_limit_s;
+    return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() ||
+           clock_.elapsed_s() > options_.time_limit_s;
   }
   bool must_stop() const { return control_.park.stop_requested() || must_break_off(); }
   StopReason stop_reason() const {

@@ -162,7 +162,8 @@ void Visibility::occlusions(std::span<const RayPacket> packets, std::span<std::u
 
 struct TriangleCaster::Handles {
   explicit Handles(Traversal traversal)
-      : scene(traversal == Traversal::watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE) {}
+      : scene(static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION |
+                                         (traversal == Traversal::watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE))) {}
 
   EmbreeScene scene;
   std::vector<Vec3> positions;  // relative to `centre`
@@ -225,6 +226,15 @@ bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+/// Rejects hits of a packet of one ray that meet the back of a triangle.
+void pass_backs(const RTCFilterFunctionNArguments* arguments) {
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
+    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
+    if (ray.dir_x * hit.Ng_x + ray.dir_y * hit.Ng_y + ray.dir_z * hit.Ng_z >= 0) arguments->valid[i] = 0;
+  }
+}
+
 RTCRay ray_along(Vec3 origin, Vec3 direction, float t_max) {
   const auto from = to_float(origin), along = to_float(direction);
   RTCRay ray{};
@@ -263,15 +273,28 @@ TriangleCaster::TriangleCaster(std::span<const Vec3> positions, std::span<const 
 
 TriangleCaster::~TriangleCaster() = default;
 
-std::optional<TriangleCaster::Hit> TriangleCaster::cast(Vec3 origin, Vec3 direction) const {
+namespace {
+
+std::optional<TriangleCaster::Hit> closest_hit(RTCScene scene, Vec3 origin, Vec3 direction, RTCFilterFunctionN filter) {
   const FlushDenormals flush;
   RTCIntersectContext context = incoherent_context();
+  context.filter = filter;
   RTCRayHit query;
-  query.ray = ray_along(origin - handles_->centre, direction, std::numeric_limits<float>::infinity());
+  query.ray = ray_along(origin, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(handles_->scene.get(), &context, &query);
+  rtcIntersect1(scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+  return TriangleCaster::Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+}
+
+}  // namespace
+
+std::optional<TriangleCaster::Hit> TriangleCaster::cast(Vec3 origin, Vec3 direction) const {
+  return closest_hit(handles_->scene.get(), origin - handles_->centre, direction, nullptr);
+}
+
+std::optional<TriangleCaster::Hit> TriangleCaster::cast_front(Vec3 origin, Vec3 direction) const {
+  return closest_hit(handles_->scene.get(), origin - handles_->centre, direction, pass_backs);
 }
 
 bool TriangleCaster::is_blocked(Vec3 from, Vec3 to) const {

@@ -75,6 +75,9 @@ class TriangleCaster {
   };
   /// Nearest surface along `direction` (unit), front or back.
   std::optional<Hit> cast(Vec3 origin, Vec3 direction) const;
+  /// Nearest front along `direction` (unit). Backs are passed through, so that of two sides in one place the one that looks
+  /// against the ray is met.
+  std::optional<Hit> cast_front(Vec3 origin, Vec3 direction) const;
   /// Whether a surface, front or back, lies between two points.
   bool is_blocked(Vec3 from, Vec3 to) const;
   /// Nearest point of a surface whose normal lies within 60 degrees of `normal` (unit).

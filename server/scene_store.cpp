@@ -27,7 +27,26 @@ void describe_mesh(const BaseMesh& mesh, v1::Scene& facts) {
   warn(report.degenerate_faces, " degenerate faces (no area) were left out.");
   warn(report.split_faces, " polygons were cut up: they have more than four corners, are concave or not planar.");
   warn(report.non_manifold_faces, " faces share an edge with more than one other: light does not blend across it.");
+  if (const DuplicateFaces& duplicates = report.duplicates; duplicates.count > 0)
+    facts.add_warnings(
+        std::to_string(duplicates.count) + " faces lie in the place of others and were left out: the first is face " +
+        std::to_string(duplicates.first) + ", in the place of face " + std::to_string(duplicates.same_place) + ".");
   if (!emits(mesh)) facts.add_warnings("No face emits light: the solution will be dark.");
+}
+
+/// Replaces each reflectance of exactly 1. Returns a sentence that says so; empty where there is none.
+std::string clamp_reflectance_of_one(Scene& scene) {
+  std::size_t count = 0;
+  std::string first;
+  for (Material& material : scene.materials) {
+    Rgb& rho = material.reflectance;
+    if (rho.r != 1 && rho.g != 1 && rho.b != 1) continue;
+    for (double* band : {&rho.r, &rho.g, &rho.b})
+      if (*band == 1) *band = clamped_reflectance;
+    if (count++ == 0) first = material.name;
+  }
+  if (count == 0) return {};
+  return std::to_string(count) + " materials have a reflectance of 1, which is taken for 0.95: the first is '" + first + "'.";
 }
 
 v1::Scene facts_of(const Scene& scene, const BaseMesh& mesh, const std::string& display_name) {
@@ -79,11 +98,13 @@ SceneStore::SceneStore(Archive* archive, const Quota& quota, MemoryGuard memory)
 std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::string& display_name, const Caller& caller) {
   if (display_name.size() > longest_display_name)
     throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
+  const std::string clamped = clamp_reflectance_of_one(scene);
   if (const auto fault = find_fault(scene)) throw invalid_argument(fault->text());
   memory_.admit("scene", bytes_a_corner * scene.corners.size());
   BaseMesh mesh(scene);
   if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");
   v1::Scene facts = facts_of(scene, mesh, display_name);
+  if (!clamped.empty()) facts.add_warnings(clamped);
 
   std::scoped_lock one(adding_);
   if (auto known = repeated(caller, facts)) return known;

@@ -28,7 +28,8 @@ struct Step {
   double estimated_error = 1;  ///< estimate of nRMSE of the irradiance against truth
   /// What is displayed may differ from the solution by this share of itself, or of an eighth of the mean where that is more.
   double displayed_error = 0;
-  Rgb ambient_irradiance;  ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
+  double unlit_fraction = 0;  ///< share of the area that light may reach whose irradiance is not known yet: published as 0
+  Rgb ambient_irradiance;     ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
   friend bool operator==(const Step&, const Step&) = default;
 };
 

@@ -44,7 +44,8 @@ struct RgbOf {
   constexpr T max() const { return std::max({r, g, b}); }
   constexpr T min() const { return std::min({r, g, b}); }
   constexpr bool is_zero() const { return r == 0 && g == 0 && b == 0; }
-  constexpr bool is_grey() const { return r == g && g == b; }
+  /// Whether the bands are equal to a millionth: files round colours that were grey.
+  constexpr bool is_grey() const { return max() - min() <= T(1e-6) * max(); }
   bool is_finite() const { return std::isfinite(r) && std::isfinite(g) && std::isfinite(b); }
 };
 

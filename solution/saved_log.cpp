@@ -28,7 +28,7 @@ void check_steps(std::span<const Step> steps) {
     const Step& step = steps[n];
     const bool is_finite = std::isfinite(step.elapsed_s) && std::isfinite(step.unshot_fraction) &&
                            std::isfinite(step.estimated_error) && std::isfinite(step.displayed_error) &&
-                           step.ambient_irradiance.is_finite();
+                           std::isfinite(step.unlit_fraction) && step.ambient_irradiance.is_finite();
     if (step.revision != n + 1 || step.step != n || !is_finite) throw BadBytes("step " + std::to_string(n) + ": cannot be");
   }
 }

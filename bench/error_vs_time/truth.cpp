@@ -66,8 +66,8 @@ ErrorStatistics errors_of(const DisplayMesh& solution, const Truth& truth) {
   std::vector<ProbePoint> asked;
   for (const TruePoint& point : truth.points) asked.push_back({point.at.position, point.at.normal});
   std::vector<double> estimates;
-  for (const ProbeSample& sample : probe(solution, asked)) {
-    if (!sample.found) throw std::runtime_error("a solution has no surface where its scene has one");
+  for (const ProbeSample& sample : probe_surfaces(solution, asked)) {
+    if (std::isinf(sample.distance)) throw std::runtime_error("a solution has no surface where its scene has one");
     estimates.push_back(widen(sample.irradiance).mean());
   }
   return errors_of(estimates, truth);

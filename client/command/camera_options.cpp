@@ -3,6 +3,7 @@
 #include "client/command/failure.h"
 #include "client/command/numbers.h"
 #include "client/command/option_checks.h"
+#include "client/command/up_option.h"
 
 namespace alvor {
 
@@ -24,7 +25,9 @@ void require_view(const Camera& camera) {
 void add_camera_options(CLI::App& command, CameraOptions& options) {
   command.add_option("--eye", options.eye, "Where the camera is, metres")->type_name("X,Y,Z")->check(triple());
   command.add_option("--target", options.target, "What it looks at")->type_name("X,Y,Z")->check(triple());
-  command.add_option("--up", options.up, "What is upright in the picture")->type_name("X,Y,Z")->check(triple());
+  command.add_option("--up", options.up, "What is upright in the picture: y, z or a direction (what the solution file says)")
+      ->type_name("y|z|X,Y,Z")
+      ->check(CLI::IsMember({"y", "z"}) | triple());
   command.add_option("--fov", options.fov_degrees, "Vertical angle of view, degrees")->check(above_up_to(0, 170));
 }
 
@@ -32,7 +35,7 @@ Camera camera_of(const CameraOptions& options, const DisplayMesh& mesh, PictureS
   Camera camera = default_camera(mesh, size);
   take(options.eye, camera.eye);
   take(options.target, camera.target);
-  take(options.up, camera.up);
+  if (!is_axis(options.up)) take(options.up, camera.up);
   camera.vertical_fov_degrees = options.fov_degrees.value_or(camera.vertical_fov_degrees);
   require_view(camera);
   return camera;

@@ -10,7 +10,7 @@
 
 namespace alvor {
 
-/// What is empty is chosen to suit the solution. Places and directions are three numbers.
+/// What is empty is chosen to suit the solution. Places and directions are three numbers; `up` may be "y" or "z" instead.
 struct CameraOptions {
   std::string eye, target, up;
   std::optional<double> fov_degrees;

@@ -12,6 +12,7 @@
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
 #include "client/command/table.h"
+#include "client/command/up_option.h"
 #include "client/render.h"
 #include "client/scene_file.h"
 #include "client/whole_file.h"
@@ -29,6 +30,7 @@ constexpr PictureSize picture_size{640, 480};
 struct CompareCommand {
   std::filesystem::path scene;
   std::filesystem::path folder;
+  std::string up;  ///< "y" or "z"; empty: as the file says
   CompareOptions options;
 };
 
@@ -91,7 +93,8 @@ Comparison compare(const CompareCommand& command, const BaseMesh& mesh) {
 
 void run_compare(const CompareCommand& command) {
   make_folder(command.folder);
-  const SceneFile file = read_scene_file(command.scene);
+  SceneFile file = read_scene_file(command.scene);
+  take_up(command.up, file.scene.up);
   warn(file.warnings);
   const BaseMesh mesh(file.scene);
   if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, command.scene.string() + ": all faces are degenerate");
@@ -112,6 +115,7 @@ void add_compare_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("compare", "Compare the strategies that distribute light");
   command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file")->required()->type_name("SCENE");
   command.add_option("-o,--output", options->folder, "Table, plots and pictures go here")->required()->type_name("DIR");
+  add_up_option(command, options->up);
   command.add_option("--steps", options->options.steps, "Pictures are of this many patches shot or gathered (100)")
       ->check(CLI::Range(1, 1'000'000));
   command.add_option("--tolerance", options->options.tolerance, "The mesh is refined to this estimated relative error (0.02)")

@@ -6,7 +6,9 @@
 #include "client/command/numbers.h"
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
+#include "client/command/status_line.h"
 #include "client/scene_file.h"
+#include "client/whole_file.h"
 #include "radiosity/form_factor_matrix.h"
 
 #include <algorithm>
@@ -23,45 +25,75 @@ namespace {
 struct FormFactorsCommand {
   std::filesystem::path scene;
   std::filesystem::path output;
+  std::filesystem::path areas;  ///< empty: not written
   MatrixOptions options;
 };
 
 /// What is worth telling of a matrix, row by row.
 struct Summary {
-  std::size_t rows = 0, entries = 0;
+  double accuracy = 0;  ///< that was asked for
+  std::size_t rows = 0, entries = 0, loose = 0, blind = 0;
   double lowest = 1, highest = 0, sum_of_sums = 0, largest_bound = 0;
+  std::uint32_t loosest_from = 0, loosest_to = 0;
 
-  void see(std::span<const MatrixEntry> row) {
+  void see(std::uint32_t from, std::span<const MatrixEntry> row) {
     double sum = 0;
     for (const MatrixEntry& entry : row) {
       sum += entry.value;
-      largest_bound = std::max(largest_bound, entry.error_bound);
+      loose += entry.error_bound > accuracy;
+      if (entry.error_bound <= largest_bound) continue;
+      largest_bound = entry.error_bound;
+      loosest_from = from, loosest_to = entry.to;
     }
     ++rows;
     entries += row.size();
+    blind += row.empty();
     lowest = std::min(lowest, sum), highest = std::max(highest, sum), sum_of_sums += sum;
+  }
+
+  std::vector<std::string> warnings() const {
+    if (entries == 0 && rows > 1) return {"every face looks away from every other: are the normals turned round?"};
+    if (loose == 0) return {};
+    return {std::to_string(loose) + " of " + std::to_string(entries) +
+            " form factors have an error bound above the accuracy of " + shortest(accuracy) + ": the worst is " +
+            shortest(largest_bound) + ", from face " + std::to_string(loosest_from) + " to face " + std::to_string(loosest_to)};
+  }
+
+  void print(double spent_s) const {
+    std::cout << rows << " faces, " << entries << " form factors, " << seconds(spent_s) << '\n'
+              << "row sums from " << shortest(lowest) << " to " << shortest(highest) << ", mean "
+              << shortest(sum_of_sums / static_cast<double>(std::max<std::size_t>(1, rows))) << '\n'
+              << "largest error bound " << shortest(largest_bound) << '\n';
+    if (blind > 0) std::cout << blind << " faces see no other\n";
   }
 };
 
-void append_row(std::string& text, std::uint32_t from, std::span<const MatrixEntry> row) {
+void append_row(std::string& text, std::uint32_t from, double area, std::span<const MatrixEntry> row) {
   for (const MatrixEntry& entry : row)
     text += std::to_string(from) + "," + std::to_string(entry.to) + "," + shortest(entry.value) + "," +
-            shortest(entry.error_bound) + "\n";
+            shortest(entry.error_bound) + "," + shortest(area) + "\n";
+}
+
+std::string areas_csv(const FacePolygons& faces) {
+  std::string text = "i,area\n";
+  for (std::uint32_t face = 0; face < faces.face_count(); ++face)
+    text += std::to_string(face) + "," + shortest(faces.area(face)) + "\n";
+  return text;
 }
 
 /// Written beside its name and moved there when complete, for it may be larger than memory.
 class RowsFile {
  public:
   explicit RowsFile(const std::filesystem::path& path) : path_(path), part_(path.string() + ".part"), out_(part_) {
-    out_ << "i,j,F,error_bound\n";
+    out_ << "i,j,F,error_bound,area_i\n";
   }
   ~RowsFile() {
     std::error_code ignored;
     std::filesystem::remove(part_, ignored);
   }
-  void write(std::uint32_t from, std::span<const MatrixEntry> row) {
+  void write(std::uint32_t from, double area, std::span<const MatrixEntry> row) {
     text_.clear();
-    append_row(text_, from, row);
+    append_row(text_, from, area, row);
     out_ << text_;
     if (!out_) throw Failure(ExitStatus::failed, path_.string() + ": could not be written");
   }
@@ -77,27 +109,35 @@ class RowsFile {
   std::string text_;
 };
 
+void show_progress(StatusLine& line, const Summary& summary, const FacePolygons& faces) {
+  const double share = static_cast<double>(summary.rows) / static_cast<double>(faces.face_count());
+  line.show(progress_bar(share) + " row " + std::to_string(summary.rows) + " of " + std::to_string(faces.face_count()));
+}
+
 void run_form_factors(const FormFactorsCommand& command) {
   require_writable(command.output, "--output");
+  if (!command.areas.empty()) require_writable(command.areas, "--areas");
   const SceneFile file = read_scene_file(command.scene);
   warn(file.warnings);
   const auto start = std::chrono::steady_clock::now();
-  const BaseMesh mesh(file.scene);
+  const BaseMesh mesh(file.scene, {.join_triangles = false});
   const FacePolygons faces(file.scene, mesh);
   const Blockers blockers(mesh);
   RowsFile out(command.output);
-  Summary summary;
-  form_factor_matrix(faces, blockers, command.options, [&](std::uint32_t from, std::span<const MatrixEntry> row) {
-    summary.see(row);
-    out.write(from, row);
-  });
+  Summary summary{.accuracy = command.options.accuracy};
+  {
+    StatusLine line;
+    form_factor_matrix(faces, blockers, command.options, [&](std::uint32_t from, std::span<const MatrixEntry> row) {
+      summary.see(from, row);
+      out.write(from, faces.area(from), row);
+      if (line.due()) show_progress(line, summary, faces);
+    });
+  }
   out.finish();
-  const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::cout << summary.rows << " faces, " << summary.entries << " form factors, " << seconds(spent) << '\n'
-            << "row sums from " << shortest(summary.lowest) << " to " << shortest(summary.highest) << ", mean "
-            << shortest(summary.sum_of_sums / static_cast<double>(std::max<std::size_t>(1, summary.rows))) << '\n'
-            << "largest error bound " << shortest(summary.largest_bound) << '\n'
-            << "wrote " << command.output.string() << '\n';
+  if (!command.areas.empty()) write_whole_file(command.areas, areas_csv(faces));
+  warn(summary.warnings());
+  summary.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  std::cout << "wrote " << command.output.string() << '\n';
 }
 
 }  // namespace
@@ -106,9 +146,10 @@ void add_form_factors_command(CLI::App& app) {
   const auto options = std::make_shared<FormFactorsCommand>();
   CLI::App& command = *app.add_subcommand("form-factors", "The form factors between all faces");
   command.add_option("scene", options->scene, "A scene file")->required()->type_name("SCENE");
-  command.add_option("-o,--output", options->output, "Lines i,j,F,error_bound; faces in file order from 0")
+  command.add_option("-o,--output", options->output, "Lines i,j,F,error_bound,area_i; faces in file order from 0")
       ->required()
       ->type_name("F.csv");
+  command.add_option("--areas", options->areas, "Also write lines i,area, one per face of the file")->type_name("A.csv");
   command.add_option("--accuracy", options->options.accuracy, "Absolute, aimed at for each (1e-6)")
       ->check(CLI::Range(1e-12, 0.1));
   command.add_option("--threads", options->options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));

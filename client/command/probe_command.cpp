@@ -3,10 +3,12 @@
 #include "client/command/commands.h"
 #include "client/command/failure.h"
 #include "client/command/files.h"
+#include "client/command/outputs.h"
 #include "client/probe.h"
 #include "client/whole_file.h"
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <memory>
 
@@ -28,16 +30,21 @@ std::vector<ProbePoint> read_asked_points(const std::filesystem::path& path) {
   }
 }
 
-void warn_of_missed(std::span<const ProbeSample> samples) {
-  const auto missed = std::ranges::count(samples, false, &ProbeSample::found);
-  if (missed > 0) std::cerr << "warning: " << missed << " points face the same way as no surface: nan\n";
+void warn_of_enclosed(std::span<const ProbeSample> samples) {
+  const auto enclosed = std::ranges::count(samples, ProbePlace::enclosed, &ProbeSample::place);
+  if (enclosed == 0) return;
+  const auto first = std::ranges::find(samples, ProbePlace::enclosed, &ProbeSample::place) - samples.begin();
+  warn(std::array{
+      std::to_string(enclosed) + " of " + std::to_string(samples.size()) +
+      " points lie inside a solid or outside the room (most of what they see are backs of surfaces): nan. The first is point " +
+      std::to_string(first + 1)});
 }
 
 void run_probe(const ProbeCommand& command) {
   if (!command.output.empty()) require_writable(command.output, "--output");
   const std::vector<ProbePoint> points = read_asked_points(command.points);
   const std::vector<ProbeSample> samples = probe(read_solution(command.solution), points);
-  warn_of_missed(samples);
+  warn_of_enclosed(samples);
   if (command.output.empty()) std::cout << samples_csv(samples);
   else write_whole_file(command.output, samples_csv(samples));
 }

@@ -6,11 +6,16 @@
 #include "client/command/false_colour_options.h"
 #include "client/command/files.h"
 #include "client/command/option_checks.h"
+#include "client/command/outputs.h"
 #include "client/command/served_solution.h"
 #include "client/command/solve_name.h"
+#include "client/command/up_option.h"
 #include "client/render.h"
+#include "client/stage.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 namespace alvor {
@@ -41,13 +46,32 @@ DisplayMesh read_from_anywhere(const RenderCommand& command) {
   return read_solution(command.solution);
 }
 
+std::string place_text(Vec3 p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.4g,%.4g,%.4g", p.x, p.y, p.z);
+  return text;
+}
+
+/// A camera that somebody chose may stand inside a wall, or look away from everything.
+void warn_of_black_view(const DisplayMesh& mesh, const Camera& camera) {
+  const Stage stage(mesh);
+  bool sees_light = false;
+  stage.glance(camera, [&](const Seen& seen) { sees_light = sees_light || !stage.radiosity(seen).is_zero(); });
+  if (sees_light) return;
+  const Camera inside = default_camera(mesh, stage.caster(), {camera.width, camera.height});
+  warn(std::array{"the camera at " + place_text(camera.eye) + " sees nothing but black: it may stand in a wall. Try --eye " +
+                  place_text(inside.eye) + " --target " + place_text(inside.target)});
+}
+
 void run_render(const RenderCommand& command) {
   require_picture_path(command.output);
   RenderOptions options;
   options.false_colour = false_colour_of(command.false_colour, command.size);
   options.wireframe = command.wireframe;
-  const DisplayMesh mesh = read_from_anywhere(command);
+  DisplayMesh mesh = read_from_anywhere(command);
+  take_up(command.camera.up, mesh.up);
   options.camera = camera_of(command.camera, mesh, view_size(command.size, options.false_colour));
+  warn_of_black_view(mesh, *options.camera);
   if (!options.false_colour) options.exposure = automatic_exposure(mesh, *options.camera) * std::exp2(command.exposure_stops);
   write_png(command.output, render(mesh, options));
 }

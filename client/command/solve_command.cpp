@@ -7,6 +7,7 @@
 #include "client/command/interrupt.h"
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
+#include "client/command/up_option.h"
 #include "client/scene_file.h"
 #include "proto/codec.h"
 
@@ -52,6 +53,7 @@ struct SolveCommand {
   std::string form_factors = "auto";  ///< a key of `form_factor_methods`
   std::optional<double> pace_s;
   std::string absorption;  ///< three numbers; empty: none
+  std::string up;          ///< "y" or "z"; empty: as the file says
 };
 
 v1::SolveSpec spec_of(const SolveCommand& command) {
@@ -103,6 +105,7 @@ void run_solve(const SolveCommand& command) {
   prepare_outputs(command.outputs);
   SceneFile file = read_scene_file(command.scene);
   take_absorption(command.absorption, file.scene);
+  take_up(command.up, file.scene.up);
   std::vector<std::string> warnings;
   const Followed followed = solve_and_follow(command, file, warnings);
   deliver(command.outputs, file.scene, followed, warnings);
@@ -139,6 +142,7 @@ void add_solve_command(CLI::App& app) {
   command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file")->required()->type_name("SCENE");
   add_server_option(command, options->server, "Solve there instead of in this process");
   add_output_options(command, options->outputs);
+  add_up_option(command, options->up);
   add_limits(command, *options);
   add_method(command, *options);
   command.callback([options] { run_solve(*options); });

@@ -8,6 +8,7 @@
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
 #include "client/command/status_line.h"
+#include "client/command/up_option.h"
 #include "client/command/verify_report.h"
 #include "client/scene_file.h"
 #include "client/verify/error_picture.h"
@@ -27,6 +28,7 @@ struct VerifyCommand {
   std::filesystem::path scene, solution;
   VerifyOptions options;
   std::string absorption;  ///< three numbers; empty: none
+  std::string up;          ///< "y" or "z"; empty: as the solution says
   std::optional<double> max_error;
   std::filesystem::path csv, picture;  ///< empty paths were not asked for
   bool json = false;
@@ -73,7 +75,8 @@ void run_verify(const VerifyCommand& command) {
   SceneFile file = read_scene_file(command.scene);
   take_absorption(command.absorption, file.scene);
   warn(file.warnings);
-  const DisplayMesh solution = read_solution(command.solution);
+  DisplayMesh solution = read_solution(command.solution);
+  take_up(command.up, solution.up);
   VerifyTimes times;
   const Verification verification = verify_timed(command, file.scene, solution, times);
   if (!command.csv.empty()) write_whole_file(command.csv, verified_csv(verification.points));
@@ -103,6 +106,7 @@ void add_results(CLI::App& command, VerifyCommand& options) {
   command.add_option("--csv", options.csv, "Write truth, standard error and solution of each point")->type_name("FILE");
   command.add_option("--picture", options.picture, "Draw the error, blue where the solution is too dark, red where too bright")
       ->type_name("FILE.png");
+  add_up_option(command, options.up);
   command.add_flag("--json", options.json, "Print one JSON object instead of a summary");
 }
 

@@ -42,8 +42,9 @@ class PathTracer {
   /// `paths` is a power of two.
   Rgb irradiance(const SurfacePoint& point, std::uint32_t paths, PathRandom random) const;
 
-  /// Whether most of what is seen from a point are black backs, by this many rays: then it lies under or inside a solid, among
-  /// whose insides may be fronts of others that reach into it.
+  /// Whether most of what is seen from a point are black backs, by twice this many rays, also along the surface: then it lies under or
+  /// inside a solid, among whose insides may be fronts of others that reach into it. In a gap between a surface and a back, however
+  /// narrow, rays along the surface get out: that is not enclosed.
   bool is_enclosed(const SurfacePoint& point, std::uint32_t rays, PathRandom random) const;
 
  private:

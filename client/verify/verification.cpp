@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace alvor {
 
@@ -38,8 +39,8 @@ void require_same_box(const Scene& scene, const DisplayMesh& solution) {
 std::vector<ProbeSample> solution_at(const DisplayMesh& solution, std::span<const SurfacePoint> points) {
   std::vector<ProbePoint> asked;
   for (const SurfacePoint& point : points) asked.push_back({point.position, point.normal});
-  std::vector<ProbeSample> samples = probe(solution, asked);
-  const auto missed = std::ranges::find(samples, false, &ProbeSample::found);
+  std::vector<ProbeSample> samples = probe_surfaces(solution, asked);
+  const auto missed = std::ranges::find(samples, std::numeric_limits<double>::infinity(), &ProbeSample::distance);
   if (missed == samples.end()) return samples;
   throw MismatchError("is not a solution of this scene: it has no surface that faces as the scene does at " +
                       text_of(missed->point));

@@ -198,7 +198,7 @@ TEST_F(Command, FormFactorMatrixHasALinePerPairThatSeesEachOther) {
   write("cube.obj", cube);
   ASSERT_EQ(run("form-factors cube.obj -o F.csv").status, 0);
   const std::string csv = text_of(file("F.csv"));
-  EXPECT_EQ(csv.substr(0, csv.find('\n')), "i,j,F,error_bound");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "i,j,F,error_bound,area_i");
   EXPECT_EQ(line_count(csv), 31);
   EXPECT_FALSE(std::filesystem::exists(file("F.csv.part")));
 }

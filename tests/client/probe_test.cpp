@@ -21,7 +21,7 @@ DisplayMesh sloping_floor() {
 }
 
 TEST(Probe, InterpolatesWithinTriangles) {
-  const std::vector<ProbePoint> points{{{0.31, 0, 0.77}, {0, 1, 0}}, {{0.9, 0.001, 0.05}, {0, 3, 0}}};
+  const std::vector<ProbePoint> points{{{0.31, 0, 0.77}, {0, 1, 0}}, {{0.9, 0.00009, 0.05}, {0, 3, 0}}};
   const auto samples = probe(sloping_floor(), points);
   ASSERT_EQ(samples.size(), 2u);
   EXPECT_NEAR(samples[0].radiosity.g, 1 + 0.31 + 2 * 0.77, 1e-5);
@@ -33,17 +33,60 @@ TEST(Probe, TakesTheSideOfAThinWallThatFacesTheSameWay) {
   DisplayMesh wall;
   add_wall(wall, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, [](const Vec3&) { return grey(1); });      // faces +z
   add_wall(wall, {0, 0, -0.01}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return grey(2); });  // faces -z
-  const auto samples = probe(wall, std::vector<ProbePoint>{{{0.4, 0.4, -0.009}, {0, 0, 1}}, {{0.4, 0.4, 0.2}, {0, 0, -1}}});
+  const auto samples =
+      probe_surfaces(wall, std::vector<ProbePoint>{{{0.4, 0.4, -0.009}, {0, 0, 1}}, {{0.4, 0.4, 0.2}, {0, 0, -1}}});
   EXPECT_FLOAT_EQ(samples[0].radiosity.r, 1);
   EXPECT_FLOAT_EQ(samples[1].radiosity.r, 2);
 }
 
-TEST(Probe, SaysNanWhereNothingFacesTheSameWay) {
-  const auto samples = probe(sloping_floor(), std::vector<ProbePoint>{{{0.5, 0, 0.5}, {0, -1, 0}}});
-  EXPECT_FALSE(samples[0].found);
-  EXPECT_EQ(samples_csv(samples),
-            "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b\n"
-            "0.5,0,0.5,0,-1,0,nan,nan,nan,nan,nan,nan\n");
+/// A cube from 0 to `side` whose walls look inwards; the ceiling emits 1 and reflects nothing, all others send out 0.25.
+DisplayMesh lit_room(double side) {
+  DisplayMesh mesh;
+  const Vec3 x{side, 0, 0}, y{0, side, 0}, z{0, 0, side};
+  const auto dim = [](const Vec3&) { return grey(0.25F); };
+  add_wall(mesh, {0, 0, 0}, z, x, 3, dim);
+  add_wall(mesh, {0, 0, 0}, x, y, 3, dim);
+  add_wall(mesh, {0, 0, 0}, y, z, 3, dim);
+  add_wall(mesh, z, y, x, 3, dim);
+  add_wall(mesh, x, z, y, 3, dim);
+  add_wall(mesh, y, x, z, 3, [](const Vec3&) { return grey(1); });
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.irradiance[v] = grey(mesh.radiosity[v].r < 1 ? 0.5F : 0);
+  return mesh;
+}
+
+TEST(Probe, GathersInTheAir) {
+  // From the centre of a cube each wall has the form factor of a square at half its side: the ceiling 0.5541 (Howell, B-3).
+  const double ceiling = 0.554144;
+  const auto samples = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}, {{1, 1, 1}, {0, -1, 0}}});
+  ASSERT_EQ(samples[0].place, ProbePlace::in_air);
+  EXPECT_NEAR(samples[0].irradiance.g, ceiling + 0.25 * (1 - ceiling), 3 * samples[0].standard_error + 1e-6);
+  EXPECT_NEAR(samples[1].irradiance.g, 0.25, 3 * samples[1].standard_error + 1e-6);
+  EXPECT_LT(samples[0].standard_error, 0.01);
+  EXPECT_NEAR(samples[0].distance, 1, 1e-6);
+  EXPECT_TRUE(std::isnan(samples[0].radiosity.g));
+}
+
+TEST(Probe, GathersPastWhatStandsInTheLight) {
+  DisplayMesh room = lit_room(2);
+  // Two-sided, halfway up, over the half of the room where x < 1: seen from below it hides half of the ceiling's light.
+  add_wall(room, {0, 1.5, 0}, {1, 0, 0}, {0, 0, 2}, 1, [](const Vec3&) { return grey(0); });
+  add_wall(room, {0, 1.5, 0}, {0, 0, 2}, {1, 0, 0}, 1, [](const Vec3&) { return grey(0); });
+  const auto sample = probe(room, std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}})[0];
+  // What the sheet covers is twice a rectangle of 1 x 1 seen from below its corner at 0.5 (Howell, B-4); below its rim the walls
+  // shine.
+  const double ceiling = 0.554144, covered = 0.415538;
+  const double expected = 0.5 * (ceiling + 0.25 * (1 - ceiling)) + 0.25 * (0.5 - covered);
+  EXPECT_GT(sample.standard_error, 0);
+  EXPECT_NEAR(sample.irradiance.g, expected, 4 * sample.standard_error);
+}
+
+TEST(Probe, SaysNanOutsideTheRoom) {
+  const auto samples = probe(lit_room(2), std::vector<ProbePoint>{{{1, 3, 1}, {0, -1, 0}}, {{1, 1.9, 1}, {0, -1, 0}}});
+  EXPECT_EQ(samples[0].place, ProbePlace::enclosed);
+  EXPECT_EQ(samples[1].place, ProbePlace::in_air);
+  EXPECT_EQ(samples_csv(std::span(samples).first(1)),
+            "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b,distance,standard_error\n"
+            "1,3,1,0,-1,0,nan,nan,nan,nan,nan,nan,1,nan\n");
 }
 
 /// A points file, removed at the end.

@@ -44,6 +44,29 @@ TEST(Render, BacksAreLookedThrough) {
   EXPECT_EQ(render(mesh, fixed(facing_wall())).rgb, alone.rgb);
 }
 
+TEST(Render, OfFacesBackToBackInOnePlaceTheFrontIsSeenInEveryPixel) {
+  const DisplayMesh front = wall(grey(0.4f));
+  const Image alone = render(front, fixed(facing_wall()));
+  DisplayMesh both;
+  const auto add_back = [&] { add_wall(both, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 1, [](const Vec3&) { return RgbF{9, 0, 0}; }); };
+  const auto add_front = [&] { add_wall(both, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, [](const Vec3&) { return grey(0.4f); }); };
+  add_back();
+  add_front();
+  add_back();
+  EXPECT_EQ(render(both, fixed(facing_wall())).rgb, alone.rgb);
+}
+
+TEST(Render, ARoomWhoseZPointsUpStandsUpright) {
+  DisplayMesh upright = hand_made_room(), lying = upright;
+  lying.up = UpAxis::z;
+  for (std::vector<Vec3>* vectors : {&lying.positions, &lying.normals})
+    for (Vec3& p : *vectors) p = {p.x, -p.z, p.y};
+  const Camera a = default_camera(upright, {160, 120}), b = default_camera(lying, {160, 120});
+  EXPECT_NEAR(length(b.up - Vec3{0, 0, 1}), 0, 1e-12);
+  EXPECT_NEAR(length(b.eye - Vec3{a.eye.x, -a.eye.z, a.eye.y}), 0, 1e-9);
+  EXPECT_LE(largest_difference(render(upright, fixed(a)), render(lying, fixed(b))), 1);
+}
+
 TEST(Render, WireframeDrawsOutlinesAndNotSpokes) {
   const DisplayMesh mesh = wall(grey(0.4f), 2);
   RenderOptions options = fixed(facing_wall());

@@ -51,6 +51,17 @@ INSTANTIATE_TEST_SUITE_P(Formats, SolutionFile, testing::Values(".glb", ".ply"),
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(length(a - b), tolerance); }
 
+TEST_P(SolutionFile, RemembersWhichAxisPointsUp) {
+  DisplayMesh mesh = hand_made_room({.origin = {100, 200, 300}});
+  for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
+    mesh.up = up;
+    write_solution_file(path(), mesh);
+    const DisplayMesh back = read_solution_file(path());
+    EXPECT_EQ(back.up, up);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) expect_near(back.positions[v], mesh.positions[v], 1e-5);
+  }
+}
+
 TEST_P(SolutionFile, ComesBackAsItWas) {
   const DisplayMesh mesh = hand_made_room();
   write_solution_file(path(), mesh);

@@ -88,9 +88,8 @@ TEST(BaseMesh, FacesBackToBackInOnePlaceAreTwinsAndRaysMeetOneOfThem) {
   scene.materials = {test::grey(0, 0.5), test::grey(1, 0.2)};
   test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 0);
   test::add_polygon(scene, {{1, 2, 0}, {1, 0, 0}, {0, 0, 0}, {0, 2, 0}}, 1);
-  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 1);  // the same side again: nobody's twin
   const BaseMesh mesh(scene);
-  ASSERT_EQ(mesh.roots().size(), 3u);
+  ASSERT_EQ(mesh.roots().size(), 2u);
   const RootPatch &front = mesh.roots()[0], &other = mesh.roots()[1];
   EXPECT_EQ(front.twin, 1u);
   EXPECT_EQ(other.twin, 0u);
@@ -99,7 +98,20 @@ TEST(BaseMesh, FacesBackToBackInOnePlaceAreTwinsAndRaysMeetOneOfThem) {
   EXPECT_TRUE(other.is_behind);
   EXPECT_EQ(other.normal, -front.normal);
   EXPECT_EQ(other.at(0.25, 0.75), front.at(0.75, 0.25));
-  EXPECT_EQ(mesh.roots()[2].twin, RootPatch::no_twin);
+}
+
+TEST(BaseMesh, OfFacesThatLieInOnePlaceAndLookTheSameWayTheFirstIsKept) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0.2)};
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 0);
+  test::add_polygon(scene, {{5, 0, 0}, {6, 0, 0}, {6, 2, 0}, {5, 2, 0}}, 0);
+  test::add_polygon(scene, {{1, 2, 0}, {0, 2, 0}, {0, 0, 0}, {1, 0, 0}}, 1);  // from another corner on
+  const BaseMesh mesh(scene);
+  ASSERT_EQ(mesh.roots().size(), 2u);
+  EXPECT_EQ(mesh.roots()[0].material, 0u);
+  EXPECT_EQ(mesh.weld_report().duplicates.count, 1u);
+  EXPECT_EQ(mesh.weld_report().duplicates.first, 2u);
+  EXPECT_EQ(mesh.weld_report().duplicates.same_place, 0u);
 }
 
 TEST(BaseMesh, PolygonsBecomeSeveralRootsOfOneFace) {
@@ -109,7 +121,7 @@ TEST(BaseMesh, PolygonsBecomeSeveralRootsOfOneFace) {
   const BaseMesh mesh(scene);
   double area = 0;
   for (const RootPatch& root : mesh.roots()) {
-    EXPECT_EQ(root.scene_face, 0u);
+    EXPECT_EQ(root.input.first, 0u);
     area += root.area;
   }
   EXPECT_NEAR(area, 5, 1e-12);

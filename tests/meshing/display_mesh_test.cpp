@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -43,6 +44,25 @@ TEST(DisplayMesh, ClosedRoomHasNoCracksAtHangingVertices) {
     EXPECT_EQ(count, 1);
     EXPECT_TRUE(sides.contains({side.second, side.first})) << "an open edge, to the last bit of its positions";
   }
+}
+
+TEST(DisplayMesh, TheSidesOfATwoSidedFaceLieApartAndNoFartherThanAPixelShows) {
+  Scene scene = test::furnace(0, 0.5);
+  scene.materials.push_back({"curtain", {}, {0.5, 0.5, 0.5}, true});
+  test::add_polygon(scene, {{1, 0.5, 2}, {2, 0.5, 2}, {2, 1.5, 2}, {1, 1.5, 2}}, 1);
+  const BaseMesh mesh(scene);
+  const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{1, 1, 1}; }));
+  int front = 0, back = 0;
+  for (std::size_t v = 0; v < display.positions.size(); ++v) {
+    const Vec3 p = display.positions[v];
+    if (std::abs(p.z - 2) > 0.001 || p.x == 0 || p.x == 3 || p.y == 0 || p.y == 2) continue;
+    const double ahead = (p.z - 2) * display.normals[v].z;
+    EXPECT_GT(ahead, 1e-5);
+    EXPECT_LT(ahead, 1e-4 * mesh.extent());
+    ++(display.normals[v].z > 0 ? front : back);
+  }
+  EXPECT_GT(front, 4);
+  EXPECT_GT(back, 4);
 }
 
 TEST(DisplayMesh, UniformIrradianceStaysUniform) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace alvor {
@@ -58,6 +59,50 @@ TEST(SolveState, LimitsDoNotBreakTheTiling) {
       expect_tiling(mesh, state.leaf_values());
     }
   }
+}
+
+/// Storeys of side x side metres one above the other, each with its own lamps, in the order of storeys.
+Scene storeys(int count, int side) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(20, 0)};
+  for (int storey = 0; storey < count; ++storey) {
+    const double low = 3 * storey, high = low + 2.9, end = side;
+    test::add_polygon(scene, {{0, high, 0}, {end, high, 0}, {end, high, end}, {0, high, end}}, 0);
+    for (int n = 0; n < side * side; ++n) {
+      const double x = n % side, z = n / side;
+      test::add_polygon(scene, {{x, low, z}, {x, low, z + 1}, {x + 1, low, z + 1}, {x + 1, low, z}}, 0);
+      if (n % 7 == 0)
+        test::add_polygon(scene, {{x, low + 2, z}, {x + 0.5, low + 2, z}, {x + 0.5, low + 2, z + 1}, {x, low + 2, z + 1}}, 1);
+    }
+  }
+  return scene;
+}
+
+TEST(SolveState, TheFirstLightOfAllStoreysGrowsTogether) {
+  constexpr int count = 4, side = 40;
+  const BaseMesh mesh(storeys(count, side));
+  RayBudget budget([] { return false; });
+  SolveState state(mesh, {.max_leaves = 20'000}, budget);
+  EXPECT_EQ(state.unlit_fraction(), 1);
+  state.trace_new_rows();
+  double before = 1;
+  int batches = 0;
+  state.add_new_direct_light([&] {
+    std::array<double, count> lit{};
+    for (const LeafValue& leaf : state.leaf_values()) {
+      const RootPatch& root = mesh.roots()[leaf.patch.root_face()];
+      lit[static_cast<std::size_t>(root.corners[0].y / 3)] += leaf.irradiance.is_zero() ? 0 : 1;
+    }
+    EXPECT_LT(state.unlit_fraction(), before);
+    before = state.unlit_fraction();
+    if (++batches == 1) {
+      EXPECT_GT(before, 0);
+    }
+    const double most = *std::ranges::max_element(lit), least = *std::ranges::min_element(lit);
+    EXPECT_GT(least, 0.5 * most) << before;
+  });
+  EXPECT_GT(batches, 1);
+  EXPECT_EQ(state.unlit_fraction(), 0);
 }
 
 TEST(SolveState, PublishedLeavesTileTheRoots) {

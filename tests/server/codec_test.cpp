@@ -82,7 +82,7 @@ Delta sample_delta() {
   delta.values = {{PatchId::root(0).child(2), {1, 0.1f, 0}}, {PatchId::root(7), {3e-30f, 2, 1e30f}}};
   delta.steps.resize(2);
   delta.steps[0] = {4, 0.1, 3, 5, 1'000'000'000'000, 8, 0.5, 0.25, 0, {}};
-  delta.steps[1] = {5, 1.9999999999, 4, 6, 1'000'000'000'001, 9, 0.3, 0.2, 0.05, {1, 2, 3}};
+  delta.steps[1] = {5, 1.9999999999, 4, 6, 1'000'000'000'001, 9, 0.3, 0.2, 0.05, 0.125, {1, 2, 3}};
   return delta;
 }
 

@@ -34,7 +34,7 @@ inline BadScene bad_scene(const std::string& reason, void (*spoil)(Scene&)) {
 inline std::vector<BadScene> bad_scenes() {
   return {
       bad_scene("scene: has no faces", [](Scene& s) { s.faces.clear(); }),
-      bad_scene("material 0 'lamp': reflectance 1 is outside [0, 1)", [](Scene& s) { s.materials[0].reflectance.g = 1; }),
+      bad_scene("material 0 'lamp': reflectance 1.01 is outside [0, 1)", [](Scene& s) { s.materials[0].reflectance.g = 1.01; }),
       bad_scene("material 0 'lamp': reflectance nan is outside [0, 1)", [](Scene& s) { s.materials[0].reflectance.r = NAN; }),
       bad_scene("material 0 'lamp': emission -1 is not a finite value >= 0", [](Scene& s) { s.materials[0].emission.b = -1; }),
       bad_scene("vertex 5: coordinate inf is not finite", [](Scene& s) { s.vertices[5].y = INFINITY; }),

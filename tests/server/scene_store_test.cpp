@@ -22,6 +22,32 @@ TEST(SceneStore, TellsWhatIsOdd) {
   EXPECT_EQ(facts.warnings(1), "No face emits light: the solution will be dark.");
 }
 
+TEST(SceneStore, TakesAReflectanceOfOneForAsMuchAsSurfacesHaveAndSaysSo) {
+  SceneStore store;
+  Scene scene = squares(1);
+  scene.materials[0].name = "chalk";
+  scene.materials[0].reflectance = {1, 0.5, 1};
+  const auto stored = store.add(scene, "");
+  EXPECT_EQ(stored->content()->mesh.material_of(0).reflectance, (Rgb{0.95, 0.5, 0.95}));
+  ASSERT_EQ(stored->facts.warnings_size(), 1);
+  EXPECT_EQ(stored->facts.warnings(0), "1 materials have a reflectance of 1, which is taken for 0.95: the first is 'chalk'.");
+  scene.materials[0].reflectance.r = 1.0001;
+  EXPECT_TRUE(refusal_of(grpc::INVALID_ARGUMENT, [&] { store.add(scene, ""); }).starts_with("material 0"));
+}
+
+TEST(SceneStore, TellsOfFacesInThePlaceOfOthers) {
+  SceneStore store;
+  Scene scene = squares(2);
+  const auto corners = scene.corners_of(scene.faces[1]);
+  scene.add_face(std::vector(corners.begin(), corners.end()), 0);
+  const auto stored = store.add(scene, "");
+  EXPECT_EQ(stored->facts.face_count(), 3u);
+  EXPECT_EQ(stored->content()->mesh.roots().size(), 2u);
+  ASSERT_EQ(stored->facts.warnings_size(), 1);
+  EXPECT_EQ(stored->facts.warnings(0),
+            "1 faces lie in the place of others and were left out: the first is face 2, in the place of face 1.");
+}
+
 TEST(SceneStore, RefusesBadScenesByPlaceAndReason) {
   SceneStore store;
   for (const BadScene& bad : bad_scenes())

@@ -1,0 +1,14 @@
+#pragma once
+// Files that a scene file names.
+
+#include <filesystem>
+#include <string>
+
+namespace alvor {
+
+/// Returns the bytes of the file that a relative URI names, percent-encoded bytes decoded (RFC 3986), read from `folder` or a
+/// folder below it. Throws ImportError with `place` and the name for an absolute path, a URL, a name that leaves the folder
+/// ("../"), and a file that is missing or cannot be read.
+std::string read_file_beside(const std::filesystem::path& folder, const std::string& uri, const std::string& place);
+
+}  // namespace alvor

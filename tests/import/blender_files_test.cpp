@@ -1,0 +1,166 @@
+// What Blender's exporters write, against what Blender says of the room: blender/README.md.
+
+#include "client/scene_file.h"
+#include "meshing/base_mesh.h"
+#include "radiosity/solver.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+namespace alvor {
+namespace {
+
+const std::filesystem::path files = ALVOR_TEST_FILES "/import/blender/files";
+
+const nlohmann::json& expected() {
+  static const nlohmann::json whole = nlohmann::json::parse(std::ifstream(files / "expected.json"));
+  return whole;
+}
+
+/// A figure of the whole room, as the exporter of this file left it.
+double figure(const std::string& file, const char* name) {
+  const auto& changed = expected()["formats"][file].value("total", nlohmann::json::object());
+  return changed.contains(name) ? changed[name].get<double>() : expected()["total"][name].get<double>();
+}
+
+Vec3 upright_z(const Scene& scene, std::uint32_t vertex) {
+  const Vec3 p = scene.vertices[vertex];
+  return scene.up == UpAxis::z ? p : Vec3{p.x, -p.z, p.y};
+}
+
+struct Measured {
+  double area = 0, signed_volume = 0;
+  std::size_t triangles = 0;
+  Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  std::map<std::string, double> area_of_material;
+};
+
+Measured measure(const Scene& scene) {
+  Measured measured;
+  for (const Face& face : scene.faces) {
+    const auto corners = scene.corners_of(face);
+    Vec3 double_area;
+    const Vec3 a = upright_z(scene, corners[0]);
+    for (std::size_t c = 2; c < corners.size(); ++c) {
+      const Vec3 b = upright_z(scene, corners[c - 1]), d = upright_z(scene, corners[c]);
+      double_area += cross(b - a, d - a);
+      measured.signed_volume += dot(a, cross(b, d)) / 6;
+    }
+    measured.area += 0.5 * length(double_area);
+    measured.area_of_material[scene.materials[face.material].name] += 0.5 * length(double_area);
+    measured.triangles += corners.size() - 2;
+    for (const std::uint32_t corner : corners) {
+      const Vec3 p = upright_z(scene, corner);
+      measured.low = {std::min(measured.low.x, p.x), std::min(measured.low.y, p.y), std::min(measured.low.z, p.z)};
+      measured.high = {std::max(measured.high.x, p.x), std::max(measured.high.y, p.y), std::max(measured.high.z, p.z)};
+    }
+  }
+  return measured;
+}
+
+class BlenderFile : public testing::TestWithParam<const char*> {
+ protected:
+  const std::string name = GetParam();
+  SceneFile file = [this] {
+    SceneFile read = read_scene_file(files / name);
+    if (name == "room_z_up.obj") read.scene.up = UpAxis::z;  // OBJ does not say: --up z
+    return read;
+  }();
+};
+
+TEST_P(BlenderFile, HasTheSizeThatBlenderSays) {
+  const Measured measured = measure(file.scene);
+  const bool is_triangulated = expected()["formats"][name]["triangulated"];
+  const double area = figure(name, is_triangulated ? "area_m2" : "polygon_area_m2");
+  // Blender's Collada exporter cuts bent quads along the other diagonal.
+  EXPECT_NEAR(measured.area, area, (name == "room.dae" ? 2e-4 : 1e-5) * area);
+  EXPECT_NEAR(measured.signed_volume, figure(name, "signed_volume_m3"), 1e-4 * 56);
+  EXPECT_EQ(measured.triangles, static_cast<std::size_t>(figure(name, "triangles")));
+  const auto bounds = expected()["total"]["bounds_m"];
+  EXPECT_NEAR(measured.low.x, bounds[0][0], 1e-4);
+  EXPECT_NEAR(measured.low.y, bounds[0][1], 1e-4);
+  EXPECT_NEAR(measured.low.z, bounds[0][2], 1e-4);
+  EXPECT_NEAR(measured.high.x, bounds[1][0], 1e-4);
+  EXPECT_NEAR(measured.high.y, bounds[1][1], 1e-4);
+  EXPECT_NEAR(measured.high.z, bounds[1][2], 1e-4);
+}
+
+TEST_P(BlenderFile, BecomesAMeshWhoseRootsTellEveryInputFace) {
+  const BaseMesh mesh(file.scene);
+  EXPECT_GT(mesh.weld_report().duplicates.count, 0u);
+  std::vector<int> told(file.scene.faces.size());
+  for (const RootPatch& root : mesh.roots()) {
+    if (root.is_back) continue;
+    for (const std::uint32_t face : {root.input.first, root.input.second})
+      if (face != InputFaces::none) ++told[face];
+  }
+  const auto untold = static_cast<std::size_t>(std::ranges::count(told, 0));
+  EXPECT_EQ(untold, mesh.weld_report().degenerate_faces + mesh.weld_report().duplicates.count);
+}
+
+TEST_P(BlenderFile, IsSolved) {
+  SolutionLog log;
+  const SolveOutcome outcome = solve(BaseMesh(file.scene), {.tolerance = 0.2, .max_leaves = 20'000}, log, {});
+  const bool is_lit = std::ranges::any_of(file.scene.materials, [](const Material& m) { return !m.emission.is_zero(); });
+  EXPECT_EQ(outcome.reason == StopReason::dark, !is_lit);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFormats, BlenderFile,
+                         testing::Values("room.glb", "room.gltf", "room_extras.gltf", "room.obj", "room_z_up.obj", "room.ply",
+                                         "room.stl", "room.fbx", "room.dae"),
+                         [](const auto& format) {
+                           std::string name = format.param;
+                           std::ranges::replace(name, '.', '_');
+                           return name;
+                         });
+
+/// Emission is pi times the radiance that Blender says.
+void expect_light(const Scene& scene, const std::string& material) {
+  const auto found = std::ranges::find(scene.materials, material, &Material::name);
+  ASSERT_NE(found, scene.materials.end()) << material;
+  const auto radiance = expected()["materials"][material]["emission_linear"];
+  const Rgb wanted = emission_of_radiance({radiance[0], radiance[1], radiance[2]});
+  EXPECT_NEAR(found->emission.r, wanted.r, 2e-3 * wanted.max()) << material;
+  EXPECT_NEAR(found->emission.g, wanted.g, 2e-3 * wanted.max()) << material;
+  EXPECT_NEAR(found->emission.b, wanted.b, 2e-3 * wanted.max()) << material;
+}
+
+/// Reflectance is the base colour, of a texture its mean.
+void expect_reflectance(const Scene& scene, const std::string& material) {
+  const auto found = std::ranges::find(scene.materials, material, &Material::name);
+  ASSERT_NE(found, scene.materials.end()) << material;
+  const auto colour = expected()["materials"][material]["base_colour_linear"];
+  EXPECT_NEAR(found->reflectance.r, colour[0].get<double>(), 2e-3) << material;
+  EXPECT_NEAR(found->reflectance.g, colour[1].get<double>(), 2e-3) << material;
+  EXPECT_NEAR(found->reflectance.b, colour[2].get<double>(), 2e-3) << material;
+}
+
+TEST(BlenderMaterials, AreTheSameInGltf) {
+  for (const char* name : {"room.glb", "room.gltf", "room_extras.gltf"}) {
+    const Scene scene = read_scene_file(files / name).scene;
+    for (const char* lamp : {"Lamp panel", "Night light", "Screen"}) expect_light(scene, lamp);
+    for (const char* textured : {"Wall paper", "Floor tiles", "Wood"}) expect_reflectance(scene, textured);
+  }
+}
+
+TEST(BlenderMaterials, AreTheSameInMtlButForATexturedLamp) {
+  Scene scene = read_scene_file(files / "room.obj").scene;
+  for (Material& material : scene.materials) std::ranges::replace(material.name, '_', ' ');
+  for (const char* lamp : {"Lamp panel", "Night light"}) expect_light(scene, lamp);
+  for (const char* each : {"Wall paper", "Floor tiles", "Wood", "Books"}) expect_reflectance(scene, each);
+}
+
+TEST(BlenderWarnings, CountWhatIsNotSupportedYet) {
+  const auto warnings = read_scene_file(files / "room.glb").warnings;
+  for (const char* said : {"1 point light is ignored", "1 spot light is ignored", "1 directional light is ignored",
+                           "2 materials with alpha are taken for opaque", "1 metallic material is taken for diffuse",
+                           "1 transmissive material is taken for opaque"})
+    EXPECT_EQ(std::ranges::count(warnings, said), 1) << said;
+}
+
+}  // namespace
+}  // namespace alvor

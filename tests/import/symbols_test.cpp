@@ -1,0 +1,91 @@
+// Which file each third-party symbol of `alvor` is found in. Two libraries may export the same names: libdraco, which Assimp
+// loads, exports functions of its own version of tinygltf, and calls to ours once ended there.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace alvor {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Binding {
+  std::string from, to, symbol;
+};
+
+std::string file_name(const std::string& path) { return fs::path(path).filename().string(); }
+
+/// All symbols, as the dynamic linker binds them (LD_DEBUG, ld.so(8)): "binding file A [0] to B [0]: normal symbol `f' [V]".
+std::vector<Binding> bindings_of(const std::string& program) {
+  const fs::path log = fs::temp_directory_path() / ("alvor_bindings_" + std::to_string(getpid()));
+  const std::string command =
+      "LD_BIND_NOW=1 LD_DEBUG=bindings LD_DEBUG_OUTPUT='" + log.string() + "' " + program + " --version > /dev/null";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  std::vector<Binding> bindings;
+  for (const auto& entry : fs::directory_iterator(log.parent_path())) {
+    if (!entry.path().filename().string().starts_with(log.filename().string())) continue;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);) {
+      const auto start = line.find("binding file "), to = line.find(" to "), quote = line.find('`'), end = line.find('\'', quote);
+      if (start == std::string::npos || to == std::string::npos || end == std::string::npos) continue;
+      const auto word_at = [&](std::size_t at) { return line.substr(at, line.find(' ', at) - at); };
+      bindings.push_back({file_name(word_at(start + 13)), file_name(word_at(to + 4)), line.substr(quote + 1, end - quote - 1)});
+    }
+    fs::remove(entry.path());
+  }
+  return bindings;
+}
+
+bool has(const std::string& symbol, std::string_view part) { return symbol.find(part) != std::string::npos; }
+
+const std::vector<Binding>& alvor_bindings() {
+  static const std::vector<Binding> all = bindings_of(ALVOR_BINARIES "/alvor");
+  return all;
+}
+
+TEST(Symbols, OfLibrariesInHeadersStayInTheirProgram) {
+  ASSERT_GT(alvor_bindings().size(), 1000u);
+  for (const Binding& binding : alvor_bindings()) {
+    if (binding.from != "alvor" && binding.to != "alvor") continue;
+    if (binding.from == binding.to) continue;
+    for (const char* name : {"tinygltf", "tinyobj", "nlohmann", "stbi_"})
+      EXPECT_FALSE(has(binding.symbol, name)) << binding.symbol << " of " << binding.from << " is found in " << binding.to;
+  }
+}
+
+TEST(Symbols, OfSharedLibrariesAreFoundInTheseAndNoOthers) {
+  struct Library {
+    const char* prefix;  ///< of the mangled name
+    const char* file;
+  };
+  constexpr std::array libraries{Library{"_ZN6Assimp", "libassimp.so"},
+                                 Library{"_ZNK6Assimp", "libassimp.so"},
+                                 Library{"ai", "libassimp.so"},
+                                 Library{"rtc", "libembree3.so"},
+                                 Library{"_ZN8OpenMesh", "libOpenMeshCore.so"},
+                                 Library{"png_", "libpng16.so"},
+                                 Library{"ZSTD_", "libzstd.so"},
+                                 Library{"sqlite3_", "libsqlite3.so"},
+                                 Library{"_ZN6google8protobuf", "libprotobuf.so"},
+                                 Library{"_ZN3tbb6detail", "libtbb.so"}};
+  std::size_t checked = 0;
+  for (const Binding& binding : alvor_bindings()) {
+    if (binding.from != "alvor" || binding.to == "alvor") continue;
+    for (const auto& [prefix, file] : libraries) {
+      if (!binding.symbol.starts_with(prefix)) continue;
+      ++checked;
+      EXPECT_TRUE(binding.to.starts_with(file)) << binding.symbol << " is found in " << binding.to;
+    }
+  }
+  EXPECT_GT(checked, 100u);
+}
+
+}  // namespace
+}  // namespace alvor
