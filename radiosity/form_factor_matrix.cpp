@@ -18,7 +18,7 @@ namespace alvor {
 namespace {
 
 constexpr double flat_slack = 1e-12;  // of the size: closer to a plane is in it
-constexpr std::size_t rows_at_once = 64;
+constexpr std::size_t rows_at_once = 16;
 
 /// Quadrature points of a polygon, as SIMD wants them; the weights sum to 1. The unused ones weigh nothing.
 struct Points {
@@ -114,7 +114,7 @@ Extent heights(const Piece& piece, const Plane& plane) {
   return extent;
 }
 
-/// Sum of the kernel over the points of both.
+/// Sum of the kernel over the points of both, where they lie in front of each other.
 double kernel_sum(const Piece& from, const Piece& to) {
   const Vec3 n = from.plane.normal, m = to.plane.normal;
   alignas(32) std::array<double, Points::most> sum{};
@@ -125,7 +125,7 @@ double kernel_sum(const Piece& from, const Piece& to) {
     const double weight = from.points.weight[i];
     for (int j = 0; j < padded; ++j) {
       const double x = b.x[j] - p.x, y = b.y[j] - p.y, z = b.z[j] - p.z, squared = x * x + y * y + z * z;
-      const double here = x * n.x + y * n.y + z * n.z, there = -(x * m.x + y * m.y + z * m.z);
+      const double here = std::max(0.0, x * n.x + y * n.y + z * n.z), there = std::max(0.0, -(x * m.x + y * m.y + z * m.z));
       sum[j] += weight * b.weight[j] * here * there / (squared * squared);
     }
   }
@@ -163,7 +163,7 @@ class FormFactorRows::Pairs {
     }
     std::vector<MatrixEntry> entries;
     for (std::uint32_t to = 0; to < all.size(); ++to)
-      if (all[to].value > 0) entries.push_back({to, std::min(1.0, all[to].value), all[to].error_bound});
+      if (all[to].value > 0 || all[to].error_bound > 0) entries.push_back({to, std::min(1.0, all[to].value), all[to].error_bound});
     keep_to_one(entries);
     return entries;
   }
@@ -172,7 +172,7 @@ class FormFactorRows::Pairs {
   /// A pair whose light is partly blocked.
   struct Shadowed {
     const Piece* to;
-    ConvexPolygon seen;  // the part of `to` above the horizon
+    ConvexPolygon front, seen;  // the parts of both that lie in front of each other
     std::vector<ConvexPolygon> blockers;
     FormFactor found;
   };
@@ -192,26 +192,44 @@ class FormFactorRows::Pairs {
     if (obstruction.is_total()) return FormFactor{};
     if (obstruction.is_clear())
       return crosses ? polygon_form_factor(from.polygon, to.polygon, accuracy_ / 10) : unobstructed(from, to);
-    shadowed.push_back({&to, b, {obstruction.parts().begin(), obstruction.parts().end()}, {}});
+    shadowed.push_back({&to, a, b, {obstruction.parts().begin(), obstruction.parts().end()}, {}});
     return std::nullopt;
   }
 
   /// Few pairs: each shadow's edge is followed. Many: all of them from the same points of `from`, more until the errors are
   /// small; where a shadow's edge crosses several faces, what one gets too much another gets too little, and their sum is right.
+  /// Only much smaller faces are looked from themselves: about them the light falls off between the points of `from`.
   void solve_shadowed(const Piece& from, std::vector<Shadowed>& pairs) const {
     if (from.points.count == 0 || (pairs.size() <= most_followed_ && worth_following(pairs))) {
       for (Shadowed& pair : pairs) pair.found = followed(from, pair);
       return;
     }
+    const auto common = std::ranges::partition(pairs, [&](const Shadowed& pair) { return is_small(*pair.to, from); });
+    for (Shadowed& pair : std::span(pairs).first(pairs.size() - common.size())) pair.found = from_target(from, pair);
     for (int level = 0; level <= most_levels; ++level) {
       const auto parts = parts_of(from.polygon.corners(), level);
       double worst = 0;
-      for (Shadowed& pair : pairs) {
-        pair.found = from_common_points(from, pair, parts);
+      for (Shadowed& pair : common) {
+        pair.found = from_points({from, *pair.to, pair.seen, pair.blockers}, parts);
         worst = std::max(worst, pair.found.error_bound);
       }
       if (worst <= shadow_accuracy * accuracy_ || (level > 0 && parts.size() == 1)) return;
     }
+  }
+
+  static bool is_small(const Piece& to, const Piece& from) { return to.points.count > 0 && to.area < small_share * from.area; }
+
+  /// By reciprocity.
+  FormFactor from_target(const Piece& from, const Shadowed& pair) const {
+    FormFactor found;
+    const double ratio = pair.to->area / from.area;
+    for (int level = 0; level <= most_levels; ++level) {
+      const auto parts = parts_of(pair.to->polygon.corners(), level);
+      found = from_points({*pair.to, from, pair.front, pair.blockers}, parts);
+      found = {ratio * found.value, ratio * found.error_bound};
+      if (found.error_bound <= shadow_accuracy * accuracy_) break;
+    }
+    return found;
   }
 
   /// Following costs the product of blockers; among the furniture of a room the common points have to do.
@@ -227,27 +245,36 @@ class FormFactorRows::Pairs {
     return {share * found.value, share * found.error_bound};
   }
 
-  /// From a point of the row's face. Points behind the target see nothing of it.
-  static double visible_from(Vec3 p, const Piece& from, const Shadowed& pair) {
-    return pair.to->plane.height(p) > 0 ? point_to_visible(p, from.plane.normal, pair.seen, pair.blockers) : 0;
-  }
+  /// A face that is looked from, and what is looked at past blockers.
+  struct Look {
+    const Piece& from;
+    const Piece& to;
+    const ConvexPolygon& seen;  ///< the part of `to` above the horizon
+    std::span<const ConvexPolygon> blockers;
+
+    /// From a point of `from`. Points behind `to` see nothing of it.
+    double visible_from(Vec3 p) const {
+      return to.plane.height(p) > 0 ? point_to_visible(p, from.plane.normal, seen, blockers) : 0;
+    }
+  };
 
   /// The points of `from` once for each of 4^level equal parts of it.
-  FormFactor from_common_points(const Piece& from, const Shadowed& pair, std::span<const Part> parts) const {
+  FormFactor from_points(const Look& look, std::span<const Part> parts) const {
+    const Points& points = look.from.points;
     const double share = 1.0 / static_cast<double>(parts.size());
     double mean = 0, error = 0;
     for (const Part& part : parts) {
       double weighted = 0, plain = 0, low = 1, high = 0;
-      for (int n = 0; n < from.points.count; ++n) {
-        const double value = visible_from(part.place(from.points.at(n)), from, pair);
-        weighted += from.points.weight[n] * value;
-        plain += value / from.points.count;
+      for (int n = 0; n < points.count; ++n) {
+        const double value = look.visible_from(part.place(points.at(n)));
+        weighted += points.weight[n] * value;
+        plain += value / points.count;
         low = std::min(low, value), high = std::max(high, value);
       }
       mean += share * weighted;
       error += share * (std::abs(weighted - plain) + shadow_error * (high - low));
     }
-    const double whole = pair.to->points.count > 0 ? kernel_sum(from, *pair.to) : 1;
+    const double whole = look.to.points.count > 0 ? kernel_sum(look.from, look.to) : 1;
     return {mean, error + unseen_error * share * whole};
   }
 
@@ -276,8 +303,9 @@ class FormFactorRows::Pairs {
   static constexpr double relative_accuracy = 1e-3;
   static constexpr std::uint64_t most_points = 10'000;  // that a face is looked from for one shadow
   static constexpr double far_error = 0.1;              // at most 0.03 was seen
-  static constexpr double shadow_error = 0.15;          // of the spread between points, where a shadow's edge passes between them
-  static constexpr double unseen_error = 0.01;          // of the unobstructed factor: a corner that no point saw
+  static constexpr double shadow_error = 0.5;           // of the spread between points, where a shadow's edge passes between them
+  static constexpr double unseen_error = 0.05;          // of the unobstructed factor: a corner that no point saw
+  static constexpr double small_share = 0.25;           // of the area
   static constexpr double shadow_accuracy = 1000;       // accuracies that a shadowed pair may be off
 
   static constexpr std::size_t most_followed_blockers = 16;

@@ -14,7 +14,7 @@ namespace alvor {
 
 struct MatrixEntry {
   std::uint32_t to = 0;
-  double value = 0;        ///< in (0, 1]
+  double value = 0;        ///< in [0, 1]
   double error_bound = 0;  ///< absolute
 };
 
@@ -29,7 +29,7 @@ struct MatrixOptions {
 ///
 /// Pairs that nothing stands between: contour integrals when near, Gauss points of both when far. Else what is visible from a
 /// point is exact; where a shadow crosses many faces all are looked at from the same points, so that their errors cancel in the
-/// row's sum.
+/// row's sum, and much smaller faces from points of their own.
 class FormFactorRows {
  public:
   /// Where at most `most_followed` faces are partly shadowed as seen from one, each shadow's edge is followed exactly.
@@ -38,7 +38,7 @@ class FormFactorRows {
   FormFactorRows(const FormFactorRows&) = delete;
   FormFactorRows& operator=(const FormFactorRows&) = delete;
 
-  /// The form factors greater than 0 from the face, by `to`.
+  /// The form factors from the face, by `to`, without those that are certainly 0.
   std::vector<MatrixEntry> row(std::uint32_t from) const;
 
  private:

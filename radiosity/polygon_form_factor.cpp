@@ -10,8 +10,9 @@ namespace alvor {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double far_ratio = 6;       // of the distance to both radii together: beyond it six Gauss points a side leave 1e-9
-constexpr double rounding = 5e-16;    // of the product of perimeters, in the contour integral
+constexpr double far_ratio = 6;     // of the distance to both radii together: beyond it six Gauss points a side leave 1e-9
+constexpr double rounding = 5e-16;  // of the product of perimeters, in the contour integral
+constexpr double safety = 10;  // of the contour integral's error estimate: where an edge crosses one that it nears, 5 was seen
 constexpr double flat_slack = 1e-12;  // of the size: a corner this close to a plane lies on it
 
 struct Ball {
@@ -152,8 +153,9 @@ FormFactor polygon_form_factor(const ConvexPolygon& from, const ConvexPolygon& t
   }
   const double unit = std::max(distance, std::max(ball_a.radius, ball_b.radius));
   const double per_integral = 1 / (2 * pi * area);
-  const Quadrature contour = contour_integral(a, b, unit, accuracy / per_integral);
-  return {std::clamp(contour.value * per_integral, 0.0, 1.0), (contour.error + rounding * contour.magnitude) * per_integral};
+  const Quadrature contour = contour_integral(a, b, unit, accuracy / (safety * per_integral));
+  return {std::clamp(contour.value * per_integral, 0.0, 1.0),
+          (safety * contour.error + rounding * contour.magnitude) * per_integral};
 }
 
 }  // namespace alvor

@@ -43,8 +43,8 @@ TEST_F(PatienceTest, ItEnds) {
 }
 
 TEST_F(PatienceTest, ItBeginsAnewAfterEachSuccess) {
-  const Client client(channel, milliseconds(60));
-  const int needed = 10;  // pauses of 50 ms: far more than 60 ms in all
+  const Client client(channel, milliseconds(1000));
+  const int needed = 40;  // pauses of 50 ms: twice 1000 ms in all, and a machine that is late does not make one of them as long
   const auto gets_on = [&](Client::Patience& patience) {
     patience.note_success();
     return tries < needed ? (fail(grpc::UNAVAILABLE), 0) : tries;
