@@ -35,12 +35,26 @@ struct Options {
   std::string metrics;
   std::string health, probe;
   std::uint64_t memory_limit = alvor::allowed_memory();
+  std::vector<std::string> web_origins;
   std::string web, page = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web").string();
   alvor::Quota quota;
   std::string log_level = "info";
 };
 
+void declare_web(CLI::App& app, Options& options) {
+  CLI::Option* web =
+      app.add_option("--web", options.web, "HOST:PORT to serve the page and gRPC-Web for browsers on (not at all)");
+  app.add_option("--web-origin", options.web_origins,
+                 "Pages of this origin, as https://room.example, may call there too; may be repeated (none)")
+      ->needs(web)
+      ->type_name("ORIGIN")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--page", options.page, "Directory of that page")->capture_default_str();
+}
+
 void declare(CLI::App& app, Options& options) {
+  app.set_version_flag("--version", "alvord " ALVOR_VERSION);
   alvor::ListenOptions& listen = options.listen;
   app.add_option("--listen", listen.address, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
   app.add_option("--tls-cert", listen.certificate, "The server's certificate, and what it takes to trust it (PEM): TLS");
@@ -72,8 +86,7 @@ void declare(CLI::App& app, Options& options) {
                  "HOST:PORT to tell health on (grpc.health.v1), without TLS and tokens, for probes (only where calls are taken)");
   app.add_option("--probe", options.probe, "Only ask a server's --health HOST:PORT; fails unless it serves");
   app.add_option("--metrics", options.metrics, "HOST:PORT to tell Prometheus on, at /metrics (not at all)");
-  app.add_option("--web", options.web, "HOST:PORT to serve the page and gRPC-Web for browsers on (not at all)");
-  app.add_option("--page", options.page, "Directory of that page")->capture_default_str();
+  declare_web(app, options);
   app.add_option("--log-level", options.log_level, "How much to log")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
@@ -81,7 +94,7 @@ void declare(CLI::App& app, Options& options) {
   for (CLI::Option* option : app.get_options()) {
     std::string name = "ALVORD_" + option->get_single_name();
     for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (name != "ALVORD_HELP" && name != "ALVORD_PROBE") option->envname(name);
+    if (name != "ALVORD_HELP" && name != "ALVORD_VERSION" && name != "ALVORD_PROBE") option->envname(name);
   }
 }
 
@@ -178,7 +191,7 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
 // Null without an address.
 std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server& server, spdlog::logger& logger) {
   if (options.web.empty()) return nullptr;
-  const alvor::WebOptions web{options.web, options.page, &options.listen};
+  const alvor::WebOptions web{options.web, options.page, &options.listen, options.web_origins};
   auto front = std::make_unique<alvor::WebFront>(web, server.InProcessChannel({}));
   logger.info("web page on {}", front->url());
   return front;

@@ -73,12 +73,28 @@ bool is_call(const std::string& path) {
   return std::regex_match(path, pattern);
 }
 
-bool is_foreign(const httplib::Request& request, bool only_this_machine) {
-  const std::string host = request.get_header_value("Host");
-  if (only_this_machine && !is_loopback(host.find(':') == std::string::npos ? host + ":80" : host)) return true;
-  if (!request.has_header("Origin")) return false;
-  const std::string origin = request.get_header_value("Origin");
-  return origin != "http://" + host && origin != "https://" + host;
+/// Whether a page that this server sent calls it, or no page at all.
+bool is_own_origin(const httplib::Request& request) {
+  if (!request.has_header("Origin")) return true;
+  const std::string host = request.get_header_value("Host"), origin = request.get_header_value("Origin");
+  return origin == "http://" + host || origin == "https://" + host;
+}
+
+/// Whether a browser asks what a page of another origin may send.
+bool is_preflight(const httplib::Request& request) {
+  return request.method == "OPTIONS" && request.has_header("Access-Control-Request-Method");
+}
+
+bool has_body(const httplib::Request& request) {
+  return request.has_header("Transfer-Encoding") ||
+         (request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0");
+}
+
+void answer_preflight(httplib::Response& response) {
+  response.set_header("Access-Control-Allow-Methods", "POST");
+  response.set_header("Access-Control-Allow-Headers", "content-type,x-grpc-web,x-user-agent,grpc-timeout,authorization");
+  response.set_header("Access-Control-Max-Age", "7200");  // the longest that Chromium keeps one
+  response.status = 204;
 }
 
 }  // namespace
@@ -86,6 +102,7 @@ bool is_foreign(const httplib::Request& request, bool only_this_machine) {
 WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel)
     : stub_(std::move(channel)),
       only_this_machine_(is_loopback(options.address)),
+      origins_(options.origins),
       tokens_(tokens_of(*options.listen)),
       page_(read_page(options.page)),
       server_(make_server(*options.listen)) {
@@ -100,9 +117,11 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
   server_->set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+    const bool is_admitted = admit_origin(request, response);
     const int status = refusal_of(request);
-    if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
-    refuse(response, status);
+    const bool is_answered = status == 0 && is_admitted && is_preflight(request);
+    if (status == 0 && !is_answered) return httplib::Server::HandlerResponse::Unhandled;
+    is_answered ? answer_preflight(response) : refuse(response, status);
     return httplib::Server::HandlerResponse::Handled;
   });
   serve_page();
@@ -118,16 +137,33 @@ WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> cha
   });
 }
 
+bool WebFront::is_foreign(const httplib::Request& request) const {
+  const std::string host = request.get_header_value("Host");
+  if (only_this_machine_ && !is_loopback(host.find(':') == std::string::npos ? host + ":80" : host)) return true;
+  if (is_own_origin(request)) return false;
+  return !is_call(request.path) || !origins_.contains(request.get_header_value("Origin"));
+}
+
+/// Returns whether the request is a call by a page of another origin that may call; the response then says so to the browser,
+/// whatever else it will say.
+bool WebFront::admit_origin(const httplib::Request& request, httplib::Response& response) const {
+  if (origins_.empty() || !is_call(request.path)) return false;
+  response.set_header("Vary", "Origin");
+  if (is_own_origin(request) || is_foreign(request)) return false;
+  response.set_header("Access-Control-Allow-Origin", request.get_header_value("Origin"));
+  response.set_header("Access-Control-Expose-Headers", "grpc-status,grpc-message,grpc-status-details-bin");
+  return true;
+}
+
 /// Before anything of a body is read: the status of HTTP, or 0. httplib would keep bodies of what it does not route, and knows no
 /// bounds for ranges.
 int WebFront::refusal_of(const httplib::Request& request) const {
-  if (is_foreign(request, only_this_machine_)) return 403;
+  if (is_foreign(request)) return 403;
+  if (is_preflight(request) && !is_own_origin(request)) return has_body(request) ? 400 : 0;
   const bool is_get = request.method == "GET" || request.method == "HEAD";
   if (!is_get && request.method != "POST") return 405;
   if (!is_get) return is_call(request.path) ? 0 : 404;
-  const bool has_body = request.has_header("Transfer-Encoding") ||
-                        (request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0");
-  if (has_body) return 400;
+  if (has_body(request)) return 400;
   return request.has_header("Range") ? 416 : 0;
 }
 

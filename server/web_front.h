@@ -4,6 +4,7 @@
 #include "server/bearer_tokens.h"
 #include "server/listening.h"
 #include "server/page_files.h"
+#include "server/web_origins.h"
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace httplib {
 class ContentReader;
@@ -28,10 +30,12 @@ struct WebOptions {
   std::string address;                    ///< HOST:PORT; port 0 takes a free one
   std::filesystem::path page;             ///< a directory with index.html and what it loads
   const ListenOptions* listen = nullptr;  ///< certificate, key, client_ca, tokens and insecure hold here too
+  std::vector<std::string> origins;       ///< pages from there may call too: scheme://host[:port]
 };
 
 /// Serves from when it is made until it is destroyed; calls that are then under way should end by themselves
-/// (Service::shut_down). Other origins than its own are refused, and so are other hosts where it listens for this machine only.
+/// (Service::shut_down). The page is for its own origin. Calls may also come from the origins in the options, which get CORS
+/// headers; other origins are refused. Other hosts are refused where it listens for this machine only.
 class WebFront {
  public:
   /// `channel` leads to a server in this process. Throws std::invalid_argument naming the option.
@@ -40,7 +44,9 @@ class WebFront {
   const std::string& url() const { return url_; }
 
  private:
+  bool is_foreign(const httplib::Request& request) const;
   int refusal_of(const httplib::Request& request) const;
+  bool admit_origin(const httplib::Request& request, httplib::Response& response) const;
   void serve_page();
   void serve_calls();
   using Body = httplib::ContentReader;
@@ -49,6 +55,7 @@ class WebFront {
 
   grpc::GenericStub stub_;
   const bool only_this_machine_;
+  const WebOrigins origins_;
   std::optional<BearerTokens> tokens_;
   const PageFiles page_;
   std::unique_ptr<httplib::Server> server_;

@@ -116,6 +116,14 @@ TEST(AlvordProgram, TakesOptionsFromTheEnvironmentAndTheCommandLineFirst) {
   EXPECT_TRUE(overruled.address().starts_with("127.0.0.1:"));
 }
 
+TEST(AlvordProgram, TellsItsVersion) {
+  ChildProcess alvord({ALVOR_BINARIES "/alvord", "--version"}, STDOUT_FILENO);
+  EXPECT_EQ(alvord.line(), "alvord " ALVOR_VERSION "\n");
+  EXPECT_EQ(alvord.exit_status(), 0);
+  Alvord named({"--listen", "127.0.0.1:0"}, "ALVORD_VERSION=1");
+  EXPECT_NE(named.address(), "") << "of an image that tells its version";
+}
+
 TEST(AlvordProgram, PortInUseIsOneLineAndStatusOne) {
   Alvord first({"--listen", "127.0.0.1:0"});
   const std::string address = first.address();
