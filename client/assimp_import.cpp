@@ -14,6 +14,7 @@
 #include <fstream>
 #include <optional>
 #include <span>
+#include <sstream>
 
 namespace alvor {
 
@@ -37,9 +38,8 @@ struct Convention {
   double metres_per_unit = 1;
 };
 
-Convention convention_of(const aiScene& source, const std::filesystem::path& path) {
+Convention convention_of(const aiScene& source, const std::string& extension) {
   Convention convention;
-  const std::string extension = lower_case_extension(path);
   // Collada says its unit and up axis, and Assimp turns the scene y-up, in metres.
   if (extension == ".stl" || extension == ".3ds" || extension == ".ply") convention.up = UpAxis::z;
   if (extension == ".fbx" && source.mMetaData) {
@@ -187,22 +187,41 @@ void check_ply_header(std::istream& stream, std::uintmax_t file_size) {
   if (word != "end_header") throw ImportError("file", "its header has no end_header");
 }
 
-void refuse_what_assimp_cannot_survive(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
+void refuse_what_assimp_cannot_survive(std::istream& stream, std::uintmax_t file_size) {
   std::string magic;
-  if (std::getline(stream, magic) && (magic == "ply" || magic == "ply\r"))
-    check_ply_header(stream, std::filesystem::file_size(path));
+  if (std::getline(stream, magic) && (magic == "ply" || magic == "ply\r")) check_ply_header(stream, file_size);
+}
+
+/// No post-processing: every step that joins, sorts or triangulates loses the file's faces or their order.
+constexpr unsigned as_it_is = 0;
+
+SceneFile scene_of(const Assimp::Importer& importer, const std::filesystem::path& folder, const std::string& extension) {
+  const aiScene* source = importer.GetScene();
+  if (!source) throw ImportError("file", importer.GetErrorString());
+  return AssimpReader(*source, folder, convention_of(*source, extension)).read();
 }
 
 }  // namespace
 
 SceneFile import_by_assimp(const std::filesystem::path& path) {
-  refuse_what_assimp_cannot_survive(path);
+  std::ifstream stream(path, std::ios::binary);
+  refuse_what_assimp_cannot_survive(stream, std::filesystem::file_size(path));
   Assimp::Importer importer;
-  // No post-processing: every step that joins, sorts or triangulates loses the file's faces or their order.
-  const aiScene* source = importer.ReadFile(path.string(), 0);
-  if (!source) throw ImportError("file", importer.GetErrorString());
-  return AssimpReader(*source, path.parent_path(), convention_of(*source, path)).read();
+  importer.ReadFile(path.string(), as_it_is);
+  return scene_of(importer, path.parent_path(), lower_case_extension(path));
+}
+
+SceneFile import_by_assimp(const std::string& bytes, const std::string& extension, const std::filesystem::path& folder) {
+  std::istringstream stream(bytes);
+  refuse_what_assimp_cannot_survive(stream, bytes.size());
+  Assimp::Importer importer;
+  importer.ReadFileFromMemory(bytes.data(), bytes.size(), as_it_is, extension.substr(1).c_str());
+  return scene_of(importer, folder, extension);
+}
+
+bool is_read_by_assimp(const std::string& extension) {
+  const Assimp::Importer importer;
+  return importer.IsExtensionSupported(extension);
 }
 
 }  // namespace alvor

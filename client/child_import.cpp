@@ -84,13 +84,13 @@ void send(Pipe& pipe, const SceneFile& file) {
   send(pipe, Kind::end, "");
 }
 
-[[noreturn]] void run_child(Pipe& pipe, const std::filesystem::path& path, SceneFile (*import)(const std::filesystem::path&)) {
+[[noreturn]] void run_child(Pipe& pipe, const std::function<SceneFile()>& import) {
   const rlimit cpu{most_cpu_seconds, most_cpu_seconds}, core{0, 0};
   setrlimit(RLIMIT_CPU, &cpu);
   setrlimit(RLIMIT_CORE, &core);
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    send(pipe, import(path));
+    send(pipe, import());
   } catch (const std::exception& error) {
     send(pipe, Kind::error, error.what());
   }
@@ -149,16 +149,20 @@ class Child {
 
 }  // namespace
 
-SceneFile import_in_child(const std::filesystem::path& path, SceneFile (*import)(const std::filesystem::path&)) {
+SceneFile import_in_child(const std::function<SceneFile()>& import) {
   Pipe pipe;
   const pid_t process = fork();
   if (process < 0) throw ImportError("file", std::string("cannot be read apart: ") + std::strerror(errno));
-  if (process == 0) run_child(pipe, path, import);
+  if (process == 0) run_child(pipe, import);
   pipe.close_end(1);
   Child child(process);
   if (auto file = receive(pipe)) return *std::move(file);
   pipe.close_end(0);
   throw ImportError("file", end_of(child.wait()));
+}
+
+SceneFile import_in_child(const std::filesystem::path& path, SceneFile (*import)(const std::filesystem::path&)) {
+  return import_in_child([&] { return import(path); });
 }
 
 }  // namespace alvor

@@ -5,7 +5,6 @@
 #include "client/glb_format.h"
 #include "client/import_error.h"
 #include "client/tiny_gltf.h"
-#include "client/whole_file.h"
 
 #include <charconv>
 #include <cstdint>
@@ -162,11 +161,9 @@ void read_images(tinygltf::Model& model, const std::filesystem::path& folder) {
 
 }  // namespace
 
-tinygltf::Model load_gltf(const std::filesystem::path& path) {
-  const std::string content = read_whole_file(path);
+tinygltf::Model load_gltf(std::string_view content, const std::filesystem::path& folder) {
   const Container container = container_of(content);
   json gltf = parse(container.text);
-  const std::filesystem::path folder = path.parent_path();
   Buffers buffers(gltf, container.binary, folder);
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);

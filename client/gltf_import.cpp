@@ -7,6 +7,7 @@
 #include "client/placement.h"
 #include "client/tiny_gltf.h"
 #include "client/unsupported.h"
+#include "client/whole_file.h"
 
 #include <algorithm>
 #include <array>
@@ -249,8 +250,10 @@ class GltfReader {
 
 }  // namespace
 
-SceneFile import_gltf(const std::filesystem::path& path) {
-  const tinygltf::Model model = load_gltf(path);
+SceneFile import_gltf(const std::filesystem::path& path) { return import_gltf(read_whole_file(path), path.parent_path()); }
+
+SceneFile import_gltf(std::string_view bytes, const std::filesystem::path& folder) {
+  const tinygltf::Model model = load_gltf(bytes, folder);
   return GltfReader(model).read();
 }
 

@@ -179,8 +179,12 @@ void refuse_indices_beyond(const Scene& scene) {
 SceneFile import_obj(const std::filesystem::path& path) {
   std::ifstream stream(path);
   if (!stream) throw ImportError("file", "cannot be opened");
+  return import_obj(stream, path.parent_path());
+}
+
+SceneFile import_obj(std::istream& stream, const std::filesystem::path& folder) {
   std::istringstream lines(clean_lines(stream, vertex_lines, ""));
-  MaterialLibrary library(path.parent_path());
+  MaterialLibrary library(folder);
   ObjBuilder builder;
   std::string warning, error;
   if (!tinyobj::LoadObjWithCallback(lines, ObjBuilder::callbacks(), &builder, &library, &warning, &error))
@@ -189,7 +193,7 @@ SceneFile import_obj(const std::filesystem::path& path) {
   SceneFile file{std::move(builder.scene), {}};
   for (const std::string& missing : library.missing())
     file.warnings.push_back("material library '" + missing + "' cannot be read");
-  fill_materials(file, library, path.parent_path());
+  fill_materials(file, library, folder);
   return file;
 }
 

@@ -28,21 +28,21 @@ struct PngWriter {
   }
 };
 
-std::string encode_png(const std::filesystem::path& path, const Image& image) {
+}  // namespace
+
+std::string encode_png(const Image& image, const std::string& name) {
+  assert(image.rgb.size() == std::size_t{3} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   PngWriter writer(image);
   // Not compressible means a few bytes more than the pixels; the macro is libpng's bound for that.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(writer.header);
   std::string bytes(size, '\0');
-  if (!writer.encode(image, bytes.data(), size)) throw FileError(path.string() + ": encode: " + writer.header.message);
+  if (!writer.encode(image, bytes.data(), size)) throw FileError(name + ": encode: " + writer.header.message);
   bytes.resize(size);
   return bytes;
 }
 
-}  // namespace
-
 void write_png(const std::filesystem::path& path, const Image& image) {
-  assert(image.rgb.size() == std::size_t{3} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-  write_whole_file(path, encode_png(path, image));
+  write_whole_file(path, encode_png(image, path.string()));
 }
 
 }  // namespace alvor

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace alvor {
@@ -14,7 +15,10 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-/// The file appears whole or not at all. Throws FileError (client/whole_file.h).
+/// Returns the bytes of a PNG file. Throws FileError (client/whole_file.h) that begins with `name`.
+std::string encode_png(const Image& image, const std::string& name);
+
+/// The file appears whole or not at all. Throws FileError.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace alvor

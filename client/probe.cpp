@@ -136,20 +136,23 @@ std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoi
 }
 
 std::vector<ProbePoint> read_points(const std::filesystem::path& path) {
-  const std::string text = read_whole_file(path);
+  return parse_points(read_whole_file(path), path.string());
+}
+
+std::vector<ProbePoint> parse_points(std::string_view text, const std::string& name) {
   std::vector<ProbePoint> points;
   bool header_may_come = true;
   std::size_t number = 0;
   for (std::size_t start = 0; start < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
-    const std::string_view line = trimmed(std::string_view(text).substr(start, end - start));
+    const std::string_view line = trimmed(text.substr(start, end - start));
     start = end + 1;
     if (line.empty()) continue;
     const bool skip = header_may_come && is_header(line);
     header_may_come = false;
     if (skip) continue;
     const ParsedLine parsed = parse_line(line);
-    if (!parsed.fault.empty()) throw FileError(path.string() + ": line " + std::to_string(number + 1) + ": " + parsed.fault);
+    if (!parsed.fault.empty()) throw FileError(name + ": line " + std::to_string(number + 1) + ": " + parsed.fault);
     points.push_back(parsed.point);
   }
   return points;

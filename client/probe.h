@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace alvor {
@@ -43,6 +44,9 @@ std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const
 
 /// Lines `x,y,z,nx,ny,nz`; a header line and blank lines are skipped. Throws FileError (client/whole_file.h) that names the line.
 std::vector<ProbePoint> read_points(const std::filesystem::path& path);
+
+/// Reads the text of such a file, which errors call `name`.
+std::vector<ProbePoint> parse_points(std::string_view text, const std::string& name);
 
 /// A header and one line per sample: W/m2, metres.
 std::string samples_csv(std::span<const ProbeSample> samples);

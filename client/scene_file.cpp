@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 #include <string_view>
 
 namespace alvor {
@@ -32,6 +33,15 @@ SceneFile import_by_extension(const std::filesystem::path& path) {
   if (extension == ".obj") return import_obj(path);
   if (extension == ".gltf" || extension == ".glb") return import_gltf(path);
   return import_in_child(path, import_by_assimp);
+}
+
+SceneFile import_content(const SceneContent& content) {
+  if (content.bytes.empty()) throw ImportError("file", "is empty");
+  const std::string& extension = content.extension;
+  if (extension == ".gltf" || extension == ".glb") return import_gltf(content.bytes, content.folder);
+  if (extension != ".obj") return import_in_child([&] { return import_by_assimp(content.bytes, extension, content.folder); });
+  std::istringstream stream(content.bytes);
+  return import_obj(stream, content.folder);
 }
 
 /// A band brought into [0, 1). What is not a number stays: it is a fault.
@@ -89,25 +99,42 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-SceneFile import_checked(const std::filesystem::path& path) {
+SceneFile import_file(const std::filesystem::path& path) {
   refuse_unreadable(path);
-  SceneFile file = import_by_extension(path);
+  return import_by_extension(path);
+}
+
+SceneFile checked(SceneFile file) {
   clamp_reflectance(file);
   refuse_faulty(file.scene);
   for (std::string& warning : file.warnings) warning = one_line(warning);
   return file;
 }
 
+/// Returns what `import` returns, checked; its errors leave as SceneFileError that begin with `name`.
+template <class Import>
+SceneFile naming(const std::string& name, Import import) {
+  try {
+    return checked(import());
+  } catch (const ImportError& error) {
+    throw SceneFileError(name + ": " + one_line(error.what()));
+  } catch (const std::exception& error) {  // of the libraries
+    throw SceneFileError(name + ": file: " + one_line(error.what()));
+  }
+}
+
 }  // namespace
 
 SceneFile read_scene_file(const std::filesystem::path& path) {
-  try {
-    return import_checked(path);
-  } catch (const ImportError& error) {
-    throw SceneFileError(path.string() + ": " + one_line(error.what()));
-  } catch (const std::exception& error) {  // of the libraries
-    throw SceneFileError(path.string() + ": file: " + one_line(error.what()));
-  }
+  return naming(path.string(), [&] { return import_file(path); });
+}
+
+SceneFile read_scene_content(const SceneContent& content) {
+  return naming(content.name, [&] { return import_content(content); });
+}
+
+bool is_scene_extension(const std::string& extension) {
+  return extension == ".obj" || extension == ".gltf" || extension == ".glb" || is_read_by_assimp(extension);
 }
 
 }  // namespace alvor

@@ -25,4 +25,19 @@ struct SceneFileError : std::runtime_error {
 /// more is clamped to 0.95 with a warning. The scene has no fault (find_fault). Throws SceneFileError.
 SceneFile read_scene_file(const std::filesystem::path& path);
 
+/// A scene that comes from elsewhere than a file of its own, such as a pipe.
+struct SceneContent {
+  std::string name;  ///< what errors call it
+  std::string bytes;
+  std::string extension;         ///< tells the format, in lower case: ".glb"
+  std::filesystem::path folder;  ///< where the files are that the scene names; empty: the working folder
+};
+
+/// Reads what read_scene_file would read from a file of these bytes. Throws SceneFileError. Requires:
+/// is_scene_extension(content.extension).
+SceneFile read_scene_content(const SceneContent& content);
+
+/// Returns whether scenes are read from files with this extension, in lower case and with its dot.
+bool is_scene_extension(const std::string& extension);
+
 }  // namespace alvor

@@ -15,11 +15,10 @@ struct Format {
   DisplayMesh (*decode)(std::string_view);
 };
 
-Format format_of(const std::filesystem::path& path) {
-  const std::string extension = lower_case_extension(path);
+Format format_of(const std::string& extension, const std::string& name) {
   if (extension == ".glb") return {encode_glb, decode_glb};
   if (extension == ".ply") return {encode_ply, decode_ply};
-  throw SolutionFileError(path.string() + ": name: a solution file ends in .glb or .ply");
+  throw SolutionFileError(name + ": name: a solution file ends in .glb or .ply");
 }
 
 constexpr double largest_coordinate = 1e10;  // metres; scenes end at 1e9
@@ -48,13 +47,19 @@ void check_triangles(const DisplayMesh& mesh) {
         throw SolutionFileError("triangle " + std::to_string(i) + ": there is no vertex " + std::to_string(vertex));
 }
 
+DisplayMesh checked(DisplayMesh mesh) {
+  check_vertices(mesh);
+  check_triangles(mesh);
+  return mesh;
+}
+
 /// Calls `work`; its errors leave as SolutionFileError that begin with the file.
 template <class Work>
-auto naming(const std::filesystem::path& path, Work work) {
+auto naming(const std::string& name, Work work) {
   try {
     return work();
   } catch (const SolutionFileError& error) {
-    throw SolutionFileError(path.string() + ": " + error.what());
+    throw SolutionFileError(name + ": " + error.what());
   } catch (const FileError& error) {
     throw SolutionFileError(error.what());
   }
@@ -63,18 +68,22 @@ auto naming(const std::filesystem::path& path, Work work) {
 }  // namespace
 
 void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh) {
-  const Format format = format_of(path);
-  naming(path, [&] { write_whole_file(path, format.encode(mesh)); });
+  const Format format = format_of(lower_case_extension(path), path.string());
+  naming(path.string(), [&] { write_whole_file(path, format.encode(mesh)); });
+}
+
+std::string encode_solution(const DisplayMesh& mesh, const std::string& extension) {
+  return format_of(extension, extension).encode(mesh);
 }
 
 DisplayMesh read_solution_file(const std::filesystem::path& path) {
-  const Format format = format_of(path);
-  return naming(path, [&] {
-    DisplayMesh mesh = format.decode(read_whole_file(path));
-    check_vertices(mesh);
-    check_triangles(mesh);
-    return mesh;
-  });
+  const Format format = format_of(lower_case_extension(path), path.string());
+  return naming(path.string(), [&] { return checked(format.decode(read_whole_file(path))); });
+}
+
+DisplayMesh decode_solution(std::string_view bytes, const std::string& extension, const std::string& name) {
+  const Format format = format_of(extension, name);
+  return naming(name, [&] { return checked(format.decode(bytes)); });
 }
 
 }  // namespace alvor

@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace alvor {
 
@@ -20,5 +22,11 @@ void write_solution_file(const std::filesystem::path& path, const DisplayMesh& m
 
 /// Reads what write_solution_file wrote. Throws SolutionFileError, also for any other GLB or PLY.
 DisplayMesh read_solution_file(const std::filesystem::path& path);
+
+/// Returns the bytes that write_solution_file writes to a file of this extension: ".glb" or ".ply". Throws SolutionFileError.
+std::string encode_solution(const DisplayMesh& mesh, const std::string& extension);
+
+/// Reads the bytes of such a file. Throws SolutionFileError that begins with `name`.
+DisplayMesh decode_solution(std::string_view bytes, const std::string& extension, const std::string& name);
 
 }  // namespace alvor
