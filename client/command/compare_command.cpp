@@ -7,14 +7,15 @@
 #include "client/command/display.h"
 #include "client/command/failure.h"
 #include "client/command/files.h"
+#include "client/command/input_file.h"
 #include "client/command/interrupt.h"
+#include "client/command/notes.h"
 #include "client/command/numbers.h"
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
 #include "client/command/table.h"
 #include "client/command/up_option.h"
 #include "client/render.h"
-#include "client/scene_file.h"
 #include "client/whole_file.h"
 
 #include <cmath>
@@ -29,17 +30,11 @@ constexpr PictureSize picture_size{640, 480};
 
 struct CompareCommand {
   std::filesystem::path scene;
+  std::string format;  ///< of a scene from stdin
   std::filesystem::path folder;
   std::string up;  ///< "y" or "z"; empty: as the file says
   CompareOptions options;
 };
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Failure(ExitStatus::usage, "--output " + folder.string() + ": " + error.message());
-  require_writable(folder / "compare.csv", "--output");
-}
 
 std::string curve_table(const Comparison& comparison) {
   std::string table = "strategy,steps,cpu_s,rms_error\n";
@@ -87,25 +82,26 @@ Comparison compare(const CompareCommand& command, const BaseMesh& mesh) {
   Comparison comparison = compare_strategies(mesh, command.options, interrupt.token());
   if (interrupt.token().stop_requested()) throw Failure(ExitStatus::failed, "the comparison was cancelled");
   if (comparison.courses.empty())
-    throw Failure(ExitStatus::bad_scene, command.scene.string() + ": nothing emits light, so there is nothing to compare");
+    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": nothing emits light, so there is nothing to compare");
   return comparison;
 }
 
 void run_compare(const CompareCommand& command) {
-  make_folder(command.folder);
-  SceneFile file = read_scene_file(command.scene);
+  require_inputs({{InputKind::scene, command.scene}}, command.format);
+  make_folder(command.folder, "compare.csv", "--output");
+  SceneFile file = read_scene(command.scene, command.format);
   take_up(command.up, file.scene.up);
   warn(file.warnings);
   const BaseMesh mesh(file.scene);
-  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, command.scene.string() + ": all faces are degenerate");
+  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": all faces are degenerate");
   const Comparison comparison = compare(command, mesh);
   write_whole_file(command.folder / "compare.csv", curve_table(comparison));
   draw(command, mesh, comparison);
-  std::cout << summary_of(command, comparison);
+  notes() << summary_of(command, comparison);
   if (!draw_compare_plots(command.folder))
     std::cerr << "plots were skipped: gnuplot was not found or could not draw; see "
               << (command.folder / "compare.gnuplot").string() << '\n';
-  std::cout << "wrote " << command.folder.string() << '\n';
+  notes() << "wrote " << command.folder.string() << '\n';
 }
 
 }  // namespace
@@ -113,7 +109,8 @@ void run_compare(const CompareCommand& command) {
 void add_compare_command(CLI::App& app) {
   const auto options = std::make_shared<CompareCommand>();
   CLI::App& command = *app.add_subcommand("compare", "Compare the strategies that distribute light");
-  command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file")->required()->type_name("SCENE");
+  command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
+  add_format_option(command, options->format);
   command.add_option("-o,--output", options->folder, "Table, plots and pictures go here")->required()->type_name("DIR");
   add_up_option(command, options->up);
   command.add_option("--steps", options->options.steps, "Pictures are of this many patches shot or gathered (100)")

@@ -3,9 +3,10 @@
 #include "client/command/absorption_option.h"
 #include "client/command/commands.h"
 #include "client/command/failure.h"
+#include "client/command/files.h"
+#include "client/command/input_file.h"
 #include "client/command/outputs.h"
 #include "client/command/plan_text.h"
-#include "client/scene_file.h"
 #include "radiosity/form_factor_checks.h"
 #include "radiosity/plan.h"
 #include "radiosity/solver.h"
@@ -22,6 +23,7 @@ namespace {
 
 struct ExplainCommand {
   std::filesystem::path scene;
+  std::string format;      ///< of a scene from stdin
   std::string absorption;  ///< three numbers; empty: none
   int max_depth = SolveOptions().max_depth;
   bool json = false;
@@ -32,7 +34,7 @@ struct ExplainCommand {
 
 void explain_plan(const ExplainCommand& command, const Scene& scene) {
   const BaseMesh mesh(scene);
-  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, command.scene.string() + ": no face has any area");
+  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": no face has any area");
   const Plan plan(mesh, {.max_depth = command.max_depth});
   if (command.json) std::cout << json_of(plan.features()).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   else std::cout << table_of(plan.features());
@@ -51,7 +53,8 @@ void explain_form_factors(const ExplainCommand& command, const Scene& scene) {
 }
 
 void run_explain(const ExplainCommand& command) {
-  SceneFile file = read_scene_file(command.scene);
+  require_inputs({{InputKind::scene, command.scene}}, command.format);
+  SceneFile file = read_scene(command.scene, command.format);
   warn(file.warnings);
   take_absorption(command.absorption, file.scene);
   if (command.form_factors) explain_form_factors(command, file.scene);
@@ -63,7 +66,8 @@ void run_explain(const ExplainCommand& command) {
 void add_explain_command(CLI::App& app) {
   const auto options = std::make_shared<ExplainCommand>();
   CLI::App& command = *app.add_subcommand("explain", "What a solve of the scene needs, what not, and why");
-  command.add_option("scene", options->scene, "A scene file")->required()->type_name("SCENE");
+  command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
+  add_format_option(command, options->format);
   command.add_flag("--json", options->json, "Print the plan as a JSON array");
   command.add_option("--max-depth", options->max_depth, "Levels of subdivision that a solve may use (10)")
       ->check(CLI::Range(0, PatchId::max_level));

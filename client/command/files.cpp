@@ -1,23 +1,14 @@
 #include "client/command/files.h"
 
 #include "client/command/failure.h"
-#include "client/solution_file.h"
 
 #include <unistd.h>
 
 namespace alvor {
 
-namespace {
+bool is_stream(const std::filesystem::path& path) { return path == "-"; }
 
-DisplayMesh read_any_solution(const std::filesystem::path& path) {
-  try {
-    return read_solution_file(path);
-  } catch (const SolutionFileError& error) {
-    throw Failure(ExitStatus::bad_scene, error.what());
-  }
-}
-
-}  // namespace
+std::string name_of(const std::filesystem::path& path) { return is_stream(path) ? "stdin" : path.string(); }
 
 void require_writable(const std::filesystem::path& path, const std::string& option) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -28,10 +19,12 @@ void require_writable(const std::filesystem::path& path, const std::string& opti
     throw Failure(ExitStatus::usage, at + "the folder " + folder.string() + " cannot be written to");
 }
 
-DisplayMesh read_solution(const std::filesystem::path& path) {
-  DisplayMesh mesh = read_any_solution(path);
-  if (mesh.triangles.empty()) throw Failure(ExitStatus::bad_scene, path.string() + ": holds no surface");
-  return mesh;
+void make_folder(const std::filesystem::path& folder, const std::string& example, const std::string& option) {
+  if (is_stream(folder)) throw Failure(ExitStatus::usage, option + " -: many files go there, which stdout cannot carry");
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Failure(ExitStatus::usage, option + " " + folder.string() + ": " + error.message());
+  require_writable(folder / example, option);
 }
 
 }  // namespace alvor

@@ -2,9 +2,10 @@
 
 #include "client/command/commands.h"
 #include "client/command/failure.h"
+#include "client/command/files.h"
+#include "client/command/input_file.h"
 #include "client/command/numbers.h"
 #include "client/command/outputs.h"
-#include "client/scene_file.h"
 #include "radiosity/face_form_factor.h"
 
 #include <cstdio>
@@ -18,6 +19,7 @@ namespace {
 
 struct FormFactorCommand {
   std::filesystem::path scene;
+  std::string format;  ///< of a scene from stdin
   std::uint32_t from = 0, to = 0;
   bool json = false;
   FormFactorOptions options;
@@ -47,11 +49,12 @@ void require_face(const FormFactorCommand& command, const Scene& scene, const Fa
     throw Failure(ExitStatus::usage, "face " + std::to_string(face) + ": the scene has " + std::to_string(scene.faces.size()) +
                                          " faces, numbered from 0");
   if (form_factors.faces().pieces(face).empty())
-    throw Failure(ExitStatus::bad_scene, command.scene.string() + ": face " + std::to_string(face) + ": has no area");
+    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": face " + std::to_string(face) + ": has no area");
 }
 
 void run_form_factor(const FormFactorCommand& command) {
-  const SceneFile file = read_scene_file(command.scene);
+  require_inputs({{InputKind::scene, command.scene}}, command.format);
+  const SceneFile file = read_scene(command.scene, command.format);
   warn(file.warnings);
   const FaceFormFactors form_factors(file.scene, command.options);
   for (const std::uint32_t face : {command.from, command.to}) require_face(command, file.scene, form_factors, face);
@@ -64,7 +67,8 @@ void run_form_factor(const FormFactorCommand& command) {
 void add_form_factor_command(CLI::App& app) {
   const auto options = std::make_shared<FormFactorCommand>();
   CLI::App& command = *app.add_subcommand("form-factor", "The form factor between two faces, by every method");
-  command.add_option("scene", options->scene, "A scene file")->required()->type_name("SCENE");
+  command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
+  add_format_option(command, options->format);
   command.add_option("from", options->from, "The face that sends, in file order from 0")->required()->type_name("A");
   command.add_option("to", options->to, "The face that receives")->required()->type_name("B");
   command.add_flag("--json", options->json, "Print a JSON list instead of a table");

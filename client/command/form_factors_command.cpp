@@ -3,12 +3,13 @@
 #include "client/command/commands.h"
 #include "client/command/failure.h"
 #include "client/command/files.h"
+#include "client/command/input_file.h"
+#include "client/command/notes.h"
 #include "client/command/numbers.h"
 #include "client/command/option_checks.h"
+#include "client/command/output_file.h"
 #include "client/command/outputs.h"
 #include "client/command/status_line.h"
-#include "client/scene_file.h"
-#include "client/whole_file.h"
 #include "radiosity/form_factor_matrix.h"
 
 #include <algorithm>
@@ -24,7 +25,8 @@ namespace {
 
 struct FormFactorsCommand {
   std::filesystem::path scene;
-  std::filesystem::path output;
+  std::string format;  ///< of a scene from stdin
+  OutputFile output;
   std::filesystem::path areas;  ///< empty: not written
   MatrixOptions options;
 };
@@ -60,11 +62,11 @@ struct Summary {
   }
 
   void print(double spent_s) const {
-    std::cout << rows << " faces, " << entries << " form factors, " << seconds(spent_s) << '\n'
-              << "row sums from " << shortest(lowest) << " to " << shortest(highest) << ", mean "
-              << shortest(sum_of_sums / static_cast<double>(std::max<std::size_t>(1, rows))) << '\n'
-              << "largest error bound " << shortest(largest_bound) << '\n';
-    if (blind > 0) std::cout << blind << " faces see no other\n";
+    notes() << rows << " faces, " << entries << " form factors, " << seconds(spent_s) << '\n'
+            << "row sums from " << shortest(lowest) << " to " << shortest(highest) << ", mean "
+            << shortest(sum_of_sums / static_cast<double>(std::max<std::size_t>(1, rows))) << '\n'
+            << "largest error bound " << shortest(largest_bound) << '\n';
+    if (blind > 0) notes() << blind << " faces see no other\n";
   }
 };
 
@@ -81,10 +83,14 @@ std::string areas_csv(const FacePolygons& faces) {
   return text;
 }
 
-/// Written beside its name and moved there when complete, for it may be larger than memory.
+/// Written beside its name and moved there when complete, for it may be larger than memory; or to stdout.
 class RowsFile {
  public:
-  explicit RowsFile(const std::filesystem::path& path) : path_(path), part_(path.string() + ".part"), out_(part_) {
+  explicit RowsFile(const std::filesystem::path& path)
+      : path_(path),
+        part_(is_stream(path) ? "" : path.string() + ".part"),
+        file_(part_),
+        out_(part_.empty() ? std::cout : file_) {
     out_ << "i,j,F,error_bound,area_i\n";
   }
   ~RowsFile() {
@@ -95,17 +101,20 @@ class RowsFile {
     text_.clear();
     append_row(text_, from, area, row);
     out_ << text_;
+    if (part_.empty()) require_stdout_taken();
     if (!out_) throw Failure(ExitStatus::failed, path_.string() + ": could not be written");
   }
   void finish() {
-    out_.close();
+    if (part_.empty()) return;
+    file_.close();
     if (!out_) throw Failure(ExitStatus::failed, path_.string() + ": could not be written");
     std::filesystem::rename(part_, path_);
   }
 
  private:
   std::filesystem::path path_, part_;
-  std::ofstream out_;
+  std::ofstream file_;
+  std::ostream& out_;
   std::string text_;
 };
 
@@ -115,15 +124,17 @@ void show_progress(StatusLine& line, const Summary& summary, const FacePolygons&
 }
 
 void run_form_factors(const FormFactorsCommand& command) {
-  require_writable(command.output, "--output");
-  if (!command.areas.empty()) require_writable(command.areas, "--areas");
-  const SceneFile file = read_scene_file(command.scene);
+  require_inputs({{InputKind::scene, command.scene}}, command.format);
+  require_output(command.output, table_kind, "--output");
+  require_output({command.areas, {}}, table_kind, "--areas");
+  reserve_stdout_for({command.output.path, command.areas});
+  const SceneFile file = read_scene(command.scene, command.format);
   warn(file.warnings);
   const auto start = std::chrono::steady_clock::now();
   const BaseMesh mesh(file.scene, {.join_triangles = false});
   const FacePolygons faces(file.scene, mesh);
   const Blockers blockers(mesh);
-  RowsFile out(command.output);
+  RowsFile out(command.output.path);
   Summary summary{.accuracy = command.options.accuracy};
   {
     StatusLine line;
@@ -134,10 +145,10 @@ void run_form_factors(const FormFactorsCommand& command) {
     });
   }
   out.finish();
-  if (!command.areas.empty()) write_whole_file(command.areas, areas_csv(faces));
+  if (!command.areas.empty()) write_output(command.areas, areas_csv(faces));
   warn(summary.warnings());
   summary.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  std::cout << "wrote " << command.output.string() << '\n';
+  if (!is_stream(command.output.path)) notes() << "wrote " << command.output.path.string() << '\n';
 }
 
 }  // namespace
@@ -145,8 +156,9 @@ void run_form_factors(const FormFactorsCommand& command) {
 void add_form_factors_command(CLI::App& app) {
   const auto options = std::make_shared<FormFactorsCommand>();
   CLI::App& command = *app.add_subcommand("form-factors", "The form factors between all faces");
-  command.add_option("scene", options->scene, "A scene file")->required()->type_name("SCENE");
-  command.add_option("-o,--output", options->output, "Lines i,j,F,error_bound,area_i; faces in file order from 0")
+  command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
+  add_format_option(command, options->format);
+  add_output_option(command, options->output, table_kind, "Lines i,j,F,error_bound,area_i; faces in file order from 0")
       ->required()
       ->type_name("F.csv");
   command.add_option("--areas", options->areas, "Also write lines i,area, one per face of the file")->type_name("A.csv");

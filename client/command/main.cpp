@@ -2,18 +2,24 @@
 
 #include "client/command/commands.h"
 #include "client/command/failure.h"
+#include "client/command/notes.h"
+#include "client/command/usage_message.h"
 #include "client/scene_file.h"
 #include "client/solution_file.h"
 
 #include <google/protobuf/stubs/common.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 
 namespace alvor {
 
 namespace {
+
+// Who closes the pipe that we write to, as `head` does, gets an error of ours and not a signal.
+void outlive_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
 // stderr carries only our own lines. GRPC_VERBOSITY in the environment still works for those who look for a fault.
 void silence_libraries() {
@@ -35,6 +41,8 @@ void add_commands(CLI::App& app) {
   add_form_factors_command(app);
   add_scenes_command(app);
   add_solves_command(app);
+  add_quiet_option(app);
+  app.failure_message(usage_message);
 }
 
 ExitStatus say(ExitStatus status, std::string line) {
@@ -43,9 +51,14 @@ ExitStatus say(ExitStatus status, std::string line) {
   return status;
 }
 
-ExitStatus say_usage(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() != 0) return say(ExitStatus::usage, std::string(error.what()) + " (see --help)");
-  app.exit(error);  // prints the help or the version that was asked for
+/// Runs the command that was chosen, or prints the help, the version, or what is wrong with the command line.
+ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (app.exit(error) != 0) return ExitStatus::usage;
+  }
+  require_stdout_taken();
   return ExitStatus::done;
 }
 
@@ -53,10 +66,7 @@ ExitStatus run(int argc, char** argv) {
   CLI::App app("Radiosity of diffuse scenes, meshed where the light changes", "alvor");
   try {
     add_commands(app);
-    app.parse(argc, argv);
-    return ExitStatus::done;
-  } catch (const CLI::ParseError& error) {
-    return say_usage(app, error);
+    return parse_and_run(app, argc, argv);
   } catch (const Failure& failure) {
     return say(failure.status, failure.what());
   } catch (const RpcError& error) {
@@ -73,6 +83,7 @@ ExitStatus run(int argc, char** argv) {
 }  // namespace alvor
 
 int main(int argc, char** argv) {
+  alvor::outlive_closed_pipes();
   alvor::silence_libraries();
   return static_cast<int>(alvor::run(argc, argv));
 }

@@ -3,9 +3,9 @@
 #include "client/command/display.h"
 #include "client/command/files.h"
 #include "client/command/frames.h"
+#include "client/command/notes.h"
 #include "client/command/report.h"
 #include "client/solution_file.h"
-#include "client/whole_file.h"
 
 #include <iostream>
 
@@ -13,34 +13,26 @@ namespace alvor {
 
 namespace {
 
-void require_solution_path(const std::filesystem::path& path) {
-  if (path.extension() != ".glb" && path.extension() != ".ply")
-    throw Failure(ExitStatus::usage, "--output " + path.string() + ": a solution file ends in .glb or .ply");
-  require_writable(path, "--output");
-}
-
-void make_frames_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Failure(ExitStatus::usage, "--frames " + folder.string() + ": " + error.message());
-  require_writable(folder / "frame_0000.png", "--frames");
+void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
+  if (is_stream(output.path)) write_output(output.path, encode_solution(mesh, extension_of(output, solution_kind)));
+  else write_solution_file(output.path, mesh);
 }
 
 // Nothing was published if the solve failed at once: then there is nothing to draw either.
 void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
-  if (followed.mirror.steps().empty() || (options.solution.empty() && options.frames.empty())) return;
+  if (followed.mirror.steps().empty() || (options.solution.path.empty() && options.frames.empty())) return;
   const BaseMesh mesh(scene);
-  if (!options.solution.empty()) write_solution_file(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
+  if (!options.solution.path.empty()) write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
   if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
 }
 
 void print_written(const std::filesystem::path& path) {
-  if (!path.empty()) std::cout << "wrote " << path.string() << '\n';
+  if (!path.empty() && !is_stream(path)) notes() << "wrote " << path.string() << '\n';
 }
 
 void print_for_people(const OutputOptions& options, const Followed& followed) {
-  std::cout << summary(followed);
-  for (const auto& path : {options.solution, options.report, options.frames}) print_written(path);
+  notes() << summary(followed);
+  for (const auto& path : {options.solution.path, options.report, options.frames}) print_written(path);
 }
 
 std::string unfinished(const v1::Solve& solve) {
@@ -54,7 +46,7 @@ std::string unfinished(const v1::Solve& solve) {
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputOptions& options) {
-  command.add_option("-o,--output", options.solution, "Write the solution: .glb or .ply")->type_name("SOLUTION");
+  add_output_option(command, options.solution, solution_kind, "Write the solution: .glb or .ply")->type_name("SOLUTION");
   command.add_option("--report", options.report, "Write one CSV line per published step")->type_name("R.csv");
   command.add_option("--frames", options.frames, "Draw the growing solution as frame_0000.png ... in this folder")
       ->type_name("DIR");
@@ -63,9 +55,10 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
 }
 
 void prepare_outputs(const OutputOptions& options) {
-  if (!options.solution.empty()) require_solution_path(options.solution);
-  if (!options.report.empty()) require_writable(options.report, "--report");
-  if (!options.frames.empty()) make_frames_folder(options.frames);
+  require_output(options.solution, solution_kind, "--output");
+  require_output({options.report, {}}, table_kind, "--report");
+  reserve_stdout_for({options.solution.path, options.report});
+  if (!options.frames.empty()) make_folder(options.frames, "frame_0000.png", "--frames");
 }
 
 void warn(std::span<const std::string> warnings) {
@@ -73,9 +66,9 @@ void warn(std::span<const std::string> warnings) {
 }
 
 void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
-  if (!options.report.empty()) write_whole_file(options.report, step_table(followed.mirror.steps()));
+  if (!options.report.empty()) write_output(options.report, step_table(followed.mirror.steps()));
   write_pictures(options, scene, followed);
-  if (options.json) std::cout << outcome_json(followed, warnings);
+  if (options.json) results() << outcome_json(followed, warnings);
   else print_for_people(options, followed);
   if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));
 }

@@ -3,6 +3,7 @@
 
 #include "client/command/failure.h"
 #include "client/command/follow.h"
+#include "client/command/output_file.h"
 #include "meshing/scene.h"
 
 #include <CLI/CLI.hpp>
@@ -15,7 +16,7 @@ namespace alvor {
 
 /// Empty paths were not asked for.
 struct OutputOptions {
-  std::filesystem::path solution;  ///< .glb or .ply
+  OutputFile solution;
   std::filesystem::path report;
   std::filesystem::path frames;  ///< a folder
   bool no_ambient = false;
@@ -24,13 +25,14 @@ struct OutputOptions {
 
 void add_output_options(CLI::App& command, OutputOptions& options);
 
-/// Makes the folder for frames. Throws Failure (usage) if an output could not be written: better now than after a long solve.
+/// Makes the folder for frames, and leaves stdout to a file that goes there. Throws Failure (usage) if an output could not be
+/// written: better now than after a long solve.
 void prepare_outputs(const OutputOptions& options);
 
 /// Prints each to stderr.
 void warn(std::span<const std::string> warnings);
 
-/// Writes the files, then prints the JSON object or a summary for people to stdout. Throws FileError or SolutionFileError if
+/// Writes the files, then prints the JSON object or a summary for people. Throws FileError or SolutionFileError if
 /// something could not be written, and Failure (failed) after all that if the solve did not end well.
 void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings);
 

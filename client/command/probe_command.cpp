@@ -1,15 +1,13 @@
 // alvor probe SOLUTION: irradiance and radiosity at given points.
 
 #include "client/command/commands.h"
-#include "client/command/failure.h"
-#include "client/command/files.h"
+#include "client/command/input_file.h"
+#include "client/command/output_file.h"
 #include "client/command/outputs.h"
 #include "client/probe.h"
-#include "client/whole_file.h"
 
 #include <algorithm>
 #include <array>
-#include <iostream>
 #include <memory>
 
 namespace alvor {
@@ -19,16 +17,9 @@ namespace {
 struct ProbeCommand {
   std::filesystem::path solution;
   std::filesystem::path points;
-  std::filesystem::path output;  ///< empty: stdout
+  OutputFile output;   ///< not asked for: stdout
+  std::string format;  ///< of a solution from stdin
 };
-
-std::vector<ProbePoint> read_asked_points(const std::filesystem::path& path) {
-  try {
-    return read_points(path);
-  } catch (const FileError& error) {
-    throw Failure(ExitStatus::bad_scene, error.what());
-  }
-}
 
 void warn_of_enclosed(std::span<const ProbeSample> samples) {
   const auto enclosed = std::ranges::count(samples, ProbePlace::enclosed, &ProbeSample::place);
@@ -41,12 +32,12 @@ void warn_of_enclosed(std::span<const ProbeSample> samples) {
 }
 
 void run_probe(const ProbeCommand& command) {
-  if (!command.output.empty()) require_writable(command.output, "--output");
+  require_inputs({{InputKind::solution, command.solution}, {InputKind::points, command.points}}, command.format);
+  require_output(command.output, table_kind, "--output");
   const std::vector<ProbePoint> points = read_asked_points(command.points);
-  const std::vector<ProbeSample> samples = probe(read_solution(command.solution), points);
+  const std::vector<ProbeSample> samples = probe(read_solution(command.solution, command.format), points);
   warn_of_enclosed(samples);
-  if (command.output.empty()) std::cout << samples_csv(samples);
-  else write_whole_file(command.output, samples_csv(samples));
+  write_output(command.output.path.empty() ? "-" : command.output.path, samples_csv(samples));
 }
 
 }  // namespace
@@ -54,9 +45,10 @@ void run_probe(const ProbeCommand& command) {
 void add_probe_command(CLI::App& app) {
   const auto options = std::make_shared<ProbeCommand>();
   CLI::App& command = *app.add_subcommand("probe", "Read a solution at points");
-  command.add_option("solution", options->solution, "What solve wrote")->required()->type_name("SOLUTION");
-  command.add_option("--points", options->points, "Lines x,y,z,nx,ny,nz; metres")->required()->type_name("P.csv");
-  command.add_option("-o,--output", options->output, "Write here instead of to stdout")->type_name("OUT.csv");
+  command.add_option("solution", options->solution, "What solve wrote; - is stdin")->required()->type_name("SOLUTION");
+  add_format_option(command, options->format);
+  command.add_option("--points", options->points, "Lines x,y,z,nx,ny,nz; metres; - is stdin")->required()->type_name("P.csv");
+  add_output_option(command, options->output, table_kind, "Write here instead of to stdout: .csv or .txt")->type_name("OUT.csv");
   command.callback([options] { run_probe(*options); });
 }
 

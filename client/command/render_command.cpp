@@ -4,8 +4,9 @@
 #include "client/command/commands.h"
 #include "client/command/failure.h"
 #include "client/command/false_colour_options.h"
-#include "client/command/files.h"
+#include "client/command/input_file.h"
 #include "client/command/option_checks.h"
+#include "client/command/output_file.h"
 #include "client/command/outputs.h"
 #include "client/command/served_solution.h"
 #include "client/command/solve_name.h"
@@ -26,7 +27,8 @@ struct RenderCommand {
   std::string solution;
   ServerChoice server;  ///< none: `solution` is a file
   bool ambient = false;
-  std::filesystem::path output;
+  OutputFile output;
+  std::string format;  ///< of a solution from stdin
   PictureSize size;
   CameraOptions camera;
   FalseColourOptions false_colour;
@@ -34,16 +36,11 @@ struct RenderCommand {
   bool wireframe = false;
 };
 
-void require_picture_path(const std::filesystem::path& path) {
-  if (path.extension() != ".png") throw Failure(ExitStatus::usage, "--output " + path.string() + ": a picture ends in .png");
-  require_writable(path, "--output");
-}
-
 DisplayMesh read_from_anywhere(const RenderCommand& command) {
   if (command.server.is_given()) return read_served_solution({command.server, command.solution, command.ambient});
   if (is_solve_name(command.solution) && !std::filesystem::exists(command.solution))
     throw Failure(ExitStatus::usage, command.solution + " is the name of a solve: where is it? Add --server HOST:PORT");
-  return read_solution(command.solution);
+  return read_solution(command.solution, command.format);
 }
 
 std::string place_text(Vec3 p) {
@@ -64,7 +61,9 @@ void warn_of_black_view(const DisplayMesh& mesh, const Camera& camera) {
 }
 
 void run_render(const RenderCommand& command) {
-  require_picture_path(command.output);
+  require_inputs({{InputKind::solution, command.solution}}, command.format);
+  require_output(command.output, picture_kind, "--output");
+  reserve_stdout_for({command.output.path});
   RenderOptions options;
   options.false_colour = false_colour_of(command.false_colour, command.size);
   options.wireframe = command.wireframe;
@@ -73,19 +72,20 @@ void run_render(const RenderCommand& command) {
   options.camera = camera_of(command.camera, mesh, view_size(command.size, options.false_colour));
   warn_of_black_view(mesh, *options.camera);
   if (!options.false_colour) options.exposure = automatic_exposure(mesh, *options.camera) * std::exp2(command.exposure_stops);
-  write_png(command.output, render(mesh, options));
+  write_picture(command.output.path, render(mesh, options));
 }
 
 void add_source(CLI::App& command, RenderCommand& options) {
-  command.add_option("solution", options.solution, "What solve wrote, or scenes/SCENE/solves/SOLVE on a server")
+  command.add_option("solution", options.solution, "What solve wrote, or scenes/SCENE/solves/SOLVE on a server; - is stdin")
       ->required()
       ->type_name("SOLUTION");
+  add_format_option(command, options.format);
   CLI::Option* server = &add_server_option(command, options.server, "Where the solve is: draw its newest state");
   command.add_flag("--ambient", options.ambient, "Add an estimate of the light still to come; for display only")->needs(server);
 }
 
 void add_picture(CLI::App& command, RenderCommand& options) {
-  command.add_option("-o,--output", options.output, "The picture")->required()->type_name("IMAGE.png");
+  add_output_option(command, options.output, picture_kind, "The picture")->required()->type_name("IMAGE.png");
   command.add_option("--width", options.size.width, "Pixels (1024)")->check(CLI::Range(1, 16384));
   command.add_option("--height", options.size.height, "Pixels (768)")->check(CLI::Range(1, 16384));
   CLI::Option* exposure = command.add_option("--exposure", options.exposure_stops, "Stops brighter than automatic");

@@ -3,6 +3,7 @@
 #include "client/command/commands.h"
 #include "client/command/connection.h"
 #include "client/command/interrupt.h"
+#include "client/command/notes.h"
 #include "client/command/numbers.h"
 #include "client/command/plan_text.h"
 #include "client/command/table.h"
@@ -121,7 +122,7 @@ void watch(Client& client, List list, const ListOptions& options) {
     const auto resources = list(client, options);
     if (isatty(STDOUT_FILENO)) std::cout << "\033[H\033[2J";
     print(resources, options);
-    std::cout << std::flush;
+    require_stdout_taken();
     for (int tenth = 0; tenth < 10 && !stop.stop_requested(); ++tenth)
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }

@@ -4,14 +4,15 @@
 #include "client/command/commands.h"
 #include "client/command/connection.h"
 #include "client/command/failure.h"
+#include "client/command/files.h"
+#include "client/command/input_file.h"
 #include "client/command/interrupt.h"
+#include "client/command/notes.h"
 #include "client/command/option_checks.h"
 #include "client/command/outputs.h"
 #include "client/command/up_option.h"
-#include "client/scene_file.h"
 #include "proto/codec.h"
 
-#include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,6 +41,7 @@ constexpr double pace_of_frames_s = 0.04;
 /// What is not set is left to the server.
 struct SolveCommand {
   std::filesystem::path scene;
+  std::string format;  ///< of a scene from stdin
   ServerChoice server;
   OutputOptions outputs;
   std::optional<double> tolerance;
@@ -76,10 +78,10 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
 // What the server refuses of a scene, the reader of the file must see as a fault of that file.
 v1::Scene submit(Client& client, const Scene& scene, const std::filesystem::path& path) {
   try {
-    return client.create_scene(scene, path.filename().string());
+    return client.create_scene(scene, std::filesystem::path(name_of(path)).filename().string());
   } catch (const RpcError& error) {
     if (error.code != grpc::StatusCode::INVALID_ARGUMENT) throw;
-    throw SceneFileError(path.string() + ": " + reason_of(error));
+    throw SceneFileError(name_of(path) + ": " + reason_of(error));
   }
 }
 
@@ -97,13 +99,14 @@ Followed solve_and_follow(const SolveCommand& command, const SceneFile& file, st
   warn(warnings);
   const FollowOptions options{std::chrono::steady_clock::now(), !command.outputs.frames.empty()};
   const v1::Solve solve = connection.client().create_solve(scene.name(), spec_of(command));
-  if (connection.remote()) std::cerr << solve.name() << '\n';
+  if (connection.remote()) progress() << solve.name() << '\n';
   return follow_own(connection.client(), solve, options, interrupt.token());
 }
 
 void run_solve(const SolveCommand& command) {
+  require_inputs({{InputKind::scene, command.scene}}, command.format);
   prepare_outputs(command.outputs);
-  SceneFile file = read_scene_file(command.scene);
+  SceneFile file = read_scene(command.scene, command.format);
   take_absorption(command.absorption, file.scene);
   take_up(command.up, file.scene.up);
   std::vector<std::string> warnings;
@@ -139,7 +142,8 @@ void add_method(CLI::App& command, SolveCommand& options) {
 void add_solve_command(CLI::App& app) {
   const auto options = std::make_shared<SolveCommand>();
   CLI::App& command = *app.add_subcommand("solve", "Solve a scene");
-  command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file")->required()->type_name("SCENE");
+  command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
+  add_format_option(command, options->format);
   add_server_option(command, options->server, "Solve there instead of in this process");
   add_output_options(command, options->outputs);
   add_up_option(command, options->up);

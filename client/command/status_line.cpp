@@ -1,7 +1,8 @@
 #include "client/command/status_line.h"
 
+#include "client/command/notes.h"
+
 #include <cmath>
-#include <iostream>
 
 #include <unistd.h>
 
@@ -10,7 +11,7 @@ namespace alvor {
 StatusLine::StatusLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 StatusLine::~StatusLine() {
-  if (terminal_ && shown_) std::cerr << '\n';
+  if (terminal_ && shown_) progress() << '\n';
 }
 
 bool StatusLine::due() const {
@@ -21,7 +22,7 @@ bool StatusLine::due() const {
 void StatusLine::show(const std::string& text) {
   shown_ = Clock::now();
   constexpr const char* erase_rest = "\x1b[K";
-  std::cerr << (terminal_ ? "\r" + text + erase_rest : text + "\n") << std::flush;
+  progress() << (terminal_ ? "\r" + text + erase_rest : text + "\n") << std::flush;
 }
 
 std::string progress_bar(double share) {

@@ -7,7 +7,8 @@
 
 namespace alvor {
 
-/// On a terminal one line, redrawn at most ten times a second; in a pipe plain lines, at most one a second.
+/// Nothing with --quiet. Else on a terminal one line, redrawn at most ten times a second; in a pipe plain lines, at most one a
+/// second.
 class StatusLine {
  public:
   StatusLine();

@@ -4,19 +4,19 @@
 #include "client/command/commands.h"
 #include "client/command/failure.h"
 #include "client/command/files.h"
+#include "client/command/input_file.h"
+#include "client/command/notes.h"
 #include "client/command/numbers.h"
 #include "client/command/option_checks.h"
+#include "client/command/output_file.h"
 #include "client/command/outputs.h"
 #include "client/command/status_line.h"
 #include "client/command/up_option.h"
 #include "client/command/verify_report.h"
-#include "client/scene_file.h"
 #include "client/verify/error_picture.h"
-#include "client/whole_file.h"
 
 #include <chrono>
 #include <ctime>
-#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -26,6 +26,7 @@ namespace {
 
 struct VerifyCommand {
   std::filesystem::path scene, solution;
+  std::string format;  ///< of the one that comes from stdin
   VerifyOptions options;
   std::string absorption;  ///< three numbers; empty: none
   std::string up;          ///< "y" or "z"; empty: as the solution says
@@ -43,7 +44,7 @@ Verification verify_with_progress(const VerifyCommand& command, const Scene& sce
   try {
     return verify(scene, solution, options);
   } catch (const MismatchError& error) {
-    throw Failure(ExitStatus::bad_scene, command.solution.string() + ": " + error.what());
+    throw Failure(ExitStatus::bad_scene, name_of(command.solution) + ": " + error.what());
   }
 }
 
@@ -63,25 +64,24 @@ void require_small_error(const VerifyCommand& command, double nrmse) {
 }
 
 void require_outputs(const VerifyCommand& command) {
-  if (!command.csv.empty()) require_writable(command.csv, "--csv");
-  if (command.picture.empty()) return;
-  if (command.picture.extension() != ".png")
-    throw Failure(ExitStatus::usage, "--picture " + command.picture.string() + ": a picture ends in .png");
-  require_writable(command.picture, "--picture");
+  require_output({command.csv, {}}, table_kind, "--csv");
+  require_output({command.picture, {}}, picture_kind, "--picture");
+  reserve_stdout_for({command.csv, command.picture});
 }
 
 void run_verify(const VerifyCommand& command) {
+  require_inputs({{InputKind::scene, command.scene}, {InputKind::solution, command.solution}}, command.format);
   require_outputs(command);
-  SceneFile file = read_scene_file(command.scene);
+  SceneFile file = read_scene(command.scene, command.format);
   take_absorption(command.absorption, file.scene);
   warn(file.warnings);
-  DisplayMesh solution = read_solution(command.solution);
+  DisplayMesh solution = read_solution(command.solution, command.format);
   take_up(command.up, solution.up);
   VerifyTimes times;
   const Verification verification = verify_timed(command, file.scene, solution, times);
-  if (!command.csv.empty()) write_whole_file(command.csv, verified_csv(verification.points));
-  if (!command.picture.empty()) write_png(command.picture, error_picture(solution, verification, {}));
-  std::cout << (command.json ? verify_json(file.scene, verification, times, file.warnings)
+  if (!command.csv.empty()) write_output(command.csv, verified_csv(verification.points));
+  if (!command.picture.empty()) write_picture(command.picture, error_picture(solution, verification, {}));
+  results() << (command.json ? verify_json(file.scene, verification, times, file.warnings)
                              : verify_summary(file.scene, verification, times));
   require_small_error(command, verification.errors.nrmse.value);
 }
@@ -115,8 +115,9 @@ void add_results(CLI::App& command, VerifyCommand& options) {
 void add_verify_command(CLI::App& app) {
   const auto options = std::make_shared<VerifyCommand>();
   CLI::App& command = *app.add_subcommand("verify", "Measure the error of a solution by unbiased path tracing");
-  command.add_option("scene", options->scene, "The scene file that was solved")->required()->type_name("SCENE");
-  command.add_option("solution", options->solution, "What solve wrote")->required()->type_name("SOLUTION");
+  command.add_option("scene", options->scene, "The scene file that was solved; - is stdin")->required()->type_name("SCENE");
+  command.add_option("solution", options->solution, "What solve wrote; - is stdin")->required()->type_name("SOLUTION");
+  add_format_option(command, options->format);
   add_absorption_option(command, options->absorption);
   add_effort(command, *options);
   add_results(command, *options);

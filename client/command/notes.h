@@ -1,0 +1,29 @@
+#pragma once
+// What a command says besides the files that it writes. Warnings and errors are not here: they go to stderr in any case.
+
+#include <CLI/CLI.hpp>
+
+#include <ostream>
+
+namespace alvor {
+
+/// Adds `-q, --quiet` to the command and to all its subcommands.
+void add_quiet_option(CLI::App& command);
+
+/// Leaves stdout to a file that the command writes there: results and notes go to stderr from now on.
+void reserve_stdout();
+
+/// Where goes what was asked for, such as a table or a JSON object: stdout, or stderr after reserve_stdout.
+std::ostream& results();
+
+/// Where remarks on what was done go: where results go; nowhere with --quiet.
+std::ostream& notes();
+
+/// Where is told how far something has come: stderr; nowhere with --quiet.
+std::ostream& progress();
+
+/// Throws Failure (bad_scene) if not everything that was written to stdout has arrived: the disk is full, or nobody reads the
+/// pipe any more.
+void require_stdout_taken();
+
+}  // namespace alvor
