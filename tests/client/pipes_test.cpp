@@ -132,6 +132,7 @@ TEST_F(Pipes, OneStreamCarriesOneFile) {
   refuse("probe - --points - --format glb </dev/null", "only one input can be - (stdin)");
   refuse("solve room.obj -o - --output-format glb --report -", "only one output can be - (stdout)");
   refuse("compare room.obj -o -", "--output -: many files go there, which stdout cannot carry");
+  refuse("form-factors room.obj -o - --areas -", "only one output can be - (stdout)");
   refuse("solve room.obj --frames -", "--frames -: many files go there, which stdout cannot carry");
 }
 

@@ -16,6 +16,12 @@ using Usage = test::CommandLine;
 using test::Ran;
 namespace fs = std::filesystem;
 
+TEST_F(Usage, TheVersionIsOneLine) {
+  const Ran ran = run("--version");
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_EQ(ran.out, "alvor " ALVOR_VERSION "\n");
+}
+
 TEST_F(Usage, MisspeltCommandsAreSetRight) {
   const Ran ran = run("sovle room.obj --tolerance 0.1");
   EXPECT_EQ(ran.status, 2);
