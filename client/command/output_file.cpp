@@ -28,16 +28,16 @@ std::string alternatives(const FileKind& kind, const std::string& before) {
 void require_suffix(const std::filesystem::path& path, const FileKind& kind, const std::string& option) {
   const std::string extension = lower_case_extension(path);
   const auto is_it = [&](std::string_view format) { return extension == "." + std::string(format); };
-  if (std::ranges::any_of(kind.formats, is_it)) return;
+  if (std::ranges::any_of(kind.formats, is_it) || (extension.empty() && kind.may_lack_a_suffix)) return;
   throw Failure(ExitStatus::usage,
                 option + " " + path.string() + ": " + std::string(kind.name) + " ends in " + alternatives(kind, "."));
 }
 
 }  // namespace
 
-const FileKind solution_kind{"a solution file", solution_formats, true};
-const FileKind picture_kind{"a picture", picture_formats, false};
-const FileKind table_kind{"a table", table_formats, false};
+const FileKind solution_kind{"a solution file", solution_formats, true, false};
+const FileKind picture_kind{"a picture", picture_formats, false, false};
+const FileKind table_kind{"a table", table_formats, false, true};
 
 CLI::Option* add_output_option(CLI::App& command, OutputFile& file, const FileKind& kind, const std::string& description) {
   CLI::Option* output = command.add_option("-o,--output", file.path, description + "; - is stdout");

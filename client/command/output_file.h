@@ -18,6 +18,7 @@ struct FileKind {
   std::string_view name;  ///< "a picture"
   std::span<const std::string_view> formats;
   bool formats_differ;  ///< what goes to stdout must then be told
+  bool may_lack_a_suffix;
 };
 
 extern const FileKind solution_kind;  ///< glb, ply

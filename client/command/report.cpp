@@ -20,6 +20,13 @@ Step last_step(const Followed& followed) {
   return steps.empty() ? Step{} : steps.back();
 }
 
+/// What looks black, but is not known.
+std::string unlit(const Step& step) {
+  if (step.unlit_fraction == 0) return {};
+  return percent(step.unlit_fraction) +
+         " of the surface that light may reach has no light yet: the solve ended before its turn\n";
+}
+
 }  // namespace
 
 std::string step_table(std::span<const Step> steps) {
@@ -42,6 +49,7 @@ std::string outcome_json(const Followed& followed, std::span<const std::string> 
   json["leaves"] = last.leaves;
   json["unshot_fraction"] = last.unshot_fraction;
   json["estimated_error"] = last.estimated_error;
+  json["unlit_fraction"] = last.unlit_fraction;
   json["first_frame_s"] = followed.first_frame_s;
   json["warnings"] = std::vector<std::string>(warnings.begin(), warnings.end());
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
@@ -52,7 +60,7 @@ std::string summary(const Followed& followed) {
   const std::string& reason = followed.solve.end_reason();
   return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
          seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + ": " +
-         (reason.empty() ? "still running" : reason) + '\n';
+         (reason.empty() ? "still running" : reason) + '\n' + unlit(last);
 }
 
 }  // namespace alvor
