@@ -33,7 +33,8 @@ export interface Counters {
 }
 
 export interface Reading {
-  face: number;
+  /** Numbers of the scene's faces there: one, or the two triangles that the server joined to a quad. */
+  faces: number[];
   level: number;
   material: string;
   place: Vector;
@@ -42,7 +43,15 @@ export interface Reading {
 }
 
 export type FromWorker =
-  | { kind: "mesh"; centre: [number, number, number]; extent: number; corners: Float32Array; counts: Uint8Array; materials: Float32Array }
+  | {
+      kind: "mesh";
+      centre: [number, number, number];
+      extent: number;
+      corners: Float32Array;
+      counts: Uint8Array;
+      materials: Float32Array;
+      isZUp: boolean;
+    }
   | { kind: "change"; change: SurfaceChange; brightness: Brightness; counters: Counters }
   | { kind: "steps"; steps: Step[]; isFirst: boolean }
   | { kind: "connection"; state: "connected" | "lost" | "resumed" | "begun anew" | "closing"; reason: string }

@@ -1,6 +1,6 @@
 // The root patches that patch ids refer to, as ReadMesh sends them.
 
-import type { Material, ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
+import { UpAxis, type Material, type ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
 import { GRID } from "./mirror";
 
 /** Corners are numbered through all roots: corner c of root r is firstCorner[r] + c, and so is the edge that begins there. */
@@ -14,6 +14,10 @@ export class BaseMesh {
   readonly extent: number;
   readonly material: Uint32Array;
   readonly sceneFace: Uint32Array;
+  /** 1 + the second face of roots that are two triangles of the scene; 0 elsewhere. */
+  private readonly secondSceneFace: Uint32Array;
+  /** Or y. */
+  readonly isZUp: boolean;
   readonly materials: Material[];
   /** Of each root, m2. */
   readonly area: Float64Array;
@@ -31,6 +35,8 @@ export class BaseMesh {
     counts.forEach((count, root) => (this.firstCorner[root + 1] = this.firstCorner[root] + count));
     this.material = Uint32Array.from(messages.flatMap((message) => message.materials));
     this.sceneFace = Uint32Array.from(messages.flatMap((message) => message.sceneFaces));
+    this.secondSceneFace = Uint32Array.from(messages.flatMap((message) => message.secondSceneFaces));
+    this.isZUp = messages[0]?.upAxis === UpAxis.Z;
     this.materials = messages.flatMap((message) => message.sceneMaterials);
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
@@ -46,6 +52,12 @@ export class BaseMesh {
 
   cornersOf(root: number): number {
     return this.firstCorner[root + 1] - this.firstCorner[root];
+  }
+
+  /** The scene's faces that a root stands for: one, or two triangles. */
+  sceneFacesOf(root: number): number[] {
+    const second = this.secondSceneFace[root] ?? 0;
+    return second > 0 ? [this.sceneFace[root], second - 1] : [this.sceneFace[root]];
   }
 
   /** Writes x, y, z of a point of a root, u = i / GRID and v = j / GRID, to `out[at]`. Neighbours agree on shared points. */

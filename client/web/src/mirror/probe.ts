@@ -23,7 +23,7 @@ export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction:
   const rho = material.reflectance!;
   const along = (x: "x" | "y" | "z", n: number) => mesh.centre[n] + origin[x] + hit.distance * direction[x];
   return {
-    face: mesh.sceneFace[hit.root],
+    faces: mesh.sceneFacesOf(hit.root),
     level: mirror.levelOf(node),
     material: material.name,
     place: { x: along("x", 0), y: along("y", 1), z: along("z", 2) },

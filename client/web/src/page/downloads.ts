@@ -5,6 +5,8 @@ import { GLTFExporter } from "three/addons/exporters/GLTFExporter.js";
 import type { Step } from "../gen/alvor/v1/solve_service_pb";
 import { secondsOf } from "./time";
 
+const UP_KEY = "alvor_up";
+
 /** As `alvor solve --report` writes it. */
 export function reportOf(steps: readonly Step[]): Blob {
   const lines = steps.map((step) =>
@@ -15,8 +17,8 @@ export function reportOf(steps: readonly Step[]): Blob {
   });
 }
 
-/** `drawn` is measured from `centre`. Triangles with radiosity and irradiance as float32 attributes, and a colour for viewers that know neither. */
-export async function glbOf(drawn: BufferGeometry, centre: [number, number, number], materials: Float32Array, exposure: number): Promise<Blob> {
+/** `drawn` is measured from `centre`, in the scene's axes; the GLB's are y up. Triangles with radiosity and irradiance as float32 attributes, and a colour for viewers that know neither. */
+export async function glbOf(drawn: BufferGeometry, centre: [number, number, number], materials: Float32Array, exposure: number, isZUp: boolean): Promise<Blob> {
   const geometry = new BufferGeometry();
   const values = drawn.getAttribute("value");
   const bands = () => new Float32Array(3 * values.count);
@@ -35,7 +37,14 @@ export async function glbOf(drawn: BufferGeometry, centre: [number, number, numb
   geometry.setAttribute("_radiosity", new BufferAttribute(radiosity, 3));
   geometry.setIndex(trianglesOf(drawn));
   const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true }));
-  mesh.position.set(...centre);
+  const [x, y, z] = centre;
+  mesh.position.set(x, y, z);
+  if (isZUp) {
+    // `alvor` knows from this that the scene's axes were others: client/glb_file.cpp.
+    mesh.position.set(x, z, -y);
+    mesh.rotation.x = -Math.PI / 2;
+    mesh.userData[UP_KEY] = "z";
+  }
   const glb = (await new GLTFExporter().parseAsync(mesh, { binary: true })) as ArrayBuffer;
   return new Blob([glb], { type: "model/gltf-binary" });
 }

@@ -46,10 +46,11 @@ export function showReading(reading: Reading | null): void {
   if (!reading) return;
   const bands = (values: number[]) => values.map(round).join(", ");
   const { x, y, z } = reading.place;
+  const faces = reading.faces.length > 1 ? `Faces ${reading.faces.join(" and ")}` : `Face ${reading.faces}`;
   byId("reading").textContent = [
     `Irradiance ${bands(reading.irradiance)} W/m²`,
     `Radiosity ${bands(reading.radiosity)} W/m²`,
-    `Face ${reading.face}, level ${reading.level}, ${reading.material}`,
+    `${faces}, level ${reading.level}, ${reading.material}`,
     `at ${bands([x, y, z])} m`,
   ].join("\n");
 }

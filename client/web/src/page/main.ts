@@ -34,6 +34,7 @@ let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1 
 let counters: Counters | undefined;
 let materials = new Float32Array();
 let centre: [number, number, number] = [0, 0, 0];
+let isZUp = false;
 /** When a frame that is not on the screen yet arrived. */
 let arrivedUnseen: number | undefined;
 
@@ -217,7 +218,9 @@ function take(message: FromWorker): void {
       centre = message.centre;
       room.setMaterials(materials);
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
-      cameras.frame(message.corners, message.counts, message.extent);
+      isZUp = message.isZUp;
+      room.setUp(isZUp);
+      cameras.frame(message.corners, message.counts, message.extent, isZUp);
       return;
     case "change":
       room.take(message.change);
@@ -378,7 +381,7 @@ function listenToDownloads(): void {
   });
   button("save-report").addEventListener("click", () => save("report.csv", reportOf(chart.all)));
   button("save-glb").addEventListener("click", () =>
-    attempt(async () => save("room.glb", await glbOf(room.exported(), centre, materials, lookOf(brightness).exposure))),
+    attempt(async () => save("room.glb", await glbOf(room.exported(), centre, materials, lookOf(brightness).exposure, isZUp))),
   );
 }
 

@@ -32,8 +32,9 @@ export class Cameras {
   }
 
   /** Looks at the mesh from where most of its fronts can be seen and least of its backs. Corners are measured from its middle. */
-  frame(corners: Float32Array, counts: Uint8Array, extent: number): void {
+  frame(meshCorners: Float32Array, counts: Uint8Array, extent: number, isZUp: boolean): void {
     this.extent = extent;
+    const corners = isZUp ? uprightY(meshCorners) : meshCorners;
     const size = boxOf(corners);
     const from = bestSide(corners, counts);
     const wide = Math.abs(from.x) > 0 ? size.z : size.x;
@@ -82,6 +83,13 @@ export class Cameras {
     this.turn = { x: event.clientX, y: event.clientY };
     this.onMove();
   }
+}
+
+/** Turns z up to y up. */
+function uprightY(corners: Float32Array): Float32Array {
+  const turned = new Float32Array(corners.length);
+  for (let n = 0; n < corners.length; n += 3) turned.set([corners[n], corners[n + 2], -corners[n + 1]], n);
+  return turned;
 }
 
 function boxOf(corners: Float32Array): THREE.Vector3 {

@@ -135,6 +135,12 @@ export class Room {
     this.surface.material.uniforms.materialsWide.value = width;
   }
 
+  /** Turns what is drawn so that the scene's upward axis is the picture's. */
+  setUp(isZUp: boolean): void {
+    this.scene.rotation.x = isZUp ? -Math.PI / 2 : 0;
+    this.scene.updateMatrixWorld();
+  }
+
   /** A new surface comes. */
   begin(): void {
     this.slots.dispose();
@@ -186,10 +192,12 @@ export class Room {
     this.draw(look, this.surface);
   }
 
-  /** From the eye through a point of the canvas, 0 to 1 from its upper left corner. */
+  /** From the eye through a point of the canvas, 0 to 1 from its upper left corner; in the scene's axes. */
   ray(x: number, y: number): { origin: Vector; direction: Vector } {
     const through = new THREE.Vector3(2 * x - 1, 1 - 2 * y, 0.5).unproject(this.camera);
-    return { origin: this.camera.position.clone(), direction: through.sub(this.camera.position).normalize() };
+    const turned = this.scene.matrixWorld.clone().invert();
+    const direction = through.sub(this.camera.position).normalize().transformDirection(turned);
+    return { origin: this.camera.position.clone().applyMatrix4(turned), direction };
   }
 
   /** As drawn; bands as float32 attributes, as `alvor solve` writes them. */
