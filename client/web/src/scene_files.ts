@@ -1,160 +1,70 @@
-// Scene files that a person drops: OBJ with MTL, or GLB, read by three.js, as the API's scene. Conventions as in `alvor solve`: emission is
-// radiance, exitance pi times that; what has no material reflects half.
+// Scene files that a person drops, as the API's scene. What is read of them, and the words for what is not, are those of `alvor`: client/*_import.cpp.
 
-import { create } from "@bufbuild/protobuf";
-import { BufferGeometry, Color, ColorManagement, DoubleSide, Matrix4, Mesh, Vector3, type Material, type Object3D } from "three";
-import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
-import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
-import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
-import { CreateSceneRequestSchema, type CreateSceneRequest } from "./gen/alvor/v1/scene_service_pb";
+import type { CreateSceneRequest } from "./gen/alvor/v1/scene_service_pb";
+import { DroppedFiles } from "./files/dropped_files";
+import { readGltf } from "./files/gltf";
+import { MissingParts } from "./files/gltf_file";
+import { ImportError } from "./files/import_error";
+import { readObj } from "./files/obj";
+import { readPly } from "./files/ply";
+import type { SceneBuilder } from "./files/scene_builder";
+import { readStl } from "./files/stl";
 
-// Numbers in files are what they are: no conversion from sRGB.
-ColorManagement.enabled = false;
-
+/** A file that is not a scene. The message is one line that names it. */
 export class SceneFileError extends Error {}
 
-/** As messages of CreateScene. Throws SceneFileError. */
-export async function readSceneFiles(files: File[]): Promise<CreateSceneRequest[]> {
-  const find = (extension: string) => files.find((file) => file.name.toLowerCase().endsWith(extension));
-  const glb = find(".glb");
-  const obj = find(".obj");
-  const file = glb ?? obj;
-  if (!file) throw new SceneFileError("No OBJ or GLB among these files");
-  const root = glb ? await readGlb(glb) : await readObj(obj!, files);
-  const scene = new SceneBuilder();
-  root.updateMatrixWorld(true);
-  root.traverse((object) => {
-    if (object instanceof Mesh) scene.add(object);
-  });
-  return scene.messages(file.name);
+export interface SceneFile {
+  /** Of CreateScene. */
+  messages: CreateSceneRequest[];
+  /** One sentence each: clamped reflectance, averaged texture, ... */
+  warnings: string[];
 }
 
-async function readGlb(file: File): Promise<Object3D> {
+const READERS: Record<string, (files: DroppedFiles) => Promise<SceneBuilder>> = {
+  obj: readObj,
+  gltf: readGltf,
+  glb: readGltf,
+  stl: ({ scene }) => readStl(scene),
+  ply: ({ scene }) => readPly(scene),
+};
+// `alvor` reads these through Assimp.
+const FOR_ALVOR = ["dae", "fbx", "3ds"];
+
+/** Reads the one scene among the files; the others are its parts. Throws SceneFileError. */
+export async function readSceneFiles(files: File[]): Promise<SceneFile> {
+  const scene = sceneAmong(files);
   try {
-    return (await new GLTFLoader().parseAsync(await file.arrayBuffer(), "")).scene;
+    if (scene.size === 0) throw new ImportError("file", "is empty");
+    const builder = await READERS[extensionOf(scene)](new DroppedFiles(files, scene));
+    return { messages: builder.messages(scene.name), warnings: builder.warnings };
   } catch (error) {
-    throw new SceneFileError(`${file.name}: ${error instanceof Error ? error.message : "cannot be read"}`);
+    throw new SceneFileError(refusalOf(scene.name, error));
   }
 }
 
-async function readObj(obj: File, files: File[]): Promise<Object3D> {
-  const loader = new OBJLoader();
-  const library = files.filter((file) => file.name.toLowerCase().endsWith(".mtl"));
-  const texts = await Promise.all(library.map((file) => file.text()));
-  const materials = new MTLLoader().parse(withoutTextures(texts.join("\n")), "");
-  materials.preload();
-  loader.setMaterials(materials);
-  const text = await obj.text();
-  if (!/^\s*f\s/m.test(text)) throw new SceneFileError(`${obj.name}: has no faces`);
-  const root = loader.parse(text);
-  root.traverse((object) => {
-    if (!(object instanceof Mesh)) return;
-    for (const material of [object.material].flat() as (Material & { color?: Color })[])
-      if (!(material.name in materials.materialsInfo)) material.color?.setRGB(0.5, 0.5, 0.5);
-  });
-  return root;
+const extensionOf = (file: File) => /\.([^.]+)$/.exec(file.name)?.[1].toLowerCase() ?? "";
+
+function sceneAmong(files: File[]): File {
+  const scenes = files.filter((file) => extensionOf(file) in READERS);
+  if (scenes.length === 1) return scenes[0];
+  if (scenes.length > 1) throw new SceneFileError(`${listOf(scenes.map(({ name }) => name))} are ${scenes.length} scenes: drop one at a time`);
+  const readable = "The page reads OBJ, glTF, GLB, STL and PLY.";
+  const foreign = files.find((file) => FOR_ALVOR.includes(extensionOf(file)));
+  if (foreign) throw new SceneFileError(`${foreign.name}: only the command 'alvor solve' reads .${extensionOf(foreign)}. ${readable}`);
+  throw new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}. ${readable}`);
 }
 
-const withoutTextures = (mtl: string) => mtl.replace(/^\s*(map_|bump|disp|norm|refl).*$/gim, "");
-
-const CHUNK_FACES = 20_000;
-
-class SceneBuilder {
-  private readonly chunks: CreateSceneRequest[] = [];
-  private chunk = this.newChunk();
-  private readonly materialIndex = new Map<string, number>();
-  private vertices = 0;
-
-  messages(name: string): CreateSceneRequest[] {
-    const first = create(CreateSceneRequestSchema, {
-      content: { case: "scene", value: { displayName: name } },
-      requestId: crypto.randomUUID?.() ?? String(Math.random()),
-    });
-    return [first, ...this.chunks];
+function refusalOf(name: string, error: unknown): string {
+  if (error instanceof MissingParts) {
+    const { names } = error;
+    return `${name} needs ${listOf(names)}, which ${names.length === 1 ? "was" : "were"} not dropped with it`;
   }
-
-  add(mesh: Mesh): void {
-    const geometry = mesh.geometry;
-    const position = geometry.getAttribute("position");
-    if (!position) return;
-    const first = this.vertices;
-    const place = new Vector3();
-    for (let n = 0; n < position.count; ++n) {
-      place.fromBufferAttribute(position, n).applyMatrix4(mesh.matrixWorld);
-      this.chunk.vertexCoordinates.push(place.x, place.y, place.z);
-    }
-    this.vertices += position.count;
-    const materials = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
-    const mirrored = new Matrix4().copy(mesh.matrixWorld).determinant() < 0;
-    for (const { start, count, materialIndex } of groupsOf(geometry)) {
-      const material = this.indexOf(materials[materialIndex ?? 0]);
-      for (const face of facesOf(geometry, start, count)) {
-        if (mirrored) face.reverse();
-        this.addFace(face.map((corner) => first + corner), material);
-      }
-    }
-  }
-
-  private addFace(corners: number[], material: number): void {
-    if (this.chunk.faceCornerCounts.length === CHUNK_FACES) this.chunk = this.newChunk();
-    this.chunk.faceCornerCounts.push(corners.length);
-    this.chunk.faceMaterials.push(material);
-    this.chunk.cornerVertices.push(...corners);
-  }
-
-  private newChunk() {
-    const message = create(CreateSceneRequestSchema, { content: { case: "chunk", value: {} } });
-    this.chunks.push(message);
-    return message.content.value as Extract<CreateSceneRequest["content"], { case: "chunk" }>["value"];
-  }
-
-  private indexOf(material: Material): number {
-    const known = this.materialIndex.get(material.uuid);
-    if (known !== undefined) return known;
-    const look = material as Material & { color?: Color; emissive?: Color; emissiveIntensity?: number };
-    const radiance = (look.emissiveIntensity ?? 1) * Math.PI;
-    const emission = look.emissive ?? new Color(0, 0, 0);
-    const reflectance = look.color ?? new Color(0.5, 0.5, 0.5);
-    this.chunk.materials.push({
-      $typeName: "alvor.v1.Material",
-      name: material.name,
-      emission: rgb(emission, radiance),
-      reflectance: rgb(reflectance, 1),
-      twoSided: material.side === DoubleSide,
-    });
-    this.materialIndex.set(material.uuid, this.materialIndex.size);
-    return this.materialIndex.size - 1;
-  }
+  if (error instanceof ImportError) return `${name}: ${error.message}`;
+  // A browser gives a file up when it has changed since it was dropped.
+  if (error instanceof DOMException) return `${name}: cannot be read: ${error.message}`;
+  return `${name}: is not built as its format asks for`;
 }
 
-const rgb = ({ r, g, b }: Color, by: number) => ({ $typeName: "alvor.v1.Rgb" as const, r: r * by, g: g * by, b: b * by });
-
-function groupsOf(geometry: BufferGeometry): { start: number; count: number; materialIndex?: number }[] {
-  const count = geometry.index?.count ?? geometry.getAttribute("position").count;
-  return geometry.groups.length > 0 ? geometry.groups : [{ start: 0, count, materialIndex: 0 }];
-}
-
-/** Triangles, but two that are a convex quad cut along a diagonal, as OBJLoader leaves it, are the quad again. */
-function facesOf(geometry: BufferGeometry, start: number, count: number): number[][] {
-  const index = (n: number) => geometry.index?.getX(n) ?? n;
-  const faces: number[][] = [];
-  for (let n = start; n + 2 < start + count; n += 3) {
-    const triangle = [index(n), index(n + 1), index(n + 2)];
-    const before = faces.at(-1);
-    const quad = before?.length === 3 ? quadOf(geometry, before, triangle) : undefined;
-    if (quad) faces[faces.length - 1] = quad;
-    else faces.push(triangle);
-  }
-  return faces;
-}
-
-function quadOf(geometry: BufferGeometry, [a, b, c]: number[], [d, e, f]: number[]): number[] | undefined {
-  const at = (n: number) => new Vector3().fromBufferAttribute(geometry.getAttribute("position"), n);
-  if (!at(a).equals(at(d)) || !at(c).equals(at(e))) return undefined;
-  const corners = [a, b, c, f].map(at);
-  const normals = corners.map((corner, n) =>
-    corners[(n + 1) % 4].clone().sub(corner).cross(corners[(n + 2) % 4].clone().sub(corners[(n + 1) % 4])).normalize(),
-  );
-  // Hardly bent ones too: the server cuts what is not planar.
-  return normals.every((normal) => normal.dot(normals[0]) > 0.99) ? [a, b, c, f] : undefined;
+function listOf(names: string[]): string {
+  return names.length < 2 ? names.join() : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
 }

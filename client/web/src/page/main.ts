@@ -81,7 +81,8 @@ async function open(files: File[]): Promise<void> {
   openedAt = performance.now();
   say(`Reading ${files.map((file) => file.name).join(", ")}`);
   const { readSceneFiles } = await import("../scene_files");
-  setScene(await api.createScene(await readSceneFiles(files)));
+  const { messages, warnings } = await readSceneFiles(files);
+  setScene(await api.createScene(messages), warnings);
   await start();
   void listStored();
 }
@@ -97,10 +98,11 @@ async function openExample(name: string): Promise<void> {
   await open(parts);
 }
 
-function setScene(next: Scene): void {
+/** `changes`: what reading its files left out or changed. */
+function setScene(next: Scene, changes: string[] = []): void {
   scene = next;
   byId("title").textContent = `${next.displayName || next.name}, ${next.faceCount} faces`;
-  byId("warnings").replaceChildren(...next.warnings.map(listItem));
+  byId("warnings").replaceChildren(...[...changes, ...next.warnings].map(listItem));
   button("start").disabled = false;
 }
 
