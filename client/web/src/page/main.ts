@@ -11,11 +11,16 @@ import { Chart } from "./chart";
 import { button, byId, input, listItem, save, select } from "./dom";
 import { glbOf, reportOf } from "./downloads";
 import { showCounters, showPlan, showReading } from "./figures";
+import { listenToDrops } from "./drops";
+import { addressOf, applyView, solveIn, viewIn } from "./link";
 import { draw, lookOf } from "./viewing";
 
 const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "enfilade"];
 const RATE_HZ = 20;
 const POLL_MS = 1000;
+const PAUSE_POLL_MS = 50; // while a person waits for it
+const NOTE_MS = 4000;
+const ADDRESS_MS = 300; // browsers allow a hundred changes in half a minute
 
 const NO_AMBIENT = { r: 0, g: 0, b: 0 };
 
@@ -24,10 +29,19 @@ const api = connect(location.origin, () => token);
 const room = new Room(byId<HTMLCanvasElement>("room"));
 const chart = new Chart(byId("chart"));
 let isStale = true;
-const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), () => (isStale = true));
+const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), viewChanged);
 
 let scene: Scene | undefined;
 let solve: Solve | undefined;
+/** The name of the newest solve that this tab began. */
+let begun = sessionStorage.getItem("begun") ?? "";
+let starting = Promise.resolve();
+/** The name of a solve that a person asked to pause. */
+let pausing = "";
+let framedScene = "";
+/** Of an address, until there is a mesh to look at. */
+let cameraToCome: number[] | undefined;
+let addressTimer: ReturnType<typeof setTimeout> | undefined;
 let worker: Worker | undefined;
 let nextWorker = makeWorker(); // ready before it is needed
 let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1 };
@@ -63,6 +77,12 @@ if (PerformanceObserver.supportedEntryTypes.includes("longtask"))
 function say(text: string, kind: "good" | "bad" = "good"): void {
   byId("state").textContent = text;
   byId("state").dataset.kind = kind;
+}
+
+/** Says what is news for a moment, and then how the solve is again. */
+function note(text: string): void {
+  say(text);
+  setTimeout(() => byId("state").textContent === text && solve && say(stateText(solve)), NOTE_MS);
 }
 
 /** Runs what a person asked for, and says why it could not be. */
@@ -106,15 +126,38 @@ function setScene(next: Scene, changes: string[] = []): void {
   button("start").disabled = false;
 }
 
+async function openStored(name: string): Promise<void> {
+  setScene(await api.scenes.getScene({ name }));
+  const { solves } = await api.solves.listSolves({ parent: name, pageSize: 1 });
+  if (solves.length === 0) return start();
+  location.hash = solves[0].name;
+}
+
 async function listStored(): Promise<void> {
   const { scenes } = await api.scenes.listScenes({ pageSize: 100 });
   const options = scenes.map((stored) => new Option(`${stored.displayName || stored.name} (${stored.faceCount} faces)`, stored.name));
   select("stored").replaceChildren(new Option("Choose…", ""), ...options);
+  button("open-stored").disabled = true;
 }
 
 // Solves
 
-async function start(): Promise<void> {
+/** One after the other: the second of two quick clicks cancels what the first began. */
+function start(): Promise<void> {
+  starting = starting.catch(() => undefined).then(beginSolve);
+  return starting;
+}
+
+async function cancelBegun(): Promise<void> {
+  if (!begun) return;
+  try {
+    await api.solves.cancelSolve({ name: begun });
+  } catch (error) {
+    if (ConnectError.from(error).code !== Code.NotFound) throw error;
+  }
+}
+
+async function beginSolve(): Promise<void> {
   if (!scene || !byId<HTMLFormElement>("solve-form").reportValidity()) return;
   const seconds = input("time").valueAsNumber;
   const spec = {
@@ -124,8 +167,11 @@ async function start(): Promise<void> {
     strategy: Number(select("strategy").value),
     timeLimit: seconds > 0 ? { seconds: BigInt(Math.floor(seconds)), nanos: Math.round((seconds % 1) * 1e9) } : undefined,
   };
+  await cancelBegun();
   attach(await api.solves.createSolve({ parent: scene.name, solve: { spec } }));
-  history.pushState(null, "", `#${solve!.name}`);
+  begun = solve!.name;
+  sessionStorage.setItem("begun", begun);
+  history.pushState(null, "", addressOf(begun, cameraToCome ?? (framedScene === scene.name ? cameras.view() : undefined)));
 }
 
 /** Shows a solve that may be running, or have ended. */
@@ -164,11 +210,43 @@ function send(message: ToWorker): void {
   worker?.postMessage(message);
 }
 
-const addressed = () => decodeURIComponent(location.hash.slice(1));
+const addressed = () => solveIn(location.hash);
+
+/** Keeps the address up to date, for whoever is given it. */
+function viewChanged(): void {
+  isStale = true;
+  clearTimeout(addressTimer);
+  addressTimer = setTimeout(() => {
+    if (!solve || addressed() !== solve.name || cameraToCome) return;
+    const address = addressOf(solve.name, cameras.view());
+    if (address !== location.hash) history.replaceState(null, "", address);
+  }, ADDRESS_MS);
+}
+
+function tellStops(): void {
+  byId("exposure-stops").textContent = `${input("exposure").value} EV`;
+}
+
+function applyAddressedView(): void {
+  const view = viewIn(location.hash);
+  if (!view) return;
+  cameraToCome = applyView(view);
+  tellStops();
+  cameras.walk(select("camera").value === "walk");
+  if (solve?.name === addressed() && framedScene === sceneOf(solve.name)) goToCamera();
+  isStale = true;
+}
+
+function goToCamera(): void {
+  if (cameraToCome) cameras.setView(cameraToCome);
+  cameraToCome = undefined;
+}
 
 async function attachToAddress(): Promise<void> {
   const name = addressed();
-  if (!name.includes("/solves/") || name === solve?.name) return;
+  if (!name.includes("/solves/")) return;
+  applyAddressedView();
+  if (name === solve?.name) return;
   const found = await api.solves.getSolve({ name });
   const its = await api.scenes.getScene({ name: sceneOf(name) });
   if (addressed() !== name) return; // another was asked for meanwhile
@@ -187,6 +265,10 @@ const STATES: Record<Solve_State, string> = {
 };
 const FINAL = [Solve_State.SUCCEEDED, Solve_State.CANCELLED, Solve_State.FAILED];
 
+function stateText({ state, endReason }: Solve): string {
+  return STATES[state] + (FINAL.includes(state) && endReason ? `: ${endReason}` : "");
+}
+
 /** What the server says of a solve that may not be shown any more. */
 function update(found: Solve): void {
   if (found.name === solve?.name) setSolve(found);
@@ -196,12 +278,31 @@ function setSolve(next: Solve): void {
   const isNews = next.state !== solve?.state || next.name !== solve.name;
   solve = next;
   const hasEnded = FINAL.includes(next.state);
-  button("pause").disabled = hasEnded;
+  if (next.state !== Solve_State.RUNNING && pausing === next.name) pausing = "";
+  button("pause").disabled = hasEnded || pausing === next.name;
   button("cancel").disabled = hasEnded;
   button("pause").textContent = next.state === Solve_State.PAUSED ? "Resume" : "Pause";
-  if (isNews) say(STATES[next.state] + (hasEnded && next.endReason ? `: ${next.endReason}` : ""));
+  if (isNews) say(stateText(next));
   if (next.plan) showPlan(next.plan);
 }
+
+async function pauseOrResume(): Promise<void> {
+  const { name, state } = solve!;
+  const isPaused = state === Solve_State.PAUSED;
+  say(isPaused ? "Resuming…" : "Pausing…");
+  button("pause").disabled = true;
+  try {
+    if (!isPaused) pausing = name;
+    update(await (isPaused ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name })));
+    // The solver stops at the next place from which it can go on.
+    for (; pausing === name && solve!.name === name; await wait(PAUSE_POLL_MS)) update(await api.solves.getSolve({ name }));
+  } finally {
+    if (pausing === name) pausing = "";
+    if (solve!.name === name) setSolve(solve!);
+  }
+}
+
+const wait = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 setInterval(() => {
   if (!solve || FINAL.includes(solve.state)) return;
@@ -222,7 +323,9 @@ function take(message: FromWorker): void {
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
       isZUp = message.isZUp;
       room.setUp(isZUp);
-      cameras.frame(message.corners, message.counts, message.extent, isZUp);
+      if (framedScene !== sceneOf(solve!.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
+      framedScene = sceneOf(solve!.name);
+      goToCamera();
       return;
     case "change":
       room.take(message.change);
@@ -259,8 +362,8 @@ function tellCounters(): void {
 function showConnection(state: Extract<FromWorker, { kind: "connection" }>["state"], reason: string): void {
   if (state === "lost") say(`Connection lost (${reason}), trying again`, "bad");
   if (state === "closing") say(`The server stops (${reason}); trying again`);
-  if (state === "resumed") say(`Connected again, going on from ${reason}`);
-  if (state === "begun anew") say(`Connected again, from the beginning: ${reason}`);
+  if (state === "resumed") note(`Connected again, going on from ${reason}`);
+  if (state === "begun anew") note(`Connected again, from the beginning: ${reason}`);
 }
 
 let drawnAt = performance.now();
@@ -294,15 +397,8 @@ function listen(): void {
   const stale = () => (isStale = true);
   input("files").addEventListener("change", () => attempt(() => open([...(input("files").files ?? [])])));
   select("examples").append(...EXAMPLES.map((name) => new Option(name.replaceAll("_", " "), name)));
-  select("examples").addEventListener("change", () => attempt(() => openExample(select("examples").value)));
-  select("stored").addEventListener("change", () =>
-    attempt(async () => {
-      setScene(await api.scenes.getScene({ name: select("stored").value }));
-      const { solves } = await api.solves.listSolves({ parent: scene!.name, pageSize: 1 });
-      if (solves.length === 0) return start();
-      location.hash = solves[0].name;
-    }),
-  );
+  listenToChoice("examples", "open-example", openExample);
+  listenToChoice("stored", "open-stored", openStored);
   input("token").addEventListener("change", () => {
     token = input("token").value;
     sessionStorage.setItem("token", token);
@@ -316,47 +412,37 @@ function listen(): void {
     event.preventDefault();
     void attempt(start);
   });
-  button("pause").addEventListener("click", () =>
-    attempt(async () => {
-      const name = solve!.name;
-      update(await (solve!.state === Solve_State.PAUSED ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name })));
-    }),
-  );
+  button("pause").addEventListener("click", () => attempt(pauseOrResume));
   button("cancel").addEventListener("click", () =>
     attempt(async () => update(await api.solves.cancelSolve({ name: solve!.name }))),
   );
-  byId("view-form").addEventListener("input", stale);
-  input("split").addEventListener("input", stale);
-  input("exposure").addEventListener("input", () => {
-    byId("exposure-stops").textContent = `${input("exposure").value} EV`;
-  });
+  byId("view-form").addEventListener("input", viewChanged);
+  input("split").addEventListener("input", viewChanged);
+  input("exposure").addEventListener("input", tellStops);
   select("camera").addEventListener("change", () => cameras.walk(select("camera").value === "walk"));
   button("pin").addEventListener("click", () => {
     room.pin();
     select("comparison").value = "pinned";
-    stale();
+    viewChanged();
   });
   window.addEventListener("resize", stale);
   new ResizeObserver(stale).observe(byId("stage"));
   window.addEventListener("hashchange", () => attempt(attachToAddress));
-  listenToDrops();
+  listenToDrops(byId("stage"), (files) => attempt(async () => open(await files)));
   listenToClicks();
   listenToDownloads();
 }
 
-function listenToDrops(): void {
-  const stage = byId("stage");
-  document.addEventListener("dragover", (event) => {
+/** Choosing from a list, as arrow keys do, opens nothing yet: its button does, and Enter. */
+function listenToChoice(list: string, opener: string, open: (choice: string) => Promise<void>): void {
+  const openChosen = () => void attempt(() => open(select(list).value));
+  select(list).addEventListener("change", () => (button(opener).disabled = select(list).value === ""));
+  select(list).addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" || select(list).value === "") return;
     event.preventDefault();
-    stage.classList.add("dropping");
+    openChosen();
   });
-  document.addEventListener("dragleave", () => stage.classList.remove("dropping"));
-  document.addEventListener("drop", (event) => {
-    event.preventDefault();
-    stage.classList.remove("dropping");
-    const files = [...(event.dataTransfer?.files ?? [])];
-    if (files.length > 0) void attempt(() => open(files));
-  });
+  button(opener).addEventListener("click", openChosen);
 }
 
 /** A click reads a surface; a drag turns the room. */

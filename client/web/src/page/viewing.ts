@@ -8,6 +8,9 @@ import { showLegend } from "./legend";
 /** Of the newest state, or of when a person chose to keep it. */
 let exposure = 1;
 
+export const heldExposure = () => exposure;
+export const holdExposure = (held: number) => void (exposure = held);
+
 export function lookOf(brightness: Brightness): Look {
   if (input("automatic").checked) exposure = brightness.exposure;
   const low = brightness.lowIrradiance;

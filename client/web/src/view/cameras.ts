@@ -13,6 +13,7 @@ export class Cameras {
   private isWalking = false;
   private extent = 1;
   private turn: { x: number; y: number } | null = null;
+  private framedFrom = new THREE.Vector3();
 
   /** `onMove` when a picture must be drawn again. */
   constructor(
@@ -47,6 +48,24 @@ export class Cameras {
     this.camera.position.copy(from).multiplyScalar(deep / 2 + 1.06 * far);
     this.orbit.target.set(0, 0, 0);
     this.orbit.update();
+    this.framedFrom.copy(this.camera.position);
+    this.onMove();
+  }
+
+  /** Returns where a person moved the camera, and what it looks at, measured from the mesh's middle; undefined as framed. */
+  view(): number[] | undefined {
+    const { position } = this.camera;
+    const target = this.isWalking ? position.clone().add(this.camera.getWorldDirection(new THREE.Vector3())) : this.orbit.target;
+    const isAsFramed = !this.isWalking && position.distanceTo(this.framedFrom) < 1e-6 * this.extent && target.length() < 1e-6 * this.extent;
+    return isAsFramed ? undefined : [...position.toArray(), ...target.toArray()];
+  }
+
+  /** Goes where view() said. */
+  setView([x, y, z, ...target]: number[]): void {
+    this.camera.position.set(x, y, z);
+    this.orbit.target.fromArray(target);
+    this.camera.lookAt(this.orbit.target);
+    if (!this.isWalking) this.orbit.update();
     this.onMove();
   }
 

@@ -2,6 +2,7 @@ import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import type { Material } from "../../src/gen/alvor/v1/scene_service_pb";
 import { Solve_State } from "../../src/gen/alvor/v1/solve_service_pb";
 import { createScene, Server } from "./server";
 import { meanBrightness, measuredBy, openBrowser, openPage, pixelAt, stateOf, waitForEnd, waitForFrames, waitForState, type Page } from "./viewer";
@@ -31,6 +32,30 @@ async function slowSolve(pauseMs: number): Promise<string> {
   const stored = (await server.api.scenes.listScenes({})).scenes[0];
   const stepPause = { seconds: BigInt(Math.floor(pauseMs / 1000)), nanos: (pauseMs % 1000) * 1_000_000 };
   return (await server.api.solves.createSolve({ parent: stored.name, solve: { spec: { tolerance: 0.015, stepPause } } })).name;
+}
+
+const BLENDER = new URL("../../../../tests/import/blender/files/", import.meta.url).pathname;
+
+const solveOf = (url: string) => url.slice(url.indexOf("#") + 1).split("?")[0];
+const warningsOf = (page: Page) => page.locator("#warnings li").allTextContents();
+
+async function materialsOf(name: string): Promise<Material[]> {
+  const materials: Material[] = [];
+  for await (const { chunk } of server.api.scenes.readScene({ name })) materials.push(...chunk!.materials);
+  return materials;
+}
+
+/** Runs in the page: when it says what after the click, ms. */
+function watchPause(): void {
+  const pause = { said: 0, paused: 0 };
+  Object.assign(window, { pause });
+  let clicked = 0;
+  document.getElementById("pause")!.addEventListener("click", () => (clicked = performance.now()), { capture: true });
+  new MutationObserver(() => {
+    const text = document.getElementById("state")!.textContent;
+    if (text === "Pausing…") pause.said = performance.now() - clicked;
+    if (text === "Paused") pause.paused = performance.now() - clicked;
+  }).observe(document.getElementById("state")!, { childList: true });
 }
 
 // Where things are in the first view of the Cornell box.
@@ -122,6 +147,136 @@ describe("the page", () => {
     await page.close();
   });
 
+  it("pauses at once", async () => {
+    const page = await openPage(browser, server.url);
+    await page.fill("#tolerance", "0.05");
+    await page.setInputFiles("#files", [scene("furnished_room.obj"), scene("furnished_room.mtl")]);
+    await waitForFrames(page, 1);
+    await page.evaluate(watchPause);
+    await page.click("#pause");
+    await waitForState(page, "Paused");
+    const { said, paused } = await page.evaluate(() => (window as unknown as { pause: { said: number; paused: number } }).pause);
+    console.log(`Pausing… after ${said.toFixed(0)} ms, Paused after ${paused.toFixed(0)} ms`);
+    expect(said).toBeLessThan(100);
+    expect(paused).toBeLessThan(5000); // under a second where nothing else runs: docs/page.md
+    await page.click("#pause");
+    await waitForState(page, "Solving");
+    await page.click("#cancel");
+    await waitForState(page, "Cancelled");
+    await page.close();
+  });
+
+  it("cancels the solve that it began when another is started", async () => {
+    const page = await openPage(browser, server.url);
+    await page.fill("#tolerance", "0.05");
+    await page.setInputFiles("#files", [scene("furnished_room.obj"), scene("furnished_room.mtl")]);
+    await waitForFrames(page, 1);
+    const first = solveOf(page.url());
+    await page.fill("#tolerance", "20");
+    await page.click("#start");
+    await expect.poll(() => solveOf(page.url())).not.toBe(first);
+    await waitForState(page, "Done");
+    await expect.poll(async () => (await server.api.solves.getSolve({ name: first })).state).toBe(Solve_State.CANCELLED);
+    await page.close();
+  });
+
+  it("leaves a solve alone that another began", async () => {
+    const name = await slowSolve(20_000);
+    const page = await openPage(browser, `${server.url}#${name}`);
+    await waitForFrames(page, 1);
+    await page.click("#start");
+    await expect.poll(() => solveOf(page.url())).not.toBe(name);
+    expect((await server.api.solves.getSolve({ name })).state).not.toBe(Solve_State.CANCELLED);
+    await server.api.solves.cancelSolve({ name });
+    await page.close();
+  });
+
+  it("has an address that shows others the same view", async () => {
+    const page = await openPage(browser, server.url);
+    await page.setInputFiles("#files", CORNELL);
+    await waitForState(page, "Done");
+    await waitForLamp(page);
+    const solve = solveOf(page.url());
+    await page.selectOption("#tone", "reinhard");
+    await page.check("#mesh");
+    await page.locator("#exposure").fill("1.5");
+    await page.uncheck("#automatic");
+    const box = (await page.locator("#room").boundingBox())!;
+    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2 + 40, { steps: 4 });
+    await page.mouse.up();
+    await page.locator("#reading").waitFor({ state: "hidden" });
+    await expect.poll(() => page.url()).toMatch(/\?.*tone=reinhard.*mesh=1.*held=.*eye=/);
+    await page.waitForTimeout(600); // until the address is at rest
+    const other = await openPage(browser, page.url());
+    await waitForEnd(other, solve);
+    expect(await other.locator("#tone").inputValue()).toBe("reinhard");
+    expect(await other.locator("#exposure-stops").textContent()).toBe("1.5 EV");
+    const points = [[0.3, 0.4], [0.5, 0.3], [0.5, 0.7], [0.7, 0.5]] as const;
+    const seenBy = async (tab: Page) => (await Promise.all(points.map(([x, y]) => pixelAt(tab, x, y)))).flat();
+    const seen = await seenBy(page);
+    await expect.poll(async () => Math.max(...(await seenBy(other)).map((x, n) => Math.abs(x - seen[n])))).toBeLessThan(3);
+    expect(other.url()).toBe(page.url());
+    await Promise.all([page.close(), other.close()]);
+  });
+
+  it("reads room.gltf with its parts, and JPEG textures by their mean", async () => {
+    const page = await openPage(browser, server.url);
+    const parts = ["room.gltf", "room.bin", "floor_checker.png", "leaf.png", "screen.png", "wall paper.png", "wood.png"];
+    await page.fill("#tolerance", "20");
+    await page.setInputFiles("#files", parts.map((part) => BLENDER + part));
+    await waitForState(page, "Done");
+    expect(await page.locator("#title").textContent()).toBe("room.gltf, 765 faces");
+    expect(await warningsOf(page)).toContain("1 spot light is ignored");
+    const jpeg = await page.evaluate(async () => {
+      const canvas = new OffscreenCanvas(1500, 40); // wider than what is looked at in one piece
+      const pen = canvas.getContext("2d")!;
+      pen.fillStyle = "rgb(128, 255, 0)";
+      pen.fillRect(0, 0, 1500, 40);
+      return [...new Uint8Array(await (await canvas.convertToBlob({ type: "image/jpeg", quality: 1 })).arrayBuffer())];
+    });
+    const obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl painted\nf 1 2 3\n";
+    const file = (name: string, content: string | number[]) => ({ name, mimeType: "", buffer: Buffer.from(content as string) });
+    await page.setInputFiles("#files", [file("a.obj", obj), file("a.mtl", "newmtl painted\nKd 0.5 0.5 0.5\nmap_Kd a.jpg\n"), file("a.jpg", jpeg)]);
+    await expect.poll(() => warningsOf(page)).toContain("material 'painted': texture 'a.jpg' counts by its mean colour");
+    const stored = (await server.api.scenes.listScenes({})).scenes[0];
+    const [painted] = await materialsOf(stored.name);
+    expect(painted.reflectance!.r).toBeCloseTo(0.5 * 0.2159, 2);
+    expect(painted.reflectance!.g).toBeCloseTo(0.5, 2);
+    expect(painted.reflectance!.b).toBeCloseTo(0, 2);
+    await page.close();
+  });
+
+  it("shows a file of z up upright", async () => {
+    const page = await openPage(browser, server.url);
+    await page.setInputFiles("#files", [`${BLENDER}room.stl`]);
+    await waitForState(page, "Done");
+    expect(await page.locator("#title").textContent()).toBe("room.stl, 767 faces");
+    // A pillar of 1 x 1 x 8 m stands: its picture is higher than wide.
+    const pillar = (x: number, y: number) => `v ${x} ${y} 0\nv ${x} ${y} 8\n`;
+    const ply = `ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n${pillar(0, 0)}${pillar(1, 0)}${pillar(1, 1)}${pillar(0, 1)}`.replaceAll("v ", "") + "4 0 2 3 1\n4 2 4 5 3\n4 4 6 7 5\n4 6 0 1 7\n4 0 6 4 2\n4 1 3 5 7\n";
+    await page.setInputFiles("#files", { name: "pillar.ply", mimeType: "", buffer: Buffer.from(ply) });
+    await page.locator("#title", { hasText: "pillar.ply, 6 faces" }).waitFor();
+    await waitForFrames(page, 1);
+    const alphaAt = (x: number, y: number) =>
+      page.evaluate(([u, v]) => {
+        const canvas = document.getElementById("room") as HTMLCanvasElement;
+        const copy = document.createElement("canvas");
+        copy.width = copy.height = 1;
+        const pen = copy.getContext("2d")!;
+        pen.drawImage(canvas, -u * canvas.width, -v * canvas.height);
+        return pen.getImageData(0, 0, 1, 1).data[3];
+      }, [x, y]);
+    await expect.poll(() => Promise.all([alphaAt(0.5, 0.1), alphaAt(0.5, 0.9), alphaAt(0.35, 0.5), alphaAt(0.65, 0.5)])).toEqual([255, 255, 0, 0]);
+    const box = (await page.locator("#room").boundingBox())!;
+    await page.locator("#room").click({ position: { x: 0.5 * box.width, y: 0.15 * box.height } });
+    await page.locator("#reading").waitFor();
+    const [, , z] = /at (.*), (.*), (.*) m/.exec((await page.locator("#reading").textContent())!)!.slice(1).map(Number);
+    expect(z).toBeGreaterThan(6);
+    await page.close();
+  });
+
   it("says what is wrong with a file, and where", async () => {
     const page = await openPage(browser, server.url);
     const file = (name: string, text: string) => ({ name, mimeType: "text/plain", buffer: Buffer.from(text) });
@@ -129,11 +284,14 @@ describe("the page", () => {
     await page.setInputFiles("#files", [file("empty.obj", "v 0 0 0\n")]);
     await waitForState(page, "empty.obj: has no faces");
     await page.setInputFiles("#files", [file("a.obj", triangle), file("a.mtl", "newmtl white\nKd 1.5 1 1\n")]);
-    await waitForState(page, "material 0 'white': reflectance 1.5 is outside [0, 1)");
+    await waitForState(page, "Done");
+    await expect.poll(() => warningsOf(page)).toContain("material 'white': reflectance 1.5 1 1 is clamped to 0.95 0.95 0.95");
     await page.setInputFiles("#files", [file("picture.png", "")]);
-    await waitForState(page, "No OBJ or GLB among these files");
+    await waitForState(page, "No scene among these files: picture.png. The page reads OBJ, glTF, GLB, STL and PLY.");
     await page.setInputFiles("#files", [file("room.glb", "glTF but no more")]);
-    await waitForState(page, "room.glb: ");
+    await waitForState(page, "room.glb: is GLB of version");
+    await page.setInputFiles("#files", [`${BLENDER}room.gltf`]);
+    await waitForState(page, "room.gltf needs room.bin, ");
     await page.close();
   });
 
@@ -152,8 +310,10 @@ describe("the page", () => {
     expect(lines[0]).toBe("elapsed_s,step,shots,rays,leaves,unshot_fraction,estimated_error");
     expect(Number(lines.at(-1)!.split(",")[6])).toBeLessThan(0.02);
     await page.setInputFiles("#files", { name: glb.name, mimeType: "model/gltf-binary", buffer: glb.bytes });
-    // It was read and sent; but it is a solution, of light and not of reflectance.
-    await waitForState(page, "reflectance 1 is outside [0, 1)");
+    // It was read and sent; but it is a solution, of light and not of lamps.
+    await page.locator("#title", { hasText: "room.glb, " }).waitFor();
+    await expect.poll(() => warningsOf(page)).toContain("material '0': reflectance 1 1 1 is clamped to 0.95 0.95 0.95");
+    await waitForState(page, "Done");
     await page.close();
   });
 
@@ -165,6 +325,8 @@ describe("the page", () => {
     await waitForState(page, "Connection lost");
     await server.start();
     await waitForState(page, "Connected again");
+    // The note goes away by itself.
+    await page.locator("#state", { hasNotText: "Connected again" }).waitFor({ timeout: 6000 });
     await waitForState(page, "Done: tolerance reached");
     await waitForLamp(page);
     await page.close();
@@ -216,8 +378,16 @@ describe("the page", () => {
 
   it("is worked by the keyboard alone", async () => {
     const page = await openPage(browser, server.url);
+    const countScenes = async () => (await server.api.scenes.listScenes({ pageSize: 1000 })).scenes.length;
+    const before = await countScenes();
     await page.locator("#examples").focus();
-    await page.keyboard.press("ArrowDown");
+    for (let n = 0; n < 3; ++n) await page.keyboard.press("ArrowDown");
+    for (let n = 0; n < 2; ++n) await page.keyboard.press("ArrowUp");
+    await page.waitForTimeout(500);
+    expect(await page.locator("#examples").inputValue()).toBe("cornell_box");
+    expect(await countScenes()).toBe(before);
+    expect(await stateOf(page)).toContain("Drop a scene");
+    await page.keyboard.press("Enter");
     await waitForState(page, "Done");
     const first = page.url();
     await page.locator("#start").focus();
