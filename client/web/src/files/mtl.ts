@@ -1,4 +1,4 @@
-// Material libraries of OBJ, with the defaults of tinyobjloader, through which `alvor` reads them.
+// Material libraries of OBJ, as client/obj_import.cpp reads them.
 
 import { linesOf, tripleOf, wordsOf } from "./lines";
 import type { Bands } from "./texture_colour";
@@ -14,9 +14,6 @@ export interface MtlMaterial {
   metallic: number;
 }
 
-// What a texture without a Kd before it is multiplied by.
-const TEXTURED_DIFFUSE: Bands = [0.6, 0.6, 0.6];
-
 /** `file` names the library where a number is wrong. Throws ImportError. */
 export function readMtl(text: string, file: string): MtlMaterial[] {
   const materials: Reading[] = [];
@@ -29,7 +26,7 @@ export function readMtl(text: string, file: string): MtlMaterial[] {
       materials.at(-1)?.set(line.keyword, line.rest);
     }
   }
-  return materials;
+  return materials.map((material) => material.finish());
 }
 
 class Reading implements MtlMaterial {
@@ -41,6 +38,7 @@ class Reading implements MtlMaterial {
   private opacity = 1;
   private hasAlphaTexture = false;
   private hasDiffuse = false;
+  private hasEmission = false;
   private hasOpacity = false;
 
   constructor(readonly name: string) {}
@@ -50,15 +48,20 @@ class Reading implements MtlMaterial {
   }
 
   setColour(keyword: "Kd" | "Ke", colour: Bands): void {
-    if (keyword === "Ke") this.emission = colour;
+    if (keyword === "Ke") (this.emission = colour), (this.hasEmission = true);
     else (this.diffuse = colour), (this.hasDiffuse = true);
   }
 
+  /** A texture without a colour (Blender writes such) counts whole. */
+  finish(): this {
+    if (this.diffuseTexture && !this.hasDiffuse) this.diffuse = [1, 1, 1];
+    if (this.emissionTexture && !this.hasEmission) this.emission = [1, 1, 1];
+    return this;
+  }
+
   set(keyword: string, rest: string): void {
-    if (keyword === "map_Kd") {
-      this.diffuseTexture = textureOf(rest);
-      if (!this.hasDiffuse) this.diffuse = [...TEXTURED_DIFFUSE];
-    } else if (keyword === "map_Ke") this.emissionTexture = textureOf(rest);
+    if (keyword === "map_Kd") this.diffuseTexture = textureOf(rest);
+    else if (keyword === "map_Ke") this.emissionTexture = textureOf(rest);
     else if (keyword === "map_d") this.hasAlphaTexture = true;
     else if (keyword === "Pm") this.metallic = parseFloat(rest) || 0;
     else if (keyword === "d") (this.opacity = numberOf(rest)), (this.hasOpacity = true);

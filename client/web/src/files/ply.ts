@@ -12,6 +12,7 @@ export async function readPly(file: File): Promise<SceneBuilder> {
   const scene = new SceneBuilder();
   scene.up = UpAxis.Z;
   const material = scene.addDefaultMaterial();
+  scene.materials[material].twoSided = true; // scans are open: Assimp, through which `alvor` reads PLY, takes it so too
   for (const element of elements) {
     if (element.count > bytes.byteLength)
       throw new ImportError(`element ${element.name}`, `the file is too short for ${element.count} of them`);

@@ -15,6 +15,8 @@ export class Server {
   private readonly data = mkdtempSync(join(tmpdir(), "alvor-page-"));
   private address = "127.0.0.1:0";
   url = "";
+  /** HOST:PORT of gRPC. */
+  listening = "";
   log = "";
 
   /** Again at the same address, when it was killed. */
@@ -25,7 +27,9 @@ export class Server {
       this.process.stderr!.on("data", (chunk) => {
         this.log += chunk;
         const found = /web page on (http:\S+)[^]*listening on/.exec(String(this.log.slice(this.log.lastIndexOf("web page on"))));
-        if (found) resolve(found[1]);
+        if (!found) return;
+        this.listening = /listening on (\S+)/.exec(this.log.slice(this.log.lastIndexOf("listening on")))![1];
+        resolve(found[1]);
       });
     });
     this.address = new URL(this.url).host;
