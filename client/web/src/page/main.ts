@@ -269,9 +269,16 @@ function stateText({ state, endReason }: Solve): string {
   return STATES[state] + (FINAL.includes(state) && endReason ? `: ${endReason}` : "");
 }
 
-/** What the server says of a solve that may not be shown any more. */
-function update(found: Solve): void {
-  if (found.name === solve?.name) setSolve(found);
+let questions = 0;
+let newestAnswered = 0;
+
+/** Takes what the server answers of a solve, unless it is shown no more or a later question was answered already. */
+async function update(answer: Promise<Solve>): Promise<void> {
+  const question = ++questions;
+  const found = await answer;
+  if (question < newestAnswered || found.name !== solve?.name) return;
+  newestAnswered = question;
+  setSolve(found);
 }
 
 function setSolve(next: Solve): void {
@@ -293,9 +300,9 @@ async function pauseOrResume(): Promise<void> {
   button("pause").disabled = true;
   try {
     if (!isPaused) pausing = name;
-    update(await (isPaused ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name })));
+    await update(isPaused ? api.solves.resumeSolve({ name }) : api.solves.pauseSolve({ name }));
     // The solver stops at the next place from which it can go on.
-    for (; pausing === name && solve!.name === name; await wait(PAUSE_POLL_MS)) update(await api.solves.getSolve({ name }));
+    for (; pausing === name && solve!.name === name; await wait(PAUSE_POLL_MS)) await update(api.solves.getSolve({ name }));
   } finally {
     if (pausing === name) pausing = "";
     if (solve!.name === name) setSolve(solve!);
@@ -306,10 +313,7 @@ const wait = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
 setInterval(() => {
   if (!solve || FINAL.includes(solve.state)) return;
-  api.solves
-    .getSolve({ name: solve.name })
-    .then(update)
-    .catch(() => undefined); // the watch says that the connection is lost
+  update(api.solves.getSolve({ name: solve.name })).catch(() => undefined); // the watch says that the connection is lost
 }, POLL_MS);
 
 // The worker
@@ -345,7 +349,7 @@ function take(message: FromWorker): void {
       return showConnection(message.state, message.reason);
     case "ended":
       measured.hasEnded = true;
-      return void attempt(async () => update(await api.solves.getSolve({ name: solve!.name })));
+      return void attempt(() => update(api.solves.getSolve({ name: solve!.name })));
     case "refused":
       if (message.needsToken) byId("token-label").hidden = false;
       return say(message.reason, "bad");
@@ -413,9 +417,7 @@ function listen(): void {
     void attempt(start);
   });
   button("pause").addEventListener("click", () => attempt(pauseOrResume));
-  button("cancel").addEventListener("click", () =>
-    attempt(async () => update(await api.solves.cancelSolve({ name: solve!.name }))),
-  );
+  button("cancel").addEventListener("click", () => attempt(() => update(api.solves.cancelSolve({ name: solve!.name }))));
   byId("view-form").addEventListener("input", viewChanged);
   input("split").addEventListener("input", viewChanged);
   input("exposure").addEventListener("input", tellStops);

@@ -70,6 +70,21 @@ export async function waitForEnd(page: Page, solve: string): Promise<void> {
   }, solve);
 }
 
+/** Runs in the page: when it says what after the click, ms. */
+export function watchPause(): void {
+  const pause = { said: 0, paused: 0 };
+  Object.assign(window, { pause });
+  let clicked = 0;
+  document.getElementById("pause")!.addEventListener("click", () => (clicked = performance.now()), { capture: true });
+  new MutationObserver(() => {
+    const text = document.getElementById("state")!.textContent;
+    if (text === "Pausing…") pause.said = performance.now() - clicked;
+    if (text === "Paused") pause.paused = performance.now() - clicked;
+  }).observe(document.getElementById("state")!, { childList: true });
+}
+
+export const pauseSeenBy = (page: Page) => page.evaluate(() => (window as unknown as { pause: { said: number; paused: number } }).pause);
+
 export type Pixel = [number, number, number];
 
 /** The mean colour around a point of the canvas: 0 to 1 from its upper left corner. */

@@ -4,10 +4,11 @@ import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "n
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { createScene, Server, type Quad } from "../browser/server";
-import { measuredBy, openBrowser, openPage, waitForFrames, waitForState, type Measured, type Page } from "../browser/viewer";
+import { measuredBy, openBrowser, openPage, pauseSeenBy, waitForFrames, waitForState, watchPause, type Measured, type Page } from "../browser/viewer";
 
 const ROOT = new URL("../../../../", import.meta.url);
 const CORNELL = ["cornell_box.obj", "cornell_box.mtl"].map((name) => new URL(`scenes/${name}`, ROOT).pathname);
+const FURNISHED = ["furnished_room.obj", "furnished_room.mtl"].map((name) => new URL(`scenes/${name}`, ROOT).pathname);
 const PICTURES = new URL("docs/page/", ROOT);
 
 const rows: string[] = [];
@@ -72,6 +73,29 @@ describe("the page's figures", () => {
       await page.close();
     }
     note("first lit picture after the Cornell box is dropped, of three", "1 s", ms(quantile(lit, 0.5)));
+  });
+
+  it("pauses", async () => {
+    const page = await openPage(browser, server.url);
+    await page.fill("#tolerance", "2");
+    await page.setInputFiles("#files", FURNISHED);
+    await waitForFrames(page, 1);
+    const moments: { said: number; paused: number }[] = [];
+    for (let n = 0; n < 5; ++n) {
+      await page.waitForTimeout(400);
+      await page.evaluate(watchPause);
+      await page.click("#pause");
+      await page.locator("#state", { hasText: /Paused|Done/ }).waitFor();
+      if ((await page.locator("#state").textContent())!.startsWith("Done")) break;
+      moments.push(await pauseSeenBy(page));
+      await page.click("#pause");
+      await page.locator("#state", { hasText: /Solving|Done/ }).waitFor();
+    }
+    const worst = (what: "said" | "paused") => ms(Math.max(...moments.map((moment) => moment[what])));
+    const paused = moments.map((moment) => moment.paused);
+    note(`from a click on Pause to the word "Pausing…", longest of ${moments.length}`, "100 ms", worst("said"));
+    note("from a click on Pause until the furnished room's solve at 2 % stands still, median and longest of them", "1 s", `${ms(quantile(paused, 0.5))}, ${worst("paused")}`);
+    await page.close();
   });
 
   it("shows four moments of a solve", async () => {
