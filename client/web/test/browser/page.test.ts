@@ -1,5 +1,7 @@
 import { createRequire } from "node:module";
-import { readFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import type { Material } from "../../src/gen/alvor/v1/scene_service_pb";
@@ -35,6 +37,7 @@ async function slowSolve(pauseMs: number): Promise<string> {
 }
 
 const BLENDER = new URL("../../../../tests/import/blender/files/", import.meta.url).pathname;
+const ROOM_PARTS = ["room.bin", "floor_checker.png", "leaf.png", "screen.png", "wall paper.png", "wood.png"];
 
 const solveOf = (url: string) => url.slice(url.indexOf("#") + 1).split("?")[0];
 const warningsOf = (page: Page) => page.locator("#warnings li").allTextContents();
@@ -152,6 +155,34 @@ describe("the page", () => {
     await page.close();
   });
 
+  it("shows no answer that a later one has overtaken", async () => {
+    const name = await slowSolve(1500);
+    const page = await openPage(browser, `${server.url}#${name}`);
+    await waitForFrames(page, 1);
+    let isHeldUp = false;
+    await page.route("**/GetSolve", async (route) => {
+      const response = await route.fetch();
+      if (!isHeldUp) {
+        isHeldUp = true;
+        await page.waitForTimeout(2500);
+      }
+      await route.fulfill({ response });
+    });
+    await expect.poll(() => isHeldUp).toBe(true);
+    await page.click("#pause");
+    await waitForState(page, "Paused");
+    const said = await page.evaluate(async () => {
+      const all: string[] = [];
+      const state = document.getElementById("state")!;
+      new MutationObserver(() => all.push(state.textContent!)).observe(state, { childList: true });
+      await new Promise((resolve) => setTimeout(resolve, 3000));
+      return all;
+    });
+    expect(said).toEqual([]);
+    await server.api.solves.cancelSolve({ name });
+    await page.close();
+  });
+
   it("cancels the solve that it began when another is started", async () => {
     const page = await openPage(browser, server.url);
     await page.fill("#tolerance", "0.05");
@@ -209,9 +240,8 @@ describe("the page", () => {
 
   it("reads room.gltf with its parts, and JPEG textures by their mean", async () => {
     const page = await openPage(browser, server.url);
-    const parts = ["room.gltf", "room.bin", "floor_checker.png", "leaf.png", "screen.png", "wall paper.png", "wood.png"];
     await page.fill("#tolerance", "20");
-    await page.setInputFiles("#files", parts.map((part) => BLENDER + part));
+    await page.setInputFiles("#files", ["room.gltf", ...ROOM_PARTS].map((part) => BLENDER + part));
     await waitForState(page, "Done");
     expect(await page.locator("#title").textContent()).toBe("room.gltf, 765 faces");
     expect(await warningsOf(page)).toContain("1 spot light is ignored");
@@ -232,6 +262,23 @@ describe("the page", () => {
     expect(painted.reflectance!.g).toBeCloseTo(0.5, 2);
     expect(painted.reflectance!.b).toBeCloseTo(0, 2);
     await page.close();
+  });
+
+  it("takes a folder that is dropped, with parts in folders of their own", async () => {
+    const folder = mkdtempSync(join(tmpdir(), "room-"));
+    mkdirSync(join(folder, "parts"));
+    const text = readFileSync(`${BLENDER}room.gltf`, "utf8").replace('"room.bin"', '"parts/room.bin"').replace(/"([\w%]+\.png)"/g, '"parts/$1"');
+    writeFileSync(join(folder, "room.gltf"), text);
+    for (const part of ROOM_PARTS) copyFileSync(BLENDER + part, join(folder, "parts", part));
+    const page = await openPage(browser, server.url);
+    await page.fill("#tolerance", "20");
+    const session = await page.context().newCDPSession(page);
+    const data = { items: [], files: [folder], dragOperationsMask: 1 };
+    for (const type of ["dragEnter", "dragOver", "drop"] as const) await session.send("Input.dispatchDragEvent", { type, x: 300, y: 300, data });
+    await page.locator("#title", { hasText: "room.gltf, 765 faces" }).waitFor();
+    await waitForState(page, "Done");
+    await page.close();
+    rmSync(folder, { recursive: true });
   });
 
   it("shows a file of z up upright", async () => {
