@@ -10,7 +10,7 @@ targets=(scene_upload frame watch checkpoint file)
 PRESET=fuzz scripts/build.sh seeds "${targets[@]/%/_fuzz}"
 cd build/fuzz
 mkdir -p found
-bin/seeds seeds ../../tests/client/{good,bad}_files/* ../../scenes/cornell_box.*
+bin/seeds seeds ../../tests/client/{good,bad}_files/* ../../tests/import/blender/files/* ../../scenes/cornell_box.*
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=0 UBSAN_OPTIONS=halt_on_error=1
 fuzz() {
   local target=$1 length=$2 megabytes=$3
@@ -28,4 +28,4 @@ wait $first
 fuzz watch 2048 16 & first=$!
 fuzz checkpoint 1000000 64
 wait $first
-fuzz file 65536 64
+fuzz file 131072 64

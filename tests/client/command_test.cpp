@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdio>
+#include <sstream>
 #include <string>
 
 namespace alvor {
@@ -72,6 +74,104 @@ TEST_F(Command, SceneWithoutEmittersIsSolvedWithAWarning) {
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.err.find("warning: "), std::string::npos) << ran.err;
   EXPECT_TRUE(fs::exists(file("dark.ply")));
+}
+
+/// The quads of a room of 8 faces, wall by wall, with a lamp under its ceiling and a screen; `more` comes after them.
+std::string room_of_eight(const std::string& more = "") {
+  return "mtllib room.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 5\nv 0 0 5\nv 0 3 0\nv 4 3 0\nv 4 3 5\nv 0 3 5\n"
+         "v 1 2.9 2\nv 3 2.9 2\nv 3 2.9 3\nv 1 2.9 3\nv 1 0.5 1\nv 3 0.5 1\nv 3 2 1\nv 1 2 1\n"
+         "usemtl white\nf 4 3 2 1\nf 5 6 7 8\nf 1 5 8 4\nf 2 3 7 6\nf 1 2 6 5\nf 3 4 8 7\nusemtl lamp\nf 9 10 11 12\n"
+         "usemtl white\nf 13 14 15 16\n" +
+         more;
+}
+const std::string room_materials = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n";
+
+TEST_F(Command, ALampGivenTwiceShinesOnceAndIsSaid) {
+  write("room.mtl", room_materials);
+  write("once.obj", room_of_eight());
+  write("twice.obj", room_of_eight("usemtl lamp\nf 10 11 12 9\n"));
+  ASSERT_EQ(run("solve once.obj --tolerance 0.1 -o once.ply").status, 0);
+  const Ran ran = run("solve twice.obj --tolerance 0.1 -o twice.ply");
+  EXPECT_NE(ran.err.find("1 faces lie in the place of others and were left out: the first is face 8, in the place of face 6."),
+            std::string::npos)
+      << ran.err;
+  EXPECT_EQ(text_of(file("twice.ply")), text_of(file("once.ply")));
+}
+
+TEST_F(Command, ACameraInAWallIsToldAndOfferedAPlaceInside) {
+  write("room.mtl", room_materials);
+  write("room.obj", room_of_eight());
+  ASSERT_EQ(run("solve room.obj --tolerance 0.2 -o room.glb").status, 0);
+  const Ran in_wall = run("render room.glb -o in_wall.png --eye -0.1,1,2 --target -5,1,2");
+  EXPECT_EQ(in_wall.status, 0) << in_wall.err;
+  const std::size_t offer = in_wall.err.find("Try --eye ");
+  ASSERT_NE(offer, std::string::npos) << in_wall.err;
+  EXPECT_NE(in_wall.err.find("the camera at -0.1,1,2 sees nothing but black"), std::string::npos) << in_wall.err;
+  const std::string view = in_wall.err.substr(offer + 4, in_wall.err.find('\n', offer) - offer - 4);
+  const Ran inside = run("render room.glb -o inside.png " + view);
+  EXPECT_EQ(inside.status, 0) << inside.err;
+  EXPECT_EQ(inside.err, "");
+}
+
+TEST_F(Command, GreyIsNotCalledColouredForItsRounding) {
+  write("room.mtl", "newmtl white\nKd 0.2 0.2 0.2\nnewmtl lamp\nKd 0 0 0\nKe 0.1 0.1 0.1\n");
+  write("room.obj", room_of_eight());
+  const Ran ran = run("explain room.obj");
+  EXPECT_NE(ran.out.find("three bands      off"), std::string::npos) << ran.out;
+}
+
+TEST_F(Command, FacesOfStlKeepTheirNumbersInFormFactors) {
+  const std::string cube_stl = ALVOR_TEST_FILES "/client/good_files/cube.stl";
+  const Ran ran = run("form-factors " + cube_stl + " -o F.csv --areas A.csv");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("12 faces"), std::string::npos) << ran.out;
+  EXPECT_EQ(line_count(text_of(file("A.csv"))), 13);
+  EXPECT_NE(text_of(file("A.csv")).find("\n11,0.5\n"), std::string::npos);
+  // The cube looks outwards: a furnace modelled so is dark.
+  EXPECT_NE(ran.err.find("every face looks away from every other: are the normals turned round?"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find("light"), std::string::npos) << ran.err;
+}
+
+TEST_F(Command, FormFactorsThatAreLessSureThanAskedAreCounted) {
+  write("room.mtl", room_materials);
+  write("room.obj", room_of_eight("v 1.3 1 2\nv 2 1 2.2\nv 2 1.5 2\nf 17 18 19\n"));
+  const Ran strict = run("form-factors room.obj -o F.csv --accuracy 1e-12"),
+            lax = run("form-factors room.obj -o F.csv --accuracy 0.1");
+  EXPECT_NE(strict.err.find(" form factors have an error bound above the accuracy of 1e-12: the worst is "), std::string::npos)
+      << strict.err;
+  EXPECT_EQ(lax.err.find("warning"), std::string::npos) << lax.err;
+}
+
+TEST_F(Command, OnePairAndTheMatrixAgreeWithinTheirBounds) {
+  ASSERT_EQ(run("form-factors " ALVOR_SCENES "/enfilade.obj -o F.csv").status, 0);
+  std::istringstream lines(text_of(file("F.csv")));
+  std::string line;
+  std::getline(lines, line);
+  int compared = 0;
+  for (int n = 0; std::getline(lines, line); ++n) {
+    if (n % 400 != 0) continue;
+    unsigned from = 0, to = 0;
+    double value = 0, bound = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%u,%u,%lf,%lf", &from, &to, &value, &bound), 4) << line;
+    const Ran one =
+        run("form-factor " ALVOR_SCENES "/enfilade.obj " + std::to_string(from) + " " + std::to_string(to) + " --json");
+    for (const auto& method : nlohmann::json::parse(one.out)) {
+      if (method.at("method") != "analytic") continue;
+      EXPECT_NEAR(method.at("value").get<double>(), value, method.at("error_bound").get<double>() + bound + 1e-14) << line;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 20);
+}
+
+TEST_F(Command, ASolveThatWasCutShortSaysWhatHasNoLightYet) {
+  write("office.obj", "");
+  const std::string office = "'" ALVOR_BINARIES "/office_block' --faces 20000 -o office.obj";
+  ASSERT_EQ(std::system(("cd '" + file("").string() + "' && " + office + " > /dev/null").c_str()), 0);
+  const Ran cut = run("solve office.obj --json --time-limit 0.001");
+  const double unlit = nlohmann::json::parse(cut.out).at("unlit_fraction");
+  EXPECT_GT(unlit, 0) << cut.out;
+  EXPECT_EQ(nlohmann::json::parse(run("solve " + cornell_box + quick + " --json").out).at("unlit_fraction"), 0);
 }
 
 TEST_F(Command, JsonIsAllThatStdoutHolds) {

@@ -1,4 +1,4 @@
-// Scene and solution files that are read by our own importers: OBJ, glTF and GLB, GLB and PLY of a solution.
+// Scene and solution files that are read by our own importers: OBJ, MTL, glTF and GLB with their parts, GLB and PLY of a solution.
 
 #include "client/scene_file.h"
 #include "client/solution_file.h"
@@ -11,28 +11,43 @@
 
 namespace {
 
-const std::filesystem::path& directory() {
+namespace fs = std::filesystem;
+
+/// A folder with what Blender's exporters wrote, so that parts that a made-up scene names are there.
+const fs::path& directory() {
   static const auto made = [] {
-    auto path = std::filesystem::path("/dev/shm") / ("alvor_fuzz_" + std::to_string(getpid()));
-    std::filesystem::create_directories(path);
+    auto path = fs::path("/dev/shm") / ("alvor_fuzz_" + std::to_string(getpid()));
+    fs::create_directories(path);
+    fs::copy(ALVOR_TEST_FILES "/import/blender/files", path, fs::copy_options::overwrite_existing);
     return path;
   }();
   return made;
 }
 
+/// What is written, and the file that is then read.
+struct Kind {
+  const char *written, *read;
+  bool is_solution = false;
+};
+constexpr std::array<Kind, 8> kinds{{{"scene.obj", "scene.obj"},
+                                     {"scene.gltf", "scene.gltf"},
+                                     {"scene.glb", "scene.glb"},
+                                     {"solution.glb", "solution.glb", true},
+                                     {"solution.ply", "solution.ply", true},
+                                     {"room_z_up.mtl", "room_z_up.obj"},
+                                     {"room.bin", "room.gltf"},
+                                     {"wood.png", "room.obj"}}};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  static constexpr std::array names{"scene.obj", "scene.gltf", "scene.glb", "solution.glb", "solution.ply", "scene.mtl"};
-  const std::size_t kind = data[0] % names.size();
-  const auto path = directory() / names[kind];
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
+  const Kind& kind = kinds[data[0] % kinds.size()];
+  std::ofstream(directory() / kind.written, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
   try {
-    if (kind == 3 || kind == 4) (void)alvor::read_solution_file(path);
-    else if (kind == 5)
-      std::ofstream(directory() / "scene.obj") << "mtllib scene.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
-    if (kind < 3 || kind == 5) (void)alvor::read_scene_file(kind == 5 ? directory() / "scene.obj" : path);
+    if (kind.is_solution) (void)alvor::read_solution_file(directory() / kind.read);
+    else (void)alvor::read_scene_file(directory() / kind.read);
   } catch (const alvor::SceneFileError&) {
   } catch (const alvor::SolutionFileError&) {}
   return 0;

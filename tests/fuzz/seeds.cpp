@@ -69,7 +69,7 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
   for (const Detail detail : {Detail::exact, Detail::display})
     write(directory / "frame" / (detail == Detail::exact ? "exact" : "display"), frames_of(log, detail));
   write(directory / "watch" / "ordinary", std::string("\1\3\7\0\1\3\5\0\1\3\5\1\0\2\3\5\1\6\0\x09\1\3", 22));
-  const std::string kinds[] = {".obj", ".gltf", ".glb", "solution.glb", ".ply", ".mtl"};
+  const std::string kinds[] = {".obj", ".gltf", ".glb", "solution.glb", ".ply", ".mtl", ".bin", ".png"};
   for (char* file : files)
     for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
       if (!std::string_view(file).ends_with(kinds[kind])) continue;
