@@ -24,7 +24,7 @@ std::vector<std::uint32_t> welded_ring(const Scene& scene, const Face& face, std
 
 /// The ring from its lowest vertex on: equal for equal faces, whichever corner they begin with.
 std::vector<std::uint32_t> from_lowest(std::vector<std::uint32_t> ring) {
-  std::ranges::rotate(ring, std::ranges::min_element(ring));
+  std::rotate(ring.begin(), std::ranges::min_element(ring), ring.end());
   return ring;
 }
 

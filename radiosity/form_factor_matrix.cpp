@@ -163,7 +163,8 @@ class FormFactorRows::Pairs {
     }
     std::vector<MatrixEntry> entries;
     for (std::uint32_t to = 0; to < all.size(); ++to)
-      if (all[to].value > 0 || all[to].error_bound > 0) entries.push_back({to, std::min(1.0, all[to].value), all[to].error_bound});
+      if (all[to].value > 0 || all[to].error_bound > 0)
+        entries.push_back({to, std::min(1.0, all[to].value), all[to].error_bound});
     keep_to_one(entries);
     return entries;
   }
@@ -204,8 +205,10 @@ class FormFactorRows::Pairs {
       for (Shadowed& pair : pairs) pair.found = followed(from, pair);
       return;
     }
-    const auto common = std::ranges::partition(pairs, [&](const Shadowed& pair) { return is_small(*pair.to, from); });
-    for (Shadowed& pair : std::span(pairs).first(pairs.size() - common.size())) pair.found = from_target(from, pair);
+    const auto end_of_small =
+        std::partition(pairs.begin(), pairs.end(), [&](const Shadowed& pair) { return is_small(*pair.to, from); });
+    const std::span<Shadowed> small(pairs.begin(), end_of_small), common(end_of_small, pairs.end());
+    for (Shadowed& pair : small) pair.found = from_target(from, pair);
     for (int level = 0; level <= most_levels; ++level) {
       const auto parts = parts_of(from.polygon.corners(), level);
       double worst = 0;

@@ -3,17 +3,21 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
 
 namespace alvor {
 
 namespace {
 
-constexpr double start_edge = 1.0 / 6;        // of the extent: no patch of the first mesh is longer
-constexpr double start_area = 1e-3;           // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
-constexpr double small_area = 2e-5;           // of the scene's: roots below begin with small rows
-constexpr std::size_t most_one_by_one = 12;   // emitters
-constexpr std::size_t parts_shown = 8;        // of a scene with more
-constexpr double marked_share = 0.9;          // of the squared error, per pass
+constexpr double start_edge = 1.0 / 6;       // of the extent: no patch of the first mesh is longer
+constexpr double start_area = 1e-3;          // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+constexpr double small_area = 2e-5;          // of the scene's: roots below begin with small rows
+constexpr std::size_t most_one_by_one = 12;  // emitters
+constexpr std::size_t parts_shown = 8;       // of a scene with more
+constexpr double marked_share = 0.9;         // of the squared error, per pass
+constexpr std::size_t parts_of_first_light = 16;
 constexpr std::size_t rows_per_batch = 8192;  // between which a solve can be interrupted and go on later
 
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
@@ -22,6 +26,24 @@ double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   for (int e = 0; e < shape.corner_count; ++e)
     longest = std::max(longest, length(corners[(e + 1) % shape.corner_count] - corners[e]));
   return longest;
+}
+
+/// Sorts patches so that any first part of them is spread over the scene and holds much of its area: one patch of each face
+/// first, and these by chance, large ones sooner (weighted sampling without replacement, Efraimidis and Spirakis 2006). The order
+/// of the faces is that of storeys and rooms.
+void spread_out(const BaseMesh& mesh, const PatchForest& forest, std::vector<NodeIndex>& patches) {
+  std::vector<std::tuple<bool, double, NodeIndex>> order;
+  order.reserve(patches.size());
+  std::uint32_t face_before = ~0u;
+  for (const NodeIndex patch : patches) {
+    const PatchId id = forest.id(patch);
+    const bool is_later = id.root_face() == face_before;
+    face_before = id.root_face();
+    const double chance = (static_cast<double>(mix_bits(id.bits()) >> 11) + 0.5) * 0x1p-53;
+    order.emplace_back(is_later, -std::log(chance) / area_of(mesh, forest.shape(patch)), patch);
+  }
+  std::ranges::sort(order);
+  std::ranges::transform(order, patches.begin(), [](const auto& each) { return std::get<NodeIndex>(each); });
 }
 
 }  // namespace
@@ -98,14 +120,23 @@ void SolveState::fit_to_nodes() {
   }
 }
 
-void SolveState::trace_new_rows(const std::function<void()>& after_each) {
-  if (!add_wanted_rays(after_each)) return;
-  for (auto rows = untraced_rows(); !rows.empty(); rows = untraced_rows())
-    for (std::span<const NodeIndex> left = rows; !left.empty(); left = left.subspan(std::min(rows_per_batch, left.size()))) {
-      if (!trace(left.first(std::min(rows_per_batch, left.size())))) return;
+bool SolveState::trace_new_rows(const std::function<void()>& after_each, Rows which) {
+  if (!add_wanted_rays(after_each)) return false;
+  std::size_t left_over = which == Rows::all ? std::numeric_limits<std::size_t>::max()
+                                             : std::max(rows_per_batch, row_forest_.leaf_count() / parts_of_first_light);
+  for (auto rows = untraced_rows(); !rows.empty(); rows = untraced_rows()) {
+    if (left_over == 0) return true;
+    if (rows.size() > left_over) spread_out(mesh_, row_forest_, rows);
+    for (std::span<const NodeIndex> left = std::span(rows).first(std::min(left_over, rows.size())); !left.empty();) {
+      const std::size_t count = std::min(rows_per_batch, left.size());
+      if (!trace(left.first(count))) return false;
+      left = left.subspan(count);
+      left_over -= count;
       after_each();
     }
+  }
   if (has_rows() && options_.form_factors == FormFactorMethod::analytic) make_rows_exact();
+  return false;
 }
 
 std::vector<NodeIndex> SolveState::untraced_rows() const {
@@ -162,37 +193,19 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows_[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
 
-namespace {
-
-/// Sorts leaves so that any first part of them is spread over the scene: one leaf of each face first, and in no order of the
-/// faces, which is that of storeys and rooms.
-void spread(const PatchForest& forest, std::vector<NodeIndex>& leaves) {
-  std::vector<std::pair<std::uint64_t, NodeIndex>> order;
-  constexpr std::uint64_t later = std::uint64_t{1} << 63;
-  std::uint32_t face_before = ~0u;
-  for (const NodeIndex leaf : leaves) {
-    const PatchId id = forest.id(leaf);
-    const bool is_first = id.root_face() != face_before;
-    face_before = id.root_face();
-    order.emplace_back((mix_bits(id.bits()) & ~later) | (is_first ? 0 : later), leaf);
-  }
-  std::ranges::sort(order);
-  std::ranges::transform(order, leaves.begin(), &std::pair<std::uint64_t, NodeIndex>::second);
-}
-
-}  // namespace
-
-std::vector<Receiver> SolveState::unlit_receivers(std::vector<NodeIndex>& nodes) const {
+std::vector<NodeIndex> SolveState::unlit_leaves() const {
   std::vector<NodeIndex> leaves = leaf_forest_.leaves();
   std::erase_if(leaves,
                 [&](NodeIndex leaf) { return direct_is_known_[leaf] || !plan_.may_be_lit(leaf_forest_.id(leaf).root_face()); });
-  spread(leaf_forest_, leaves);
+  return leaves;
+}
+
+std::vector<Receiver> SolveState::receivers_of(std::span<const NodeIndex> leaves) const {
   std::vector<Receiver> receivers;
   for (const NodeIndex leaf : leaves) {
     const NodeIndex row = row_of(leaf_forest_.id(leaf));
     const bool same = row_forest_.id(row) == leaf_forest_.id(leaf);
     const auto none = static_cast<std::uint16_t>(rows_[row].is_hidden() ? 0xffff : 0);
-    nodes.push_back(leaf);
     receivers.push_back({leaf_forest_.id(leaf), leaf_forest_.shape(leaf), same ? rows_[row].hidden_origins : none});
   }
   return receivers;
@@ -200,8 +213,14 @@ std::vector<Receiver> SolveState::unlit_receivers(std::vector<NodeIndex>& nodes)
 
 // Few emitters light the scene one after the other, many light one part of it after the other.
 void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
-  std::vector<NodeIndex> nodes;
-  const std::vector<Receiver> receivers = unlit_receivers(nodes);
+  std::vector<NodeIndex> nodes = unlit_leaves();
+  const std::size_t unlit = nodes.size();
+  std::erase_if(nodes, [&](NodeIndex leaf) {
+    const NodeIndex row = row_of(leaf_forest_.id(leaf));
+    return !row_is_traced_[row] && may_be_lit(row);
+  });
+  spread_out(mesh_, leaf_forest_, nodes);
+  const std::vector<Receiver> receivers = receivers_of(nodes);
   std::vector<DirectLight> light(nodes.size());
   const ShadowNeeds needs{plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)};
   const auto show = [&](std::size_t first, std::size_t count, double power, bool is_all) {
@@ -210,17 +229,19 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
       direct_is_known_[nodes[n]] = is_all;
       if (!is_lit_[nodes[n]]) show_on_whole_face(nodes[n]);
     }
-    waiting_power_ = std::max(0.0, waiting_power_ - power);
+    const double share = unlit > 0 ? static_cast<double>(count) / static_cast<double>(unlit) : 1;
+    waiting_power_ = std::max(0.0, waiting_power_ - share * power);
     after_each();
   };
   if (light_tree_) {
-    const std::size_t step = receivers.size() / parts_shown + 1;
+    const double waiting = waiting_power_;
+    const std::size_t step = unlit / parts_shown + 1;
     for (std::size_t first = 0; first < receivers.size(); first += step) {
       const std::size_t count = std::min(step, receivers.size() - first);
       add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
                        std::span(light).subspan(first, count), needs);
       if (budget_.is_out()) return;
-      show(first, count, emitted_power_ * static_cast<double>(count) / static_cast<double>(receivers.size()), true);
+      show(first, count, waiting, true);
     }
   } else {
     for (const Emitter& emitter : emitters_) {
@@ -230,7 +251,7 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     }
     if (emitters_.empty()) show(0, nodes.size(), 0, true);
   }
-  waiting_power_ = 0;
+  if (nodes.size() == unlit) waiting_power_ = 0;
 }
 
 /// Until the other leaves of the face have their own light they show that of this one.

@@ -32,10 +32,15 @@ class SolveState {
   double emitted_power() const { return emitted_power_; }
   std::size_t leaf_count() const { return leaf_forest_.leaf_count(); }
 
-  /// Adds the rays that refine() asked for, and traces the rows that are not. Until it is done, `after_each` is called now and
-  /// then, where save() may be. Returns early where the budget is out; called again, it goes on from there.
-  void trace_new_rows(const std::function<void()>& after_each = [] {});
-  /// The same; what direct_ holds may then be shown.
+  /// How many of the rows that are not traced yet.
+  enum class Rows { all, a_part };
+  /// Adds the rays that refine() asked for, and traces rows that are not: all, or of many a part that is spread over the scene.
+  /// Until it is done, `after_each` is called now and then, where save() may be. Returns early where the budget is out; called
+  /// again, it goes on from there. Returns whether a part was traced and others are left.
+  bool trace_new_rows(
+      const std::function<void()>& after_each = [] {}, Rows which = Rows::all);
+  /// Adds direct light to the leaves whose rows are traced, calling `after_each` as above; what leaf_values() says may then be
+  /// shown.
   void add_new_direct_light(const std::function<void()>& after_each);
   /// Sets up the exchange of light; what the previous pass found carries over.
   void begin_exchange();
@@ -107,7 +112,8 @@ class SolveState {
   bool rows_tell_what_is_lost() const;
   void find_hit_leaves(NodeIndex row);
   void show_on_whole_face(NodeIndex leaf);
-  std::vector<Receiver> unlit_receivers(std::vector<NodeIndex>& nodes) const;
+  std::vector<NodeIndex> unlit_leaves() const;
+  std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   LightByLeaf radiosity() const;
   /// Otherwise rows are there to tell what is hidden, and no light goes along them.

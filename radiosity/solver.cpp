@@ -124,14 +124,7 @@ class Run {
 
   /// False if it was stopped: then the last published step stands.
   bool pass() {
-    state_.trace_new_rows([this] { save_if_due(); });
-    if (must_stop()) return false;
-    state_.add_new_direct_light([this] {
-      ++is_.shots;
-      if (is_.passes == 0 && !must_stop()) publish_if_due();
-      save_if_due();
-    });
-    if (must_stop()) return false;
+    if (!light()) return false;
     state_.begin_exchange();
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
     is_.error = state_.estimate();
@@ -139,6 +132,23 @@ class Run {
     publish();
     ++is_.passes;
     return true;
+  }
+
+  /// Traces rows and adds direct light: in the first pass part by part, so that all of the scene soon has some. False if it was
+  /// stopped.
+  bool light() {
+    bool is_more = true;
+    while (is_more && !must_stop()) {
+      is_more =
+          state_.trace_new_rows([this] { save_if_due(); }, is_.passes == 0 ? SolveState::Rows::a_part : SolveState::Rows::all);
+      if (must_stop()) return false;
+      state_.add_new_direct_light([this] {
+        ++is_.shots;
+        if (is_.passes == 0 && !must_stop()) publish_if_due();
+        save_if_due();
+      });
+    }
+    return !must_stop();
   }
 
   /// The last pass goes on to where rounding begins, if it gets there: gathering is cheap.

@@ -14,6 +14,7 @@
 #include "client/render.h"
 #include "client/stage.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -51,6 +52,8 @@ std::string place_text(Vec3 p) {
 
 /// A camera that somebody chose may stand inside a wall, or look away from everything.
 void warn_of_black_view(const DisplayMesh& mesh, const Camera& camera) {
+  if (std::ranges::all_of(mesh.radiosity, &RgbF::is_zero))
+    return warn(std::array{std::string("the solution is dark: no surface has any light")});
   const Stage stage(mesh);
   bool sees_light = false;
   stage.glance(camera, [&](const Seen& seen) { sees_light = sees_light || !stage.radiosity(seen).is_zero(); });

@@ -65,6 +65,30 @@ TEST(DisplayMesh, TheSidesOfATwoSidedFaceLieApartAndNoFartherThanAPixelShows) {
   EXPECT_GT(back, 4);
 }
 
+TEST(DisplayMesh, TheFoldsOfACurtainStayClosed) {
+  Scene scene;
+  scene.materials.push_back({"curtain", {}, {0.5, 0.5, 0.5}, true});
+  const std::array<Vec3, 4> rod{{{0, 0, 0}, {1, 0, 0.5}, {2, 0, -0.3}, {3, 0, 0.4}}};
+  const Vec3 fall{0, 2, 0};
+  for (int n = 0; n < 3; ++n) test::add_polygon(scene, {rod[n], rod[n + 1], rod[n + 1] + fall, rod[n] + fall});
+  const BaseMesh mesh(scene);
+  const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{1, 1, 1}; }));
+  // On each fold and side the vertices of both faces lie in one place.
+  for (const Vec3& fold : {rod[1], rod[2]}) {
+    int left = 0, right = 0;
+    std::set<std::pair<int, int>> places;
+    for (std::size_t v = 0; v < display.positions.size(); ++v) {
+      const Vec3 from_fold = display.positions[v] - fold;
+      if (std::hypot(from_fold.x, from_fold.z) > 0.01) continue;
+      places.insert({static_cast<int>(std::lround(from_fold.x * 1e9)), static_cast<int>(std::lround(from_fold.z * 1e9))});
+      ++(display.normals[v].z > 0 ? left : right);
+    }
+    EXPECT_GT(left, 3);
+    EXPECT_GT(right, 3);
+    EXPECT_EQ(places.size(), 2u);
+  }
+}
+
 TEST(DisplayMesh, UniformIrradianceStaysUniform) {
   const BaseMesh mesh(test::furnace(2, 0.5));
   const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{4, 4, 4}; }));
