@@ -44,11 +44,11 @@ Convention convention_of(const aiScene& source, const std::string& extension) {
   if (extension == ".stl" || extension == ".3ds" || extension == ".ply") convention.up = UpAxis::z;
   if (extension == ".fbx" && source.mMetaData) {
     int up = 1;
-    double centimetres = 1;
+    float centimetres = 1;  // the type that Assimp keeps it in: Get() refuses another
     source.mMetaData->Get("UpAxis", up);
     source.mMetaData->Get("UnitScaleFactor", centimetres);
     convention.up = up == 2 ? UpAxis::z : UpAxis::y;
-    if (centimetres > 0) convention.metres_per_unit = centimetres / 100;
+    if (centimetres > 0) convention.metres_per_unit = double{centimetres} / 100;
   }
   return convention;
 }
@@ -188,8 +188,11 @@ void check_ply_header(std::istream& stream, std::uintmax_t file_size) {
 }
 
 void refuse_what_assimp_cannot_survive(std::istream& stream, std::uintmax_t file_size) {
-  std::string magic;
-  if (std::getline(stream, magic) && (magic == "ply" || magic == "ply\r")) check_ply_header(stream, file_size);
+  std::string first;
+  std::getline(stream, first);
+  first.resize(std::min<std::size_t>(first.size(), 3));  // Assimp looks no further, in capitals or not
+  std::ranges::transform(first, first.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (first == "ply") check_ply_header(stream, file_size);
 }
 
 /// No post-processing: every step that joins, sorts or triangulates loses the file's faces or their order.

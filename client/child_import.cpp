@@ -85,6 +85,7 @@ void send(Pipe& pipe, const SceneFile& file) {
 }
 
 [[noreturn]] void run_child(Pipe& pipe, const std::function<SceneFile()>& import) {
+  pipe.close_end(0);  // so that writing fails, and the child ends, when the parent is gone
   const rlimit cpu{most_cpu_seconds, most_cpu_seconds}, core{0, 0};
   setrlimit(RLIMIT_CPU, &cpu);
   setrlimit(RLIMIT_CORE, &core);
@@ -123,16 +124,19 @@ std::optional<SceneFile> receive(Pipe& pipe) {
 
 std::string end_of(int status) {
   if (!WIFSIGNALED(status)) return "the library that reads this format gave up";
-  if (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)
-    return "the library that reads this format did not come to an end";
+  if (WTERMSIG(status) == SIGXCPU) return "the library that reads this format did not come to an end";
+  if (WTERMSIG(status) == SIGKILL) return "the library that reads this format was ended: it took too long or too much memory";
   return "the library that reads this format crashed (" + std::string(strsignal(WTERMSIG(status))) + ")";
 }
 
-/// Waits for a child, whatever happens to what it says.
+/// Ends with its child: one that still has something to say is not listened to any more.
 class Child {
  public:
   explicit Child(pid_t process) : process_(process) {}
-  ~Child() { wait(); }
+  ~Child() {
+    if (process_ > 0) kill(process_, SIGKILL);
+    wait();
+  }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
@@ -157,7 +161,6 @@ SceneFile import_in_child(const std::function<SceneFile()>& import) {
   pipe.close_end(1);
   Child child(process);
   if (auto file = receive(pipe)) return *std::move(file);
-  pipe.close_end(0);
   throw ImportError("file", end_of(child.wait()));
 }
 

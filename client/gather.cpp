@@ -14,8 +14,9 @@ namespace alvor {
 namespace {
 
 constexpr std::uint32_t rounds = 64, rays_per_round = 64;
-/// Shadow rays, shared among emitting triangles by what each could bring at most; each has at least one.
+/// Shadow rays, shared among emitting triangles by what each could bring at most; each has some.
 constexpr double shadow_rays = 2048;
+constexpr std::uint32_t least_shadow_rays = 4;
 constexpr std::uint32_t trial_rays = 128;
 /// Shadow rays end this far before the emitter, of their length: float32 would meet it.
 constexpr double before_emitter = 1e-5;
@@ -31,8 +32,8 @@ struct Unblocked {
 
 }  // namespace
 
-Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster)
-    : mesh_(mesh), caster_(caster), is_emitter_(mesh.triangles.size()) {
+Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption)
+    : mesh_(mesh), caster_(caster), medium_{absorption}, is_emitter_(mesh.triangles.size()) {
   const auto vertex_emits = [&](std::uint32_t vertex) { return emits(mesh.radiosity[vertex], mesh.irradiance[vertex]); };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     is_emitter_[t] = std::ranges::any_of(mesh.triangles[t], vertex_emits);
@@ -73,7 +74,7 @@ GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_
   GatheredIrradiance sum;
   double variance = 0;
   for (const auto& [triangle, most] : unblocked) {
-    const auto rays = static_cast<std::uint32_t>(1 + shadow_rays * most.mean() / total);
+    const auto rays = least_shadow_rays + static_cast<std::uint32_t>(shadow_rays * most.mean() / total);
     const VisibleShare share = visible_share(point, normal, triangle, rays, stream);
     sum.irradiance += share.mean * most;
     variance += most.mean() * most.mean() * share.variance;
@@ -87,23 +88,28 @@ Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uin
   PathRandom random(stream, direct, triangle);
   const EvenPairs places(random);
   const Vec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2), area = cross(b - a, c - a);
-  // The kernel at each place, cos cos / r2 up to a factor, and whether the point sees it: a ratio estimate of what is seen.
-  double all = 0, seen = 0, all_squared = 0, seen_squared = 0;
+  // The kernel at each place, cos cos / r2 up to a factor, and how much of the light gets here: a ratio estimate of both.
+  Rgb arriving;
+  double all = 0, all_squared = 0, product = 0, arriving_squared = 0, used = 0;
   for (std::uint32_t n = 0; n < rays; ++n) {
     const auto [u, v] = places[n];
     const double edge = std::sqrt(u);
     const Vec3 place = a + edge * (1 - v) * (b - a) + edge * v * (c - a), way = place - point;
     const double kernel = std::max(0.0, dot(normal, way)) * std::max(0.0, -dot(area, way)) / std::pow(dot(way, way), 2);
     if (!(kernel > 0)) continue;
+    ++used;
     all += kernel;
     all_squared += kernel * kernel;
     if (caster_.is_blocked(point, lerp(place, point, before_emitter))) continue;
-    seen += kernel;
-    seen_squared += kernel * kernel;
+    const Rgb light = kernel * medium_.transmittance(length(way));
+    arriving += light;
+    product += kernel * light.mean();
+    arriving_squared += light.mean() * light.mean();
   }
-  if (all == 0) return {};
-  const double mean = seen / all;
-  return {mean, ((1 - 2 * mean) * seen_squared + mean * mean * all_squared) / (all * all)};
+  if (used < 2) return {{1, 1, 1}, 0.25};  // a sliver above the horizon
+  const Rgb mean = arriving * (1 / all);
+  const double m = mean.mean();
+  return {mean, std::max(0.0, arriving_squared - 2 * m * product + m * m * all_squared) / (all * all) * used / (used - 1)};
 }
 
 GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream) const {
@@ -117,7 +123,7 @@ GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::u
       const auto hit = caster_.cast(point, direction);
       if (!hit || is_emitter_[hit->triangle]) continue;
       const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
-      if (dot(area, direction) < 0) sum += radiosity(hit->triangle, hit->u, hit->v);
+      if (dot(area, direction) < 0) sum += medium_.transmittance(hit->distance) * radiosity(hit->triangle, hit->u, hit->v);
     }
     estimate.add(sum * (1.0 / rays_per_round));
   }

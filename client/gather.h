@@ -2,6 +2,7 @@
 // Irradiance in free air, from a finished solution.
 
 #include "meshing/display_mesh.h"
+#include "radiosity/medium.h"
 #include "radiosity/visibility.h"
 
 #include <cstdint>
@@ -20,8 +21,8 @@ struct GatheredIrradiance {
 /// cosine (Nusselt's analogy). Borrows the mesh and its caster. Immutable; safe from any thread.
 class Gatherer {
  public:
-  /// Requires: `caster` is of the mesh's triangles.
-  Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster);
+  /// `absorption` is of the medium that fills the scene, 1/m per band. Requires: `caster` is of the mesh's triangles.
+  Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption);
 
   /// The irradiance of a small surface at `point` that looks along `normal` (unit). `stream` names its random numbers. Returns
   /// nothing where most of what can be seen from the point, in all directions, are backs of surfaces, or nothing at all: it lies
@@ -29,9 +30,10 @@ class Gatherer {
   std::optional<GatheredIrradiance> gather(Vec3 point, Vec3 normal, std::uint64_t stream) const;
 
  private:
-  /// Of what a triangle brings where nothing stands between: the share that arrives, and the variance of this estimate.
+  /// The share that arrives of what a triangle would bring if nothing stood between, by band, and the variance of the estimate.
   struct VisibleShare {
-    double mean = 0, variance = 0;
+    Rgb mean;
+    double variance = 0;  ///< of mean.mean()
   };
 
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;
@@ -43,6 +45,7 @@ class Gatherer {
 
   const DisplayMesh& mesh_;
   const TriangleCaster& caster_;
+  Medium medium_;
   std::vector<std::uint32_t> emitters_;  ///< triangles
   std::vector<bool> is_emitter_;         ///< by triangle
 };

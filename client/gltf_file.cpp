@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,7 @@ constexpr int max_depth = 200;
 
 /// Extensions that change neither shape nor place, and so may be required of us.
 bool is_harmless(const std::string& extension) {
+  if (extension == "KHR_materials_pbrSpecularGlossiness") return false;  // has a reflectance of its own
   return extension.starts_with("KHR_materials_") || extension.starts_with("KHR_texture_") ||
          extension.starts_with("EXT_texture_") || extension == "KHR_mesh_quantization" || extension == "KHR_lights_punctual";
 }
@@ -81,6 +83,18 @@ json parse(std::string_view text) {
   }
 }
 
+/// Counts what is read for one scene: a few bytes of JSON can name a large file any number of times.
+class ByteBudget {
+ public:
+  void spend(std::size_t bytes, const std::string& place) {
+    if (bytes > left_) throw ImportError(place, "is beyond the 4 GB that the files beside a scene may have");
+    left_ -= bytes;
+  }
+
+ private:
+  std::size_t left_ = std::size_t{1} << 32;
+};
+
 bool is_data_uri(const std::string& uri) { return uri.starts_with("data:"); }
 
 std::string uri_of(const json& element) {
@@ -92,7 +106,7 @@ std::string uri_of(const json& element) {
 class Buffers {
  public:
   /// Reads what the JSON's buffers name, and puts the number of each in the place of its URI.
-  Buffers(json& gltf, std::optional<std::string_view> binary, const std::filesystem::path& folder) {
+  Buffers(json& gltf, std::optional<std::string_view> binary, const std::filesystem::path& folder, ByteBudget& budget) {
     const auto buffers = gltf.find("buffers");
     if (buffers == gltf.end() || !buffers->is_array()) return;
     for (json& buffer : *buffers) {
@@ -103,6 +117,7 @@ class Buffers {
       if (!uri.empty()) bytes_.back() = read_file_beside(folder, uri, place);
       else if (binary && bytes_.size() == 1) bytes_.back() = *binary;
       else throw ImportError(place, "names no file");
+      budget.spend(bytes_.back().size(), place);
       cut_to_length(bytes_.back(), buffer, place + (uri.empty() ? "" : " '" + uri + "'"));
       buffer["uri"] = std::to_string(bytes_.size() - 1);
     }
@@ -130,6 +145,7 @@ class Buffers {
     if (needed > bytes.size())
       throw ImportError(place, "is too short: " + std::to_string(bytes.size()) + " of " + std::to_string(needed) + " bytes");
     bytes.resize(needed);
+    bytes.shrink_to_fit();
   }
 
   const std::string* find(const std::string& name) const {
@@ -150,11 +166,23 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
-void read_images(tinygltf::Model& model, const std::filesystem::path& folder) {
-  for (std::size_t i = 0; i < model.images.size(); ++i) {
-    tinygltf::Image& image = model.images[i];
+/// The images that materials take a colour from. Others, of bumps or shine, may be missing.
+std::set<int> colour_images(const tinygltf::Model& model) {
+  std::set<int> images;
+  for (const tinygltf::Material& material : model.materials)
+    for (const int texture : {material.pbrMetallicRoughness.baseColorTexture.index, material.emissiveTexture.index})
+      if (texture >= 0 && texture < static_cast<int>(model.textures.size()))
+        images.insert(model.textures[static_cast<std::size_t>(texture)].source);
+  return images;
+}
+
+void read_images(tinygltf::Model& model, const std::filesystem::path& folder, ByteBudget& budget) {
+  for (const int i : colour_images(model)) {
+    if (i < 0 || i >= static_cast<int>(model.images.size())) continue;
+    tinygltf::Image& image = model.images[static_cast<std::size_t>(i)];
     if (image.bufferView >= 0 || image.uri.empty() || !image.image.empty()) continue;
-    const std::string bytes = read_file_beside(folder, image.uri, "image " + std::to_string(i));
+    const std::string place = "image " + std::to_string(i), bytes = read_file_beside(folder, image.uri, place);
+    budget.spend(bytes.size(), place);
     image.image.assign(bytes.begin(), bytes.end());
   }
 }
@@ -164,7 +192,8 @@ void read_images(tinygltf::Model& model, const std::filesystem::path& folder) {
 tinygltf::Model load_gltf(std::string_view content, const std::filesystem::path& folder) {
   const Container container = container_of(content);
   json gltf = parse(container.text);
-  Buffers buffers(gltf, container.binary, folder);
+  ByteBudget budget;
+  Buffers buffers(gltf, container.binary, folder, budget);
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);
   loader.SetFsCallbacks(buffers.callbacks());
@@ -174,7 +203,7 @@ tinygltf::Model load_gltf(std::string_view content, const std::filesystem::path&
   if (!loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), ""))
     throw ImportError("file", error.empty() ? "is not glTF" : error);
   refuse_unknown_extensions(model);
-  read_images(model, folder);
+  read_images(model, folder, budget);
   return model;
 }
 

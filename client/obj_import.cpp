@@ -5,6 +5,7 @@
 #include "client/placement.h"
 #include "client/texture_colour.h"
 #include "client/unsupported.h"
+#include "client/whole_file.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE
@@ -48,12 +49,15 @@ class MaterialLibrary : public tinyobj::MaterialReader {
   /// Called by tinyobjloader for each file named by a `mtllib` line.
   bool operator()(const std::string& file, std::vector<tinyobj::material_t>* materials, std::map<std::string, int>* index,
                   std::string*, std::string* error) override {
-    std::error_code ignored;
-    std::ifstream stream(folder_ / file);
-    const bool readable = !file.empty() && !std::filesystem::is_directory(folder_ / file, ignored) && stream;
-    if (readable) load(stream, file, materials, index, error);
-    else if (!file.empty()) missing_.insert(file);
-    return readable;
+    if (file.empty()) return false;
+    try {
+      std::istringstream stream(read_whole_file(folder_ / file));
+      load(stream, file, materials, index, error);
+      return true;
+    } catch (const FileError&) {
+      missing_.insert(file);
+      return false;
+    }
   }
 
   const tinyobj::material_t* find(const std::string& name) const {

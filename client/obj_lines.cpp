@@ -3,6 +3,7 @@
 #include "client/import_error.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -34,12 +35,27 @@ void check_triple(std::string_view keyword, std::string_view rest, const std::st
   }
 }
 
+/// Lines of one material library each, with a backslash before the blanks within its name: of several in one line tinyobjloader
+/// reads only one. A name ends in .mtl: exporters do not quote.
+std::string library_lines(std::string_view names) {
+  std::string text = "mtllib ", lower;
+  for (const char c : names) {
+    const bool is_end = c == ' ' && lower.ends_with(".mtl");
+    if (c == ' ' && !is_end) text.push_back('\\');
+    if (is_end) text.append("\nmtllib ");
+    else text.push_back(c);
+    lower.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  }
+  return text;
+}
+
 /// One blank after the keyword: tinyobjloader takes further ones for a part of names.
 void append_line(std::string& text, std::string_view keyword, std::string_view rest) {
   rest = rest.substr(0, rest.find_last_not_of(blank) + 1);
   rest.remove_prefix(std::min(rest.find_first_not_of(blank), rest.size()));
-  text.append(keyword);
-  if (!rest.empty()) text.append(1, ' ').append(rest);
+  if (keyword == "mtllib") text.append(library_lines(rest));
+  else text.append(keyword);
+  if (keyword != "mtllib" && !rest.empty()) text.append(1, ' ').append(rest);
   text.push_back('\n');
 }
 

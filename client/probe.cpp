@@ -122,11 +122,11 @@ std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const
   return samples;
 }
 
-std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points) {
+std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points, const Rgb& absorption) {
   constexpr double on_surface = 1e-4;  // of the extent
   const double reach = on_surface * extent_of(mesh);
   const TriangleCaster caster(mesh.positions, mesh.triangles);
-  const Gatherer gatherer(mesh, caster);
+  const Gatherer gatherer(mesh, caster, absorption);
   std::vector<ProbeSample> samples(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) {
     samples[n] = on_nearest_surface(mesh, caster, points[n]);

@@ -36,7 +36,9 @@ struct ProbeSample {
 /// Returns one sample per point, in order: on a surface the solution there, interpolated within its triangle; in the air the
 /// irradiance of a small surface that looks along the normal (client/gather.h). Uses all cores; the same points give the same
 /// samples.
-std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points);
+/// `absorption` is of the medium that filled the scene when it was solved, 1/m per band: solution files do not hold it. Requires:
+/// !mesh.positions.empty().
+std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points, const Rgb& absorption = {});
 
 /// Returns for each point, in order, the solution on the nearest surface that faces the same way, however far it is; its distance
 /// is infinite and its values are NaN where there is none.

@@ -26,7 +26,7 @@ struct SceneFileError : std::runtime_error {
 SceneFile read_scene_file(const std::filesystem::path& path);
 
 /// A scene that comes from elsewhere than a file of its own, such as a pipe.
-struct SceneContent {
+struct SceneBytes {
   std::string name;  ///< what errors call it
   std::string bytes;
   std::string extension;         ///< tells the format, in lower case: ".glb"
@@ -35,7 +35,7 @@ struct SceneContent {
 
 /// Reads what read_scene_file would read from a file of these bytes. Throws SceneFileError. Requires:
 /// is_scene_extension(content.extension).
-SceneFile read_scene_content(const SceneContent& content);
+SceneFile read_scene_content(const SceneBytes& content);
 
 /// Returns whether scenes are read from files with this extension, in lower case and with its dot.
 bool is_scene_extension(const std::string& extension);

@@ -1,5 +1,7 @@
 #include "client/texture_colour.h"
 
+#include "client/whole_file.h"
+
 // Its functions stay in this file: libdraco, which Assimp loads, exports functions of the same names.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -13,8 +15,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -23,7 +23,7 @@ namespace alvor {
 
 namespace {
 
-/// A file of some kilobytes can ask for any number of pixels; a gigabyte of decoded ones is more than textures have.
+/// A file of some kilobytes can ask for any number of pixels; 16 384 x 16 384 is more than textures have.
 constexpr std::size_t most_pixels = 1 << 28;
 
 /// IEC 61966-2-1.
@@ -68,11 +68,12 @@ std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded) {
 }
 
 std::optional<Rgb> mean_colour_of_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  std::ifstream stream(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  return mean_colour({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+  try {
+    const std::string bytes = read_whole_file(path);
+    return mean_colour({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
 }
 
 Rgb textured(const Rgb& factor, const std::optional<Rgb>& mean, const std::string& texture, std::vector<std::string>& warnings) {

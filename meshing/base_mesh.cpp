@@ -217,4 +217,19 @@ void BaseMesh::add_backs() {
 
 std::optional<Neighbour> BaseMesh::across(std::uint32_t root, int edge) const { return neighbours_[root][edge]; }
 
+std::vector<std::string> warnings_of(const WeldReport& report) {
+  std::vector<std::string> warnings;
+  const auto warn = [&](std::size_t count, const char* sentence) {
+    if (count > 0) warnings.push_back(std::to_string(count) + sentence);
+  };
+  warn(report.degenerate_faces, " degenerate faces (no area) were left out.");
+  warn(report.split_faces, " polygons were cut up: they have more than four corners, are concave or not planar.");
+  warn(report.non_manifold_faces, " faces share an edge with more than one other: light does not blend across it.");
+  if (const DuplicateFaces& duplicates = report.duplicates; duplicates.count > 0)
+    warnings.push_back(
+        std::to_string(duplicates.count) + " faces lie in the place of others and were left out: the first is face " +
+        std::to_string(duplicates.first) + ", in the place of face " + std::to_string(duplicates.same_place) + ".");
+  return warnings;
+}
+
 }  // namespace alvor

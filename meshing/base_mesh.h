@@ -50,6 +50,9 @@ struct WeldReport {
   DuplicateFaces duplicates;           ///< dropped: in the place of another
 };
 
+/// One sentence each about what welding found odd, faces numbered as in the scene.
+std::vector<std::string> warnings_of(const WeldReport& report);
+
 struct BaseMeshOptions {
   /// Makes one root of two triangles that an exporter cut from a quad, in scenes of triangles only.
   bool join_triangles = true;

@@ -141,7 +141,7 @@ class Triangulation {
     return found->second;
   }
 
-  /// Of a vertex, and of the faces beyond the creases that it lies on.
+  /// The normal of a vertex, and the normals of the faces beyond the creases that it lies on.
   std::vector<Vec3> normals_around(std::uint32_t root, GridPoint p, Vec3 normal) const {
     std::vector<Vec3> normals{normal};
     const auto add = [&](bool is_on_edge, int edge) {
@@ -161,7 +161,7 @@ class Triangulation {
     return normals;
   }
 
-  /// Each side of a two-sided face to its front, all others where they are.
+  /// Returns where a vertex is drawn: one of a two-sided face is moved to the front of its side, others stay.
   Vec3 moved(std::uint32_t root, Vec3 position, std::span<const Vec3> normals) const {
     if (mesh_.roots()[root].twin == RootPatch::no_twin) return position;
     return position + side_offset * mesh_.extent() * miter(normals);

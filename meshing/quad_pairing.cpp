@@ -1,5 +1,7 @@
 #include "meshing/quad_pairing.h"
 
+#include "meshing/polygon.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +12,7 @@ namespace alvor {
 
 namespace {
 
-/// Below the base mesh's own limit of 1e-4, so that it does not cut the quads again.
-constexpr double planar = 5e-5;
+constexpr double planar = 4e-6;               // as meshing/polygon.h keeps whole
 constexpr double max_corner_cosine = 0.9397;  // 20 degrees
 /// Cost of triangles that do not follow each other, in thousandths of the worst corner's cosine.
 constexpr int apart = 250;
@@ -93,10 +94,15 @@ class Pairer {
     const auto corners = outline(triangles_, a, b);
     const std::optional<double> cosine =
         worst_corner({positions_[corners[0]], positions_[corners[1]], positions_[corners[2]], positions_[corners[3]]});
-    if (!cosine || *cosine > max_corner_cosine) return std::nullopt;
+    if (!cosine || *cosine > max_corner_cosine || is_cut_again(corners)) return std::nullopt;
     // In whole thousandths, so that rounding does not decide between equal squares.
     const int cost = static_cast<int>(std::lround(*cosine * 1000)) + (second.face - first.face == 1 ? 0 : apart);
     return Pairing{cost, {a.triangle, b.triangle, corners}};
+  }
+
+  bool is_cut_again(const std::array<std::uint32_t, 4>& corners) const {
+    return pieces_of(std::array{positions_[corners[0]], positions_[corners[1]], positions_[corners[2]], positions_[corners[3]]})
+               .size() > 1;
   }
 
   std::vector<Pairing> best_first() const {

@@ -227,14 +227,14 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     for (std::size_t n = first; n < first + count; ++n) {
       direct_[nodes[n]] = light[n];
       direct_is_known_[nodes[n]] = is_all;
-      if (!is_lit_[nodes[n]]) show_on_whole_face(nodes[n]);
+      if (is_all && !is_lit_[nodes[n]]) show_on_whole_face(nodes[n]);
     }
     const double share = unlit > 0 ? static_cast<double>(count) / static_cast<double>(unlit) : 1;
     waiting_power_ = std::max(0.0, waiting_power_ - share * power);
     after_each();
   };
+  const double waiting = waiting_power_;
   if (light_tree_) {
-    const double waiting = waiting_power_;
     const std::size_t step = unlit / parts_shown + 1;
     for (std::size_t first = 0; first < receivers.size(); first += step) {
       const std::size_t count = std::min(step, receivers.size() - first);
@@ -247,7 +247,7 @@ void SolveState::add_new_direct_light(const std::function<void()>& after_each) {
     for (const Emitter& emitter : emitters_) {
       add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light, needs);
       if (budget_.is_out()) return;
-      show(0, nodes.size(), emitter.power, &emitter == &emitters_.back());
+      show(0, nodes.size(), waiting * emitter.power / emitted_power_, &emitter == &emitters_.back());
     }
     if (emitters_.empty()) show(0, nodes.size(), 0, true);
   }

@@ -32,7 +32,7 @@ class SolveState {
   double emitted_power() const { return emitted_power_; }
   std::size_t leaf_count() const { return leaf_forest_.leaf_count(); }
 
-  /// How many of the rows that are not traced yet.
+  /// Which of the rows that are not traced yet trace_new_rows() is to trace.
   enum class Rows { all, a_part };
   /// Adds the rays that refine() asked for, and traces rows that are not: all, or of many a part that is spread over the scene.
   /// Until it is done, `after_each` is called now and then, where save() may be. Returns early where the budget is out; called

@@ -16,7 +16,7 @@ namespace alvor {
 
 namespace {
 
-constexpr int version = 1;
+constexpr int version = 2;
 constexpr std::int64_t bytes_of_ballast = 4 << 20;  // as much as waits in the write-ahead log at most
 const std::string place = "the server's data directory: ";
 enum Kind { log_of = 0, state_of = 1 };
@@ -66,6 +66,9 @@ std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& dir
         "PRAGMA secure_delete = FAST;");
     const int found = database->execAndGet("PRAGMA user_version").getInt();
     if (found > version) throw std::invalid_argument(at + "was written by a newer version of alvord");
+    if (found == 1)
+      throw std::invalid_argument(at +
+                                  "was written by an older alvord, whose solutions this one cannot read: use another directory");
     SQLite::Transaction change(*database, SQLite::TransactionBehavior::IMMEDIATE);
     if (found == 0) database->exec(schema);
     database->exec("PRAGMA user_version = " + std::to_string(version));

@@ -20,17 +20,7 @@ bool emits(const BaseMesh& mesh) {
 }
 
 void describe_mesh(const BaseMesh& mesh, v1::Scene& facts) {
-  const WeldReport& report = mesh.weld_report();
-  const auto warn = [&](std::size_t count, const char* sentence) {
-    if (count > 0) facts.add_warnings(std::to_string(count) + sentence);
-  };
-  warn(report.degenerate_faces, " degenerate faces (no area) were left out.");
-  warn(report.split_faces, " polygons were cut up: they have more than four corners, are concave or not planar.");
-  warn(report.non_manifold_faces, " faces share an edge with more than one other: light does not blend across it.");
-  if (const DuplicateFaces& duplicates = report.duplicates; duplicates.count > 0)
-    facts.add_warnings(
-        std::to_string(duplicates.count) + " faces lie in the place of others and were left out: the first is face " +
-        std::to_string(duplicates.first) + ", in the place of face " + std::to_string(duplicates.same_place) + ".");
+  for (std::string& warning : warnings_of(mesh.weld_report())) facts.add_warnings(std::move(warning));
   if (!emits(mesh)) facts.add_warnings("No face emits light: the solution will be dark.");
 }
 

@@ -20,7 +20,7 @@ class logger;
 
 namespace alvor {
 
-/// Of those who do not want to be told.
+/// A logger that writes nothing.
 std::shared_ptr<spdlog::logger> silent_logger();
 
 struct SolveStoreOptions {

@@ -49,7 +49,8 @@ void require_face(const FormFactorCommand& command, const Scene& scene, const Fa
     throw Failure(ExitStatus::usage, "face " + std::to_string(face) + ": the scene has " + std::to_string(scene.faces.size()) +
                                          " faces, numbered from 0");
   if (form_factors.faces().pieces(face).empty())
-    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": face " + std::to_string(face) + ": has no area");
+    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": face " + std::to_string(face) +
+                                             ": has no area, or lies in the place of another face");
 }
 
 void run_form_factor(const FormFactorCommand& command) {

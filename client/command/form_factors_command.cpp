@@ -132,6 +132,7 @@ void run_form_factors(const FormFactorsCommand& command) {
   warn(file.warnings);
   const auto start = std::chrono::steady_clock::now();
   const BaseMesh mesh(file.scene, {.join_triangles = false});
+  warn(warnings_of(mesh.weld_report()));
   const FacePolygons faces(file.scene, mesh);
   const Blockers blockers(mesh);
   RowsFile out(command.output.path);

@@ -13,13 +13,13 @@ void add_quiet_option(CLI::App& command);
 /// Leaves stdout to a file that the command writes there: results and notes go to stderr from now on.
 void reserve_stdout();
 
-/// Where goes what was asked for, such as a table or a JSON object: stdout, or stderr after reserve_stdout.
+/// The stream for what was asked for, such as a table or a JSON object: stdout, or stderr after reserve_stdout.
 std::ostream& results();
 
-/// Where remarks on what was done go: where results go; nowhere with --quiet.
+/// The stream for remarks on what was done: that of results(); none with --quiet.
 std::ostream& notes();
 
-/// Where is told how far something has come: stderr; nowhere with --quiet.
+/// The stream for how far something has come: stderr; none with --quiet.
 std::ostream& progress();
 
 /// Throws Failure (bad_scene) if not everything that was written to stdout has arrived: the disk is full, or nobody reads the

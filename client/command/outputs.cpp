@@ -66,8 +66,11 @@ void warn(std::span<const std::string> warnings) {
 }
 
 void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
-  if (!options.report.empty()) write_output(options.report, step_table(followed.mirror.steps()));
+  // What goes to stdout comes last: its reader may have left.
+  const auto write_report = [&] { write_output(options.report, step_table(followed.mirror.steps())); };
+  if (!options.report.empty() && !is_stream(options.report)) write_report();
   write_pictures(options, scene, followed);
+  if (is_stream(options.report)) write_report();
   if (options.json) results() << outcome_json(followed, warnings);
   else print_for_people(options, followed);
   if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));

@@ -1,5 +1,6 @@
 // alvor probe SOLUTION: irradiance and radiosity at given points.
 
+#include "client/command/absorption_option.h"
 #include "client/command/commands.h"
 #include "client/command/input_file.h"
 #include "client/command/output_file.h"
@@ -17,8 +18,9 @@ namespace {
 struct ProbeCommand {
   std::filesystem::path solution;
   std::filesystem::path points;
-  OutputFile output;   ///< not asked for: stdout
-  std::string format;  ///< of a solution from stdin
+  OutputFile output;       ///< not asked for: stdout
+  std::string format;      ///< of a solution from stdin
+  std::string absorption;  ///< three numbers; empty: none
 };
 
 void warn_of_enclosed(std::span<const ProbeSample> samples) {
@@ -35,7 +37,9 @@ void run_probe(const ProbeCommand& command) {
   require_inputs({{InputKind::solution, command.solution}, {InputKind::points, command.points}}, command.format);
   require_output(command.output, table_kind, "--output");
   const std::vector<ProbePoint> points = read_asked_points(command.points);
-  const std::vector<ProbeSample> samples = probe(read_solution(command.solution, command.format), points);
+  Scene medium;
+  take_absorption(command.absorption, medium);
+  const std::vector<ProbeSample> samples = probe(read_solution(command.solution, command.format), points, medium.absorption);
   warn_of_enclosed(samples);
   write_output(command.output.path.empty() ? "-" : command.output.path, samples_csv(samples));
 }
@@ -48,6 +52,7 @@ void add_probe_command(CLI::App& app) {
   command.add_option("solution", options->solution, "What solve wrote; - is stdin")->required()->type_name("SOLUTION");
   add_format_option(command, options->format);
   command.add_option("--points", options->points, "Lines x,y,z,nx,ny,nz; metres; - is stdin")->required()->type_name("P.csv");
+  add_absorption_option(command, options->absorption);
   add_output_option(command, options->output, table_kind, "Write here instead of to stdout: .csv or .txt")->type_name("OUT.csv");
   command.callback([options] { run_probe(*options); });
 }

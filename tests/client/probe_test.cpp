@@ -80,6 +80,35 @@ TEST(Probe, GathersPastWhatStandsInTheLight) {
   EXPECT_NEAR(sample.irradiance.g, expected, 4 * sample.standard_error);
 }
 
+TEST(Probe, AMediumDimsWhatIsGathered) {
+  // All that is seen from the middle of the floor's air is at least 1 m away, and at most the room's diagonal.
+  const auto clear = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}})[0];
+  const auto dim = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}}, {0, 1, 2})[0];
+  EXPECT_NEAR(dim.irradiance.r, clear.irradiance.r, 1e-6);
+  EXPECT_LT(dim.irradiance.g, std::exp(-1.0) * clear.irradiance.g);
+  EXPECT_GT(dim.irradiance.g, std::exp(-std::sqrt(3.0)) * clear.irradiance.g);
+  EXPECT_LT(dim.irradiance.b, std::exp(-2.0) * clear.irradiance.b);
+}
+
+TEST(Probe, TheStandardErrorIsThatOfTheSpread) {
+  // The ceiling's light comes through slats, in many small triangles.
+  DisplayMesh room = lit_room(2);
+  for (int n = 0; n < 8; ++n) {
+    add_wall(room, {0.25 * n, 1.5, 0}, {0.12, 0, 0}, {0, 0, 2}, 1, [](const Vec3&) { return grey(0); });
+    add_wall(room, {0.25 * n, 1.5, 0}, {0, 0, 2}, {0.12, 0, 0}, 1, [](const Vec3&) { return grey(0); });
+  }
+  std::vector<ProbePoint> points;
+  for (int n = 0; n < 100; ++n) points.push_back({{1 + 1e-6 * n, 1, 1}, {0, 1, 0}});
+  double sum = 0, squares = 0, told = 0;
+  for (const ProbeSample& sample : probe(room, points)) {
+    const double value = (double{sample.irradiance.r} + double{sample.irradiance.g} + double{sample.irradiance.b}) / 3;
+    sum += value, squares += value * value, told += sample.standard_error / 100;
+  }
+  const double spread = std::sqrt((squares - sum * sum / 100) / 99);
+  EXPECT_GT(told, 0.5 * spread);
+  EXPECT_LT(told, 4 * spread);
+}
+
 TEST(Probe, SaysNanOutsideTheRoom) {
   const auto samples = probe(lit_room(2), std::vector<ProbePoint>{{{1, 3, 1}, {0, -1, 0}}, {{1, 1.9, 1}, {0, -1, 0}}});
   EXPECT_EQ(samples[0].place, ProbePlace::enclosed);

@@ -111,6 +111,13 @@ TEST(SceneFile, ATextureCountsByItsMeanAndAMissingOneNotAtAll) {
                                       "material 'lost': texture 'nowhere.png' cannot be read and is left out"}));
 }
 
+TEST(SceneFile, NamesOfMaterialLibrariesMayHoldBlanks) {
+  const SceneFile file = read_scene_file(good_files / "two words.obj");
+  EXPECT_EQ(file.warnings, std::vector<std::string>());
+  expect_near(file.scene.materials[0].reflectance, {0.125, 0.25, 0.5});
+  expect_near(file.scene.materials[1].reflectance, {0.5, 0.25, 0.125});
+}
+
 TEST(SceneFile, AMissingMaterialLibraryLeavesGreyFaces) {
   const SceneFile file = read_scene_file(good_files / "missing_library.obj");
   expect_near(file.scene.materials[0].reflectance, {0.5, 0.5, 0.5});
@@ -167,6 +174,9 @@ TEST(SceneFile, AFileThatIsNoSceneIsRefusedWithTheLibrarysReason) {
   EXPECT_TRUE(refusal(bad_files / "prose.txt").starts_with("file: No suitable reader"));
   EXPECT_EQ(refusal(bad_files / "prose.gltf"), "file: its JSON is broken at byte 1");
   EXPECT_EQ(refusal(bad_files / "endless.ply"), "file: its header has no end_header");
+  EXPECT_EQ(refusal(bad_files / "endless_capitals.ply"), "file: its header has no end_header");
+  EXPECT_EQ(refusal(bad_files / "specular_glossiness.gltf"),
+            "file: requires the extension KHR_materials_pbrSpecularGlossiness, which is not supported");
   EXPECT_EQ(refusal(bad_files / "boastful.ply"), "element vertex: the file is too short for 2000000000 of them");
   EXPECT_EQ(refusal(bad_files / "no_scene.gltf"), "scene: has no faces");
   EXPECT_EQ(refusal(bad_files / "cut_off.glb"), "file: ends within its header");
@@ -196,6 +206,18 @@ TEST(SceneFile, ACrashOfAParsingLibraryIsAnError) {
   EXPECT_EQ(error_of_child(crash), "file: the library that reads this format crashed (Segmentation fault)");
   EXPECT_EQ(error_of_child(give_up), "file: the library that reads this format gave up");
   EXPECT_EQ(error_of_child(refuse), "line 3: is no line");
+}
+
+TEST(SceneFile, FbxSaysItsUnitAndItsAxis) {
+  const Scene inches = read_scene_file(good_files / "inches.fbx").scene;
+  EXPECT_NEAR(length(area_vector(inches, 0)), 0.0254 * 0.0254, 1e-9);
+  EXPECT_EQ(inches.up, UpAxis::z);
+}
+
+TEST(SceneFile, DevicesAndPipesAreNoMaterialLibraries) {
+  const auto warnings = read_scene_file(bad_files / "devices.obj").warnings;
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_EQ(warnings[0], "material library '/dev/zero' cannot be read");
 }
 
 TEST(SceneFile, FormatsThatSayWhichAxisPointsUpAreHeeded) {

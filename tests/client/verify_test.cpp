@@ -86,7 +86,8 @@ TEST(ErrorStatistics, LessErrorThanNoiseIsNone) {
 }
 
 TEST(ErrorStatistics, AValueThatIsNotANumberIsNoSmallError) {
-  const ComparedPoint points[] = {{.solution = 1, .truth = 1}, {.solution = std::numeric_limits<double>::quiet_NaN(), .truth = 1}};
+  const ComparedPoint points[] = {{.solution = 1, .truth = 1},
+                                  {.solution = std::numeric_limits<double>::quiet_NaN(), .truth = 1}};
   EXPECT_FALSE(error_statistics(points).nrmse.value <= 1e9);
 }
 

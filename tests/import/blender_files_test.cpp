@@ -154,6 +154,17 @@ TEST(BlenderMaterials, AreTheSameInMtlButForATexturedLamp) {
   for (const char* each : {"Wall paper", "Floor tiles", "Wood", "Books"}) expect_reflectance(scene, each);
 }
 
+TEST(BlenderMaterials, AreTheSameInFbxAndCollada) {
+  for (const char* name : {"room.fbx", "room.dae"}) {
+    SCOPED_TRACE(name);
+    Scene scene = read_scene_file(files / name).scene;
+    for (Material& material : scene.materials) std::ranges::replace(material.name, '_', ' ');
+    expect_reflectance(scene, "Books");
+    if (name == std::string("room.dae")) continue;  // Blender writes the colour of light without its strength
+    for (const char* lamp : {"Lamp panel", "Night light"}) expect_light(scene, lamp);
+  }
+}
+
 TEST(BlenderWarnings, CountWhatIsNotSupportedYet) {
   const auto warnings = read_scene_file(files / "room.glb").warnings;
   for (const char* said : {"1 point light is ignored", "1 spot light is ignored", "1 directional light is ignored",

@@ -33,7 +33,7 @@ class PartsTest : public testing::Test {
   void write(const fs::path& name, const std::string& bytes) const { std::ofstream(folder / name, std::ios::binary) << bytes; }
 
   /// Writes a scene whose buffer has this URI, and reads it: "accepted", or why not.
-  std::string read(const std::string& uri, const nlohmann::json& images = {}) const {
+  std::string read(const std::string& uri, const nlohmann::json& images = {}, const nlohmann::json& material = colour) const {
     nlohmann::json gltf = {{"asset", {{"version", "2.0"}}},
                            {"scene", 0},
                            {"scenes", {{{"nodes", {0}}}}},
@@ -42,7 +42,11 @@ class PartsTest : public testing::Test {
                            {"accessors", {{{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}}}},
                            {"bufferViews", {{{"buffer", 0}, {"byteLength", 36}}}},
                            {"buffers", {{{"byteLength", 36}, {"uri", uri}}}}};
-    if (!images.is_null()) gltf["images"] = images;
+    if (!images.is_null()) {
+      gltf["images"] = images;
+      gltf["textures"] = {{{"source", 0}}};
+      gltf["materials"] = {material};
+    }
     write("scene.gltf", gltf.dump());
     try {
       EXPECT_EQ(read_scene_file(folder / "scene.gltf").scene.faces.size(), 1u);
@@ -52,6 +56,7 @@ class PartsTest : public testing::Test {
     }
   }
 
+  inline static const nlohmann::json colour = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
   const fs::path folder = fs::temp_directory_path() / ("alvor_parts_" + std::to_string(getpid())) / "scene";
 };
 
@@ -84,6 +89,8 @@ TEST_F(PartsTest, CanBeImages) {
   EXPECT_EQ(read("parts/a b.bin", {{{"uri", "nowhere.png"}}}), "image 0 'nowhere.png': is missing beside the scene");
   EXPECT_EQ(read("parts/a b.bin", {{{"uri", "../../a.png"}}}), "image 0 '../../a.png': leaves the folder of the scene");
   EXPECT_EQ(read("parts/a b.bin", {{{"uri", "parts/a%20b.bin"}}}), "accepted");
+  const nlohmann::json bumps = {{"normalTexture", {{"index", 0}}}};
+  EXPECT_EQ(read("parts/a b.bin", {{{"uri", "nowhere.png"}}}, bumps), "accepted");
 }
 
 }  // namespace

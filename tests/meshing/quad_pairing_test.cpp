@@ -65,6 +65,19 @@ TEST(QuadPairing, ASceneThatHasOtherFacesKeepsItsTriangles) {
   EXPECT_EQ(BaseMesh(scene).roots().size(), 3u);
 }
 
+TEST(QuadPairing, PairsThatWouldBeCutAgainStayTriangles) {
+  for (const double bend : {0.0, 1e-6, 2e-5, 6e-5}) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, bend}, {0, 1, 0}};
+    scene.add_face(std::vector<std::uint32_t>{0, 1, 3}, 0);
+    scene.add_face(std::vector<std::uint32_t>{1, 2, 3}, 0);
+    const BaseMesh mesh(scene);
+    EXPECT_EQ(mesh.weld_report().split_faces, 0u) << bend;
+    EXPECT_EQ(mesh.roots().size(), bend < 4e-6 ? 1u : 2u) << bend;
+  }
+}
+
 /// Roots of a square cut along its diagonal, after its last corner and the second triangle's material were changed.
 std::size_t roots_of_cut_square(Vec3 last_corner, std::uint32_t second_material) {
   Scene scene;
