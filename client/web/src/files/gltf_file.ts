@@ -40,8 +40,9 @@ export class GltfFile {
       buffers.push(bytes && cutToLength(bytes, byteLength, place));
     }
     const images: (Bytes | undefined)[] = [];
+    const colours = colourImages(json);
     for (const [n, { uri, bufferView }] of (json.images ?? []).entries())
-      images.push(uri && bufferView === undefined ? await parts.read(uri, `image ${n}`) : undefined);
+      images.push(uri && bufferView === undefined && colours.has(n) ? await parts.read(uri, `image ${n}`) : undefined);
     if (parts.missing.length > 0) throw new MissingParts(parts.missing);
     refuseUnknownExtensions(json);
     return new GltfFile(json, buffers as Bytes[], images);
@@ -141,9 +142,17 @@ function loaderOf(loaders: Record<number, Loader>, { componentType }: GltfAccess
 
 const isCount = (value: unknown) => Number.isInteger(value) && (value as number) >= 0;
 
-/** Extensions that change neither shape nor place, and so may be required of a reader. */
+/** The images that materials take a colour from. Others, of bumps or shine, may be missing. */
+function colourImages({ materials = [], textures = [] }: Gltf): Set<number | undefined> {
+  const used = materials.flatMap((material) => [material.pbrMetallicRoughness?.baseColorTexture?.index, material.emissiveTexture?.index]);
+  return new Set(used.map((texture) => (texture === undefined ? undefined : textures[texture]?.source)));
+}
+
+/** Extensions that change neither shape nor place nor reflectance, and so may be required of a reader. */
 const isHarmless = (name: string) =>
-  /^(KHR_materials_|KHR_texture_|EXT_texture_)/.test(name) || name === "KHR_mesh_quantization" || name === "KHR_lights_punctual";
+  (/^(KHR_materials_|KHR_texture_|EXT_texture_)/.test(name) && name !== "KHR_materials_pbrSpecularGlossiness") ||
+  name === "KHR_mesh_quantization" ||
+  name === "KHR_lights_punctual";
 
 function refuseUnknownExtensions({ extensionsRequired = [] }: Gltf): void {
   for (const name of extensionsRequired)

@@ -70,8 +70,8 @@ class ObjReader {
 
   /** A line is one name that may hold blanks, or several names, of which the first that is there is read. */
   private async readLibrary(rest: string): Promise<void> {
-    const whole = this.files.find(rest);
-    for (const name of whole ? [rest] : wordsOf(rest)) {
+    // Exporters do not quote names with blanks: a name ends in .mtl.
+    for (const name of rest.split(/(?<=\.mtl) +/i)) {
       if (this.libraryFiles.has(name)) continue;
       const file = this.files.find(name);
       if (!file) {
@@ -80,7 +80,6 @@ class ObjReader {
       }
       this.libraryFiles.add(name);
       for (const material of readMtl(await file.text(), name)) if (!this.library.has(material.name)) this.library.set(material.name, material);
-      return;
     }
   }
 

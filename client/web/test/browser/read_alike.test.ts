@@ -52,7 +52,7 @@ async function contentOf(name: string) {
 
 it.each([
   ...["room.glb", "room.gltf", "room_extras.gltf", "room.obj", "room_z_up.obj", "room.stl", "room.ply"].map((name) => ["tests/import/blender/files/", name]),
-  ...["mixed.obj", "textured.obj", "missing_library.obj", "far_away.obj", "cube.stl", "roof.ply"].map((name) => ["tests/client/good_files/", name]),
+  ...["mixed.obj", "textured.obj", "missing_library.obj", "far_away.obj", "two words.obj", "cube.stl", "roof.ply"].map((name) => ["tests/client/good_files/", name]),
   ["scenes/", "cornell_box.obj"],
 ])("%s%s", async (path, name) => {
   const folder = new URL(path, ROOT);
