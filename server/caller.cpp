@@ -10,12 +10,12 @@ std::string text(grpc::string_ref bytes) { return {bytes.data(), bytes.size()}; 
 
 }  // namespace
 
-std::string tenant_of(const grpc::ServerContextBase& context) {
-  const auto auth = context.auth_context();
-  const auto found = auth ? auth->FindPropertyValues("tenant") : std::vector<grpc::string_ref>{};
-  if (!found.empty()) return text(found.front());
-  const auto told = context.client_metadata().find(tenant_key());
-  return told == context.client_metadata().end() ? "" : text(told->second);
+std::string Tenants::of(const grpc::ServerContextBase& context) const {
+  const auto& metadata = context.client_metadata();
+  if (const auto told = metadata.find(tenant_key()); told != metadata.end()) return text(told->second);
+  if (!tokens_) return {};
+  const auto [first, end] = metadata.equal_range("authorization");
+  return tokens_->caller_of(first == end ? "" : text(first->second));
 }
 
 const std::string& tenant_key() {

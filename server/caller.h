@@ -1,9 +1,12 @@
 #pragma once
 // Who calls, and what each may have.
 
+#include "server/bearer_tokens.h"
+
 #include <grpcpp/server_context.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace alvor {
@@ -23,8 +26,19 @@ struct Quota {
   std::uint64_t watchers = 1000;
 };
 
-/// As the server's credentials found out, or a front end in this process.
-std::string tenant_of(const grpc::ServerContextBase& context);
+/// Finds out whose call it is, from the metadata of that call alone: calls of many tenants come over one connection, and what
+/// gRPC keeps of a connection (its AuthContext) is shared by them all. Immutable; safe from any thread.
+class Tenants {
+ public:
+  /// Null: there are no tokens, and all callers are one tenant.
+  explicit Tenants(std::shared_ptr<const BearerTokens> tokens) : tokens_(std::move(tokens)) {}
+
+  /// The tenant by the call's token, or as a front end in this process tells it. Throws StatusError: UNAUTHENTICATED.
+  std::string of(const grpc::ServerContextBase& context) const;
+
+ private:
+  std::shared_ptr<const BearerTokens> tokens_;
+};
 
 /// Metadata in which a front end in this process says for whom it calls. The key is as random as a secret: nobody else knows it.
 const std::string& tenant_key();

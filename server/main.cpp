@@ -212,6 +212,8 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   service_options.solves.keeping.interval = seconds(options.checkpoint_interval_s);
   service_options.quota = options.quota;
   service_options.memory = alvor::MemoryGuard(options.memory_limit);
+  if (auto tokens = alvor::tokens_of(options.listen))
+    service_options.tokens = std::make_shared<const alvor::BearerTokens>(*std::move(tokens));
   std::unique_ptr<alvor::Archive> archive;
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
   service_options.archive = archive.get();

@@ -46,15 +46,15 @@ class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
 // Reads one message at a time into a SceneUpload. Deletes itself.
 class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequest> {
  public:
-  CreateSceneCall(grpc::CallbackServerContext& context, SceneStore& scenes, Uploads& uploads, const UploadLimits& limits,
-                  TaskQueue& building, spdlog::logger& logger, v1::Scene& answer)
+  CreateSceneCall(grpc::CallbackServerContext& context, Caller caller, SceneStore& scenes, Uploads& uploads,
+                  const UploadLimits& limits, TaskQueue& building, spdlog::logger& logger, v1::Scene& answer)
       : context_(context),
         scenes_(scenes),
         uploads_(uploads),
         building_(building),
         logger_(logger),
         answer_(answer),
-        caller_{tenant_of(context), {}},
+        caller_(std::move(caller)),
         upload_(std::make_unique<SceneUpload>(limits)),
         idle_(std::make_shared<IdleWatch>(building, limits.patience, [this] {
           finish({grpc::ABORTED, "no message came for too long"});
@@ -160,8 +160,8 @@ class SendCall final : public grpc::ServerWriteReactor<Message> {
 };
 
 // A stream that ends as soon as it begins. Deletes itself.
-template <class Message>
-class Refusal final : public grpc::ServerWriteReactor<Message> {
+template <class Reactor>
+class Refusal final : public Reactor {
  public:
   explicit Refusal(const grpc::Status& status) { this->Finish(status); }
 
@@ -172,23 +172,26 @@ class Refusal final : public grpc::ServerWriteReactor<Message> {
 }  // namespace
 
 grpc::ServerReadReactor<v1::CreateSceneRequest>* SceneService::CreateScene(Context* context, v1::Scene* scene) {
-  return new CreateSceneCall(*context, scenes_, uploads_, limits_, building_, logger_, *scene);
+  Caller caller;
+  const grpc::Status status = attempt(logger_, "CreateScene", [&] { caller.tenant = tenants_.of(*context); });
+  if (!status.ok()) return new Refusal<grpc::ServerReadReactor<v1::CreateSceneRequest>>(status);
+  return new CreateSceneCall(*context, std::move(caller), scenes_, uploads_, limits_, building_, logger_, *scene);
 }
 
 SceneService::Reactor* SceneService::GetUpload(Context* context, const v1::GetUploadRequest* request, v1::Upload* upload) {
   return answer(context, logger_, "GetUpload", [&] {
-    upload->set_chunk_count(uploads_.chunks({tenant_of(*context), request->request_id()}));
+    upload->set_chunk_count(uploads_.chunks({tenants_.of(*context), request->request_id()}));
   });
 }
 
 SceneService::Reactor* SceneService::GetScene(Context* context, const v1::GetSceneRequest* request, v1::Scene* scene) {
-  return answer(context, logger_, "GetScene", [&] { *scene = scenes_.find(request->name(), tenant_of(*context))->facts; });
+  return answer(context, logger_, "GetScene", [&] { *scene = scenes_.find(request->name(), tenants_.of(*context))->facts; });
 }
 
 SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::ListScenesRequest* request,
                                                 v1::ListScenesResponse* response) {
   return answer(context, logger_, "ListScenes", [&] {
-    const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()), tenant_of(*context));
+    const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()), tenants_.of(*context));
     for (const auto& stored : page.items) *response->add_scenes() = stored->facts;
     response->set_next_page_token(tokens_.token(page.next_before));
   });
@@ -196,14 +199,14 @@ SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::List
 
 SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::DeleteSceneRequest* request,
                                                  google::protobuf::Empty*) {
-  return answer(context, logger_, "DeleteScene", [&] { scenes_.remove(request->name(), tenant_of(*context)); });
+  return answer(context, logger_, "DeleteScene", [&] { scenes_.remove(request->name(), tenants_.of(*context)); });
 }
 
 template <class Message, class Slicer, class Part>
 grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& scene, Part part) {
   std::shared_ptr<const SceneContent> content;
-  const grpc::Status status = attempt(logger_, call, [&] { content = scenes_.find(scene, tenant_of(context))->content(); });
-  if (!status.ok()) return new Refusal<Message>(status);
+  const grpc::Status status = attempt(logger_, call, [&] { content = scenes_.find(scene, tenants_.of(context))->content(); });
+  if (!status.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(status);
   const auto& sent = (*content).*part;
   return new SendCall<Message, Slicer>(std::move(content), sent);
 }

@@ -16,8 +16,9 @@ namespace alvor {
 class SceneService final : public v1::SceneService::CallbackService {
  public:
   /// Scenes are checked and their meshes built as tasks of `building`.
-  SceneService(SceneStore& scenes, const UploadLimits& limits, TaskQueue& building, spdlog::logger& logger)
-      : scenes_(scenes), limits_(limits), building_(building), logger_(logger) {}
+  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, TaskQueue& building,
+               spdlog::logger& logger)
+      : scenes_(scenes), tenants_(tenants), limits_(limits), building_(building), logger_(logger) {}
 
  private:
   using Context = grpc::CallbackServerContext;
@@ -36,6 +37,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& scene, Part part);
 
   SceneStore& scenes_;
+  const Tenants& tenants_;
   const UploadLimits limits_;
   Uploads uploads_;
   TaskQueue& building_;

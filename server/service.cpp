@@ -39,8 +39,9 @@ struct Service::Parts {
         logger(solve_store_options.logger),
         scenes(options.archive, options.quota, options.memory),
         solves(solve_store_options, scenes),
-        scene_service(scenes, upload_limits(options), building, *logger),
-        solve_service(scenes, solves, watches, *logger),
+        tenants(options.tokens),
+        scene_service(scenes, tenants, upload_limits(options), building, *logger),
+        solve_service(scenes, solves, watches, tenants, *logger),
         metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts,
                                           solve_store_options.memory)) {}
 
@@ -51,6 +52,7 @@ struct Service::Parts {
   SceneStore scenes;
   SolveStore solves;
   TaskQueue building;
+  const Tenants tenants;
   SceneService scene_service;
   SolveService solve_service;
   std::shared_ptr<Metrics> metrics;

@@ -15,6 +15,8 @@ struct ServiceOptions {
   UploadLimits upload;
   Archive* archive = nullptr;  ///< must outlive the service; null: all is in memory
   Quota quota;                 ///< of each tenant
+  /// Whose calls they are; null: all callers are one tenant.
+  std::shared_ptr<const BearerTokens> tokens;
   MemoryGuard memory;
   SolveStoreOptions solves;  ///< its logger is that of the whole service
 };

@@ -18,20 +18,20 @@ v1::WatchSolveRequest parse(grpc::ByteBuffer bytes) {
 
 SolveService::Reactor* SolveService::CreateSolve(Context* context, const v1::CreateSolveRequest* request, v1::Solve* solve) {
   return answer(context, logger_, "CreateSolve", [&] {
-    const Caller caller{tenant_of(*context), request->request_id()};
+    const Caller caller{tenants_.of(*context), request->request_id()};
     SceneUse scene = scenes_.use(request->parent(), caller.tenant);
     *solve = solves_.create(std::move(scene), request->solve().spec(), caller)->describe();
   });
 }
 
 SolveService::Reactor* SolveService::GetSolve(Context* context, const v1::GetSolveRequest* request, v1::Solve* solve) {
-  return answer(context, logger_, "GetSolve", [&] { *solve = solves_.find(request->name(), tenant_of(*context))->describe(); });
+  return answer(context, logger_, "GetSolve", [&] { *solve = solves_.find(request->name(), tenants_.of(*context))->describe(); });
 }
 
 SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::ListSolvesRequest* request,
                                                 v1::ListSolvesResponse* response) {
   return answer(context, logger_, "ListSolves", [&] {
-    const std::string tenant = tenant_of(*context);
+    const std::string tenant = tenants_.of(*context);
     if (request->parent() != "scenes/-") scenes_.find(request->parent(), tenant);
     const auto page = solves_.list(request->parent(), tokens_.request(request->page_size(), request->page_token()), tenant);
     for (const auto& solve : page.items) *response->add_solves() = solve->describe();
@@ -41,29 +41,29 @@ SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::List
 
 SolveService::Reactor* SolveService::CancelSolve(Context* context, const v1::CancelSolveRequest* request, v1::Solve* solve) {
   return answer(context, logger_, "CancelSolve",
-                [&] { *solve = solves_.cancel(request->name(), tenant_of(*context))->describe(); });
+                [&] { *solve = solves_.cancel(request->name(), tenants_.of(*context))->describe(); });
 }
 
 SolveService::Reactor* SolveService::PauseSolve(Context* context, const v1::PauseSolveRequest* request, v1::Solve* solve) {
   return answer(context, logger_, "PauseSolve",
-                [&] { *solve = solves_.pause(request->name(), tenant_of(*context))->describe(); });
+                [&] { *solve = solves_.pause(request->name(), tenants_.of(*context))->describe(); });
 }
 
 SolveService::Reactor* SolveService::ResumeSolve(Context* context, const v1::ResumeSolveRequest* request, v1::Solve* solve) {
   return answer(context, logger_, "ResumeSolve",
-                [&] { *solve = solves_.resume(request->name(), tenant_of(*context))->describe(); });
+                [&] { *solve = solves_.resume(request->name(), tenants_.of(*context))->describe(); });
 }
 
 SolveService::Reactor* SolveService::DeleteSolve(Context* context, const v1::DeleteSolveRequest* request,
                                                  google::protobuf::Empty*) {
-  return answer(context, logger_, "DeleteSolve", [&] { solves_.remove(request->name(), tenant_of(*context)); });
+  return answer(context, logger_, "DeleteSolve", [&] { solves_.remove(request->name(), tenants_.of(*context)); });
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context* context, const grpc::ByteBuffer* request) {
   auto* call = new WatchCall(*context, watches_, logger_);  // deletes itself
   const grpc::Status status = attempt(logger_, "WatchSolve", [&] {
     const v1::WatchSolveRequest watch = parse(*request);
-    call->start(solves_.find(watch.name(), tenant_of(*context)), watch);
+    call->start(solves_.find(watch.name(), tenants_.of(*context)), watch);
   });
   if (!status.ok()) call->Finish(status);
   return call;
@@ -72,7 +72,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context* co
 SolveService::Reactor* SolveService::AcknowledgeFrame(Context* context, const v1::AcknowledgeFrameRequest* request,
                                                       v1::AcknowledgeFrameResponse*) {
   return answer(context, logger_, "AcknowledgeFrame", [&] {
-    watches_.acknowledge(request->watch_id(), request->frame_count(), request->revision(), tenant_of(*context));
+    watches_.acknowledge(request->watch_id(), request->frame_count(), request->revision(), tenants_.of(*context));
   });
 }
 

@@ -10,8 +10,8 @@ namespace alvor {
 /// Everything it is given must outlive the server's calls.
 class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchSolve<v1::SolveService::CallbackService> {
  public:
-  SolveService(const SceneStore& scenes, SolveStore& solves, Watches& watches, spdlog::logger& logger)
-      : scenes_(scenes), solves_(solves), watches_(watches), logger_(logger) {}
+  SolveService(const SceneStore& scenes, SolveStore& solves, Watches& watches, const Tenants& tenants, spdlog::logger& logger)
+      : scenes_(scenes), solves_(solves), watches_(watches), tenants_(tenants), logger_(logger) {}
 
  private:
   using Context = grpc::CallbackServerContext;
@@ -30,6 +30,7 @@ class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchS
   const SceneStore& scenes_;
   SolveStore& solves_;
   Watches& watches_;
+  const Tenants& tenants_;
   spdlog::logger& logger_;
   PageTokens tokens_;
 };
