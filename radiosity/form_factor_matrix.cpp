@@ -277,8 +277,14 @@ class FormFactorRows::Pairs {
       mean += share * weighted;
       error += share * (std::abs(weighted - plain) + shadow_error * (high - low));
     }
-    const double whole = look.to.points.count > 0 ? kernel_sum(look.from, look.to) : 1;
-    return {mean, error + unseen_error * share * whole};
+    return {mean, error + unseen(look, share)};
+  }
+
+  /// What the points may have missed. Where the faces cross each other's planes it may be all: few points lie in front.
+  static double unseen(const Look& look, double share) {
+    if (heights(look.from, look.to.plane).low < 0 || heights(look.to, look.from.plane).low < 0)
+      return polygon_form_factor(look.from.polygon, look.to.polygon, 1e-6).value;
+    return unseen_error * share * (look.to.points.count > 0 ? kernel_sum(look.from, look.to) : 1);
   }
 
   FormFactor unobstructed(const Piece& from, const Piece& to) const {
@@ -307,7 +313,7 @@ class FormFactorRows::Pairs {
   static constexpr std::uint64_t most_points = 10'000;  // that a face is looked from for one shadow
   static constexpr double far_error = 0.1;              // at most 0.03 was seen
   static constexpr double shadow_error = 0.5;           // of the spread between points, where a shadow's edge passes between them
-  static constexpr double unseen_error = 0.05;          // of the unobstructed factor: a corner that no point saw
+  static constexpr double unseen_error = 0.15;          // of the unobstructed factor: a corner that no point saw
   static constexpr double small_share = 0.25;           // of the area
   static constexpr double shadow_accuracy = 1000;       // accuracies that a shadowed pair may be off
 
