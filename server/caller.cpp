@@ -1,6 +1,7 @@
 #include "server/caller.h"
 
 #include "server/random_id.h"
+#include "server/status_error.h"
 
 namespace alvor {
 
@@ -13,6 +14,11 @@ std::string text(grpc::string_ref bytes) { return {bytes.data(), bytes.size()}; 
 std::string Tenants::of(const grpc::ServerContextBase& context) const {
   const auto& metadata = context.client_metadata();
   if (const auto told = metadata.find(tenant_key()); told != metadata.end()) return text(told->second);
+  if (!identity_header_.empty() && context.peer().starts_with("unix:")) {
+    const auto told = metadata.find(identity_header_);
+    if (told != metadata.end() && !told->second.empty()) return text(told->second);
+    if (!tokens_) throw StatusError(grpc::UNAUTHENTICATED, "the call says nothing of who it is from");
+  }
   if (!tokens_) return {};
   const auto [first, end] = metadata.equal_range("authorization");
   return tokens_->caller_of(first == end ? "" : text(first->second));

@@ -30,14 +30,17 @@ struct Quota {
 /// gRPC keeps of a connection (its AuthContext) is shared by them all. Immutable; safe from any thread.
 class Tenants {
  public:
-  /// Null: there are no tokens, and all callers are one tenant.
-  explicit Tenants(std::shared_ptr<const BearerTokens> tokens) : tokens_(std::move(tokens)) {}
+  /// Without tokens (null) and without `identity_header` ("") all callers are one tenant.
+  explicit Tenants(std::shared_ptr<const BearerTokens> tokens, std::string identity_header = {})
+      : tokens_(std::move(tokens)), identity_header_(std::move(identity_header)) {}
 
-  /// The tenant by the call's token, or as a front end in this process tells it. Throws StatusError: UNAUTHENTICATED.
+  /// The tenant as a front end in this process tells it; else, of a call over a Unix socket, as the identity header tells it;
+  /// else by the call's token. Throws StatusError: UNAUTHENTICATED.
   std::string of(const grpc::ServerContextBase& context) const;
 
  private:
   std::shared_ptr<const BearerTokens> tokens_;
+  const std::string identity_header_;
 };
 
 /// Metadata in which a front end in this process says for whom it calls. The key is as random as a secret: nobody else knows it.

@@ -1,7 +1,6 @@
 #include "server/health.h"
 
 #include "grpc/health/v1/health.grpc.pb.h"
-#include "server/listening.h"
 
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
@@ -13,22 +12,20 @@ namespace alvor {
 
 namespace health = grpc::health::v1;
 
-HealthPort::HealthPort(const std::string& address) {
-  grpc::EnableDefaultHealthCheckService(true);
-  grpc::ServerBuilder builder;
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &port_);
-  unused_ = builder.AddCompletionQueue();
-  server_ = builder.BuildAndStart();
-  if (!server_ || port_ == 0) {
-    drain();
-    throw std::invalid_argument("--health: " + cannot_listen(address));
+HealthPort::HealthPort(const std::string& address, std::size_t most_connections) {
+  const ConnectionLimits limits{most_connections, most_connections};
+  try {
+    rpc_ = std::make_unique<RpcServer>(
+        address, grpc::InsecureServerCredentials(), limits,
+        [this](grpc::ServerBuilder& builder) { unused_ = builder.AddCompletionQueue(); }, [] {});
+  } catch (const std::exception& fault) {
+    throw std::invalid_argument(std::string("--health: ") + fault.what());
   }
-  set_serving(*server_, false);
+  set_serving(rpc_->server(), false);
 }
 
 HealthPort::~HealthPort() {
-  server_->Shutdown(std::chrono::system_clock::now());
+  rpc_->shut_down({});
   drain();
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 // Whether the server takes calls (grpc.health.v1), for those who ask it in order to restart it or to send no more clients.
 
+#include "server/rpc_server.h"
+
 #include <grpcpp/completion_queue.h>
-#include <grpcpp/server.h>
 
 #include <memory>
 #include <string>
@@ -13,21 +14,20 @@ namespace alvor {
 /// first.
 class HealthPort {
  public:
-  /// Throws std::invalid_argument if it cannot listen there.
-  explicit HealthPort(const std::string& address);
+  /// Holds `most_connections` at a time. Throws std::invalid_argument if it cannot listen there.
+  explicit HealthPort(const std::string& address, std::size_t most_connections = 50);
   ~HealthPort();
   HealthPort(const HealthPort&) = delete;
   HealthPort& operator=(const HealthPort&) = delete;
 
-  grpc::Server& server() { return *server_; }
-  int port() const { return port_; }
+  grpc::Server& server() { return rpc_->server(); }
+  const std::string& address() const { return rpc_->address(); }
 
  private:
   void drain();
 
-  int port_ = 0;
   std::unique_ptr<grpc::ServerCompletionQueue> unused_;  ///< gRPC wants one where no service of ours does
-  std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<RpcServer> rpc_;
 };
 
 /// Of the server as a whole and of each of its services.

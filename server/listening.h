@@ -16,7 +16,11 @@ struct ListenOptions {
   // Names of PEM files; without certificate and key there is no TLS.
   std::string certificate, key;
   std::string client_ca;  ///< clients must then show a certificate that it signed
-  std::string tokens;     ///< name of a file as BearerTokens reads it: calls must then carry one; needs TLS
+  /// Name of a file as BearerTokens reads it: calls must then carry a token. Needs TLS where other machines can call.
+  std::string tokens;
+  /// Metadata in which a proxy says whose call it is, after it has checked the client's certificate. Trusted on Unix sockets
+  /// alone.
+  std::string identity_header;
   bool insecure = false;  ///< plaintext for other machines too
 };
 
@@ -37,7 +41,10 @@ std::string cannot_listen(const std::string& address);
 /// HOST:PORT with the port that was taken.
 std::string with_port(const std::string& address, int port);
 
-/// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a unix socket.
+/// Whether it is the path of a socket file: unix:PATH.
+bool is_unix(const std::string& address);
+
+/// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a Unix socket.
 bool is_loopback(const std::string& address);
 
 }  // namespace alvor

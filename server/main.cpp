@@ -1,8 +1,11 @@
 // alvord: the Alvor server.
 
+#include "server/descriptor_limit.h"
 #include "server/health.h"
 #include "server/listening.h"
 #include "server/memory_guard.h"
+#include "server/rpc_server.h"
+#include "server/self_probe.h"
 #include "server/service.h"
 #include "server/task_queue.h"
 #include "server/web_front.h"
@@ -16,6 +19,8 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -27,8 +32,13 @@
 
 namespace {
 
+constexpr std::uint64_t least_rpc_memory = 64 << 20;  // of gRPC's connections; a message may have as much
+
+std::atomic<bool> listener_died = false;
+
 struct Options {
   alvor::ListenOptions listen;
+  alvor::ConnectionLimits connections;
   std::string directory;
   int max_solves = alvor::SolveStoreOptions{}.max_running;
   double checkpoint_interval_s = 10;
@@ -56,11 +66,17 @@ void declare_web(CLI::App& app, Options& options) {
 void declare(CLI::App& app, Options& options) {
   app.set_version_flag("--version", "alvord " ALVOR_VERSION);
   alvor::ListenOptions& listen = options.listen;
-  app.add_option("--listen", listen.address, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
+  app.add_option("--listen", listen.address, "HOST:PORT or unix:PATH to listen on; port 0 takes a free one")
+      ->capture_default_str();
+  app.add_option("--max-connections", options.connections.in_all, "Connections to it at a time")->capture_default_str();
+  app.add_option("--max-connections-by-address", options.connections.by_address, "The same, from one address of another machine")
+      ->capture_default_str();
   app.add_option("--tls-cert", listen.certificate, "The server's certificate, and what it takes to trust it (PEM): TLS");
   app.add_option("--tls-key", listen.key, "The key of --tls-cert (PEM)");
   app.add_option("--tls-client-ca", listen.client_ca, "Clients must show a certificate signed by one of these (PEM)");
   app.add_option("--tokens", listen.tokens, "Calls must carry a bearer token of this file: lines NAME SHA256, see the README");
+  app.add_option("--identity-header", listen.identity_header,
+                 "Metadata by which a proxy says whose call it is; believed on Unix sockets alone");
   app.add_flag("--insecure", listen.insecure, "Listen for other machines without TLS");
   app.add_option("--data", options.directory,
                  "Directory for scenes, solves and their checkpoints; without it they end with the server");
@@ -122,6 +138,7 @@ sigset_t block_stop_signals() {
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);  // writing to a connection that is gone is an error like others
   return signals;
 }
 
@@ -131,29 +148,39 @@ std::string wait_for_stop(const sigset_t& signals) {
   return number == SIGINT ? "SIGINT" : "SIGTERM";
 }
 
-// Null if it cannot listen there. Two servers must not share a port unknowingly, and a peer that vanished without a word
-// must not keep its watches for ever. A break of 5 s is outlived: TCP sends again until 6.3 s after it began.
-std::unique_ptr<grpc::Server> start(alvor::Service& service, const alvor::ListenOptions& listen, int& port) {
-  grpc::EnableDefaultHealthCheckService(true);
+std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& options, std::size_t descriptors,
+                                        spdlog::logger& logger) {
+  const auto credentials = alvor::credentials_of(options.listen);
+  alvor::ConnectionLimits limits = options.connections;
+  limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-  grpc::ServerBuilder builder;
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);  // clients may do as much
-  builder.AddListeningPort(listen.address, alvor::credentials_of(listen), &port);
-  service.register_with(builder);
-  auto server = builder.BuildAndStart();
-  return port > 0 ? std::move(server) : nullptr;
+  const auto configure = [&](grpc::ServerBuilder& builder) {
+    if (options.memory_limit > 0)
+      builder.SetResourceQuota(grpc::ResourceQuota("alvord").Resize(std::max(options.memory_limit / 8, least_rpc_memory)));
+    service.register_with(builder);
+  };
+  // What cannot listen any more is of no use: whoever watches over it starts it again.
+  const auto died = [&logger] {
+    logger.critical("no connection can be accepted any more");
+    listener_died = true;
+    kill(getpid(), SIGTERM);
+  };
+  auto rpc = std::make_unique<alvor::RpcServer>(options.listen.address, credentials, limits, configure, died);
+  logger.info("{} descriptors may be open; at most {} connections at --listen, {} of one address", descriptors, limits.in_all,
+              limits.by_address);
+  return rpc;
+}
+
+void tell_health(bool is_serving, alvor::RpcServer& rpc, alvor::HealthPort* health) {
+  alvor::set_serving(rpc.server(), is_serving);
+  if (health) alvor::set_serving(health->server(), is_serving);
 }
 
 // Those who ask about health are told first; what is under way then ends.
-void stop(alvor::Service& service, grpc::Server& server, alvor::HealthPort* health) {
-  using namespace std::chrono_literals;
-  if (health) alvor::set_serving(health->server(), false);
-  alvor::set_serving(server, false);
+void stop(alvor::Service& service, alvor::RpcServer& rpc, alvor::HealthPort* health) {
+  tell_health(false, rpc, health);
   service.shut_down();
-  server.Shutdown(std::chrono::system_clock::now() + 3s);
+  rpc.shut_down(std::chrono::seconds(3));
 }
 
 std::chrono::steady_clock::duration seconds(double s) {
@@ -198,43 +225,50 @@ std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server&
 }
 
 // Null without an address.
-std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, spdlog::logger& logger) {
+std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, std::size_t descriptors, spdlog::logger& logger) {
   if (address.empty()) return nullptr;
-  auto health = std::make_unique<alvor::HealthPort>(address);
-  logger.info("health on {}", alvor::with_port(address, health->port()));
+  auto health = std::make_unique<alvor::HealthPort>(address, alvor::bounded_connections(50, 0.05, descriptors));
+  logger.info("health on {}", health->address());
   return health;
 }
 
-int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
-  alvor::ServiceOptions service_options;
-  service_options.solves.max_running = options.max_solves;
-  service_options.solves.logger = logger;
-  service_options.solves.keeping.interval = seconds(options.checkpoint_interval_s);
-  service_options.quota = options.quota;
-  service_options.memory = alvor::MemoryGuard(options.memory_limit);
+alvor::ServiceOptions service_options(const Options& options, const std::shared_ptr<spdlog::logger>& logger,
+                                      alvor::Archive* archive) {
+  alvor::ServiceOptions service;
+  service.solves.max_running = options.max_solves;
+  service.solves.logger = logger;
+  service.solves.keeping.interval = seconds(options.checkpoint_interval_s);
+  service.quota = options.quota;
+  service.memory = alvor::MemoryGuard(options.memory_limit);
+  service.archive = archive;
+  service.identity_header = options.listen.identity_header;
   if (auto tokens = alvor::tokens_of(options.listen))
-    service_options.tokens = std::make_shared<const alvor::BearerTokens>(*std::move(tokens));
+    service.tokens = std::make_shared<const alvor::BearerTokens>(*std::move(tokens));
+  return service;
+}
+
+int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
+  const std::size_t descriptors = alvor::raise_descriptor_limit();
   std::unique_ptr<alvor::Archive> archive;
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
-  service_options.archive = archive.get();
-  alvor::Service service(service_options);
-  const auto health = serve_health(options.health, *logger);
-  int port = 0;
-  const auto server = start(service, options.listen, port);
-  if (!server) {
-    std::cerr << "alvord: " << alvor::cannot_listen(options.listen.address) << '\n';
-    return 1;
-  }
+  alvor::Service service(service_options(options, logger, archive.get()));
+  const auto health = serve_health(options.health, descriptors, *logger);
+  const auto rpc = start(service, options, descriptors, *logger);
   const auto exposer = expose(options.metrics, service);
-  const auto web = serve_web(options, *server, *logger);
-  alvor::set_serving(*server, true);
-  if (health) alvor::set_serving(health->server(), true);
+  const auto web = serve_web(options, rpc->server(), *logger);
+  tell_health(true, *rpc, health.get());
   const Heartbeat heartbeat(archive.get());
-  logger->info("listening on {}", alvor::with_port(options.listen.address, port));
+  auto self_probe = std::make_unique<alvor::SelfProbe>(rpc->door(), !options.listen.certificate.empty(), [&](bool is_answered) {
+    logger->log(is_answered ? spdlog::level::info : spdlog::level::err, "new connections are {}",
+                is_answered ? "served again" : "not served");
+    tell_health(is_answered, *rpc, health.get());
+  });
+  logger->info("listening on {}", rpc->address());
   logger->info("stopping: {}", wait_for_stop(signals));
-  stop(service, *server, health.get());
+  self_probe.reset();
+  stop(service, *rpc, health.get());
   logger->info("stopped");
-  return 0;
+  return listener_died ? 1 : 0;
 }
 
 int probe(const std::string& address) {

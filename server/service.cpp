@@ -39,7 +39,7 @@ struct Service::Parts {
         logger(solve_store_options.logger),
         scenes(options.archive, options.quota, options.memory),
         solves(solve_store_options, scenes),
-        tenants(options.tokens),
+        tenants(options.tokens, options.identity_header),
         scene_service(scenes, tenants, upload_limits(options), building, *logger),
         solve_service(scenes, solves, watches, tenants, *logger),
         metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts,

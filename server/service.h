@@ -17,6 +17,7 @@ struct ServiceOptions {
   Quota quota;                 ///< of each tenant
   /// Whose calls they are; null: all callers are one tenant.
   std::shared_ptr<const BearerTokens> tokens;
+  std::string identity_header;  ///< see ListenOptions
   MemoryGuard memory;
   SolveStoreOptions solves;  ///< its logger is that of the whole service
 };

@@ -38,7 +38,10 @@ TEST(Listening, PlaintextForOtherMachinesMustBeAskedFor) {
 TEST(Listening, OptionsThatContradictEachOtherAreRefused) {
   EXPECT_EQ(fault_of({.certificate = "c"}), "--tls-cert and --tls-key go together");
   EXPECT_EQ(fault_of({.client_ca = "c"}), "--tls-client-ca needs --tls-cert and --tls-key");
-  EXPECT_EQ(fault_of({.tokens = "t"}), "--tokens needs --tls-cert and --tls-key: tokens are secrets");
+  EXPECT_EQ(fault_of({.address = "0.0.0.0:1", .tokens = "t", .insecure = true}),
+            "--tokens needs --tls-cert and --tls-key where other machines can call: tokens are secrets");
+  EXPECT_EQ(fault_of({.identity_header = "X-Who"}), "--identity-header: 'X-Who' is not of the characters a-z, 0-9 and -");
+  EXPECT_EQ(fault_of({.identity_header = "authorization"}), "--identity-header: 'authorization' is taken");
   EXPECT_EQ(fault_of({.certificate = "nowhere", .key = "nowhere"}), "--tls-key: 'nowhere' cannot be read or is empty");
 }
 

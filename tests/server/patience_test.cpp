@@ -17,8 +17,7 @@ class PatienceTest : public testing::Test {
     throw RpcError({code, ""});
   }
   HealthPort server{"127.0.0.1:0"};  // somebody who takes connections
-  std::shared_ptr<grpc::Channel> channel =
-      grpc::CreateChannel("127.0.0.1:" + std::to_string(server.port()), grpc::InsecureChannelCredentials());
+  std::shared_ptr<grpc::Channel> channel = grpc::CreateChannel(server.address(), grpc::InsecureChannelCredentials());
   int tries = 0;
 };
 

@@ -1,0 +1,235 @@
+#include "server/front_door.h"
+
+#include <linux/tcp.h>  // newer than netinet/tcp.h: tcpi_bytes_received
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto between_looks = 1s;
+constexpr auto least_between_looks = 50ms;  // a look takes less than a millisecond
+constexpr auto traffic_window = 5s;
+constexpr int lost_after_ms = 10'000;  // bytes that were not acknowledged for this long: the peer is gone
+
+struct Peer {
+  std::string address;  ///< of IPv4, or the network of 64 bits; "" for this machine
+  int port = 0;
+};
+
+std::string text(const void* bytes, std::size_t count) { return {static_cast<const char*>(bytes), count}; }
+
+Peer peer_v4(const in_addr& address, in_port_t port) {
+  const bool is_own = ntohl(address.s_addr) >> 24 == 127;
+  return {is_own ? "" : text(&address, sizeof address), ntohs(port)};
+}
+
+Peer peer_of(const sockaddr_storage& from) {
+  if (from.ss_family == AF_INET) {
+    const auto& v4 = reinterpret_cast<const sockaddr_in&>(from);
+    return peer_v4(v4.sin_addr, v4.sin_port);
+  }
+  if (from.ss_family != AF_INET6) return {};
+  const auto& v6 = reinterpret_cast<const sockaddr_in6&>(from);
+  if (IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr)) return {"", ntohs(v6.sin6_port)};
+  if (!IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr)) return {text(&v6.sin6_addr, 8), ntohs(v6.sin6_port)};
+  in_addr v4{};
+  std::memcpy(&v4, v6.sin6_addr.s6_addr + 12, sizeof v4);
+  return peer_v4(v4, v6.sin6_port);
+}
+
+bool is_this_process(int connection) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  return getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.pid == getpid();
+}
+
+/// As gRPC sets up what it accepts itself.
+void set_up(int connection) {
+  const int yes = 1;
+  setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  setsockopt(connection, IPPROTO_TCP, TCP_USER_TIMEOUT, &lost_after_ms, sizeof lost_after_ms);
+}
+
+/// 0 where nothing is open under the number.
+ino_t inode_of(int descriptor) {
+  struct stat found {};
+  return fstat(descriptor, &found) == 0 ? found.st_ino : 0;
+}
+
+/// 0 where it is not of TCP.
+std::uint64_t received_bytes(int connection) {
+  tcp_info counts{};
+  socklen_t size = sizeof counts;
+  return getsockopt(connection, IPPROTO_TCP, TCP_INFO, &counts, &size) == 0 ? counts.tcpi_bytes_received : 0;
+}
+
+bool is_silent(int connection) {
+  int type = 0;
+  socklen_t size = sizeof type;
+  const bool is_tcp = getsockopt(connection, SOL_SOCKET, SO_PROTOCOL, &type, &size) == 0 && type == IPPROTO_TCP;
+  return is_tcp && received_bytes(connection) == 0;
+}
+
+/// Whether accepting goes on by itself after this error: of the connection, or because the system is short of something.
+bool is_passing(int error) {
+  constexpr std::array passing{EMFILE, ENFILE,   ENOBUFS,     ENOMEM, ECONNABORTED, EPERM,      EINTR,        EAGAIN,
+                               EPROTO, ENETDOWN, ENOPROTOOPT, ENONET, EHOSTDOWN,    EOPNOTSUPP, EHOSTUNREACH, ENETUNREACH};
+  return std::ranges::find(passing, error) != passing.end();
+}
+
+bool is_short(int error) { return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM; }
+
+}  // namespace
+
+FrontDoor::FrontDoor(const std::string& address, const ConnectionLimits& limits)
+    : sockets_(address), limits_(limits), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+
+FrontDoor::~FrontDoor() { close(); }
+
+void FrontDoor::open(std::function<void(int)> take, std::function<void()> died) {
+  take_ = std::move(take);
+  died_ = std::move(died);
+  thread_ = std::thread([this] { run(); });
+}
+
+void FrontDoor::close() {
+  if (!thread_.joinable()) return;
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto written = write(wake_.get(), &one, sizeof one);
+  thread_.join();
+}
+
+void FrontDoor::run() {
+  std::vector<pollfd> waited{{wake_.get(), POLLIN, 0}};
+  for (const Descriptor& each : sockets_.all()) waited.push_back({each.get(), POLLIN, 0});
+  for (;;) {
+    const int count = poll(waited.data(), waited.size(), static_cast<int>(between_looks / 1ms));
+    if (count < 0 && errno != EINTR) return died_();
+    if (waited.front().revents != 0) return;
+    for (const pollfd& listening : std::span(waited).subspan(1))
+      if (count > 0 && listening.revents != 0 && !accept_all(listening.fd)) return died_();
+    std::scoped_lock hold(lock_);
+    look();
+  }
+}
+
+/// Returns whether the listening socket is still of use.
+bool FrontDoor::accept_all(int listening) {
+  for (;;) {
+    sockaddr_storage from{};
+    socklen_t size = sizeof from;
+    Descriptor accepted(accept4(listening, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!accepted.is_open()) {
+      const int error = errno;
+      if (is_short(error)) std::this_thread::sleep_for(100ms);
+      return is_passing(error);
+    }
+    const Peer peer = peer_of(from);
+    const bool is_probe = from.ss_family == AF_UNIX ? is_this_process(accepted.get()) : peer.port == probe_port_;
+    admit(std::move(accepted), peer.address, is_probe);
+  }
+}
+
+void FrontDoor::admit(Descriptor accepted, const std::string& address, bool is_probe) {
+  {
+    std::scoped_lock hold(lock_);
+    if (!is_probe && !has_place_for(address)) {
+      ++refused_;
+      return;
+    }
+    if (const auto before = connections_.find(accepted.get()); before != connections_.end()) forget(before);
+    connections_[accepted.get()] = {inode_of(accepted.get()), ++accepted_, address};
+    if (!address.empty()) ++by_address_[address];
+  }
+  set_up(accepted.get());
+  take_(accepted.release());
+}
+
+bool FrontDoor::has_place_for(const std::string& address) {
+  const auto known = by_address_.find(address);
+  const bool is_full = connections_.size() >= limits_.in_all;
+  const bool has_many = known != by_address_.end() && known->second >= limits_.by_address;
+  if (!is_full && !has_many) return true;
+  if (Clock::now() >= last_look_ + least_between_looks) {
+    forget_ended();
+    return has_place_for(address);
+  }
+  return !has_many && end_oldest_silent();
+}
+
+/// Returns whether there was one.
+bool FrontDoor::end_oldest_silent() {
+  auto oldest = connections_.end();
+  for (auto each = connections_.begin(); each != connections_.end(); ++each)
+    if ((oldest == connections_.end() || each->second.number < oldest->second.number) && is_silent(each->first)) oldest = each;
+  if (oldest == connections_.end()) return false;
+  shutdown(oldest->first, SHUT_RDWR);
+  forget(oldest);
+  ++refused_;
+  return true;
+}
+
+void FrontDoor::forget_ended() {
+  last_look_ = Clock::now();
+  for (auto each = connections_.begin(); each != connections_.end();) {
+    const auto next = std::next(each);
+    if (inode_of(each->first) != each->second.inode) forget(each);
+    each = next;
+  }
+}
+
+void FrontDoor::forget(std::map<int, Connection>::iterator ended) {
+  if (const auto known = by_address_.find(ended->second.address); known != by_address_.end() && --known->second == 0)
+    by_address_.erase(known);
+  connections_.erase(ended);
+}
+
+Descriptor FrontDoor::connect_as_probe() {
+  return sockets_.connect([this](int port) { probe_port_ = port; });
+}
+
+bool FrontDoor::end_greediest(std::uint64_t least) {
+  std::scoped_lock hold(lock_);
+  forget_ended();
+  int greediest = -1;
+  for (const auto& [descriptor, connection] : connections_) {
+    const std::uint64_t received = received_bytes(descriptor) - std::min(connection.then, received_bytes(descriptor));
+    if (received < least) continue;
+    least = received;
+    greediest = descriptor;
+  }
+  if (greediest >= 0) shutdown(greediest, SHUT_RDWR);
+  return greediest >= 0;
+}
+
+/// Forgets what has ended, and notes now and then what was received. Requires: the lock.
+void FrontDoor::look() {
+  const auto now = Clock::now();
+  if (now < last_look_ + between_looks) return;
+  forget_ended();
+  if (now < last_traffic_ + traffic_window) return;
+  last_traffic_ = now;
+  for (auto& [descriptor, connection] : connections_)
+    connection.then = std::exchange(connection.received, received_bytes(descriptor));
+}
+
+FrontDoor::Counts FrontDoor::counts() const {
+  std::scoped_lock hold(lock_);
+  return {connections_.size(), refused_};
+}
+
+}  // namespace alvor
