@@ -148,11 +148,9 @@ std::string wait_for_stop(const sigset_t& signals) {
   return number == SIGINT ? "SIGINT" : "SIGTERM";
 }
 
-std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& options, std::size_t descriptors,
+std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& options, const alvor::ConnectionLimits& limits,
                                         spdlog::logger& logger) {
   const auto credentials = alvor::credentials_of(options.listen);
-  alvor::ConnectionLimits limits = options.connections;
-  limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   const auto configure = [&](grpc::ServerBuilder& builder) {
     if (options.memory_limit > 0)
@@ -165,10 +163,7 @@ std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& 
     listener_died = true;
     kill(getpid(), SIGTERM);
   };
-  auto rpc = std::make_unique<alvor::RpcServer>(options.listen.address, credentials, limits, configure, died);
-  logger.info("{} descriptors may be open; at most {} connections at --listen, {} of one address", descriptors, limits.in_all,
-              limits.by_address);
-  return rpc;
+  return std::make_unique<alvor::RpcServer>(options.listen.address, credentials, limits, configure, died);
 }
 
 void tell_health(bool is_serving, alvor::RpcServer& rpc, alvor::HealthPort* health) {
@@ -253,7 +248,9 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
   alvor::Service service(service_options(options, logger, archive.get()));
   const auto health = serve_health(options.health, descriptors, *logger);
-  const auto rpc = start(service, options, descriptors, *logger);
+  alvor::ConnectionLimits limits = options.connections;
+  limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
+  const auto rpc = start(service, options, limits, *logger);
   const auto exposer = expose(options.metrics, service);
   const auto web = serve_web(options, rpc->server(), *logger);
   tell_health(true, *rpc, health.get());
@@ -263,6 +260,7 @@ int serve(const Options& options, const sigset_t& signals, const std::shared_ptr
                 is_answered ? "served again" : "not served");
     tell_health(is_answered, *rpc, health.get());
   });
+  logger->info("{} descriptors; at most {} connections, {} of one address", descriptors, limits.in_all, limits.by_address);
   logger->info("listening on {}", rpc->address());
   logger->info("stopping: {}", wait_for_stop(signals));
   self_probe.reset();
