@@ -21,6 +21,10 @@ using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 constexpr double weld_tolerance = 1e-9;  // of the extent
 const double smooth_cosine = std::cos(25 * std::numbers::pi / 180);
 
+void refuse_stopped(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw BuildStopped();
+}
+
 struct Box {
   Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
            std::numeric_limits<double>::infinity()};
@@ -63,14 +67,16 @@ class NeighbourFinder {
     omerr().disable();
   }
 
-  std::size_t add_all() {
+  std::size_t add_all(const std::stop_token& stop) {
     std::uint32_t vertex_count = 0;
     for (const RootPatch& root : roots_)
       for (int c = 0; c < root.corner_count; ++c) vertex_count = std::max(vertex_count, root.vertex[c] + 1);
     for (std::uint32_t v = 0; v < vertex_count; ++v) mesh_.add_vertex({});
     std::size_t alone = 0;
-    for (std::uint32_t root = 0; root < roots_.size(); ++root)
+    for (std::uint32_t root = 0; root < roots_.size(); ++root) {
+      refuse_stopped(stop);
       if (!roots_[root].is_behind) alone += !add(root);
+    }
     return alone;
   }
 
@@ -131,11 +137,16 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   const auto welded = weld(scene.vertices, std::max(weld_tolerance * used.longest_side(), 1e-300));
   for (std::uint32_t v = 0; v < welded.size(); ++v) report_.welded_vertices += welded[v] != v;
 
+  refuse_stopped(options.stop);
   std::vector<WeldedFace> faces = weld_faces(scene, welded);
+  refuse_stopped(options.stop);
   report_.degenerate_faces = scene.faces.size() - faces.size();
   report_.duplicates = leave_out_duplicates(scene, faces);
   if (options.join_triangles) join_triangle_pairs(scene, faces);
-  for (const WeldedFace& face : faces) add_roots(scene, face);
+  for (const WeldedFace& face : faces) {
+    refuse_stopped(options.stop);
+    add_roots(scene, face);
+  }
 
   Box box;
   for (const RootPatch& root : roots_)
@@ -145,7 +156,8 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   extent_ = box.longest_side();
 
   pair_back_to_back();
-  find_neighbours();
+  refuse_stopped(options.stop);
+  find_neighbours(options.stop);
   add_backs();
 }
 
@@ -180,9 +192,9 @@ void BaseMesh::pair_back_to_back() {
   }
 }
 
-void BaseMesh::find_neighbours() {
+void BaseMesh::find_neighbours(const std::stop_token& stop) {
   NeighbourFinder finder(roots_);
-  report_.non_manifold_faces = finder.add_all();
+  report_.non_manifold_faces = finder.add_all(stop);
   neighbours_.resize(roots_.size());
   for (std::uint32_t root = 0; root < roots_.size(); ++root)
     for (int e = 0; e < roots_[root].corner_count && !roots_[root].is_behind; ++e) neighbours_[root][e] = finder.across(root, e);

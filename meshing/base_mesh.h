@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 namespace alvor {
@@ -53,9 +55,16 @@ struct WeldReport {
 /// One sentence each about what welding found odd, faces numbered as in the scene.
 std::vector<std::string> warnings_of(const WeldReport& report);
 
+/// Building a mesh was given up because its stop token asked for it.
+struct BuildStopped : std::exception {
+  const char* what() const noexcept override { return "building the mesh was given up"; }
+};
+
 struct BaseMeshOptions {
   /// Makes one root of two triangles that an exporter cut from a quad, in scenes of triangles only.
   bool join_triangles = true;
+  /// Asked now and then; the constructor then throws BuildStopped.
+  std::stop_token stop = {};
 };
 
 /// Immutable once built; safe to read from any thread.
@@ -80,7 +89,7 @@ class BaseMesh {
  private:
   void add_roots(const Scene& scene, const WeldedFace& face);
   void pair_back_to_back();
-  void find_neighbours();
+  void find_neighbours(const std::stop_token& stop);
   void add_backs();
 
   std::vector<RootPatch> roots_;

@@ -1,7 +1,8 @@
 #include "meshing/polygon.h"
 
+#include "meshing/ear_clipping.h"
+
 #include <algorithm>
-#include <numeric>
 
 namespace alvor {
 
@@ -21,34 +22,6 @@ bool is_planar_convex_quad(std::span<const Vec3> p, Vec3 normal) {
   return true;
 }
 
-bool lies_inside(Vec3 p, Vec3 a, Vec3 b, Vec3 c, Vec3 normal) {
-  return dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 && dot(cross(a - c, p - c), normal) >= 0;
-}
-
-bool is_ear(std::span<const Vec3> p, std::span<const std::uint32_t> ring, std::size_t k, Vec3 normal) {
-  const std::size_t n = ring.size();
-  const std::uint32_t ia = ring[(k + n - 1) % n], ib = ring[k], ic = ring[(k + 1) % n];
-  if (dot(cross(p[ib] - p[ia], p[ic] - p[ib]), normal) <= 0) return false;
-  return std::ranges::none_of(
-      ring, [&](std::uint32_t i) { return i != ia && i != ib && i != ic && lies_inside(p[i], p[ia], p[ib], p[ic], normal); });
-}
-
-// Starts at the second corner: a convex polygon becomes the fan about its first, as in most programs.
-std::vector<Piece> clip_ears(std::span<const Vec3> polygon, Vec3 normal) {
-  std::vector<std::uint32_t> ring(polygon.size());
-  std::iota(ring.begin(), ring.end(), 0u);
-  std::vector<Piece> pieces;
-  while (ring.size() >= 3) {
-    const std::size_t n = ring.size();
-    std::size_t tried = 0;
-    while (tried < n && !is_ear(polygon, ring, (tried + 1) % n, normal)) ++tried;
-    const std::size_t ear = (tried + 1) % n;  // all tried: it crosses itself or has straight corners left; cut anyway
-    pieces.push_back({ring[(ear + n - 1) % n], ring[ear], ring[(ear + 1) % n], no_corner});
-    ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  return pieces;
-}
-
 }  // namespace
 
 Vec3 double_area_vector(std::span<const Vec3> polygon) {
@@ -63,7 +36,9 @@ std::vector<Piece> pieces_of(std::span<const Vec3> polygon) {
   if (!(length(area) > 0)) return {};
   const Vec3 normal = normalized(area);
   if (polygon.size() == 4 && is_planar_convex_quad(polygon, normal)) return {{0, 1, 2, 3}};
-  return clip_ears(polygon, normal);
+  std::vector<Piece> pieces;
+  for (const auto& [a, b, c] : clip_ears(polygon, normal)) pieces.push_back({a, b, c, no_corner});
+  return pieces;
 }
 
 }  // namespace alvor

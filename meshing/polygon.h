@@ -17,8 +17,7 @@ Vec3 double_area_vector(std::span<const Vec3> polygon);
 using Piece = std::array<std::uint32_t, 4>;
 inline constexpr std::uint32_t no_corner = ~0u;
 
-/// A triangle, or a convex quad planar to 4e-6 of its size, stays whole; anything else is cut into triangles by ear clipping,
-/// O(n^2). A polygon that crosses itself is cut without regard to the overlap.
+/// A triangle, or a convex quad planar to 4e-6 of its size, stays whole; anything else is cut into triangles (clip_ears).
 std::vector<Piece> pieces_of(std::span<const Vec3> polygon);
 
 }  // namespace alvor
