@@ -8,6 +8,8 @@ namespace alvor {
 
 namespace {
 
+constexpr std::size_t most_bytes = 1 << 20;  // of materials; 10 000 roots take as much
+
 std::uint64_t encode(const std::optional<Neighbour>& neighbour) {
   if (!neighbour) return 0;
   return 1 + 8 * std::uint64_t{neighbour->root} + 2 * static_cast<std::uint64_t>(neighbour->edge) + (neighbour->smooth ? 1 : 0);
@@ -31,9 +33,12 @@ bool MeshSlicer::next(v1::ReadMeshResponse& message) {
   message.Clear();
   if (next_ == 0 && next_material_ == 0 && mesh_.up() == UpAxis::z) message.set_up_axis(v1::UP_AXIS_Z);
   const std::span<const Material> materials = mesh_.materials();
+  std::size_t bytes = 0;  // names may be long
   for (; next_material_ < materials.size(); ++next_material_) {
-    if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_) return true;
-    *message.add_scene_materials() = encode(materials[next_material_]);
+    if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_ || bytes > most_bytes) return true;
+    v1::Material& material = *message.add_scene_materials();
+    material = encode(materials[next_material_]);
+    bytes += material.ByteSizeLong();
   }
   const std::size_t end = std::min(mesh_.roots().size(), next_ + items_at_a_time_);
   if (next_ == end) return message.scene_materials_size() > 0;

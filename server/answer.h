@@ -1,14 +1,18 @@
 #pragma once
 // From what a call's logic does or throws to what gRPC is told.
 
+#include "server/caller.h"
 #include "server/error_details.h"
 #include "server/status_error.h"
+#include "server/work_pool.h"
 
 #include <grpcpp/grpcpp.h>
 #include <spdlog/logger.h>
 
 #include <algorithm>
+#include <memory>
 #include <new>
+#include <string>
 
 namespace alvor {
 
@@ -37,12 +41,44 @@ grpc::Status attempt(spdlog::logger& logger, const char* call, Body&& body) {
   }
 }
 
-/// The whole of a unary call.
+/// The whole of a unary call whose body is quick and waits for nothing.
 template <class Body>
 grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, spdlog::logger& logger, const char* call, Body&& body) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   reactor->Finish(attempt(logger, call, body));
   return reactor;
 }
+
+/// The whole of a unary call whose body may wait, for a lock or the disk: `body` is copied, and called with the tenant by a
+/// thread of `pool`.
+template <class Body>
+grpc::ServerUnaryReactor* answer_from(WorkPool& pool, const Tenants& tenants, grpc::CallbackServerContext* context,
+                                      spdlog::logger& logger, const char* call, Body body) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  std::string tenant;
+  const grpc::Status refusal = attempt(logger, call, [&] { tenant = tenants.of(*context); });
+  if (!refusal.ok()) {
+    reactor->Finish(refusal);
+    return reactor;
+  }
+  const auto stop = std::make_shared<CallStop>();
+  pool.post(turn_of(tenant, *context), stop, [reactor, stop, tenant, body, &logger, call] {
+    reactor->Finish(attempt(logger, call, [&] {
+      stop->refuse_stopped();
+      body(tenant);
+    }));
+  });
+  return reactor;
+}
+
+/// A stream that ends as soon as it begins. Deletes itself.
+template <class Reactor>
+class Refusal final : public Reactor {
+ public:
+  explicit Refusal(const grpc::Status& status) { this->Finish(status); }
+
+ private:
+  void OnDone() override { delete this; }
+};
 
 }  // namespace alvor

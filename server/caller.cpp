@@ -24,6 +24,10 @@ std::string Tenants::of(const grpc::ServerContextBase& context) const {
   return tokens_->caller_of(first == end ? "" : text(first->second));
 }
 
+std::string turn_of(const std::string& tenant, const grpc::ServerContextBase& context) {
+  return tenant.empty() ? context.peer() : tenant;
+}
+
 const std::string& tenant_key() {
   static const std::string key = "alvor-tenant-" + random_id('k') + random_id('k') + "-bin";  // names may have any bytes
   return key;

@@ -25,10 +25,13 @@ struct Frame {
 /// Thread-safe.
 class FrameSource {
  public:
-  /// `max_leaves` to a frame, if that is less than what a frame holds.
+  /// Keeps the solve's log in memory. `max_leaves` to a frame, if that is less than what a frame holds. Throws StatusError where
+  /// the log cannot be loaded.
   FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves = SolutionLog::unlimited);
 
   StoredSolve& solve() const { return *solve_; }
+  /// The newest revision there is.
+  std::uint64_t head() const { return log_->head(); }
   /// Whether frame_after(cursor) would say anything that `cursor` does not know.
   bool has_news(const Cursor& cursor) const;
   /// The same frame to all who ask from the same place, for as long as any of them keeps it.
@@ -40,6 +43,7 @@ class FrameSource {
   std::shared_ptr<const Frame> encode_frame(const Cursor& cursor, Detail detail, bool ended) const;
 
   const std::shared_ptr<StoredSolve> solve_;
+  const std::shared_ptr<SolutionLog> log_;
   const std::string epoch_;
   const std::size_t max_leaves_;
   std::mutex lock_;

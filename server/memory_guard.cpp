@@ -2,11 +2,15 @@
 
 #include "server/status_error.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <sstream>
 
 namespace alvor {
@@ -60,6 +64,37 @@ std::uint64_t allowed_memory() {
   return std::min(machine, limit_of_group());
 }
 
+struct MemoryGuard::Relief {
+  using Clock = std::chrono::steady_clock;
+  // Trimming a heap of gigabytes takes a tenth of a second.
+  static constexpr std::chrono::seconds pause{1};
+
+  std::shared_ptr<void> add(std::function<void()> way) {
+    std::scoped_lock hold(lock);
+    const std::uint64_t number = next++;
+    ways.emplace(number, std::move(way));
+    return {this, [this, number](void*) {
+              std::scoped_lock hold_again(lock);
+              ways.erase(number);
+            }};
+  }
+  void give_back() {
+    std::scoped_lock hold(lock);
+    if (Clock::now() < last + pause) return;
+    for (const auto& [number, way] : ways) way();
+    malloc_trim(0);  // a limit counts what the allocator keeps for later
+    last = Clock::now();
+  }
+
+  std::mutex lock;
+  std::map<std::uint64_t, std::function<void()>> ways;
+  std::uint64_t next = 0;
+  Clock::time_point last;
+};
+
+MemoryGuard::MemoryGuard(std::uint64_t limit, std::uint64_t (*used)())
+    : limit_(limit), used_(used), relief_(std::make_shared<Relief>()) {}
+
 bool MemoryGuard::has_room(std::uint64_t bytes) const {
   if (limit_ == 0) return true;
   const std::uint64_t used = used_(), most = limit_ / 4 * 3;
@@ -67,9 +102,22 @@ bool MemoryGuard::has_room(std::uint64_t bytes) const {
 }
 
 void MemoryGuard::admit(const std::string& what, std::uint64_t bytes) const {
+  make_room(bytes);
+  refuse_without_room(what, bytes);
+}
+
+void MemoryGuard::refuse_without_room(const std::string& what, std::uint64_t bytes) const {
   if (has_room(bytes)) return;
   throw StatusError(grpc::RESOURCE_EXHAUSTED, what + ": needs about " + megabytes(bytes) + " of memory; " + megabytes(used_()) +
                                                   " of " + megabytes(limit_) + " are in use");
+}
+
+void MemoryGuard::make_room(std::uint64_t bytes) const {
+  if (!has_room(bytes)) relief_->give_back();
+}
+
+std::shared_ptr<void> MemoryGuard::relieve_by(std::function<void()> give_back) const {
+  return relief_->add(std::move(give_back));
 }
 
 bool MemoryGuard::is_short() const { return limit_ > 0 && used_() > limit_ / 8 * 7; }

@@ -2,6 +2,8 @@
 // How much memory the server may take. It refuses work while there is room to say so, and is not killed for taking too much.
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 
 namespace alvor {
@@ -19,25 +21,34 @@ std::uint64_t held_bytes();
 /// What the control group of this process allows, or else the machine, in bytes.
 std::uint64_t allowed_memory();
 
-/// Thread-safe.
+/// Copies share the ways of relief. Thread-safe.
 class MemoryGuard {
  public:
-  MemoryGuard() = default;  ///< no limit
+  MemoryGuard() : MemoryGuard(0) {}  ///< no limit
   /// 0: no limit.
-  explicit MemoryGuard(std::uint64_t limit, std::uint64_t (*used)() = held_bytes) : limit_(limit), used_(used) {}
+  explicit MemoryGuard(std::uint64_t limit, std::uint64_t (*used)() = held_bytes);
 
-  /// RESOURCE_EXHAUSTED, saying that `what` needs it, where more than three quarters would be in use with `bytes` more.
+  /// As make_room(), then as refuse_without_room().
   void admit(const std::string& what, std::uint64_t bytes) const;
-  /// Whether admit() would.
+  /// Where there is no room for `bytes`, gives back what nobody needs. Takes locks of those who do.
+  void make_room(std::uint64_t bytes) const;
+  /// RESOURCE_EXHAUSTED, saying that `what` needs it, where more than three quarters would be in use with `bytes` more.
+  void refuse_without_room(const std::string& what, std::uint64_t bytes) const;
   bool has_room(std::uint64_t bytes) const;
   /// More than seven eighths are in use: something must go.
   bool is_short() const;
 
   std::uint64_t limit() const { return limit_; }
 
+  /// A way to give back memory that nobody needs, until the returned handle goes.
+  std::shared_ptr<void> relieve_by(std::function<void()> give_back) const;
+
  private:
-  std::uint64_t limit_ = 0;
-  std::uint64_t (*used_)() = held_bytes;
+  struct Relief;
+
+  std::uint64_t limit_;
+  std::uint64_t (*used_)();
+  std::shared_ptr<Relief> relief_;
 };
 
 }  // namespace alvor

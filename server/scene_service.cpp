@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 namespace alvor {
 
@@ -47,16 +48,16 @@ class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
 class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequest> {
  public:
   CreateSceneCall(grpc::CallbackServerContext& context, Caller caller, SceneStore& scenes, Uploads& uploads,
-                  const UploadLimits& limits, TaskQueue& building, spdlog::logger& logger, v1::Scene& answer)
+                  const UploadLimits& limits, CallPools& pools, spdlog::logger& logger, v1::Scene& answer)
       : context_(context),
         scenes_(scenes),
         uploads_(uploads),
-        building_(building),
+        pools_(pools),
         logger_(logger),
         answer_(answer),
         caller_(std::move(caller)),
         upload_(std::make_unique<SceneUpload>(limits)),
-        idle_(std::make_shared<IdleWatch>(building, limits.patience, [this] {
+        idle_(std::make_shared<IdleWatch>(pools.timers, limits.patience, [this] {
           finish({grpc::ABORTED, "no message came for too long"});
         })) {
     idle_->wait();
@@ -97,14 +98,16 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
       return finish({grpc::CANCELLED, "the upload was broken off"});
     }
     message_.Clear();
-    building_.post([this] {
+    pools_.building.post(turn_of(caller_.tenant, context_), stop_, [this] {
       const grpc::Status status = attempt(logger_, "CreateScene", [this] { store(); });
       finish(status);
     });
   }
 
+  void OnCancel() override { stop_->stop({grpc::CANCELLED, "the client has gone"}); }
+
   void store() {
-    const auto stored = upload_->finish(scenes_, caller_);
+    const auto stored = upload_->finish(scenes_, caller_, *stop_);
     answer_ = stored->facts;
     logger_.info("scene {} '{}' stored: {} faces, {} bytes received", answer_.name(), one_line(answer_.display_name()),
                  answer_.face_count(), upload_->bytes());
@@ -119,12 +122,13 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   grpc::CallbackServerContext& context_;
   SceneStore& scenes_;
   Uploads& uploads_;
-  TaskQueue& building_;
+  CallPools& pools_;
   spdlog::logger& logger_;
   v1::Scene& answer_;
   Caller caller_;
   std::unique_ptr<SceneUpload> upload_;
   const std::shared_ptr<IdleWatch> idle_;
+  const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();  ///< of building the scene
   v1::CreateSceneRequest message_;
   bool is_first_ = true;
   bool is_open_ = false;  ///< counted among the open ones
@@ -134,39 +138,37 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
 bool next(SceneSlicer& slicer, v1::ReadSceneResponse& message) { return slicer.next(*message.mutable_chunk()); }
 bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.next(message); }
 
-// Sends a part of a scene's content piece by piece. Deletes itself.
-template <class Message, class Slicer>
+// Loads a scene and sends a part of its content, piece by piece. Deletes itself.
+template <class Message, class Slicer, class Part>
 class SendCall final : public grpc::ServerWriteReactor<Message> {
  public:
-  template <class Part>
-  SendCall(std::shared_ptr<const SceneContent> content, const Part& part) : content_(std::move(content)), slicer_(part) {
-    send_next();
+  /// `load` returns the content, by a thread of `pool`.
+  template <class Load>
+  SendCall(WorkPool& pool, const std::string& turn, spdlog::logger& logger, const char* call, Part part, Load load) {
+    pool.post(turn, stop_, [this, &logger, call, part, load] {
+      const grpc::Status status = attempt(logger, call, [&] { content_ = load(*stop_); });
+      if (!status.ok()) return this->Finish(status);
+      slicer_.emplace((*content_).*part);
+      send_next();
+    });
   }
 
  private:
   void send_next() {
-    if (next(slicer_, message_)) this->StartWrite(&message_);
+    if (next(*slicer_, message_)) this->StartWrite(&message_);
     else this->Finish(grpc::Status::OK);
   }
   void OnWriteDone(bool ok) override {
     if (ok) send_next();
     else this->Finish({grpc::CANCELLED, "the reader has gone"});
   }
+  void OnCancel() override { stop_->stop({grpc::CANCELLED, "the reader has gone"}); }
   void OnDone() override { delete this; }
 
-  const std::shared_ptr<const SceneContent> content_;
-  Slicer slicer_;
+  const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
+  std::shared_ptr<const SceneContent> content_;
+  std::optional<Slicer> slicer_;
   Message message_;
-};
-
-// A stream that ends as soon as it begins. Deletes itself.
-template <class Reactor>
-class Refusal final : public Reactor {
- public:
-  explicit Refusal(const grpc::Status& status) { this->Finish(status); }
-
- private:
-  void OnDone() override { delete this; }
 };
 
 }  // namespace
@@ -175,23 +177,29 @@ grpc::ServerReadReactor<v1::CreateSceneRequest>* SceneService::CreateScene(Conte
   Caller caller;
   const grpc::Status status = attempt(logger_, "CreateScene", [&] { caller.tenant = tenants_.of(*context); });
   if (!status.ok()) return new Refusal<grpc::ServerReadReactor<v1::CreateSceneRequest>>(status);
-  return new CreateSceneCall(*context, std::move(caller), scenes_, uploads_, limits_, building_, logger_, *scene);
+  return new CreateSceneCall(*context, std::move(caller), scenes_, uploads_, limits_, pools_, logger_, *scene);
+}
+
+template <class Body>
+SceneService::Reactor* SceneService::keep(Context* context, const char* call, Body body) {
+  return answer_from(pools_.keeping, tenants_, context, logger_, call, body);
 }
 
 SceneService::Reactor* SceneService::GetUpload(Context* context, const v1::GetUploadRequest* request, v1::Upload* upload) {
-  return answer(context, logger_, "GetUpload", [&] {
-    upload->set_chunk_count(uploads_.chunks({tenants_.of(*context), request->request_id()}));
+  return keep(context, "GetUpload", [this, request, upload](const std::string& tenant) {
+    upload->set_chunk_count(uploads_.chunks({tenant, request->request_id()}));
   });
 }
 
 SceneService::Reactor* SceneService::GetScene(Context* context, const v1::GetSceneRequest* request, v1::Scene* scene) {
-  return answer(context, logger_, "GetScene", [&] { *scene = scenes_.find(request->name(), tenants_.of(*context))->facts; });
+  return keep(context, "GetScene",
+              [this, request, scene](const std::string& tenant) { *scene = scenes_.find(request->name(), tenant)->facts; });
 }
 
 SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::ListScenesRequest* request,
                                                 v1::ListScenesResponse* response) {
-  return answer(context, logger_, "ListScenes", [&] {
-    const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()), tenants_.of(*context));
+  return keep(context, "ListScenes", [this, request, response](const std::string& tenant) {
+    const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()), tenant);
     for (const auto& stored : page.items) *response->add_scenes() = stored->facts;
     response->set_next_page_token(tokens_.token(page.next_before));
   });
@@ -199,16 +207,16 @@ SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::List
 
 SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::DeleteSceneRequest* request,
                                                  google::protobuf::Empty*) {
-  return answer(context, logger_, "DeleteScene", [&] { scenes_.remove(request->name(), tenants_.of(*context)); });
+  return keep(context, "DeleteScene", [this, request](const std::string& tenant) { scenes_.remove(request->name(), tenant); });
 }
 
 template <class Message, class Slicer, class Part>
 grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& scene, Part part) {
-  std::shared_ptr<const SceneContent> content;
-  const grpc::Status status = attempt(logger_, call, [&] { content = scenes_.find(scene, tenants_.of(context))->content(); });
-  if (!status.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(status);
-  const auto& sent = (*content).*part;
-  return new SendCall<Message, Slicer>(std::move(content), sent);
+  std::string tenant;
+  const grpc::Status refusal = attempt(logger_, call, [&] { tenant = tenants_.of(context); });
+  if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(refusal);
+  const auto load = [this, scene, tenant](const CallStop& stop) { return scenes_.find(scene, tenant)->content(stop); };
+  return new SendCall<Message, Slicer, Part>(pools_.building, turn_of(tenant, context), logger_, call, part, load);
 }
 
 grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context* context, const v1::ReadSceneRequest* request) {

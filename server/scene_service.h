@@ -2,8 +2,8 @@
 // The RPCs of alvor.v1.SceneService: thin, over SceneStore.
 
 #include "alvor/v1/scene_service.grpc.pb.h"
+#include "server/call_pools.h"
 #include "server/scene_upload.h"
-#include "server/task_queue.h"
 #include "server/uploads.h"
 
 namespace spdlog {
@@ -15,10 +15,8 @@ namespace alvor {
 /// Everything it is given must outlive the server's calls.
 class SceneService final : public v1::SceneService::CallbackService {
  public:
-  /// Scenes are checked and their meshes built as tasks of `building`.
-  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, TaskQueue& building,
-               spdlog::logger& logger)
-      : scenes_(scenes), tenants_(tenants), limits_(limits), building_(building), logger_(logger) {}
+  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools, spdlog::logger& logger)
+      : scenes_(scenes), tenants_(tenants), limits_(limits), pools_(pools), logger_(logger) {}
 
  private:
   using Context = grpc::CallbackServerContext;
@@ -32,6 +30,9 @@ class SceneService final : public v1::SceneService::CallbackService {
   grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
   grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
 
+  /// Answers from the pool, see answer_from.
+  template <class Body>
+  Reactor* keep(Context* context, const char* call, Body body);
   /// Streams a part of the scene's content, cut by a Slicer.
   template <class Message, class Slicer, class Part>
   grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& scene, Part part);
@@ -40,7 +41,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   const Tenants& tenants_;
   const UploadLimits limits_;
   Uploads uploads_;
-  TaskQueue& building_;
+  CallPools& pools_;
   spdlog::logger& logger_;
   PageTokens tokens_;
 };

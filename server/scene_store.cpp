@@ -54,6 +54,16 @@ v1::Scene facts_of(const Scene& scene, const BaseMesh& mesh, const std::string& 
   return facts;
 }
 
+/// Throws StatusError where `stop` ends it.
+BaseMesh build(const Scene& scene, const CallStop& stop) {
+  try {
+    return BaseMesh(scene, {.stop = stop.token()});
+  } catch (const BuildStopped&) {
+    stop.refuse_stopped();
+    throw;
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const SceneContent> SceneContents::add(const std::string& sha256, Scene scene, BaseMesh mesh) {
@@ -64,15 +74,30 @@ std::shared_ptr<const SceneContent> SceneContents::add(const std::string& sha256
   return content;
 }
 
-std::shared_ptr<const SceneContent> SceneContents::find(const std::string& sha256) {
-  {
-    std::scoped_lock hold(lock_);
-    std::erase_if(known_, [](const auto& entry) { return entry.second.expired(); });
-    if (const auto found = known_.find(sha256); found != known_.end())
-      if (auto content = found->second.lock()) return content;
-  }
+std::shared_ptr<const SceneContent> SceneContents::known(const std::string& sha256) {
+  std::scoped_lock hold(lock_);
+  std::erase_if(known_, [](const auto& entry) { return entry.second.expired(); });
+  const auto found = known_.find(sha256);
+  return found == known_.end() ? nullptr : found->second.lock();
+}
+
+std::shared_ptr<std::mutex> SceneContents::loading(const std::string& sha256) {
+  std::scoped_lock hold(lock_);
+  std::erase_if(loading_, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<std::mutex>& entry = loading_[sha256];
+  auto turn = entry.lock();
+  if (!turn) entry = turn = std::make_shared<std::mutex>();
+  return turn;
+}
+
+std::shared_ptr<const SceneContent> SceneContents::find(const std::string& sha256, const CallStop& stop) {
+  if (auto content = known(sha256)) return content;
+  const auto turn = loading(sha256);
+  std::scoped_lock alone(*turn);
+  if (auto content = known(sha256)) return content;
+  stop.refuse_stopped();
   Scene scene = archive_->content(sha256);
-  BaseMesh mesh(scene);
+  BaseMesh mesh = build(scene, stop);
   return add(sha256, std::move(scene), std::move(mesh));
 }
 
@@ -85,13 +110,15 @@ SceneStore::SceneStore(Archive* archive, const Quota& quota, MemoryGuard memory)
   }
 }
 
-std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::string& display_name, const Caller& caller) {
+std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::string& display_name, const Caller& caller,
+                                                   const CallStop& stop) {
   if (display_name.size() > longest_display_name)
     throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
   const std::string clamped = clamp_reflectance_of_one(scene);
   if (const auto fault = find_fault(scene)) throw invalid_argument(fault->text());
   memory_.admit("scene", bytes_a_corner * scene.corners.size());
-  BaseMesh mesh(scene);
+  stop.refuse_stopped();
+  BaseMesh mesh = build(scene, stop);
   if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");
   v1::Scene facts = facts_of(scene, mesh, display_name);
   if (!clamped.empty()) facts.add_warnings(clamped);

@@ -7,6 +7,7 @@
 #include "server/memory_guard.h"
 #include "server/paging.h"
 #include "server/request_ids.h"
+#include "server/work_pool.h"
 
 #include <cstdint>
 #include <map>
@@ -26,12 +27,17 @@ class SceneContents {
  public:
   explicit SceneContents(Archive* archive) : archive_(archive) {}
   std::shared_ptr<const SceneContent> add(const std::string& sha256, Scene scene, BaseMesh mesh);
-  /// Loaded where it is not in memory. Throws StatusError.
-  std::shared_ptr<const SceneContent> find(const std::string& sha256);
+  /// Loaded where it is not in memory, once for all who ask at a time. Throws StatusError, also when `stop` says so.
+  std::shared_ptr<const SceneContent> find(const std::string& sha256, const CallStop& stop);
 
  private:
+  std::shared_ptr<const SceneContent> known(const std::string& sha256);
+  /// Held by who loads that content.
+  std::shared_ptr<std::mutex> loading(const std::string& sha256);
+
   Archive* const archive_;
   std::mutex lock_;
+  std::map<std::string, std::weak_ptr<std::mutex>> loading_;
   std::map<std::string, std::weak_ptr<const SceneContent>> known_;
 };
 
@@ -50,8 +56,10 @@ class StoredScene {
   const Caller creator;
   const v1::Scene facts;  ///< as the API tells them
 
-  /// Throws StatusError where it has to be loaded and cannot be.
-  std::shared_ptr<const SceneContent> content() const { return kept_ ? kept_ : contents_.find(facts.content_sha256()); }
+  /// Throws StatusError where it has to be loaded and cannot be, or `stop` says so.
+  std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const {
+    return kept_ ? kept_ : contents_.find(facts.content_sha256(), stop);
+  }
 
  private:
   SceneContents& contents_;
@@ -71,8 +79,9 @@ class SceneStore {
   explicit SceneStore(Archive* archive = nullptr, const Quota& quota = {}, MemoryGuard memory = MemoryGuard());
 
   /// INVALID_ARGUMENT names what is wrong with the scene, RESOURCE_EXHAUSTED says of what there is too much. The mesh is built on
-  /// the calling thread. The same request again gets the same scene. When it returns the scene is kept.
-  std::shared_ptr<const StoredScene> add(Scene scene, const std::string& display_name, const Caller& caller = {});
+  /// the calling thread, unless `stop` ends it. The same request again gets the same scene. When it returns the scene is kept.
+  std::shared_ptr<const StoredScene> add(Scene scene, const std::string& display_name, const Caller& caller = {},
+                                         const CallStop& stop = {});
   /// NOT_FOUND.
   std::shared_ptr<const StoredScene> find(const std::string& name, const std::string& tenant = {}) const;
   SceneUse use(const std::string& name, const std::string& tenant = {}) const;

@@ -41,9 +41,9 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
     check_limit(material.name().size(), limits_.bytes_of_name, "bytes in a material's name");
 }
 
-std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller) {
+std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller, const CallStop& stop) {
   if (!begun_) throw invalid_argument("scene: the first message must set it");
-  return store.add(assembler_.take(), display_name_, caller);
+  return store.add(assembler_.take(), display_name_, caller, stop);
 }
 
 }  // namespace alvor

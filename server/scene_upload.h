@@ -14,9 +14,9 @@ struct UploadLimits {
   std::uint64_t bytes = std::uint64_t{2} << 30;                            ///< of messages
   std::uint64_t corners = 50'000'000;                                      ///< of all faces
   std::chrono::steady_clock::duration patience = std::chrono::minutes(1);  ///< between messages; then ABORTED
-  std::uint64_t corners_of_face = 5000;                                    ///< cutting up a polygon takes the square of them
-  std::uint64_t bytes_of_name = 1000;                                      ///< of a material
-  std::uint64_t materials = 1'000'000;  ///< an empty one is two bytes on the wire, but not in memory
+  std::uint64_t corners_of_face = 20'000;  ///< cutting up one that crosses itself takes half a second
+  std::uint64_t bytes_of_name = 1000;      ///< of a material
+  std::uint64_t materials = 1'000'000;     ///< an empty one is two bytes on the wire, but not in memory
   MemoryGuard memory;
 };
 
@@ -25,8 +25,8 @@ class SceneUpload {
  public:
   explicit SceneUpload(const UploadLimits& limits) : limits_(limits) {}
   void add(const v1::CreateSceneRequest& message);
-  /// All messages have arrived: checks and stores the scene.
-  std::shared_ptr<const StoredScene> finish(SceneStore& store, const Caller& caller = {});
+  /// All messages have arrived: checks and stores the scene, unless `stop` ends it.
+  std::shared_ptr<const StoredScene> finish(SceneStore& store, const Caller& caller = {}, const CallStop& stop = {});
   std::uint64_t chunks() const { return chunks_; }
   std::uint64_t bytes() const { return bytes_; }
 

@@ -40,8 +40,8 @@ struct Service::Parts {
         scenes(options.archive, options.quota, options.memory),
         solves(solve_store_options, scenes),
         tenants(options.tokens, options.identity_header),
-        scene_service(scenes, tenants, upload_limits(options), building, *logger),
-        solve_service(scenes, solves, watches, tenants, *logger),
+        scene_service(scenes, tenants, upload_limits(options), pools, *logger),
+        solve_service(scenes, solves, watches, tenants, pools, *logger),
         metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts,
                                           solve_store_options.memory)) {}
 
@@ -51,12 +51,14 @@ struct Service::Parts {
   std::shared_ptr<spdlog::logger> logger;
   SceneStore scenes;
   SolveStore solves;
-  TaskQueue building;
+  CallPools pools;
   const Tenants tenants;
   SceneService scene_service;
   SolveService solve_service;
   std::shared_ptr<Metrics> metrics;
 };
+
+Service::Service() : Service(ServiceOptions()) {}
 
 Service::Service(ServiceOptions options) : parts_(std::make_unique<Parts>(options)) {}
 
@@ -74,6 +76,8 @@ void Service::register_with(grpc::ServerBuilder& builder) {
 std::shared_ptr<prometheus::Collectable> Service::metrics() const { return parts_->metrics; }
 
 void Service::shut_down() {
+  parts_->pools.building.stop();
+  parts_->pools.keeping.stop();
   parts_->watches.stop_all();
   parts_->solves.shut_down();
 }

@@ -26,7 +26,8 @@ struct ServiceOptions {
 /// shut down before it is destroyed.
 class Service {
  public:
-  explicit Service(ServiceOptions options = {});
+  Service();
+  explicit Service(ServiceOptions options);
   ~Service();
   void register_with(grpc::ServerBuilder& builder);
   /// Ends all watches, parks or cancels all solves (SolveStore::shut_down) and waits for them. Later CreateSolve and WatchSolve

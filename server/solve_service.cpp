@@ -16,22 +16,27 @@ v1::WatchSolveRequest parse(grpc::ByteBuffer bytes) {
 
 }  // namespace
 
+template <class Body>
+SolveService::Reactor* SolveService::keep(Context* context, const char* call, Body body) {
+  return answer_from(pools_.keeping, tenants_, context, logger_, call, body);
+}
+
 SolveService::Reactor* SolveService::CreateSolve(Context* context, const v1::CreateSolveRequest* request, v1::Solve* solve) {
-  return answer(context, logger_, "CreateSolve", [&] {
-    const Caller caller{tenants_.of(*context), request->request_id()};
-    SceneUse scene = scenes_.use(request->parent(), caller.tenant);
+  return keep(context, "CreateSolve", [this, request, solve](const std::string& tenant) {
+    const Caller caller{tenant, request->request_id()};
+    SceneUse scene = scenes_.use(request->parent(), tenant);
     *solve = solves_.create(std::move(scene), request->solve().spec(), caller)->describe();
   });
 }
 
 SolveService::Reactor* SolveService::GetSolve(Context* context, const v1::GetSolveRequest* request, v1::Solve* solve) {
-  return answer(context, logger_, "GetSolve", [&] { *solve = solves_.find(request->name(), tenants_.of(*context))->describe(); });
+  return keep(context, "GetSolve",
+              [this, request, solve](const std::string& tenant) { *solve = solves_.find(request->name(), tenant)->describe(); });
 }
 
 SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::ListSolvesRequest* request,
                                                 v1::ListSolvesResponse* response) {
-  return answer(context, logger_, "ListSolves", [&] {
-    const std::string tenant = tenants_.of(*context);
+  return keep(context, "ListSolves", [this, request, response](const std::string& tenant) {
     if (request->parent() != "scenes/-") scenes_.find(request->parent(), tenant);
     const auto page = solves_.list(request->parent(), tokens_.request(request->page_size(), request->page_token()), tenant);
     for (const auto& solve : page.items) *response->add_solves() = solve->describe();
@@ -40,32 +45,44 @@ SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::List
 }
 
 SolveService::Reactor* SolveService::CancelSolve(Context* context, const v1::CancelSolveRequest* request, v1::Solve* solve) {
-  return answer(context, logger_, "CancelSolve",
-                [&] { *solve = solves_.cancel(request->name(), tenants_.of(*context))->describe(); });
+  return keep(context, "CancelSolve", [this, request, solve](const std::string& tenant) {
+    *solve = solves_.cancel(request->name(), tenant)->describe();
+  });
 }
 
 SolveService::Reactor* SolveService::PauseSolve(Context* context, const v1::PauseSolveRequest* request, v1::Solve* solve) {
-  return answer(context, logger_, "PauseSolve",
-                [&] { *solve = solves_.pause(request->name(), tenants_.of(*context))->describe(); });
+  return keep(context, "PauseSolve",
+              [this, request, solve](const std::string& tenant) { *solve = solves_.pause(request->name(), tenant)->describe(); });
 }
 
 SolveService::Reactor* SolveService::ResumeSolve(Context* context, const v1::ResumeSolveRequest* request, v1::Solve* solve) {
-  return answer(context, logger_, "ResumeSolve",
-                [&] { *solve = solves_.resume(request->name(), tenants_.of(*context))->describe(); });
+  return keep(context, "ResumeSolve", [this, request, solve](const std::string& tenant) {
+    *solve = solves_.resume(request->name(), tenant)->describe();
+  });
 }
 
 SolveService::Reactor* SolveService::DeleteSolve(Context* context, const v1::DeleteSolveRequest* request,
                                                  google::protobuf::Empty*) {
-  return answer(context, logger_, "DeleteSolve", [&] { solves_.remove(request->name(), tenants_.of(*context)); });
+  return keep(context, "DeleteSolve", [this, request](const std::string& tenant) { solves_.remove(request->name(), tenant); });
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context* context, const grpc::ByteBuffer* request) {
-  auto* call = new WatchCall(*context, watches_, logger_);  // deletes itself
-  const grpc::Status status = attempt(logger_, "WatchSolve", [&] {
-    const v1::WatchSolveRequest watch = parse(*request);
-    call->start(solves_.find(watch.name(), tenants_.of(*context)), watch);
+  std::string tenant;
+  v1::WatchSolveRequest watch;
+  const grpc::Status refusal = attempt(logger_, "WatchSolve", [&] {
+    tenant = tenants_.of(*context);
+    watch = parse(*request);
   });
-  if (!status.ok()) call->Finish(status);
+  if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<grpc::ByteBuffer>>(refusal);
+  auto* call = new WatchCall(*context, watches_, logger_);  // deletes itself
+  pools_.building.post(turn_of(tenant, *context), call->stop(), [this, call, tenant, watch] {
+    const auto stop = call->stop();  // once it was started, the call may end at any time
+    const grpc::Status status = attempt(logger_, "WatchSolve", [&] {
+      stop->refuse_stopped();
+      call->start(solves_.find(watch.name(), tenant), watch);
+    });
+    if (!status.ok()) call->Finish(status);
+  });
   return call;
 }
 

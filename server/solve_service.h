@@ -2,6 +2,7 @@
 // The RPCs of alvor.v1.SolveService: thin, over SolveStore and Watches.
 
 #include "alvor/v1/solve_service.grpc.pb.h"
+#include "server/call_pools.h"
 #include "server/solve_store.h"
 #include "server/watches.h"
 
@@ -10,8 +11,9 @@ namespace alvor {
 /// Everything it is given must outlive the server's calls.
 class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchSolve<v1::SolveService::CallbackService> {
  public:
-  SolveService(const SceneStore& scenes, SolveStore& solves, Watches& watches, const Tenants& tenants, spdlog::logger& logger)
-      : scenes_(scenes), solves_(solves), watches_(watches), tenants_(tenants), logger_(logger) {}
+  SolveService(const SceneStore& scenes, SolveStore& solves, Watches& watches, const Tenants& tenants, CallPools& pools,
+               spdlog::logger& logger)
+      : scenes_(scenes), solves_(solves), watches_(watches), tenants_(tenants), pools_(pools), logger_(logger) {}
 
  private:
   using Context = grpc::CallbackServerContext;
@@ -27,10 +29,15 @@ class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchS
   grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSolve(Context*, const grpc::ByteBuffer* request) override;
   Reactor* AcknowledgeFrame(Context*, const v1::AcknowledgeFrameRequest* request, v1::AcknowledgeFrameResponse*) override;
 
+  /// Answers from the pool, see answer_from.
+  template <class Body>
+  Reactor* keep(Context* context, const char* call, Body body);
+
   const SceneStore& scenes_;
   SolveStore& solves_;
   Watches& watches_;
   const Tenants& tenants_;
+  CallPools& pools_;
   spdlog::logger& logger_;
   PageTokens tokens_;
 };

@@ -10,6 +10,7 @@
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <algorithm>
 #include <system_error>
 
 namespace alvor {
@@ -19,8 +20,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint64_t bytes_a_face =
-    2000;                             // of a solve that has begun: its part of the scene, mesh, tree of boxes and first rows
-constexpr auto between_looks = 50ms;  // at the memory, which grows by less than 1 MB/ms
+    2000;  // of a solve that has begun: its part of the scene, mesh, tree of boxes and first rows
+constexpr std::uint64_t bytes_a_leaf = 2400;  // of a running solve; docs/deploy.md: 2.1 to 2.7 KB
+constexpr auto between_looks = 50ms;          // at the memory, which grows by less than 1 MB/ms
 
 std::uint64_t least_memory(const StoredScene& scene) { return bytes_a_face * scene.facts.face_count(); }
 
@@ -54,6 +56,7 @@ std::shared_ptr<spdlog::logger> silent_logger() {
 
 SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : options_(std::move(options)) {
   if (options_.memory.limit() > 0) {
+    relief_ = options_.memory.relieve_by([this] { drop_logs(); });
     watching_memory_ = std::make_unique<TaskQueue>();
     watching_memory_->post([this] { watch_memory(); });
   }
@@ -91,11 +94,12 @@ SolveStore::~SolveStore() { shut_down(); }
 std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveSpec& spec, const Caller& caller) {
   const SolveOptions how = options_of(spec, options_.limits);
   check_request_id(caller.request_id);
+  options_.memory.make_room(least_memory(*scene.scene));  // takes the lock
   std::scoped_lock hold(lock_);
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
   if (auto known = repeated(caller, scene.scene->facts.name(), spec)) return known;
   check_capacity(caller.tenant, how);
-  options_.memory.admit("solve", least_memory(*scene.scene));
+  options_.memory.refuse_without_room("solve", least_memory(*scene.scene));
   auto solve = std::make_shared<StoredSolve>(next_number_, scene.scene, caller, spec, how, options_.keeping);
   solve->keep();
   ++next_number_;
@@ -165,18 +169,37 @@ void SolveStore::watch_memory() {
   watching_memory_->post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
 }
 
-/// The solve that came last must end with what it has, one after the other until there is room.
+/// Of the tenant whose solves take most, the solve that came last must end with what it has; one after the other until there is
+/// room. Before that goes what nobody needs, and what else can.
 void SolveStore::relieve_memory() {
+  options_.memory.make_room(0);
+  if (!options_.memory.is_short() || options_.spare_solves()) return;
   std::scoped_lock hold(lock_);
+  const std::string tenant = hungriest_tenant();
   Entry* last = nullptr;
   for (auto& [name, entry] : solves_) {
     if (!entry.is_running) continue;
     if (entry.short_of_memory.stop_requested()) return;  // it is just ending
-    if (!last || goes_before(*last->solve, *entry.solve)) last = &entry;
+    if (entry.solve->creator.tenant == tenant && (!last || goes_before(*last->solve, *entry.solve))) last = &entry;
   }
   if (!last) return;
   options_.logger->warn("memory is short: solve {} must end", last->solve->name);
   last->short_of_memory.request_stop();
+}
+
+/// The tenant whose running solves take most memory.
+std::string SolveStore::hungriest_tenant() const {
+  std::map<std::string, std::uint64_t> bytes;
+  for (const auto& [name, entry] : solves_)
+    if (entry.is_running)
+      bytes[entry.solve->creator.tenant] +=
+          least_memory(*entry.scene.scene) + bytes_a_leaf * entry.solve->describe().last_step().leaves();
+  const auto most = std::ranges::max_element(bytes, {}, [](const auto& each) { return each.second; });
+  return most == bytes.end() ? "" : most->first;
+}
+
+void SolveStore::drop_logs() {
+  for (const auto& solve : all()) solve->drop_log();
 }
 
 void SolveStore::start(Entry& entry) {

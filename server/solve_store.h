@@ -29,6 +29,8 @@ struct SolveStoreOptions {
   SolveLimits limits;
   Quota quota;
   MemoryGuard memory;
+  /// Ends something else that takes memory, if it can; asked before a solve must end. Returns whether it did.
+  std::function<bool()> spare_solves = [] { return false; };
   Solver solver = solve_as_planned;
   Keeping keeping;
   std::chrono::steady_clock::duration patience =
@@ -82,6 +84,8 @@ class SolveStore {
   void start_waiting();
   void watch_memory();
   void relieve_memory();
+  std::string hungriest_tenant() const;
+  void drop_logs();
   Entry* next_waiting();
   void start(Entry& entry);
   void run(Entry& entry);
@@ -99,6 +103,7 @@ class SolveStore {
   std::stop_source abandon_;
   std::map<std::thread::id, std::thread> threads_;
   std::vector<std::thread::id> finished_;       ///< have nothing left to do but to end
+  std::shared_ptr<void> relief_;                ///< registered with the memory guard
   std::unique_ptr<TaskQueue> watching_memory_;  ///< uses all of the above; null without a limit
 };
 

@@ -59,7 +59,7 @@ StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const Store
       priority(priority_of(spec)),
       scene_(std::move(scene)),
       keeping_(std::move(keeping)),
-      log_(std::make_unique<SolutionLog>()) {
+      log_(std::make_shared<SolutionLog>()) {
   facts_.set_name(name);
   *facts_.mutable_spec() = spec;
   facts_.set_state(v1::Solve::QUEUED);
@@ -78,7 +78,8 @@ StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScen
       facts_(std::move(row.facts)),
       lineage_(std::move(row.lineage)) {
   const bool has_checkpoint = facts_.has_checkpoint_time();
-  if (!has_checkpoint) log_ = std::make_unique<SolutionLog>();
+  if (!has_checkpoint) log_ = std::make_shared<SolutionLog>();
+  is_log_kept_ = has_checkpoint && is_final(facts_.state());
   if (is_final(facts_.state())) return;
   facts_.set_restarts(facts_.restarts() + 1);
   facts_.clear_work_lost();
@@ -104,20 +105,26 @@ Archive::SolveRow StoredSolve::row() const {
   return row;
 }
 
-SolutionLog& StoredSolve::log() const {
+std::shared_ptr<SolutionLog> StoredSolve::log() const {
   std::scoped_lock hold(log_lock_);
-  if (log_) return *log_;
+  if (log_) return log_;
   const auto bytes = keeping_.archive->log(number);
   try {
     PlainReader in(bytes);
-    auto loaded = std::make_unique<SolutionLog>(in);
+    const auto loaded = std::make_shared<SolutionLog>(in);
     in.expect_end();
     if (ended()) loaded->close();
-    log_ = std::move(loaded);
+    log_ = loaded;
   } catch (const BadBytes& fault) {
     throw data_loss("the solution of " + name + ": " + fault.what());
   }
-  return *log_;
+  return log_;
+}
+
+void StoredSolve::drop_log() {
+  std::shared_ptr<SolutionLog> dropped;  // freed after the lock is
+  std::scoped_lock hold(log_lock_);
+  if (is_log_kept_ && ended() && log_.use_count() == 1) dropped = std::move(log_);
 }
 
 std::vector<std::byte> StoredSolve::take_checkpoint() {
@@ -164,9 +171,22 @@ void StoredSolve::close_log() {
   if (log_) log_->close();
 }
 
+/// Null where it was cancelled meanwhile.
+std::shared_ptr<const SceneContent> StoredSolve::load_content(const std::stop_token& cancel) const {
+  CallStop stop;
+  const std::stop_callback cancelled(cancel, [&] { stop.stop({grpc::CANCELLED, "cancelled"}); });
+  try {
+    return scene_->content(stop);
+  } catch (const StatusError& refusal) {
+    if (refusal.code == grpc::CANCELLED) return nullptr;
+    throw;
+  }
+}
+
 SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
                                 const std::function<void(const std::string&)>& complain) {
-  const auto content = scene_->content();
+  const auto content = load_content(run.cancel);
+  if (!content) return {.reason = StopReason::cancelled};
   const std::vector<std::byte> from = take_checkpoint();
   const Plan plan(content->mesh, options);
   show(plan);
@@ -198,7 +218,7 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
     keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
     next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
   };
-  return solver(content->mesh, plan, options, log(), control);
+  return solver(content->mesh, plan, options, *log(), control);
 }
 
 void StoredSolve::save(const SolveControl::Write& write) {
@@ -214,13 +234,13 @@ void StoredSolve::save_in_memory(const SolveControl::Write& write) {
 
 /// `state` is empty once the solve has ended, as `change` then says.
 void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change) {
-  SolutionLog& solution = log();
-  const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution.save(out); }), std::move(state)};
+  const auto solution = log();
+  const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution->save(out); }), std::move(state)};
   std::scoped_lock keep(keeping_lock_);
   Archive::SolveRow next = row();
   if (change) change(next.facts);
-  next.lineage[keeping_.epoch] = solution.head();
-  *next.facts.mutable_last_step() = alvor::encode(solution.last_step());
+  next.lineage[keeping_.epoch] = solution->head();
+  *next.facts.mutable_last_step() = alvor::encode(solution->last_step());
   *next.facts.mutable_checkpoint_time() = TimeUtil::GetCurrentTime();
   keeping_.archive->update(next, checkpoint);
   ++keeping_.counts->checkpoints;
@@ -256,6 +276,8 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
   if (!keeping_.archive) return show_end();
   try {
     keep_checkpoint({}, say_end);
+    std::scoped_lock hold(log_lock_);
+    is_log_kept_ = true;
   } catch (...) {
     show_end();
     throw;
@@ -321,7 +343,7 @@ v1::Solve StoredSolve::describe() const {
 }
 
 bool StoredSolve::knows(const std::string& epoch, std::uint64_t revision) const {
-  if (epoch == keeping_.epoch) return revision <= log().head();
+  if (epoch == keeping_.epoch) return revision <= log()->head();
   std::scoped_lock hold(lock_);
   const auto line = lineage_.find(epoch);
   return line != lineage_.end() && revision <= line->second;

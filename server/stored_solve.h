@@ -60,7 +60,7 @@ class StoredSolve {
   void keep();
 
   /// Loaded at the first call where it was kept. Throws StatusError where it cannot be.
-  SolutionLog& log() const;
+  std::shared_ptr<SolutionLog> log() const;
 
   /// Solves on the calling thread; an exception of the solver makes the solve FAILED. When it returns the solve has ended and the
   /// log is closed, or it is PAUSED or QUEUED, as `is_paused` then says. One run at a time. `complain` is told what could not be
@@ -78,6 +78,8 @@ class StoredSolve {
   v1::Solve::State state() const;
   /// The state will not change and the log will not grow. Listeners of the log are woken after this became true.
   bool ended() const;
+  /// Gives back the memory of the log where the solve has ended, the log is kept and nobody else holds it; log() loads it again.
+  void drop_log();
   /// As the API tells it.
   v1::Solve describe() const;
   /// Whether a mirror that is complete up to `revision` of `epoch` can go on.
@@ -89,6 +91,7 @@ class StoredSolve {
   void close_log();
   void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
+  std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
   void save(const SolveControl::Write& write);
   void save_in_memory(const SolveControl::Write& write);
   void keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change = {});
@@ -99,7 +102,8 @@ class StoredSolve {
   const std::shared_ptr<const StoredScene> scene_;
   const Keeping keeping_;
   mutable std::mutex log_lock_;
-  mutable std::unique_ptr<SolutionLog> log_;  ///< null: kept, and not loaded yet
+  mutable std::shared_ptr<SolutionLog> log_;  ///< null: kept, and not loaded
+  bool is_log_kept_ = false;                  ///< all of it
   std::mutex keeping_lock_;                   ///< what is kept is what was true last; before lock_
   mutable std::mutex lock_;
   v1::Solve facts_;  ///< its last step is that of the checkpoint

@@ -131,7 +131,7 @@ std::uint64_t Watch::bytes_sent() const {
 
 std::uint64_t Watch::revisions_behind() const {
   std::scoped_lock hold(lock_);
-  const std::uint64_t head = frames_->solve().log().head();
+  const std::uint64_t head = frames_->head();
   return head - std::min(head, acknowledged_revision_);
 }
 

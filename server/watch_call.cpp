@@ -51,18 +51,23 @@ WatchCall::WatchCall(grpc::CallbackServerContext& context, Watches& watches, spd
 
 void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request) {
   WatchPlan plan = plan_of(request);
-  SolutionLog& log = solve->log();  // loaded here, where it may fail
+  log_ = solve->log();  // loaded here, where it may fail
   if (solve->knows(request.epoch(), request.base_revision())) plan.start.base = request.base_revision();
   else if (request.base_revision() > 0) reset_field_ = field([](auto& message) { message.set_reset(true); });
-  auto watch = std::make_shared<Watch>(watches_.frames_of(solve), plan, *this);
-  // Known by its id before its first frame can be acknowledged.
+  const auto watch = std::make_shared<Watch>(watches_.frames_of(solve), plan, *this);
+  watch->ask_for_turn();  // nobody else gets it a turn before begin(): then it may end, and this be gone
   watches_.add(id_, watch, solve->creator.tenant);
   solve_ = solve;
-  log_ = &log;
-  watch_ = watch;
   listener_ = log_->listen([&watches = watches_, watch] { watches.ask_for_turn(watch); });
-  watches_.ask_for_turn(watch_);
+  set_watch(watch);
   logger_.info("watcher {} of {} joined at revision {}", id_, solve->name, plan.start.base);
+  watches_.begin(watch);
+}
+
+void WatchCall::set_watch(const std::shared_ptr<Watch>& watch) {
+  std::scoped_lock hold(lock_);
+  if (stop_->token().stop_requested()) watch->stop({grpc::CANCELLED, "the watcher has gone"});
+  watch_ = watch;
 }
 
 void WatchCall::write(const Frame& frame) {
@@ -78,9 +83,16 @@ void WatchCall::OnWriteDone(bool ok) {
 }
 
 void WatchCall::OnCancel() {
-  if (!watch_) return;
-  watch_->stop({grpc::CANCELLED, "the watcher has gone"});
-  watches_.ask_for_turn(watch_);
+  const grpc::Status gone(grpc::CANCELLED, "the watcher has gone");
+  stop_->stop(gone);
+  std::shared_ptr<Watch> watch;
+  {
+    std::scoped_lock hold(lock_);
+    watch = watch_;
+  }
+  if (!watch) return;
+  watch->stop(gone);
+  watches_.ask_for_turn(watch);
 }
 
 // No lock is held here: forget() waits for a listener that is just running.

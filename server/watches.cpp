@@ -73,8 +73,12 @@ void Watches::stop_all() {
   }
 }
 
+void Watches::begin(const std::shared_ptr<Watch>& watch) {
+  turns_.post([this, watch] { take_turn(watch); });
+}
+
 void Watches::ask_for_turn(const std::shared_ptr<Watch>& watch) {
-  if (watch->ask_for_turn()) turns_.post([this, watch] { take_turn(watch); });
+  if (watch->ask_for_turn()) begin(watch);
 }
 
 void Watches::take_turn(const std::shared_ptr<Watch>& watch) {

@@ -35,6 +35,8 @@ class Watches {
   /// Ends every watch, and lets none begin.
   void stop_all();
 
+  /// Gives a new watch its first turn, which was asked for when it was made.
+  void begin(const std::shared_ptr<Watch>& watch);
   /// Quick: may be called from any callback. Two asks before the turn are one turn.
   void ask_for_turn(const std::shared_ptr<Watch>& watch);
 

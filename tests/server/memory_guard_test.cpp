@@ -78,12 +78,12 @@ class ShortMemoryTest : public testing::Test {
 TEST_F(ShortMemoryTest, LastAndLeastSolveEndsWithWhatItHas) {
   const auto low = create(v1::PRIORITY_LOW), first = create(v1::PRIORITY_NORMAL), last = create(v1::PRIORITY_NORMAL);
   for (const auto& solve : {low, first, last})
-    while (solve->log().head() == 0) std::this_thread::yield();
+    while (solve->log()->head() == 0) std::this_thread::yield();
   used = 790 * mebibyte;
   while (!low->ended()) std::this_thread::yield();
   EXPECT_EQ(low->describe().end_reason(), "memory limit reached");
   EXPECT_EQ(low->describe().state(), v1::Solve::SUCCEEDED);
-  EXPECT_EQ(low->log().head(), 1u);
+  EXPECT_EQ(low->log()->head(), 1u);
   EXPECT_FALSE(last->ended());
   used = 790 * mebibyte;
   while (!last->ended()) std::this_thread::yield();

@@ -55,7 +55,7 @@ TEST_F(SolveStoreTest, CancelledSolveStaysReadable) {
   stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   solves.cancel(solve->name);
   EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
-  EXPECT_EQ(solves.find(solve->name)->log().leaves().size(), 1u);
+  EXPECT_EQ(solves.find(solve->name)->log()->leaves().size(), 1u);
   EXPECT_EQ(ended(solves.cancel(solve->name)).state(), v1::Solve::CANCELLED) << "cancelling again changes nothing";
 }
 
@@ -64,7 +64,7 @@ TEST_F(SolveStoreTest, SolverThatThrowsFailsTheSolveAndNotTheServer) {
   stage.fail("no rays today");
   EXPECT_EQ(ended(solve).state(), v1::Solve::FAILED);
   EXPECT_EQ(ended(solve).end_reason(), "no rays today");
-  solve->log().wait_beyond(solve->log().head());  // returns: the log is closed although the solver did not
+  solve->log()->wait_beyond(solve->log()->head());  // returns: the log is closed although the solver did not
 }
 
 TEST_F(SolveStoreTest, OnlySoManyRunAtATimeAndOnlySoManyWait) {
@@ -92,7 +92,7 @@ TEST_F(SolveStoreTest, PausedSolveGoesOnFromWhereItWas) {
   stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   solves.pause(solve->name);
   while (solve->describe().state() != v1::Solve::PAUSED) std::this_thread::yield();
-  EXPECT_FALSE(solve->log().closed());
+  EXPECT_FALSE(solve->log()->closed());
   solves.resume(solve->name);
   EXPECT_EQ(stage.resumed_from(), sizeof(std::uint32_t));
   EXPECT_EQ(solve->describe().state(), v1::Solve::RUNNING);
@@ -112,7 +112,7 @@ TEST_F(SolveStoreTest, PausedSolveCanBeCancelledAndLeavesItsPlaceToOthers) {
   while (third->describe().state() != v1::Solve::RUNNING) std::this_thread::yield();
   solves.cancel(first->name);
   EXPECT_EQ(first->describe().state(), v1::Solve::CANCELLED);
-  EXPECT_TRUE(first->log().closed());
+  EXPECT_TRUE(first->log()->closed());
 }
 
 TEST_F(SolveStoreTest, CancellingASolveThatIsJustBeingParkedIsNotForgotten) {

@@ -39,7 +39,7 @@ struct Recorder final : FrameSink {
 class WatchTest : public testing::Test {
  protected:
   static constexpr std::size_t page = 10;
-  void publish() { solve->log().publish(leaves.next(), {}); }
+  void publish() { solve->log()->publish(leaves.next(), {}); }
   void end() {
     solve->run([](auto&, auto&, auto&, SolutionLog&, const SolveControl&) { return SolveOutcome{}; }, {}, {}, {});
   }
@@ -179,7 +179,7 @@ TEST_F(WatchTest, SlowWatcherGetsNewestValuesOnly) {
   publish();
   watch.take_turn(now);
   deliver();
-  for (int i = 0; i < 100; ++i) solve->log().publish(std::vector<LeafValue>{{PatchId::root(0), {float(i), 0, 0}}}, {});
+  for (int i = 0; i < 100; ++i) solve->log()->publish(std::vector<LeafValue>{{PatchId::root(0), {float(i), 0, 0}}}, {});
   watch.take_turn(now + 1s);
   Delta delta;
   ASSERT_FALSE(decode(sink.frames[1], delta));
@@ -205,19 +205,19 @@ TEST_F(WatchTest, PagesOfAGrowingSolutionMakeTheMirrorEqual) {
   EXPECT_TRUE(sink.status->ok());
   EXPECT_TRUE(sink.frames.back().ended());
   EXPECT_TRUE(mirror.whole());
-  EXPECT_EQ(mirror.leaves(), solve->log().leaves());
+  EXPECT_EQ(mirror.leaves(), solve->log()->leaves());
 }
 
 TEST_F(WatchTest, LastFrameWaitsForTheFinalState) {
   publish();
-  solve->log().close();  // as the solver does before it returns
+  solve->log()->close();  // as the solver does before it returns
   watch.take_turn(now);
   EXPECT_FALSE(sink.frames[0].ended());
   deliver();
   watch.take_turn(now += 1s);
   EXPECT_EQ(sink.frames.size(), 1u);
   bool woken = false;
-  solve->log().listen([&] { woken = solve->ended(); });
+  solve->log()->listen([&] { woken = solve->ended(); });
   end();
   EXPECT_TRUE(woken);
   watch.take_turn(now += 1s);

@@ -1,0 +1,17 @@
+#pragma once
+// Threads for what calls do.
+
+#include "server/task_queue.h"
+#include "server/work_pool.h"
+
+namespace alvor {
+
+struct CallPools {
+  /// Building and loading scenes, loading solutions.
+  WorkPool building{{.threads = 4, .of_one = 2, .time = std::chrono::minutes(1)}};
+  /// Everything else that may wait for a lock or the disk.
+  WorkPool keeping{{.threads = 8, .of_one = 4}};
+  TaskQueue timers;
+};
+
+}  // namespace alvor
