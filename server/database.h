@@ -1,0 +1,64 @@
+#pragma once
+// The SQLite database of a data directory, how it is opened, and what is done when the disk is full.
+
+#include "server/ballast.h"
+#include "server/status_error.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace SQLite {
+class Database;
+}
+
+namespace alvor {
+
+/// With this begins each message about it.
+inline const std::string data_directory = "the server's data directory: ";
+
+/// Thread-safe. Each change is one transaction: when a call returns, all of it is on the disk; when it throws, nothing is. Throws
+/// StatusError: RESOURCE_EXHAUSTED when the disk is full, UNAVAILABLE when it cannot be written or read, DATA_LOSS when the
+/// database is damaged.
+///
+/// The journal is a rollback journal, which holds only the pages that a change replaces: new rows need no room there, so what
+/// waits in it is small however large the change is, and going back after a crash needs no room at all.
+class Database {
+ public:
+  using Body = std::function<void(SQLite::Database&)>;
+
+  /// Opens or makes `directory`/alvor.db and keeps other servers out of it. Throws std::invalid_argument saying why it cannot.
+  explicit Database(const std::filesystem::path& directory);
+  ~Database();
+
+  /// Returns why nothing could be written when it was opened, not even with the ballast's room; empty where something could.
+  const std::string& fault() const { return fault_; }
+
+  void read(const Body& body);
+  void change(const Body& body);
+  /// For changes that take much room. Refused where the ballast cannot be kept beside them. `step` is a failpoint.
+  void grow(const Body& body, const std::string& step);
+  /// For changes that remove rows, at most `rows_at_a_time` large ones. On a full disk they use the ballast's room. Foreign keys
+  /// are not looked at: rows that refer to removed ones are the caller's.
+  void shrink(const Body& body);
+  static constexpr int rows_at_a_time = 64;
+
+  /// Takes up the ballast where there was no room for it before. Returns at once while the database is in use.
+  void restore_ballast();
+
+ private:
+  void open_somehow(const std::filesystem::path& file);
+  std::string open_for_writing(const std::filesystem::path& file, bool& is_full);
+  void open_for_reading(const std::filesystem::path& file);
+  void attempt(const Body& body);
+  void in_one(const Body& body);
+
+  const Ballast ballast_;
+  std::mutex lock_;
+  std::unique_ptr<SQLite::Database> connection_;
+  std::string fault_;
+};
+
+}  // namespace alvor
