@@ -171,7 +171,7 @@ void Archive::add(const SceneRow& row, const Scene& content) {
     bind_bytes(put, 5, facts);
     put.exec();
   };
-  database_.grow(put_scene, "scene");
+  database_.change(put_scene, "scene");
 }
 
 Scene Archive::content(const std::string& sha256) {
@@ -201,7 +201,7 @@ Scene Archive::content(const std::string& sha256) {
 
 void Archive::remove_scene(std::uint64_t number) {
   std::string unused;
-  database_.shrink([&](SQLite::Database& database) {
+  database_.remove([&](SQLite::Database& database) {
     if (has_solves(database, key(number))) throw data_loss("the scene has a solve that is damaged, and stays for its sake");
     unused = remove_scene_row(database, key(number));
   });
@@ -213,7 +213,7 @@ void Archive::remove_scene(std::uint64_t number) {
 void Archive::remove_pieces(const char* batch, const std::function<void(SQLite::Statement&)>& bind) {
   try {
     for (int removed = Database::rows_at_a_time; removed == Database::rows_at_a_time;)
-      database_.shrink([&](SQLite::Database& database) {
+      database_.remove([&](SQLite::Database& database) {
         SQLite::Statement remove(database, batch);
         bind(remove);
         remove.bind(2, Database::rows_at_a_time);

@@ -77,7 +77,7 @@ void Archive::add(const SolveRow& row, std::uint64_t scene) {
     bind_bytes(put, 5, facts);
     put.exec();
   };
-  database_.grow(put_solve, "solve");
+  database_.change(put_solve, "solve");
 }
 
 void Archive::put_facts(SQLite::Database& database, const SolveRow& row) {
@@ -143,11 +143,11 @@ void Archive::update(const SolveRow& row, const Checkpoint& checkpoint) {
     replace_pieces(database, row.number, checkpoint);
     note_kept(database, row);
   };
-  database_.grow(put, "checkpoint");
+  database_.change(put, "checkpoint");
 }
 
 void Archive::remove_solve(std::uint64_t number) {
-  database_.shrink([&](SQLite::Database& database) {
+  database_.remove([&](SQLite::Database& database) {
     for (const char* sql :
          {"DELETE FROM solves WHERE number = ?", "DELETE FROM lineage WHERE solve = ?", "DELETE FROM unkept WHERE solve = ?"}) {
       SQLite::Statement remove(database, sql);

@@ -13,7 +13,7 @@ namespace alvor {
 namespace {
 
 constexpr int version = 2;
-// The journal of a step of shrink() holds the pages that it replaces: of each row at most one of the table, one of each of two
+// The journal of a call of remove() holds the pages that it replaces: of each row at most one of the table, one of each of two
 // indexes, and two lists of free pages (a row of 4 MB frees 1 025 pages, a list holds 1 022): 64 * 5 * 4 KB = 1.3 MB.
 constexpr std::int64_t bytes_of_ballast = 4 << 20;
 
@@ -185,33 +185,18 @@ void Database::read(const Body& body) {
   attempt(body);
 }
 
-void Database::change(const Body& body) {
-  std::scoped_lock hold(lock_);
-  in_one(body);
-}
-
-void Database::grow(const Body& body, const std::string& step) {
-  std::scoped_lock hold(lock_);
-  if (!ballast_.take_up()) throw StatusError(grpc::RESOURCE_EXHAUSTED, data_directory + "the disk is full");
-  in_one([&](SQLite::Database& connection) {
-    body(connection);
-    failpoint(step + ".before");
-  });
-  failpoint(step + ".after");
-}
-
-void Database::shrink(const Body& body) {
-  std::scoped_lock hold(lock_);
-  const struct WithoutKeys {
-    explicit WithoutKeys(SQLite::Database& open) : connection(open) { connection.tryExec("PRAGMA foreign_keys = OFF"); }
-    ~WithoutKeys() { connection.tryExec("PRAGMA foreign_keys = ON"); }
+/// Does not let the file grow, so that the ballast finds its room again. Requires: the lock.
+void Database::in_free_pages(const Body& body) {
+  const struct FixedSize {
+    explicit FixedSize(SQLite::Database& open)
+        : connection(open), most(connection.execAndGet("PRAGMA max_page_count").getInt64()) {
+      limit(connection.execAndGet("PRAGMA page_count").getInt64());
+    }
+    ~FixedSize() { limit(most); }
+    void limit(std::int64_t pages) const { connection.tryExec("PRAGMA max_page_count = " + std::to_string(pages)); }
     SQLite::Database& connection;
-  } without_keys(*connection_);
-  try {
-    return in_one(body);
-  } catch (const StatusError& refusal) {
-    if (refusal.code != grpc::RESOURCE_EXHAUSTED) throw;
-  }
+    const std::int64_t most;
+  } fixed_size(*connection_);
   const struct WithoutBallast {
     explicit WithoutBallast(const Ballast& held) : ballast(held) { ballast.drop(); }
     ~WithoutBallast() { ballast.take_up(); }
@@ -220,6 +205,35 @@ void Database::shrink(const Body& body) {
   in_one(body);
   // Has an effect only where an older server's log could not be left.
   connection_->tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+/// Requires: the lock.
+void Database::write(const Body& body) {
+  try {
+    if (ballast_.take_up()) return in_one(body);
+  } catch (const StatusError& refusal) {
+    if (refusal.code != grpc::RESOURCE_EXHAUSTED) throw;
+  }
+  in_free_pages(body);
+}
+
+void Database::change(const Body& body, const std::string& step) {
+  std::scoped_lock hold(lock_);
+  write([&](SQLite::Database& connection) {
+    body(connection);
+    failpoint(step + ".before");
+  });
+  failpoint(step + ".after");
+}
+
+void Database::remove(const Body& body) {
+  std::scoped_lock hold(lock_);
+  const struct WithoutKeys {
+    explicit WithoutKeys(SQLite::Database& open) : connection(open) { connection.tryExec("PRAGMA foreign_keys = OFF"); }
+    ~WithoutKeys() { connection.tryExec("PRAGMA foreign_keys = ON"); }
+    SQLite::Database& connection;
+  } without_keys(*connection_);
+  write(body);
 }
 
 void Database::restore_ballast() {

@@ -23,8 +23,10 @@ inline const std::string data_directory = "the server's data directory: ";
 /// StatusError: RESOURCE_EXHAUSTED when the disk is full, UNAVAILABLE when it cannot be written or read, DATA_LOSS when the
 /// database is damaged.
 ///
-/// The journal is a rollback journal, which holds only the pages that a change replaces: new rows need no room there, so what
-/// waits in it is small however large the change is, and going back after a crash needs no room at all.
+/// The journal is a rollback journal, which holds only the pages that a change replaces: new rows need no room there, so it is
+/// small however large the change is, and going back after a crash needs no room at all. On a full disk it is written in the
+/// room of the ballast, and changes must fit into pages of the database that are free; so removing rows always succeeds, and
+/// gives room for others.
 class Database {
  public:
   using Body = std::function<void(SQLite::Database&)>;
@@ -37,12 +39,11 @@ class Database {
   const std::string& fault() const { return fault_; }
 
   void read(const Body& body);
-  void change(const Body& body);
-  /// For changes that take much room. Refused where the ballast cannot be kept beside them. `step` is a failpoint.
-  void grow(const Body& body, const std::string& step);
-  /// For changes that remove rows, at most `rows_at_a_time` large ones. On a full disk they use the ballast's room. Foreign keys
-  /// are not looked at: rows that refer to removed ones are the caller's.
-  void shrink(const Body& body);
+  /// `step`, where there is one, is a failpoint. `body` is called again where it finds the disk full.
+  void change(const Body& body, const std::string& step = "");
+  /// For changes that remove rows, at most `rows_at_a_time` large ones. Foreign keys are not looked at: rows that refer to
+  /// removed ones are the caller's.
+  void remove(const Body& body);
   static constexpr int rows_at_a_time = 64;
 
   /// Takes up the ballast where there was no room for it before. Returns at once while the database is in use.
@@ -54,6 +55,8 @@ class Database {
   void open_for_reading(const std::filesystem::path& file);
   void attempt(const Body& body);
   void in_one(const Body& body);
+  void in_free_pages(const Body& body);
+  void write(const Body& body);
 
   const Ballast ballast_;
   std::mutex lock_;
