@@ -98,9 +98,7 @@ Archive::Archive(const std::filesystem::path& directory, RunClock clock)
       clock_(std::move(clock)),
       begun_(clock_()),
       run_(random_id('r')) {
-  if (!database_.fault().empty())
-    note_fault(data_directory + database_.fault() +
-               ": scenes and solves can be read; what would be written is refused until it can be");
+  if (!database_.fault().empty()) note_fault(data_directory + database_.fault());
   note_alive();
   remove_leftovers();
 }

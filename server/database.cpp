@@ -54,6 +54,8 @@ constexpr const char* settings = R"(
 std::unique_ptr<SQLite::Database> connect(const std::filesystem::path& file) {
   auto connection = std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   connection->exec(settings);
+  // Else closing moves a part of an older server's write-ahead log where there is no room for all.
+  sqlite3_db_config(connection->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
   return connection;
 }
 
@@ -66,10 +68,22 @@ int version_of(SQLite::Database& connection) {
   return found;
 }
 
-/// Moves into the database what is in the write-ahead log that older servers used. It must be moved before the log is left:
-/// SQLite closes the log even where that fails.
+bool has_write_ahead_log(SQLite::Database& connection) {
+  return connection.execAndGet("PRAGMA journal_mode").getString() == "wal";
+}
+
+/// Moves into the database what is in the write-ahead log that older servers used. Does not begin where the disk has no room for
+/// it: a part would fill the room and be of no use. It must be moved before the log is left: SQLite closes the log even where
+/// that fails.
 void leave_write_ahead_log(SQLite::Database& connection) {
-  if (connection.execAndGet("PRAGMA journal_mode").getString() == "wal") connection.exec("PRAGMA wal_checkpoint(TRUNCATE)");
+  if (has_write_ahead_log(connection)) {
+    const std::filesystem::path file = connection.getFilename();
+    const auto bytes = static_cast<std::uintmax_t>(connection.execAndGet("PRAGMA page_count").getInt64() *
+                                                   connection.execAndGet("PRAGMA page_size").getInt64());
+    if (bytes > std::filesystem::file_size(file) + std::filesystem::space(file).available)
+      throw SQLite::Exception("no room for the write-ahead log", SQLITE_FULL);
+    connection.exec("PRAGMA wal_checkpoint(TRUNCATE)");
+  }
   connection.exec("PRAGMA journal_mode = TRUNCATE");
 }
 
@@ -102,8 +116,10 @@ std::string reason_of(const SQLite::Exception& fault) {
   }
 }
 
+StatusError disk_full() { return {grpc::RESOURCE_EXHAUSTED, data_directory + "the disk is full"}; }
+
 StatusError error_of(SQLite::Database& connection, const SQLite::Exception& fault) {
-  if (is_disk_full(connection, fault)) return {grpc::RESOURCE_EXHAUSTED, data_directory + "the disk is full"};
+  if (is_disk_full(connection, fault)) return disk_full();
   const int code = fault.getErrorCode();
   const bool is_damaged = code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
   return {is_damaged ? grpc::DATA_LOSS : grpc::UNAVAILABLE, data_directory + reason_of(fault)};
@@ -123,6 +139,7 @@ Database::Database(const std::filesystem::path& directory) : ballast_(directory 
   } catch (const std::invalid_argument& fault) {
     throw std::invalid_argument(at + fault.what());
   }
+  is_complete_ = fault_.empty();
   ballast_.take_up();
 }
 
@@ -135,7 +152,7 @@ void Database::open_somehow(const std::filesystem::path& file) {
     ballast_.drop();
     fault_ = open_for_writing(file, is_full);
   }
-  if (!fault_.empty()) open_for_reading(file);
+  if (!fault_.empty()) open_for_reading(file, is_full);
 }
 
 /// Returns why nothing can be written; empty where something can. Throws SQLite::Exception where it cannot be read either.
@@ -153,12 +170,17 @@ std::string Database::open_for_writing(const std::filesystem::path& file, bool& 
   }
 }
 
-/// As the last server left it, in its write-ahead log if there is one.
-void Database::open_for_reading(const std::filesystem::path& file) {
+/// As the last server left it. Its write-ahead log, if there is one, is then only used to remove rows, and stays.
+void Database::open_for_reading(const std::filesystem::path& file, bool is_full) {
   connection_.reset();
   connection_ = connect(file);
   if (version_of(*connection_) == 0) throw std::invalid_argument(fault_);
-  connection_->tryExec("BEGIN EXCLUSIVE; COMMIT");
+  connection_->tryExec("PRAGMA wal_autocheckpoint = 0; BEGIN EXCLUSIVE; COMMIT");
+  keeps_log_ = is_full && has_write_ahead_log(*connection_);
+  fault_ += !is_full ? ": scenes and solves can be read; all else is refused until the server is started where it can write"
+            : keeps_log_
+                ? ": scenes and solves can be read and deleted; all else is refused until the server is started with more room"
+                : ": scenes and solves can be read and deleted; all else is refused until there is room";
 }
 
 /// Requires: the lock.
@@ -174,7 +196,6 @@ void Database::attempt(const Body& body) {
 void Database::in_one(const Body& body) {
   attempt([&](SQLite::Database& connection) {
     SQLite::Transaction change(connection, SQLite::TransactionBehavior::IMMEDIATE);
-    if (!fault_.empty()) connection.exec(additions);  // it could not be done before
     body(connection);
     change.commit();
   });
@@ -185,8 +206,21 @@ void Database::read(const Body& body) {
   attempt(body);
 }
 
+/// Where there was no room for it when the database was opened. Requires: the lock.
+void Database::complete_schema() {
+  if (is_complete_) return;
+  attempt([](SQLite::Database& connection) { connection.exec(additions); });
+  is_complete_ = true;
+}
+
 /// Does not let the file grow, so that the ballast finds its room again. Requires: the lock.
 void Database::in_free_pages(const Body& body) {
+  const struct WithoutBallast {
+    explicit WithoutBallast(const Ballast& held) : ballast(held) { ballast.drop(); }
+    ~WithoutBallast() { ballast.take_up(); }
+    const Ballast& ballast;
+  } without_ballast(ballast_);
+  complete_schema();
   const struct FixedSize {
     explicit FixedSize(SQLite::Database& open)
         : connection(open), most(connection.execAndGet("PRAGMA max_page_count").getInt64()) {
@@ -197,20 +231,16 @@ void Database::in_free_pages(const Body& body) {
     SQLite::Database& connection;
     const std::int64_t most;
   } fixed_size(*connection_);
-  const struct WithoutBallast {
-    explicit WithoutBallast(const Ballast& held) : ballast(held) { ballast.drop(); }
-    ~WithoutBallast() { ballast.take_up(); }
-    const Ballast& ballast;
-  } without_ballast(ballast_);
   in_one(body);
-  // Has an effect only where an older server's log could not be left.
-  connection_->tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
 }
 
 /// Requires: the lock.
 void Database::write(const Body& body) {
   try {
-    if (ballast_.take_up()) return in_one(body);
+    if (ballast_.take_up()) {
+      complete_schema();
+      return in_one(body);
+    }
   } catch (const StatusError& refusal) {
     if (refusal.code != grpc::RESOURCE_EXHAUSTED) throw;
   }
@@ -219,6 +249,7 @@ void Database::write(const Body& body) {
 
 void Database::change(const Body& body, const std::string& step) {
   std::scoped_lock hold(lock_);
+  if (keeps_log_) throw disk_full();
   write([&](SQLite::Database& connection) {
     body(connection);
     failpoint(step + ".before");

@@ -35,7 +35,8 @@ class Database {
   explicit Database(const std::filesystem::path& directory);
   ~Database();
 
-  /// Returns why nothing could be written when it was opened, not even with the ballast's room; empty where something could.
+  /// Returns why nothing could be written when it was opened, not even in the ballast's room, and what can be done all the same;
+  /// empty where something could.
   const std::string& fault() const { return fault_; }
 
   void read(const Body& body);
@@ -52,9 +53,10 @@ class Database {
  private:
   void open_somehow(const std::filesystem::path& file);
   std::string open_for_writing(const std::filesystem::path& file, bool& is_full);
-  void open_for_reading(const std::filesystem::path& file);
+  void open_for_reading(const std::filesystem::path& file, bool is_full);
   void attempt(const Body& body);
   void in_one(const Body& body);
+  void complete_schema();
   void in_free_pages(const Body& body);
   void write(const Body& body);
 
@@ -62,6 +64,8 @@ class Database {
   std::mutex lock_;
   std::unique_ptr<SQLite::Database> connection_;
   std::string fault_;
+  bool is_complete_ = false;  ///< the schema
+  bool keeps_log_ = false;    ///< of an older server: there is no room to leave it
 };
 
 }  // namespace alvor
