@@ -52,7 +52,7 @@ class Archive {
     v1::Solve facts;
     /// Of each epoch, the last revision that later ones go on from.
     std::map<std::string, std::uint64_t> lineage;
-    /// When it is read: how long the last run of the server worked at it since its newest checkpoint. Unset unless it was
+    /// Set by solves(): how long the last run of the server worked at it since its newest checkpoint. Unset unless it was
     /// running, and where nobody knows.
     std::optional<std::chrono::microseconds> work_lost = {};
   };
