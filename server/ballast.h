@@ -6,13 +6,15 @@
 
 namespace alvor {
 
-/// A file of no use but for its size. Nothing here throws: without room there is none.
+/// A file of no use but for its size. Nothing here throws.
 class Ballast {
  public:
+  /// Leaves the file as it is.
   Ballast(std::filesystem::path file, std::int64_t bytes);
   void drop() const;
-  /// Where there is room for it.
-  void take_up() const;
+  /// Makes the file as large as it shall be. Returns false where the disk has no room for that; the file then stays as large as
+  /// it was.
+  bool take_up() const;
 
  private:
   const std::filesystem::path file_;

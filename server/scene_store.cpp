@@ -104,10 +104,9 @@ std::shared_ptr<const SceneContent> SceneContents::find(const std::string& sha25
 SceneStore::SceneStore(Archive* archive, const Quota& quota, MemoryGuard memory)
     : archive_(archive), quota_(quota), memory_(memory), contents_(archive) {
   if (!archive) return;
-  for (const Archive::SceneRow& row : archive->scenes()) {
+  for (const Archive::SceneRow& row : archive->scenes())
     insert(std::make_shared<StoredScene>(row.number, Caller{row.tenant, row.request_id}, row.facts, contents_, nullptr));
-    next_number_ = row.number + 1;
-  }
+  next_number_ = archive->last_scene() + 1;
 }
 
 std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::string& display_name, const Caller& caller,

@@ -64,8 +64,13 @@ SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : op
   std::scoped_lock hold(lock_);
   for (Archive::SolveRow& row : options_.keeping.archive->solves()) {
     const std::string name = row.facts.name(), tenant = row.tenant;
-    next_number_ = row.number + 1;
-    SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), tenant);
+    SceneUse scene;
+    try {
+      scene = scenes.use(name.substr(0, name.find("/solves/")), tenant);
+    } catch (const StatusError& fault) {
+      options_.logger->error("solve number {} is not served: {}", row.number, fault.what());
+      continue;
+    }
     SolveOptions how;
     std::string refusal;
     try {
@@ -74,18 +79,25 @@ SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : op
       refusal = fault.what();  // the limits, or the machine, were larger when it was made
     }
     auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
-    requests_.add(solve->creator, name);
     if (!refusal.empty() && !solve->ended()) {
       options_.logger->error("solve {} cannot go on: {}", name, refusal);
-      solve->set_waiting_state(v1::Solve::CANCELLED);
+      try {
+        solve->set_waiting_state(v1::Solve::CANCELLED);
+      } catch (const StatusError& fault) {
+        options_.logger->error("solve {} is not served: it cannot be kept: {}", name, fault.what());
+        continue;
+      }
     }
     if (!solve->ended())
       options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
+    requests_.add(solve->creator, name);
     Entry& entry = solves_[name];
     entry.scene = std::move(scene);
     entry.shall_pause = solve->state() == v1::Solve::PAUSED;
     entry.solve = std::move(solve);
   }
+  next_number_ = options_.keeping.archive->last_solve() + 1;
+  for (const std::string& fault : options_.keeping.archive->take_faults()) options_.logger->error(fault);
   start_waiting();
 }
 

@@ -85,10 +85,7 @@ StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScen
   facts_.clear_work_lost();
   facts_.set_resumed_from_revision(facts_.last_step().revision());
   if (facts_.state() != v1::Solve::RUNNING) return;
-  const auto since = TimeUtil::TimestampToMicroseconds(has_checkpoint ? facts_.checkpoint_time() : facts_.create_time());
-  const auto seen = keeping_.archive->seen_alive().value_or(std::chrono::system_clock::now()).time_since_epoch();
-  const double lost_s = 1e-6 * static_cast<double>(std::chrono::duration_cast<std::chrono::microseconds>(seen).count() - since);
-  *facts_.mutable_work_lost() = encode_seconds(std::max(0.0, lost_s));
+  if (row.work_lost) *facts_.mutable_work_lost() = encode_seconds(1e-6 * static_cast<double>(row.work_lost->count()));
   facts_.set_state(v1::Solve::QUEUED);
 }
 

@@ -22,12 +22,47 @@ void Uploads::put(const Caller& caller, std::unique_ptr<SceneUpload> upload) {
   std::scoped_lock hold(lock_);
   drop_expired();
   waiting_[{caller.tenant, caller.request_id}] = {std::move(upload), Clock::now()};
-  std::uint64_t bytes = 0;
-  for (const auto& [key, entry] : waiting_) bytes += entry.upload->bytes();
-  while (bytes > most_bytes || waiting_.size() > most_waiting) {
-    const auto oldest = std::ranges::min_element(waiting_, {}, [](const auto& entry) { return entry.second.since; });
-    bytes -= oldest->second.upload->bytes();
-    waiting_.erase(oldest);
+  keep_tenant_within_limits(caller.tenant);
+  keep_all_within_limits();
+}
+
+/// Returns what waits, by tenant.
+std::map<std::string, Uploads::Sum> Uploads::sums() const {
+  std::map<std::string, Sum> sums;
+  for (const auto& [key, entry] : waiting_) {
+    Sum& sum = sums[key.first];
+    ++sum.count;
+    sum.bytes += entry.upload->bytes();
+  }
+  return sums;
+}
+
+/// Requires: one of the tenant's waits.
+void Uploads::drop_oldest(const std::string& tenant) {
+  auto oldest = waiting_.end();
+  for (auto each = waiting_.begin(); each != waiting_.end(); ++each)
+    if (each->first.first == tenant && (oldest == waiting_.end() || each->second.since < oldest->second.since)) oldest = each;
+  waiting_.erase(oldest);
+}
+
+void Uploads::keep_tenant_within_limits(const std::string& tenant) {
+  const auto is_beyond = [&](const Sum& own) { return own.count > limits_.count || own.bytes > limits_.bytes; };
+  while (is_beyond(sums()[tenant])) drop_oldest(tenant);
+}
+
+/// Who has most of what there is too much of loses first.
+void Uploads::keep_all_within_limits() {
+  while (true) {
+    const auto tenants = sums();
+    Sum all;
+    for (const auto& [tenant, sum] : tenants) {
+      all.count += sum.count;
+      all.bytes += sum.bytes;
+    }
+    const bool has_too_many = all.count > limits_.count_of_all;
+    if (!has_too_many && all.bytes <= limits_.bytes_of_all) return;
+    const auto share = [&](const auto& tenant) { return has_too_many ? tenant.second.count : tenant.second.bytes; };
+    drop_oldest(std::ranges::max_element(tenants, {}, share)->first);
   }
 }
 

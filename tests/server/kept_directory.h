@@ -1,0 +1,48 @@
+#pragma once
+// A data directory for a test, and its database as others see it.
+
+#include "server/archive.h"
+#include "tests/server/sample_scenes.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace alvor {
+
+class KeptDirectoryTest : public testing::Test {
+ protected:
+  KeptDirectoryTest() { std::filesystem::remove_all(directory); }
+  ~KeptDirectoryTest() override { std::filesystem::remove_all(directory); }
+
+  /// Requires: no archive has it open.
+  void alter(const std::string& sql) const {
+    SQLite::Database((directory / "alvor.db").string(), SQLite::OPEN_READWRITE).exec(sql);
+  }
+  int count(const std::string& table) const {
+    return SQLite::Database((directory / "alvor.db").string(), SQLite::OPEN_READWRITE)
+        .execAndGet("SELECT count(*) FROM " + table)
+        .getInt();
+  }
+  static Archive::SceneRow scene_row(std::uint64_t number, const Scene& content) {
+    Archive::SceneRow row{number, "", "", {}};
+    row.facts.set_name("scenes/s" + std::to_string(number));
+    row.facts.set_content_sha256(measure(content).sha256);
+    return row;
+  }
+  static Archive::SolveRow solve_row(std::uint64_t number, std::uint64_t scene, v1::Solve::State state) {
+    Archive::SolveRow row{number, "", "", {}, {}};
+    row.facts.set_name("scenes/s" + std::to_string(scene) + "/solves/s" + std::to_string(number));
+    row.facts.set_state(state);
+    return row;
+  }
+
+  const std::filesystem::path directory =
+      std::filesystem::temp_directory_path() /
+      ("alvor_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+}  // namespace alvor

@@ -1,0 +1,139 @@
+// How much work of a running solve a crash cost, by the clock of the run that crashed.
+
+#include "server/stored_solve.h"
+#include "tests/server/kept_directory.h"
+
+#include <google/protobuf/util/time_util.h>
+
+#include <fstream>
+#include <optional>
+
+namespace alvor {
+namespace {
+
+using namespace std::chrono_literals;
+using google::protobuf::util::TimeUtil;
+
+class WorkLostTest : public KeptDirectoryTest {
+ protected:
+  RunClock clock() {
+    return [this] { return now; };
+  }
+  /// In a run of the server that begins; it ends when this goes.
+  struct Run {
+    explicit Run(WorkLostTest& test) : archive(test.directory, test.clock()), now(test.now) {}
+    void at(std::chrono::seconds age) { now = begun + age; }
+    Archive archive;
+    std::chrono::microseconds& now;
+    const std::chrono::microseconds begun = now;
+  };
+  /// A solve of the scene 1, which is added.
+  Archive::SolveRow add_solve(Archive& archive) {
+    archive.add(scene_row(1, squares(1)), squares(1));
+    Archive::SolveRow row = solve_row(1, 1, v1::Solve::QUEUED);
+    archive.add(row, 1);
+    row.facts.set_state(v1::Solve::RUNNING);
+    return row;
+  }
+  std::optional<std::chrono::microseconds> lost() {
+    now += 3h;  // nobody was alive
+    return Archive(directory, clock()).solves().at(0).work_lost;
+  }
+  std::chrono::microseconds now = 5h;  ///< of the clock, whose beginning means nothing
+};
+
+TEST_F(WorkLostTest, IsTheTimeFromTheCheckpointToTheLastSignOfLife) {
+  {
+    Run run(*this);
+    Archive::SolveRow row = add_solve(run.archive);
+    run.at(2s);
+    run.archive.update(row);
+    run.at(20s);
+    run.archive.update(row, Archive::Checkpoint{});
+    run.at(23s);
+    run.archive.note_alive();
+  }
+  EXPECT_EQ(lost(), 3s);
+}
+
+TEST_F(WorkLostTest, BeginsWhenTheSolveDoesWhereThereIsNoCheckpoint) {
+  {
+    Run run(*this);
+    Archive::SolveRow row = add_solve(run.archive);
+    run.at(1000s);  // it waited
+    run.archive.update(row);
+    run.at(1003s);
+    run.archive.update(row);
+    run.at(1004s);
+    run.archive.note_alive();
+  }
+  EXPECT_EQ(lost(), 4s);
+}
+
+TEST_F(WorkLostTest, DoesNotCountAPause) {
+  {
+    Run run(*this);
+    Archive::SolveRow row = add_solve(run.archive);
+    run.archive.update(row);
+    run.at(10s);
+    row.facts.set_state(v1::Solve::PAUSED);
+    run.archive.update(row);
+    run.at(100s);
+    row.facts.set_state(v1::Solve::RUNNING);
+    run.archive.update(row);
+    run.at(106s);
+    run.archive.note_alive();
+  }
+  EXPECT_EQ(lost(), 6s);
+}
+
+TEST_F(WorkLostTest, IsNeverNegative) {
+  {
+    Run run(*this);
+    Archive::SolveRow row = add_solve(run.archive);
+    run.at(20s);
+    run.archive.update(row, Archive::Checkpoint{});
+  }
+  EXPECT_EQ(lost(), 0s);
+}
+
+TEST_F(WorkLostTest, OfARunBeforeTheLastIsNotTold) {
+  {
+    Run run(*this);
+    run.archive.update(add_solve(run.archive));
+    run.at(9s);
+    run.archive.note_alive();
+  }
+  { Run idle(*this); }
+  EXPECT_EQ(lost(), std::nullopt);
+}
+
+TEST_F(WorkLostTest, IsNotToldWhereTheSignOfLifeIsDamagedOrMissing) {
+  {
+    Run run(*this);
+    run.archive.update(add_solve(run.archive));
+  }
+  std::ofstream(directory / "alive") << "1";
+  EXPECT_EQ(lost(), std::nullopt);
+  std::filesystem::remove(directory / "alive");
+  EXPECT_EQ(lost(), std::nullopt);
+}
+
+TEST_F(WorkLostTest, HasNothingToDoWithTheTimeOfDay) {
+  {
+    Run run(*this);
+    Archive::SolveRow row = add_solve(run.archive);
+    *row.facts.mutable_create_time() = TimeUtil::SecondsToTimestamp(0);
+    *row.facts.mutable_checkpoint_time() = TimeUtil::SecondsToTimestamp(1);  // set ten years ahead meanwhile
+    run.archive.update(row, Archive::Checkpoint{});
+    run.at(7s);
+    run.archive.note_alive();
+  }
+  Archive archive(directory, clock());
+  SceneStore scenes(&archive);
+  const StoredSolve solve(archive.solves().at(0), scenes.use("scenes/s1").scene, {}, {.archive = &archive});
+  EXPECT_EQ(TimeUtil::DurationToSeconds(solve.describe().work_lost()), 7);
+}
+
+}  // namespace
+}  // namespace alvor
