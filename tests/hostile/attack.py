@@ -4,7 +4,6 @@ import dataclasses
 import threading
 import time
 
-import calls
 from calls import Caller, health, outcome, room, scenes
 
 ATTACKS = []
@@ -18,13 +17,15 @@ class Attack:
   run: object  # (target, seconds) -> what was seen, in words; raises AssertionError where the promise is not held
   options: tuple
   descriptors: tuple
+  prepare: object
 
 
-def attack(family, options=(), descriptors=None):
-  """Registers a function whose documentation is the promise. `options` are alvord's, `descriptors` its (soft, hard) limit."""
+def attack(family, options=(), descriptors=None, prepare=None):
+  """Registers a function whose documentation is the promise. `options` are alvord's; {folder} in them is the attack's own directory.
+  `descriptors` is alvord's (soft, hard) limit. prepare(folder) is called before alvord is started."""
   def register(function):
     promise = " ".join(function.__doc__.split())
-    ATTACKS.append(Attack(family, function.__name__, promise, function, options, descriptors))
+    ATTACKS.append(Attack(family, function.__name__, promise, function, options, descriptors, prepare))
     return function
   return register
 

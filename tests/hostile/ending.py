@@ -75,7 +75,7 @@ def under_watches(target, seconds):
 def under_long_building(target, seconds):
   """While a scene is built that takes long."""
   caller = Caller(target)
-  builder = threading.Thread(target=outcome, args=[caller.create_scene, nearly_collinear_polygons(20, 5000), 60], daemon=True)
+  builder = threading.Thread(target=outcome, args=[caller.create_scene, nearly_collinear_polygons(60, 5000), 60], daemon=True)
   builder.start()
   time.sleep(2)
   return end(target, "building")

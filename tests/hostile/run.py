@@ -40,6 +40,8 @@ def try_out(attack, folder, arguments):
   """Returns (whether the promise was held, what was seen, the seconds that it took)."""
   begin, target = time.monotonic(), None
   try:
+    if attack.prepare:
+      attack.prepare(folder)
     options = [option.format(folder=folder) for option in attack.options]
     target = Target(folder, arguments.front, options, attack.descriptors)
     held, seen = True, attack.run(target, arguments.seconds)
