@@ -7,4 +7,4 @@ cd "$(dirname "$0")/.."
 
 scripts/setup.sh test
 [ -n "${ALVOR_BINARIES:-}" ] || { scripts/build.sh alvord && scripts/build_page.sh; }
-exec /usr/bin/python3 tests/hostile/run.py "$@"
+exec /usr/bin/python3 -B tests/hostile/run.py "$@"

@@ -8,12 +8,13 @@ from target import token_of
 
 FAMILY = "HTTP/2 floods"
 LITTLE_MEMORY = ("--memory-limit", "600M")
+TOO_MUCH = 1000  # MB of alvord: the promise is broken, and this machine must not suffer more
 
 
 def stand(target, seconds, block, first=b"", reads=True):
   """Floods while a bystander looks on. Returns what was seen."""
   with Bystander(target) as bystander:
-    sent = flood(lambda: Http2Stranger(target), seconds, block, first, reads)
+    sent = flood(lambda: Http2Stranger(target), seconds, block, first, reads, lambda: target.alvord.rss() > TOO_MUCH)
   return f"{sent}; {bystander.seen}"
 
 

@@ -67,15 +67,15 @@ class Stranger:
       self.socket.close()
 
 
-def flood(connect, seconds, block, first=b"", reads=True):
-  """Sends `first` and then block(0), block(1), ... until the time is over, on a new connection where one was closed. Returns what was sent, in
-  words."""
+def flood(connect, seconds, block, first=b"", reads=True, is_enough=lambda: False):
+  """Sends `first` and then block(0), block(1), ... until the time is over or it is enough, on a new connection where one was closed. Returns
+  what was sent, in words."""
   end, sent, blocks, connections = time.monotonic() + seconds, 0, 0, 0
-  while time.monotonic() < end:
+  while time.monotonic() < end and not is_enough():
     stranger, number = connect(), 0
     connections += 1
     stranger.send(first)
-    while time.monotonic() < end and stranger.send(block(number)):
+    while time.monotonic() < end and stranger.send(block(number)) and not (number % 50 == 0 and is_enough()):
       number += 1
       if reads:
         stranger.skip_answers()
