@@ -14,9 +14,9 @@ SOFT = (1024, 20000)
 
 
 def crowd(target, to, number):
-  """Idle connections from ten addresses, until one is not let in for two seconds."""
-  strangers = []
-  while len(strangers) < number and (not strangers or strangers[-1].is_open):
+  """Idle connections from ten addresses, until one is not let in for two seconds, or ten seconds are over."""
+  strangers, end = [], time.monotonic() + 10
+  while len(strangers) < number and (not strangers or strangers[-1].is_open) and time.monotonic() < end:
     strangers.append(Stranger(target, to, None, f"127.0.0.{60 + len(strangers) % 10}"))
   return strangers
 

@@ -5,6 +5,7 @@ import time
 
 from attack import attack
 from calls import Caller, health, nearly_collinear_polygons, outcome, room, scenes
+from target import Target
 
 FAMILY = "long work"
 POLYGONS, CORNERS = 20, 5000
@@ -50,12 +51,22 @@ def polygons_of_many_corners(target, seconds):
   return disturb(target, [lambda: outcome(caller.create_scene, chunks, 60)])
 
 
-@attack(FAMILY)
+def stored_scene(folder):
+  """Puts a data directory into the folder with a scene of eight such polygons, which the next server must load."""
+  target = Target(folder, options=("--data", folder / "data"))
+  try:
+    outcome(Caller(target, "ali").create_scene, nearly_collinear_polygons(8, CORNERS), 25)
+    target.alvord.terminate()
+  finally:
+    target.close()
+
+
+@attack(FAMILY, ("--data", "{folder}/data"), prepare=stored_scene)
 def meshes_of_many_corners(target, seconds):
-  """Nor do four readers of such a scene's mesh keep others waiting."""
+  """Nor do four readers of such a scene's mesh, which is loaded from the disk, keep others waiting."""
   callers = [Caller(target) for _ in range(4)]
-  status, scene = outcome(callers[0].create_scene, nearly_collinear_polygons(4, CORNERS), 30)
-  if status == "INVALID_ARGUMENT":
-    return f"such a scene is refused: {scene}"
-  assert status == "OK", f"{status} {scene}"
-  return disturb(target, [lambda caller=caller: outcome(caller.ReadMesh, scenes.ReadMeshRequest(name=scene.name), 60) for caller in callers])
+  stored = callers[0].ListScenes(scenes.ListScenesRequest()).scenes
+  if not stored:
+    return "such a scene is refused"
+  read = lambda caller: outcome(caller.ReadMesh, scenes.ReadMeshRequest(name=stored[0].name), 60)
+  return disturb(target, [lambda caller=caller: read(caller) for caller in callers])

@@ -55,7 +55,7 @@ def try_out(attack, folder, arguments):
 
 def verdict(attack, held, front):
   if front == "none" and attack.name in BARE_LACKS:
-    return "held, though BARE_LACKS names it" if held else "not held, as is known"
+    return "held this time" if held else "not held, as is known"
   return "held" if held else "NOT HELD"
 
 

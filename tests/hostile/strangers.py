@@ -6,12 +6,12 @@ import time
 
 
 class Stranger:
-  """One connection, by TLS where `protocol` is given. Whatever the other side does to it is no error."""
+  """One connection, by TLS where `protocol` is given, from `address` unless it is None. Whatever the other side does to it is no error."""
 
   def __init__(self, target, to, protocol=None, address="127.0.0.66"):
     self.is_open, self.sent = False, 0
     with contextlib.suppress(OSError):
-      self.socket = socket.create_connection(to, 2, source_address=(address, 0))
+      self.socket = socket.create_connection(to, 2, source_address=address and (address, 0))
       if protocol:
         self.socket = target.tls(protocol).wrap_socket(self.socket, server_hostname="localhost")
       self.socket.settimeout(1)
