@@ -5,8 +5,7 @@ import time
 
 from attack import attack
 from calls import Caller, nearly_collinear_polygons, outcome, room, solves
-from floods import resets
-from http2 import Http2Stranger
+from http2 import Http2Stranger, resets
 from slowness import dripping
 from strangers import Stranger, flood
 from target import token_of

@@ -1,8 +1,8 @@
 """Floods of HTTP/2 frames by strangers without a token."""
 
 from attack import Bystander, attack
-from http2 import (CANCEL, CONTINUATION, DATA, END_HEADERS, HEADERS, PING, PRIORITY, RST_STREAM, SETTINGS, WINDOW_UPDATE, Http2Stranger,
-                   call_headers, frame, literal)
+from http2 import (CONTINUATION, DATA, END_HEADERS, HEADERS, PING, PRIORITY, SETTINGS, WINDOW_UPDATE, Http2Stranger, call_headers, frame,
+                   resets, small_headers)
 from strangers import flood
 from target import token_of
 
@@ -16,13 +16,6 @@ def stand(target, seconds, block, first=b"", reads=True):
   with Bystander(target) as bystander:
     sent = flood(lambda: Http2Stranger(target), seconds, block, first, reads, lambda: target.alvord.rss() > TOO_MUCH)
   return f"{sent}; {bystander.seen}"
-
-
-def resets(token):
-  """Blocks of a hundred streams that are reset as soon as they are opened."""
-  headers = call_headers(token)
-  stream = lambda number: frame(HEADERS, END_HEADERS, number, headers) + frame(RST_STREAM, 0, number, CANCEL)
-  return lambda block: b"".join(stream(200 * block + 2 * k + 1) for k in range(100))
 
 
 @attack(FAMILY, LITTLE_MEMORY)
@@ -47,8 +40,7 @@ def endless_header_value(target, seconds):
 @attack(FAMILY, LITTLE_MEMORY)
 def endless_small_headers(target, seconds):
   """Small headers in CONTINUATION frames without end are not kept."""
-  block = frame(CONTINUATION, 0, 1, literal(b"x-a", b"b") * 1800)
-  return stand(target, seconds, lambda _: block, frame(HEADERS, 0, 1, call_headers()))
+  return stand(target, seconds, small_headers(), frame(HEADERS, 0, 1, call_headers()))
 
 
 @attack(FAMILY, LITTLE_MEMORY)

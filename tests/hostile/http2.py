@@ -26,6 +26,19 @@ def call_headers(token=None, path=b"/alvor.v1.SceneService/ListScenes"):
   return headers + literal(b"authorization", b"Bearer " + token.encode()) if token else headers
 
 
+def resets(token):
+  """Blocks of a hundred streams that are reset as soon as they are opened."""
+  headers = call_headers(token)
+  stream = lambda number: frame(HEADERS, END_HEADERS, number, headers) + frame(RST_STREAM, 0, number, CANCEL)
+  return lambda block: b"".join(stream(200 * block + 2 * k + 1) for k in range(100))
+
+
+def small_headers():
+  """Blocks of 1 800 headers that go on with the first stream's."""
+  block = frame(CONTINUATION, 0, 1, literal(b"x-a", b"b") * 1800)
+  return lambda _: block
+
+
 class Http2Stranger(Stranger):
   """A connection that has said its preface and settings."""
 

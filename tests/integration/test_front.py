@@ -12,9 +12,8 @@ from hosts import Host, address_of, podman, run, until
 from test_callers import as_tenant, tokens
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "hostile"))
-from floods import resets  # noqa: E402
-from http2 import CONTINUATION, HEADERS, Http2Stranger, call_headers, frame, literal  # noqa: E402
-from strangers import flood  # noqa: E402
+from http2 import HEADERS, Http2Stranger, call_headers, frame, resets, small_headers
+from strangers import flood
 
 SOCKETS = "alvor-test-sockets"
 ON_SOCKETS = ["--listen", "unix:/run/alvor/grpc.sock", "--web", "unix:/run/alvor/web.sock"]
@@ -89,9 +88,8 @@ def test_floods_at_the_front(world, front, observed):
                          *as_tenant("ann"), "-o", "own.glb")
   until(lambda: through("solves", "list"), 20, "there is a solve")
   before = rss(world.alvord)
-  block = frame(CONTINUATION, 0, 1, literal(b"x-a", b"b") * 1800)
   connect = lambda: Http2Stranger(front, None)
-  sent = [flood(connect, 5, lambda _: block, frame(HEADERS, 0, 1, call_headers())), flood(connect, 5, resets(None))]
+  sent = [flood(connect, 5, small_headers(), frame(HEADERS, 0, 1, call_headers())), flood(connect, 5, resets(None))]
   growth = rss(world.alvord) - before
   assert world.alvord.is_healthy() and through("solves", "list")[0]["state"] == "RUNNING"
   assert solving.wait(90) == 0
@@ -101,7 +99,7 @@ def test_floods_at_the_front(world, front, observed):
 
 def test_compose_front(observed):
   """docker/compose.front.yaml: server behind nginx, page by HTTPS, and a client that solves with a token, as it stands."""
-  compose = ["podman-compose", "--project-name", "alvor-compose", "--file", "docker/compose.yaml", "--file", "docker/compose.front.yaml"]
+  compose = ["podman-compose", "--project-name", "alvor-compose", "--file", "docker/compose.front.yaml"]
   run("docker/secrets.sh", "docker/secrets", "localhost", "ann")
   try:
     run(*compose, "up", "--detach", "--no-build", timeout=120)
