@@ -12,7 +12,7 @@ from bare_lacks import BARE_LACKS
 from machine import allow_many_descriptors
 from target import Target, make_secrets, make_stubs
 
-FAMILIES = ("floods", "slowness", "http_requests", "descriptors", "tenants", "memory", "long_work", "ending")
+FAMILIES = ("floods", "slowness", "http_requests", "descriptors", "tenants", "identity", "memory", "long_work", "ending")
 
 
 def parse_arguments():

@@ -37,7 +37,7 @@ class Target:
     self.folder, self.has_front = folder, front == "nginx"
     self.certificate = folder / "tls.crt"
     self.on_sockets = self.has_front and "--identity-header" in alvord_help()
-    self.nginx = None
+    self.fronts = []
     self.alvord = Program([BINARIES / "alvord", *self.listening(), "--health", "127.0.0.1:0", "--tokens", folder / "tokens", *options],
                           folder / "alvord.log", descriptors)
     try:
@@ -68,21 +68,24 @@ class Target:
     else:
       self.calls, self.web = (split_address(address) for address in back)
 
-  def start_nginx(self, back):
-    """Starts nginx with the configuration that is shipped, but for its addresses and directories. Returns its port."""
-    port = free_port()
-    settings = (ROOT / "docker/nginx.conf").read_text()
-    changes = {"/tmp/": f"{self.folder}/", SOCKETS[0]: back[0], SOCKETS[1]: back[1], "/etc/alvor/tls": str(self.folder),
+  def start_nginx(self, back, folder=None, uncommented=()):
+    """Starts nginx with the configuration that is shipped, but for its addresses and directories, and lines that are to be uncommented. Returns
+    its port."""
+    folder, port = folder or self.folder, free_port()
+    is_plain = back[0].startswith("unix:")  # else an alvord that takes tokens with TLS alone
+    changes = {"/tmp/": f"{folder}/", SOCKETS[0]: back[0], SOCKETS[1]: back[1], "/etc/alvor/tls": str(folder),
                "listen 8443": f"listen 127.0.0.1:{port}"}
-    if not self.on_sockets:  # an alvord that takes tokens with TLS alone
-      changes |= {"grpc://": "grpcs://", "http://alvor_web": "https://alvor_web"}
+    changes |= {} if is_plain else {"grpc://": "grpcs://", "http://alvor_web": "https://alvor_web"}
+    changes |= {line: line.removeprefix("# ") for line in uncommented}
+    settings = (ROOT / "docker/nginx.conf").read_text()
     for shipped, here in changes.items():
       assert shipped in settings, f"docker/nginx.conf has no {shipped}"
       settings = settings.replace(shipped, here)
-    (self.folder / "nginx.conf").write_text("daemon off;\n" + ("user root;\n" if os.getuid() == 0 else "") + settings)
-    self.nginx = Program(["nginx", "-e", "stderr", "-c", self.folder / "nginx.conf"], self.folder / "nginx.log")
-    until(lambda: is_open(port) or not self.nginx.is_running(), LONGEST_WAIT, "nginx listens")
-    assert self.nginx.is_running(), f"nginx ended: {self.nginx.log()[-500:]}"
+    (folder / "nginx.conf").write_text("daemon off;\n" + ("user root;\n" if os.getuid() == 0 else "") + settings)
+    nginx = Program(["nginx", "-e", "stderr", "-c", folder / "nginx.conf"], folder / "nginx.log")
+    self.fronts.append(nginx)
+    until(lambda: is_open(port) or not nginx.is_running(), LONGEST_WAIT, "nginx listens")
+    assert nginx.is_running(), f"nginx ended: {nginx.log()[-500:]}"
     return port
 
   def tls(self, *protocols):
@@ -92,9 +95,8 @@ class Target:
     return context
 
   def close(self):
-    for program in (self.nginx, self.alvord):
-      if program:
-        program.kill()
+    for program in (*self.fronts, self.alvord):
+      program.kill()
 
 
 def alvord_help():
