@@ -67,7 +67,7 @@ def soft_limit(target, seconds):
   """A soft limit of 1 024 is raised to the hard one, and said."""
   if target.has_front:
     return "alvord's own matter: not asked behind nginx"
-  soft = open(f"/proc/{target.alvord.process.pid}/limits").read().split("Max open files")[1].split()[0]
+  soft = open(f"/proc/{target.alvord.child.pid}/limits").read().split("Max open files")[1].split()[0]
   assert int(soft) == SOFT[1], f"the soft limit is {soft}"
   return f"{soft} descriptors"
 

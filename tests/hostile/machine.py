@@ -37,30 +37,30 @@ class Program:
     self.log_file = pathlib.Path(log)
     limit = (lambda: resource.setrlimit(resource.RLIMIT_NOFILE, descriptors)) if descriptors else None
     with open(log, "wb") as out:
-      self.process = subprocess.Popen([str(word) for word in command], stdout=out, stderr=out, stdin=subprocess.DEVNULL, preexec_fn=limit)
+      self.child = subprocess.Popen([str(word) for word in command], stdout=out, stderr=out, stdin=subprocess.DEVNULL, preexec_fn=limit)
 
   def log(self):
     return self.log_file.read_text(errors="replace")
 
   def is_running(self):
-    return self.process.poll() is None
+    return self.child.poll() is None
 
   def exit_status(self):
-    return self.process.poll()
+    return self.child.poll()
 
   def rss(self):
     """Megabytes of anonymous memory, of children too: nginx works in some. Pages of files do not count."""
-    return sum(anonymous_megabytes(pid) for pid in (self.process.pid, *children(self.process.pid)))
+    return sum(anonymous_megabytes(pid) for pid in (self.child.pid, *children(self.child.pid)))
 
   def descriptors(self):
-    return len(os.listdir(f"/proc/{self.process.pid}/fd"))
+    return len(os.listdir(f"/proc/{self.child.pid}/fd"))
 
   def terminate(self, seconds=LONGEST_WAIT):
     """Sends SIGTERM. Returns the seconds until it ended, or None where it did not within `seconds`."""
     begin = time.monotonic()
-    self.process.terminate()
+    self.child.terminate()
     try:
-      self.process.wait(seconds)
+      self.child.wait(seconds)
     except subprocess.TimeoutExpired:
       return None
     return time.monotonic() - begin
@@ -69,12 +69,12 @@ class Program:
     """Ends it and its children, which are its own."""
     if not self.is_running():
       return
-    for pid in (*children(self.process.pid), self.process.pid):
+    for pid in (*children(self.child.pid), self.child.pid):
       try:
         os.kill(pid, 9)
       except ProcessLookupError:
         pass
-    self.process.wait()
+    self.child.wait()
 
 
 def children(pid):

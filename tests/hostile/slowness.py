@@ -116,7 +116,7 @@ def closed_watches(target, seconds):
 def watchers_who_do_not_read(target, seconds):
   """90 watches whose windows are shut take little memory and keep nobody from anything."""
   caller = Caller(target, "bob")
-  solve = caller.create_solve(caller.create_scene(room(0.5)).name, tolerance=1e-9, max_elements=20000).name
+  solve = caller.create_solve(caller.create_scene(room(0.5)).name, tolerance=1e-9, max_elements=8000).name
   until(lambda: caller.state_of(solve) == "SUCCEEDED", LONGEST_WAIT, "the solve ends")
   headers = call_headers(token_of("bob"), path_of("WatchSolve").encode())
   message = web_message(solves.WatchSolveRequest(name=solve))
