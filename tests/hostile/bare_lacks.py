@@ -6,5 +6,6 @@ BARE_LACKS = {
     "endless_header_value": "gRPC keeps a header block until it is whole, however long it is",
     "endless_small_headers": "gRPC keeps a header block until it is whole, however long it is",
     "pings_without_reading": "gRPC queues an answer to each ping until the socket takes it",
+    "empty_data": "gRPC reads frames as fast as they come, and keeps what it has not looked at",
     "window_updates": "gRPC reads frames as fast as they come, and keeps what it has not looked at",
 }
