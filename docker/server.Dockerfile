@@ -24,7 +24,7 @@ RUN apt-get update -qq && \
       libssl3 libtbb12 libzstd1 && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
     echo 'alvor:x:10001:10001::/var/lib/alvor:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
-    install -d -o 10001 -g 10001 -m 700 /var/lib/alvor
+    install -d -o 10001 -g 10001 -m 700 /var/lib/alvor && install -d -o 10001 -g 10001 -m 750 /run/alvor
 COPY --from=page /alvor/build/release/bin/web /usr/local/share/alvor/web
 COPY --from=build /alvor/build/release/bin/alvord /usr/local/bin/
 RUN alvord --help > /dev/null

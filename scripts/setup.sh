@@ -18,6 +18,7 @@ test=(
   libgtest-dev libgmock-dev clang libclang-rt-14-dev
   gnuplot-nox curl chromium
   python3-grpcio python3-zstandard python3-protobuf
+  nginx-light python3-hpack openssl
 )
 containers=(
   podman podman-compose buildah runc netavark aardvark-dns iptables iproute2 catatonit debootstrap

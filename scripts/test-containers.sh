@@ -39,6 +39,7 @@ why=$(provide_base_image 2>&1) || skip "no base image: ${why##*$'\n'}"
 first=$(podman run --rm --network host "$base_image" true 2>&1) || skip "podman cannot run a container here: ${first##*$'\n'}"
 build_image server
 build_image client
+build_image front
 
 echo "Testing in containers"
 /usr/bin/python3 -m pytest -q -p no:cacheprovider tests/integration --table "$work/table.md" "$@" & tests=$!

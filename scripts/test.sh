@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets up the machine, builds everything, runs all tests, those in a browser too, feeds made-up bytes to what reads foreign ones, and pulls plugs in
-# containers where it can.
+# Sets up the machine, builds everything, runs all tests, those in a browser too, feeds made-up bytes to what reads foreign ones, attacks the server
+# bare and behind nginx, and pulls plugs in containers where it can.
 # Arguments go to CTest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,4 +11,6 @@ scripts/build_page.sh
 ctest --preset release "$@"
 (cd client/web && npm run --silent test && npm run --silent test:browser)
 scripts/fuzz.sh 20 1
+scripts/hostile.sh
+scripts/hostile.sh --front nginx
 scripts/test-containers.sh

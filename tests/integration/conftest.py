@@ -10,7 +10,7 @@ import urllib.request
 
 import pytest
 
-from hosts import NETWORK, Host, podman, server_address, until
+from hosts import NETWORK, Host, address_of, podman, until
 
 SCENES = "/usr/local/share/alvor/scenes"
 
@@ -39,7 +39,7 @@ class Server(Host):
     self.await_health()
 
   def metric(self, name):
-    with urllib.request.urlopen(f"http://{server_address()}:9464/metrics", timeout=5) as page:
+    with urllib.request.urlopen(f"http://{address_of('server')}:9464/metrics", timeout=5) as page:
       for line in page.read().decode().splitlines():
         if line.startswith(name + " "):
           return float(line.split()[-1])
@@ -102,9 +102,9 @@ class World:
     podman("volume", "rm", "--force", Server.VOLUME)
 
 
-def alvor(desk, *words, check=True):
+def alvor(desk, *words, check=True, at="server:50051"):
   """Types a command at a desk. Returns its exit status, and what it printed and complained."""
-  done = subprocess.run(["podman", "exec", desk.name, "alvor", *map(str, words), "--server", "server:50051"],
+  done = subprocess.run(["podman", "exec", desk.name, "alvor", *map(str, words), "--server", at],
                         capture_output=True, text=True, timeout=120)
   assert not check or done.returncode == 0, f"alvor {' '.join(map(str, words))}: {done.returncode}\n{done.stderr}"
   return done.returncode, done.stdout, done.stderr

@@ -31,10 +31,13 @@ def until(condition, seconds, what):
   return time.monotonic() - begin
 
 
-def server_address():
-  """Of the host that all others know as `server`."""
+KNOWN = {"server": 200, "front": 201}  # hosts that all others know by these names, by the last part of the address
+
+
+def address_of(name):
+  """The address of a known host."""
   subnet = json.loads(podman("network", "inspect", NETWORK))[0]["subnets"][0]["subnet"]
-  return str(ipaddress.ip_network(subnet)[200])
+  return str(ipaddress.ip_network(subnet)[KNOWN[name]])
 
 
 class Host:
@@ -42,8 +45,10 @@ class Host:
 
   def __init__(self, name, image, command=(), options=()):
     self.name = name
-    # The same card too: others remember it with the address for half a minute.
-    address = ["--ip", server_address(), "--mac-address", "02:00:00:00:00:01"] if name == "server" else ["--add-host", f"server:{server_address()}"]
+    if name in KNOWN:  # the same card too: others remember it with the address for half a minute
+      address = ["--ip", address_of(name), "--mac-address", f"02:00:00:00:00:{KNOWN[name]:02x}"]
+    else:
+      address = [word for known in KNOWN for word in ("--add-host", f"{known}:{address_of(known)}")]
     podman("run", "--detach", "--name", name, "--network", NETWORK, *address, *SHIPPED, *options, image, *command)
 
   def inspect(self, field):

