@@ -2,7 +2,7 @@
 
 #include "alvor/v1/solve_service.pb.h"
 #include "proto/codec.h"
-#include "server/web_call.h"
+#include "server/web_messages.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
 #include "tests/server/test_server.h"
