@@ -93,7 +93,7 @@ void WebConnection::set_deadline(Timer& timer, std::optional<WebLimits::Time> ti
 
 void WebConnection::be_late(const Timer& timer) {
   const bool is_amid_request = phase_ == Phase::body || (phase_ == Phase::head && reader_.has_bytes());
-  if (&timer == &deadline_ && is_amid_request && left_.empty()) refuse(408);
+  if (&timer == &deadline_ && is_amid_request && left_.empty()) refuse(is_calling_ ? 503 : 408);
   else end();
 }
 
@@ -122,7 +122,8 @@ void WebConnection::has_received(std::size_t count) {
 
 /// Goes on with the request as far as there are bytes and nothing has to be waited for.
 void WebConnection::advance() {
-  while ((phase_ == Phase::head || phase_ == Phase::body) && !is_calling_ && left_.empty()) {
+  while (phase_ == Phase::head || phase_ == Phase::body) {
+    if (is_calling_ || !left_.empty()) return read();  // to see it when the browser goes
     if (!piece_.empty()) {
       take_messages();
       continue;
@@ -144,8 +145,6 @@ void WebConnection::take_head() {
   if (found.call) return begin_call(std::move(found));
   if (request.has_body) found.closes = true;
   else (void)reader_.step();  // the request's end
-  if (request.method != "HEAD") return answer(found);
-  found.headers.emplace_back("Content-Length", std::to_string(std::exchange(found.body, {}).size()));
   answer(found);
 }
 
@@ -153,21 +152,19 @@ void WebConnection::take_head() {
 void WebConnection::answer(const WebAnswer& answer) {
   if (answer.closes) keeps_alive_ = false;
   std::string head = response_head(answer.status);
-  bool has_length = !has_content(answer.status);
-  for (const auto& [name, value] : answer.headers) {
-    head += name + ": " + value + "\r\n";
-    has_length |= name == "Content-Length";
-  }
-  if (!has_length) head += "Content-Length: " + std::to_string(answer.body.size()) + "\r\n";
+  for (const auto& [name, value] : answer.headers) head += name + ": " + value + "\r\n";
+  if (has_content(answer.status)) head += "Content-Length: " + std::to_string(answer.body.size()) + "\r\n";
   head += keeps_alive_ ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n";
+  const std::string_view body = reader_.request().method == "HEAD" ? std::string_view() : answer.body;
   enter(Phase::response, std::nullopt);
-  send(std::move(head), answer.body, keeps_alive_ ? Next::next_request : Next::farewell);
+  send(std::move(head), body, keeps_alive_ ? Next::next_request : Next::farewell);
 }
 
 void WebConnection::refuse(int status) {
   if (call_) std::exchange(call_, nullptr)->cancel();
   answer_.reset();
   piece_ = {};
+  is_calling_ = false;
   count_unfinished(0);
   WebAnswer refusal;
   refusal.status = status;

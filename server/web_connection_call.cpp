@@ -66,7 +66,7 @@ void WebConnection::take_messages() {
     return fail_call({grpc::RESOURCE_EXHAUSTED, "too much of other messages is on its way; try again later"});
   if (!messages_->is_whole()) return;
   is_calling_ = true;
-  set_deadline(deadline_, std::nullopt);
+  set_deadline(deadline_, shared_.limits.message);
   call_->write(messages_->release());
   count_unfinished(0);
 }

@@ -39,7 +39,7 @@ WebListener::WebListener(const std::string& address, std::shared_ptr<asio::ssl::
       strand_(asio::make_strand(io_)),
       acceptor_(strand_, Protocol(socket_.family(), 0), socket_.release()),
       pause_(strand_) {
-  asio::post(strand_, [this] { accept(); });
+  asio::post(strand_, [this] { await_browser(); });
   for (std::thread& thread : threads_) thread = std::thread([this] { io_.run(); });
 }
 
@@ -57,12 +57,19 @@ WebListener::~WebListener() {
   for (std::thread& thread : threads_) thread.join();
 }
 
+/// Waits first: without descriptors, accepting fails at once even where nobody asks.
+void WebListener::await_browser() {
+  acceptor_.async_wait(Acceptor::wait_read, [this](const boost::system::error_code&) {
+    if (acceptor_.is_open()) accept();
+  });
+}
+
 void WebListener::accept() {
   acceptor_.async_accept(asio::make_strand(io_), peer_, [this](const boost::system::error_code& fault, WebSocket socket) {
     if (!acceptor_.is_open()) return;
     if (!fault) admit(std::move(socket));
     else if (fault != asio::error::connection_aborted) return wait_for_descriptors();
-    accept();
+    await_browser();
   });
 }
 
@@ -79,7 +86,7 @@ void WebListener::wait_for_descriptors() {
   admission_.make_room();
   pause_.expires_after(shared_.limits.no_descriptors);
   pause_.async_wait([this](const boost::system::error_code&) {
-    if (acceptor_.is_open()) accept();
+    if (acceptor_.is_open()) await_browser();
   });
 }
 

@@ -28,6 +28,7 @@ class WebListener {
  private:
   using Protocol = boost::asio::generic::stream_protocol;
   using Acceptor = boost::asio::basic_socket_acceptor<Protocol, WebStrand>;
+  void await_browser();
   void accept();
   void admit(WebSocket socket);
   void wait_for_descriptors();

@@ -1,6 +1,6 @@
 #include "server/web_request.h"
 
-#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
 
 #include <algorithm>
@@ -52,8 +52,6 @@ int status_of(const boost::system::error_code& fault) {
 
 }  // namespace
 
-struct WebRequestReader::Parser : http::request_parser<http::buffer_body> {};
-
 std::size_t WebRequest::count(std::string_view name) const {
   return static_cast<std::size_t>(std::ranges::count(headers, name, &std::pair<std::string, std::string>::first));
 }
@@ -62,10 +60,6 @@ std::string_view WebRequest::header(std::string_view name) const {
   const auto found = std::ranges::find(headers, name, &std::pair<std::string, std::string>::first);
   return found == headers.end() ? std::string_view() : found->second;
 }
-
-WebRequestReader::WebRequestReader(const WebLimits& limits) : limits_(limits) {}
-
-WebRequestReader::~WebRequestReader() = default;
 
 std::span<char> WebRequestReader::room() {
   buffer_.resize(limits_.header_bytes);
@@ -85,13 +79,7 @@ WebRequestReader::Step WebRequestReader::fail(int status) {
 
 WebRequestReader::Step WebRequestReader::step() {
   if (fault_ != 0) return Step::fault;
-  if (!parser_) return read_head();
-  if (parser_->is_done()) {
-    parser_.reset();
-    body_ = {};
-    return Step::end;
-  }
-  return read_body();
+  return unread_body_ ? read_body() : read_head();
 }
 
 /// Looks at each byte once until the empty line that ends the head.
@@ -110,46 +98,41 @@ WebRequestReader::Step WebRequestReader::read_head() {
 }
 
 WebRequestReader::Step WebRequestReader::parse_head(std::size_t length) {
-  parser_ = std::make_unique<Parser>();
-  parser_->header_limit(static_cast<std::uint32_t>(limits_.header_bytes));
-  parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // Beast 1.74 takes boost::none for 0
+  http::request_parser<http::empty_body> parser;
+  parser.header_limit(static_cast<std::uint32_t>(limits_.header_bytes));
+  parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // Beast 1.74 takes boost::none for 0
   boost::system::error_code fault;
-  const std::size_t taken = parser_->put(boost::asio::buffer(buffer_.data() + begin_, length), fault);
-  if (fault || taken != length || !parser_->is_header_done()) return fail(status_of(fault));
+  const std::size_t taken = parser.put(boost::asio::buffer(buffer_.data() + begin_, length), fault);
+  if (fault || taken != length || !parser.is_header_done()) return fail(status_of(fault));
   begin_ += length;
   scanned_ = lines_ = 0;
-  const auto& message = parser_->get();
+  const auto& head = parser.get();
   request_ = {};
-  request_.method = std::string(message.method_string());
-  request_.path = std::string(message.target().substr(0, message.target().find('?')));
-  request_.is_1_1 = message.version() == 11;
-  for (const auto& field : message)
+  request_.method = std::string(head.method_string());
+  request_.path = std::string(head.target().substr(0, head.target().find('?')));
+  request_.is_1_1 = head.version() == 11;
+  for (const auto& field : head)
     request_.headers.emplace_back(lower_case({field.name_string().data(), field.name_string().size()}),
                                   std::string(field.value()));
-  request_.keeps_alive = parser_->keep_alive();
-  request_.has_body = !parser_->is_done();
-  return is_framing_clear(request_) && is_unambiguous(request_) ? Step::head : fail(400);
+  if (!is_framing_clear(request_) || !is_unambiguous(request_)) return fail(400);
+  request_.keeps_alive = parser.keep_alive();
+  unread_body_ = parser.chunked() ? WebBody::in_chunks(limits_.chunk_line_bytes) : WebBody(parser.content_length().value_or(0));
+  request_.has_body = !unread_body_->is_done();
+  return Step::head;
 }
 
 WebRequestReader::Step WebRequestReader::read_body() {
-  body_.resize(limits_.header_bytes);
-  while (has_bytes() && !parser_->is_done()) {
-    parser_->get().body().data = body_.data();
-    parser_->get().body().size = body_.size();
-    parser_->get().body().more = true;
-    boost::system::error_code fault;
-    const std::size_t taken = parser_->put(boost::asio::buffer(buffer_.data() + begin_, end_ - begin_), fault);
-    begin_ += taken;
-    if (fault && fault != http::error::need_more && fault != http::error::need_buffer) return fail(400);
-    const std::size_t count = body_.size() - parser_->get().body().size;
-    if (count > 0) {
-      piece_ = {body_.data(), count};
-      return Step::body;
-    }
-    if (fault == http::error::need_more || taken == 0) break;
+  const WebBody::Taken taken = unread_body_->take(unread());
+  begin_ += taken.count;
+  if (unread_body_->is_broken()) return fail(400);
+  if (!taken.content.empty()) {
+    piece_ = content_.assign(taken.content);  // what was read is overwritten by what comes next
+    return Step::body;
   }
-  if (parser_->is_done()) return step();
-  return end_ - begin_ > limits_.chunk_line_bytes ? fail(400) : Step::need_more;
+  if (!unread_body_->is_done()) return Step::need_more;
+  unread_body_.reset();
+  piece_ = content_ = {};
+  return Step::end;
 }
 
 }  // namespace alvor

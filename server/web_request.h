@@ -1,9 +1,9 @@
 #pragma once
 // Requests of HTTP/1.1 out of the bytes of a connection.
 
+#include "server/web_body.h"
 #include "server/web_limits.h"
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,8 +41,7 @@ class WebRequestReader {
     end,        ///< of the request; the next step belongs to the next one
     fault       ///< fault() is the status of HTTP; nothing more can be read
   };
-  explicit WebRequestReader(const WebLimits& limits);
-  ~WebRequestReader();
+  explicit WebRequestReader(const WebLimits& limits) : limits_(limits) {}
 
   /// Where the next bytes are to be put; empty where as many as may be are unread. Valid until the next call.
   std::span<char> room();
@@ -59,7 +58,6 @@ class WebRequestReader {
   void drop() { begin_ = end_ = 0; }
 
  private:
-  struct Parser;
   std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
   Step read_head();
   Step parse_head(std::size_t length);
@@ -70,9 +68,9 @@ class WebRequestReader {
   std::vector<char> buffer_;  // of header_bytes once something came
   std::size_t begin_ = 0, end_ = 0;
   std::size_t scanned_ = 0, lines_ = 0;  // of the head, from begin_
-  std::unique_ptr<Parser> parser_;       // from a head's end to its request's
+  std::optional<WebBody> unread_body_;   // from a head's end to its request's
   WebRequest request_;
-  std::vector<char> body_;
+  std::string content_;  // of the body, which piece_ shows
   std::string_view piece_;
   int fault_ = 0;
 };

@@ -132,6 +132,7 @@ std::string WebSite::tenant_of(const WebRequest& request) const {
 void WebSite::answer_call(const WebRequest& request, WebAnswer& answer) const {
   const std::string_view type = request.header("content-type");
   if (type != web_call_type && type != "application/grpc-web") return refuse(answer, 415);
+  if (request.has("content-encoding")) return refuse(answer, 415);
   if (request.has("expect") && request.header("expect") != "100-continue") return refuse(answer, 417);
   answer.call.emplace();
   answer.call->method = request.path;
