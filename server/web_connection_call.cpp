@@ -17,7 +17,7 @@ namespace asio = boost::asio;
 class WebConnection::CallEvents final : public WebCall::Listener {
  public:
   explicit CallEvents(std::shared_ptr<WebConnection> connection)
-      : connection_(std::move(connection)), number_(connection_->call_number_), work_(connection_->strand_) {}
+      : work_(connection->strand_), number_(connection->call_number_), connection_(std::move(connection)) {}
 
   void has_written() override {
     tell([](WebConnection& connection) { connection.has_written(); });
@@ -37,9 +37,10 @@ class WebConnection::CallEvents final : public WebCall::Listener {
     });
   }
 
-  const std::shared_ptr<WebConnection> connection_;
+  // The threads must not end before the call, nor what they run on before the connection: this goes last.
+  const asio::executor_work_guard<WebStrand> work_;
   const std::uint64_t number_;
-  const asio::executor_work_guard<WebStrand> work_;  // the threads must not end before the call
+  const std::shared_ptr<WebConnection> connection_;
 };
 
 void WebConnection::begin_call(WebAnswer answer) {
