@@ -17,7 +17,7 @@ namespace asio = boost::asio;
 class WebConnection::CallEvents final : public WebCall::Listener {
  public:
   explicit CallEvents(std::shared_ptr<WebConnection> connection)
-      : work_(connection->strand_), number_(connection->call_number_), connection_(std::move(connection)) {}
+      : work_(connection->strand_.get_inner_executor()), number_(connection->call_number_), connection_(std::move(connection)) {}
 
   void has_written() override {
     tell([](WebConnection& connection) { connection.has_written(); });
@@ -37,8 +37,8 @@ class WebConnection::CallEvents final : public WebCall::Listener {
     });
   }
 
-  // The threads must not end before the call, nor what they run on before the connection: this goes last.
-  const asio::executor_work_guard<WebStrand> work_;
+  // The threads must not end before the call, nor what they run on before the connection and its strand: this goes last.
+  const asio::executor_work_guard<asio::io_context::executor_type> work_;
   const std::uint64_t number_;
   const std::shared_ptr<WebConnection> connection_;
 };
