@@ -23,12 +23,11 @@ struct WebLimits {
   Time handshake = std::chrono::seconds(10);  ///< of TLS. The connection is closed
   Time headers = std::chrono::seconds(10);    ///< from a connection's beginning, later from a request's first byte. Status 408
   Time idle = std::chrono::seconds(30);       ///< between two requests. The connection is closed
-  Time message =
-      std::chrono::seconds(60);  ///< for a message of a body to come as a whole (408), and for the server to take it (503)
-  Time write = std::chrono::seconds(60);                 ///< without a byte taken by the browser. The connection is closed
-  Time farewell = std::chrono::seconds(1);               ///< for the browser to read a refusal before the connection is closed
-  std::size_t farewell_bytes = 4 << 20;                  ///< of its request that are read and dropped meanwhile
-  Time stop = std::chrono::seconds(1);                   ///< for responses under way when the front is destroyed
+  Time message = std::chrono::seconds(60);    ///< for a message to come as a whole (408), and for the server to take it (503)
+  Time write = std::chrono::seconds(60);      ///< without a byte taken by the browser. The connection is closed
+  Time farewell = std::chrono::seconds(1);    ///< for the browser to read a refusal before the connection is closed
+  std::size_t farewell_bytes = 4 << 20;       ///< of its request that are read and dropped meanwhile
+  Time stop = std::chrono::seconds(1);        ///< for responses under way when the front is destroyed
   Time no_descriptors = std::chrono::milliseconds(100);  ///< until connections are accepted again after EMFILE or ENFILE
 };
 

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 namespace alvor {
 
 namespace {
 
 constexpr char trailer_flag = char(0x80);
+constexpr std::size_t block_bytes = 64 << 10;  // of a message
 
 std::string header_of(char flags, std::size_t length) {
   std::string header(1, flags);
@@ -59,12 +61,14 @@ std::size_t WebMessages::take(std::string_view bytes) {
     if (!fault_.ok()) return taken;
   }
   const std::size_t count = std::min(length_ - held_, bytes.size() - taken);
-  if (count > 0) parts_.emplace_back(bytes.data() + taken, count);
+  block_ += bytes.substr(taken, count);
+  if (block_.size() >= block_bytes) parts_.emplace_back(std::exchange(block_, {}));
   held_ += count;
   return taken + count;
 }
 
 grpc::ByteBuffer WebMessages::release() {
+  parts_.emplace_back(std::exchange(block_, {}));
   grpc::ByteBuffer message(parts_.data(), parts_.size());
   parts_.clear();
   header_.clear();

@@ -40,7 +40,8 @@ class WebMessages {
 
   std::size_t largest_;
   std::string header_;
-  std::vector<grpc::Slice> parts_;
+  std::vector<grpc::Slice> parts_;  // in whole blocks: a slice of one byte would take 32
+  std::string block_;               // that is not whole yet
   std::size_t held_ = 0, length_ = 0;
   grpc::Status fault_;
 };

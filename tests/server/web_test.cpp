@@ -209,7 +209,20 @@ TEST_F(WebTest, NeedsAPageAndAnAddressOfItsOwn) {
   EXPECT_EQ(refusal({"127.0.0.1:0", "/nowhere", &listen}).find("--web: there is no page in /nowhere"), 0u);
 }
 
-TEST(WebCall, ReadsTimeouts) {
+TEST(WebMessages, ThatComeByteByByteTakeNoMoreMemoryThanOthers) {
+  const std::string content(200'000, 'a'), body = std::string("\0\0\3\x0d\x40", 5) + content;
+  WebMessages messages(1 << 20);
+  for (const char byte : body) EXPECT_EQ(messages.take({&byte, 1}), 1u);
+  ASSERT_TRUE(messages.is_whole());
+  const grpc::ByteBuffer message = messages.release();
+  EXPECT_EQ(frame_of(message), body);
+  std::vector<grpc::Slice> slices;
+  ASSERT_TRUE(message.Dump(&slices).ok());
+  EXPECT_LT(slices.size(), 10u);
+  EXPECT_FALSE(messages.is_inside());
+}
+
+TEST(WebMessages, ReadTimeouts) {
   EXPECT_EQ(parse_timeout("10S"), std::chrono::seconds(10));
   EXPECT_EQ(parse_timeout("250m"), std::chrono::milliseconds(250));
   for (const char* bad : {"", "S", "10", "-1S", "10S ", "1000000000S", "ten"}) EXPECT_EQ(parse_timeout(bad), std::nullopt) << bad;
