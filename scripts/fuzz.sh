@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-targets=(scene_upload frame watch checkpoint file)
+targets=(scene_upload frame watch checkpoint file web)
 PRESET=fuzz scripts/build.sh seeds "${targets[@]/%/_fuzz}"
 cd build/fuzz
 mkdir -p found
@@ -28,4 +28,6 @@ wait $first
 fuzz watch 2048 16 & first=$!
 fuzz checkpoint 1000000 64
 wait $first
-fuzz file 131072 64
+fuzz file 131072 64 & first=$!
+fuzz web 16384 64
+wait $first

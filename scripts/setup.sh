@@ -7,7 +7,7 @@ compile=(
   g++ cmake ninja-build ccache mold pkg-config
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
-  libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libcpp-httplib-dev
+  libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libboost-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev nlohmann-json3-dev
 )
 page=(protobuf-compiler libprotobuf-dev)
@@ -15,7 +15,7 @@ page=(protobuf-compiler libprotobuf-dev)
 command -v node > /dev/null || page+=(nodejs)
 command -v npm > /dev/null || page+=(npm)
 test=(
-  libgtest-dev libgmock-dev clang libclang-rt-14-dev
+  libgtest-dev libgmock-dev libcpp-httplib-dev clang libclang-rt-14-dev
   gnuplot-nox curl chromium
   python3-grpcio python3-zstandard python3-protobuf
   nginx-light python3-hpack openssl

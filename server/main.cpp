@@ -53,7 +53,7 @@ struct Options {
 
 void declare_web(CLI::App& app, Options& options) {
   CLI::Option* web =
-      app.add_option("--web", options.web, "HOST:PORT to serve the page and gRPC-Web for browsers on (not at all)");
+      app.add_option("--web", options.web, "HOST:PORT or unix:PATH to serve the page and gRPC-Web for browsers on (not at all)");
   app.add_option("--web-origin", options.web_origins,
                  "Pages of this origin, as https://room.example, may call there too; may be repeated (none)")
       ->needs(web)

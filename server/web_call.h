@@ -1,59 +1,78 @@
 #pragma once
-// One call of gRPC-Web, passed on to a server by name.
+// Calls, passed on to a server by their methods' names.
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
-#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <thread>
 
 namespace alvor {
 
-/// The body of a request goes in, the body of the response comes out, both as frames of one byte of flags, four of length and a
-/// message (github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md, binary). A request may be of any number of messages. Not
-/// thread-safe; a call that is destroyed before its end is cancelled.
-class WebCall {
+/// One call: messages are written one by one, then the request ends, then messages are read one by one. Whoever calls decides
+/// when the next one may come, so that no more than one is held. Nothing here waits.
+class WebCall : public std::enable_shared_from_this<WebCall> {
  public:
   struct Options {
     std::string method;  ///< "/alvor.v1.SolveService/GetSolve"
     std::string tenant;
     std::optional<std::chrono::system_clock::time_point> deadline;
   };
-  WebCall(grpc::GenericStub& stub, const Options& options);
-  ~WebCall();
-  WebCall(const WebCall&) = delete;
-  WebCall& operator=(const WebCall&) = delete;
+  /// Is told what came of each step, on another thread: it must not wait. Kept until after has_ended(), which comes once and
+  /// last.
+  class Listener {
+   public:
+    virtual ~Listener() = default;
+    virtual void has_written() = 0;
+    virtual void has_read(grpc::ByteBuffer message) = 0;
+    virtual void has_ended(const grpc::Status& status) = 0;
+  };
 
-  /// The next bytes of the request. False when no more are wanted: the call has failed.
-  bool take(std::string_view bytes);
-  /// The request is whole; without this the server sees a call that was broken off.
+  // Steps. Each may be taken when the one before has been answered: by has_written(), or has_read(), or has_ended(). Beginning
+  // the call is the first step, answered as if it were a message.
+  void write(const grpc::ByteBuffer& message);
   void end_request();
-  /// The next bytes of the response: empty when none came within `patience`, nothing after its end. Requires: end_request().
-  std::optional<std::string> next(std::chrono::milliseconds patience);
+  void read();
+  /// Breaks the call off, at any time.
+  void cancel();
 
  private:
-  bool done();
-  bool send(std::string_view message);
-  void finish();
-  void refuse(const grpc::Status& status);
+  friend class WebCalls;
+  enum class Step { none, start, write, read, finish };
+  WebCall(const Options& options, std::shared_ptr<Listener> listener);
+  template <class Begin>
+  void take(Step step, Begin begin);
+  void begin_finish();
+  void step_done(bool ok);
 
   grpc::ClientContext context_;
-  grpc::CompletionQueue queue_;
   std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
-  std::string unread_;  ///< of the request: less than a frame
+  std::shared_ptr<Listener> listener_;
+  std::mutex mutex_;
+  Step step_ = Step::none;
+  bool is_over_ = false;  // no more steps but the last
   grpc::ByteBuffer message_;
-  bool is_reading_ = false;
-  std::optional<grpc::Status> status_;  ///< when the call has ended
-  bool is_told_ = false;
+  grpc::Status status_;
+  std::shared_ptr<WebCall> self_;  // until it has ended
 };
 
-/// The trailers of a response as its last frame.
-std::string trailers_of(const grpc::Status& status);
+/// Begins calls and waits for all of them, on one thread. Not the callbacks of gRPC (ClientBidiReactor): these ask for the status
+/// at once, and the channel in process then drops a last message that was not asked for before.
+class WebCalls {
+ public:
+  explicit WebCalls(std::shared_ptr<grpc::Channel> channel);
+  /// Requires: all calls have ended.
+  ~WebCalls();
+  std::shared_ptr<WebCall> start(const WebCall::Options& options, std::shared_ptr<WebCall::Listener> listener);
 
-/// "10S", "250m", as in the header grpc-timeout; nothing where it is none.
-std::optional<std::chrono::nanoseconds> parse_timeout(const std::string& text);
+ private:
+  grpc::GenericStub stub_;
+  grpc::CompletionQueue queue_;
+  std::thread thread_;
+};
 
 }  // namespace alvor

@@ -47,6 +47,35 @@ std::string written(const SolveControl::Write& write) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Requests of one connection, each in two parts, by a browser that waits for the responses.
+std::string connection_of(std::initializer_list<std::string> requests) {
+  std::string bytes = "\1";
+  for (const std::string& request : requests) {
+    const std::size_t half = request.size() / 2;
+    bytes += fuzz::as_text(request.substr(0, half)) + fuzz::as_text(request.substr(half));
+  }
+  return bytes;
+}
+
+void write_web_seeds(const fs::path& directory) {
+  const std::string page = "GET / HTTP/1.1\r\nHost: localhost\r\nAccept-Encoding: gzip\r\n\r\n";
+  const std::string call = " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/grpc-web+proto\r\n";
+  const std::string messages("\0\0\0\0\3abc\0\0\0\0\0", 13);
+  const std::string with_length = "POST /a.B/Echo" + call + "Content-Length: 13\r\n\r\n" + messages;
+  const std::string in_chunks = "POST /a.B/Echo" + call + "Transfer-Encoding: chunked\r\n\r\n6;x=y\r\n" + messages.substr(0, 6) +
+                                "\r\n7\r\n" + messages.substr(6) + "\r\n0\r\nA: b\r\n\r\n";
+  const std::string failing = "POST /a.B/Fail" + call + "Expect: 100-continue\r\nContent-Length: 13\r\n\r\n" + messages;
+  const std::string preflight =
+      "OPTIONS /a.B/Echo HTTP/1.1\r\nHost: localhost\r\nOrigin: https://room.example\r\nAccess-Control-Request-Method: "
+      "POST\r\n\r\n";
+  write(directory / "page", connection_of({page, page}));
+  write(directory / "calls", connection_of({with_length, in_chunks, page}));
+  write(directory / "failing", connection_of({failing, preflight, with_length}));
+  write(directory / "old", connection_of({"POST /a.B/Echo HTTP/1.0\r\nContent-Type: application/grpc-web\r\n"
+                                          "Content-Length: 13\r\n\r\n" +
+                                          messages}));
+}
+
 void write_seeds(const fs::path& directory, std::span<char*> files) {
   const Scene room = test::coloured_room();
   write(directory / "scene_upload" / "room", upload_of(room));
@@ -69,6 +98,7 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
   for (const Detail detail : {Detail::exact, Detail::display})
     write(directory / "frame" / (detail == Detail::exact ? "exact" : "display"), frames_of(log, detail));
   write(directory / "watch" / "ordinary", std::string("\1\3\7\0\1\3\5\0\1\3\5\1\0\2\3\5\1\6\0\x09\1\3", 22));
+  write_web_seeds(directory / "web");
   const std::string kinds[] = {".obj", ".gltf", ".glb", "solution.glb", ".ply", ".mtl", ".bin", ".png"};
   for (char* file : files)
     for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {

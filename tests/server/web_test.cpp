@@ -2,16 +2,15 @@
 
 #include "alvor/v1/solve_service.pb.h"
 #include "proto/codec.h"
-#include "server/web_call.h"
+#include "server/web_messages.h"
+#include "tests/server/raw_browser.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
 #include "tests/server/test_server.h"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <httplib.h>
 #include <prometheus/metric_family.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -21,14 +20,6 @@ namespace alvor {
 namespace {
 
 constexpr const char* type = "application/grpc-web+proto";
-
-std::string framed(const google::protobuf::Message& message) {
-  const std::string bytes = message.SerializeAsString();
-  const auto length = static_cast<std::uint32_t>(bytes.size());
-  std::string frame(1, '\0');
-  for (int shift = 24; shift >= 0; shift -= 8) frame += static_cast<char>(length >> shift);
-  return frame + bytes;
-}
 
 /// Bodies of the data frames, and the trailers.
 struct Answer {
@@ -187,26 +178,16 @@ TEST_F(WebTest, ThePageIsSentCompressedAndOnlyOnce) {
 
 /// All that comes back for these bytes.
 std::string answer_to(const std::string& url, const std::string& bytes) {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))));
-  inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-  EXPECT_EQ(connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  (void)send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);  // it may well be hung up on
-  std::string answer;
-  char buffer[4096];
-  for (ssize_t count; (count = recv(socket, buffer, sizeof buffer, 0)) > 0;)
-    answer.append(buffer, static_cast<std::size_t>(count));
-  close(socket);
-  return answer;
+  RawBrowser browser(url);
+  browser.send(bytes);  // it may well be hung up on
+  return browser.receive_all();
 }
 
 TEST_F(WebTest, WhatFollowsARefusedRequestIsNotTakenForAnother) {
   const std::string hidden = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n";
   for (const std::string first : {"POST /a.B/C HTTP/1.1\r\nHost: elsewhere.example", "POST /a.B/C HTTP/1.1\r\nHost: 127.0.0.1",
                                   "POST /x HTTP/1.1\r\nHost: 127.0.0.1", "GET / HTTP/1.1\r\nHost: 127.0.0.1"}) {
-    std::string body;  // httplib reads ahead, and forgets what it read
+    std::string body;
     while (body.size() < 100'000) body += hidden;
     const std::string answer =
         answer_to(front->url(), first + "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
@@ -228,7 +209,20 @@ TEST_F(WebTest, NeedsAPageAndAnAddressOfItsOwn) {
   EXPECT_EQ(refusal({"127.0.0.1:0", "/nowhere", &listen}).find("--web: there is no page in /nowhere"), 0u);
 }
 
-TEST(WebCall, ReadsTimeouts) {
+TEST(WebMessages, ThatComeByteByByteTakeNoMoreMemoryThanOthers) {
+  const std::string content(200'000, 'a'), body = std::string("\0\0\3\x0d\x40", 5) + content;
+  WebMessages messages(1 << 20);
+  for (const char byte : body) EXPECT_EQ(messages.take({&byte, 1}), 1u);
+  ASSERT_TRUE(messages.is_whole());
+  const grpc::ByteBuffer message = messages.release();
+  EXPECT_EQ(frame_of(message), body);
+  std::vector<grpc::Slice> slices;
+  ASSERT_TRUE(message.Dump(&slices).ok());
+  EXPECT_LT(slices.size(), 10u);
+  EXPECT_FALSE(messages.is_inside());
+}
+
+TEST(WebMessages, ReadTimeouts) {
   EXPECT_EQ(parse_timeout("10S"), std::chrono::seconds(10));
   EXPECT_EQ(parse_timeout("250m"), std::chrono::milliseconds(250));
   for (const char* bad : {"", "S", "10", "-1S", "10S ", "1000000000S", "ten"}) EXPECT_EQ(parse_timeout(bad), std::nullopt) << bad;
