@@ -16,7 +16,7 @@ HealthPort::HealthPort(const std::string& address, std::size_t most_connections)
   const ConnectionLimits limits{most_connections, most_connections};
   try {
     rpc_ = std::make_unique<RpcServer>(
-        address, grpc::InsecureServerCredentials(), limits,
+        std::make_shared<FrontDoor>(address, limits), grpc::InsecureServerCredentials(),
         [this](grpc::ServerBuilder& builder) { unused_ = builder.AddCompletionQueue(); }, [] {});
   } catch (const std::exception& fault) {
     throw std::invalid_argument(std::string("--health: ") + fault.what());

@@ -4,6 +4,7 @@
 #include "server/health.h"
 #include "server/listening.h"
 #include "server/memory_guard.h"
+#include "server/metrics.h"
 #include "server/rpc_server.h"
 #include "server/self_probe.h"
 #include "server/service.h"
@@ -32,6 +33,8 @@
 
 namespace {
 
+// Of one connection within seconds: where memory is short, it is a flood. Scenes are refused long before.
+constexpr std::uint64_t much_received = 8 << 20;
 constexpr std::uint64_t least_rpc_memory = 64 << 20;  // of gRPC's connections; a message may have as much
 
 std::atomic<bool> listener_died = false;
@@ -87,6 +90,8 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--quota-scenes", quota.scenes, "Scenes that each tenant may keep")->capture_default_str();
   app.add_option("--quota-bytes", quota.scene_bytes, "Bytes that these may come to")->capture_default_str();
   app.add_option("--quota-solves", quota.solves, "Solves of each tenant that have not ended")->capture_default_str();
+  app.add_option("--quota-ended-solves", quota.ended_solves, "Solves of each tenant that have ended and are kept")
+      ->capture_default_str();
   app.add_option("--quota-leaves", quota.leaves, "Leaves that these may come to")->capture_default_str();
   app.add_option("--quota-watchers", quota.watchers, "Watches that each tenant may hold open")->capture_default_str();
   app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
@@ -148,9 +153,8 @@ std::string wait_for_stop(const sigset_t& signals) {
   return number == SIGINT ? "SIGINT" : "SIGTERM";
 }
 
-std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& options, const alvor::ConnectionLimits& limits,
+std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& options, std::shared_ptr<alvor::FrontDoor> door,
                                         spdlog::logger& logger) {
-  const auto credentials = alvor::credentials_of(options.listen);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   const auto configure = [&](grpc::ServerBuilder& builder) {
     if (options.memory_limit > 0)
@@ -163,7 +167,7 @@ std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& 
     listener_died = true;
     kill(getpid(), SIGTERM);
   };
-  return std::make_unique<alvor::RpcServer>(options.listen.address, credentials, limits, configure, died);
+  return std::make_unique<alvor::RpcServer>(std::move(door), alvor::credentials_of(options.listen), configure, died);
 }
 
 void tell_health(bool is_serving, alvor::RpcServer& rpc, alvor::HealthPort* health) {
@@ -199,11 +203,13 @@ class Heartbeat {
 };
 
 // Null without an address.
-std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const alvor::Service& service) {
+std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const alvor::Service& service,
+                                            const std::shared_ptr<prometheus::Collectable>& door) {
   if (address.empty()) return nullptr;
   try {
     auto exposer = std::make_unique<prometheus::Exposer>(address);
     exposer->RegisterCollectable(service.metrics());
+    exposer->RegisterCollectable(door);
     return exposer;
   } catch (const std::exception&) {
     throw std::invalid_argument("--metrics: " + alvor::cannot_listen(address));
@@ -211,9 +217,11 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
 }
 
 // Null without an address.
-std::unique_ptr<alvor::WebFront> serve_web(const Options& options, grpc::Server& server, spdlog::logger& logger) {
+std::unique_ptr<alvor::WebFront> serve_web(const Options& options, std::size_t descriptors, grpc::Server& server,
+                                           spdlog::logger& logger) {
   if (options.web.empty()) return nullptr;
-  const alvor::WebOptions web{options.web, options.page, &options.listen, options.web_origins};
+  alvor::WebOptions web{options.web, options.page, &options.listen, options.web_origins, options.listen.identity_header, {}};
+  web.limits.connections = alvor::bounded_connections(web.limits.connections, 0.25, descriptors);
   auto front = std::make_unique<alvor::WebFront>(web, server.InProcessChannel({}));
   logger.info("web page on {}", front->url());
   return front;
@@ -228,10 +236,11 @@ std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, std:
 }
 
 alvor::ServiceOptions service_options(const Options& options, const std::shared_ptr<spdlog::logger>& logger,
-                                      alvor::Archive* archive) {
+                                      alvor::Archive* archive, std::shared_ptr<alvor::FrontDoor> door) {
   alvor::ServiceOptions service;
   service.solves.max_running = options.max_solves;
   service.solves.logger = logger;
+  service.solves.spare_solves = [door = std::move(door)] { return door->end_greediest(much_received); };
   service.solves.keeping.interval = seconds(options.checkpoint_interval_s);
   service.quota = options.quota;
   service.memory = alvor::MemoryGuard(options.memory_limit);
@@ -244,18 +253,21 @@ alvor::ServiceOptions service_options(const Options& options, const std::shared_
 
 int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
   const std::size_t descriptors = alvor::raise_descriptor_limit();
-  std::unique_ptr<alvor::Archive> archive;
-  if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
-  alvor::Service service(service_options(options, logger, archive.get()));
-  const auto health = serve_health(options.health, descriptors, *logger);
   alvor::ConnectionLimits limits = options.connections;
   limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
-  const auto rpc = start(service, options, limits, *logger);
-  const auto exposer = expose(options.metrics, service);
-  const auto web = serve_web(options, rpc->server(), *logger);
+  alvor::credentials_of(options.listen);  // what is wrong with the options is said before anything is opened
+  const auto door = std::make_shared<alvor::FrontDoor>(options.listen.address, limits);
+  std::unique_ptr<alvor::Archive> archive;
+  if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
+  alvor::Service service(service_options(options, logger, archive.get(), door));
+  const auto health = serve_health(options.health, descriptors, *logger);
+  const auto rpc = start(service, options, door, *logger);
+  const auto door_metrics = std::make_shared<alvor::DoorMetrics>(*door);  // the exposer does not keep it
+  const auto exposer = expose(options.metrics, service, door_metrics);
+  const auto web = serve_web(options, descriptors, rpc->server(), *logger);
   tell_health(true, *rpc, health.get());
   const Heartbeat heartbeat(archive.get());
-  auto self_probe = std::make_unique<alvor::SelfProbe>(rpc->door(), !options.listen.certificate.empty(), [&](bool is_answered) {
+  auto self_probe = std::make_unique<alvor::SelfProbe>(*door, !options.listen.certificate.empty(), [&](bool is_answered) {
     logger->log(is_answered ? spdlog::level::info : spdlog::level::err, "new connections are {}",
                 is_answered ? "served again" : "not served");
     tell_health(is_answered, *rpc, health.get());

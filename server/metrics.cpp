@@ -3,6 +3,7 @@
 #include "proto/codec.h"
 #include "proto/status_name.h"
 #include "server/call_counts.h"
+#include "server/front_door.h"
 #include "server/memory_guard.h"
 #include "server/solve_store.h"
 #include "server/watches.h"
@@ -122,6 +123,13 @@ void Metrics::collect_solves(std::vector<MetricFamily>& families) const {
                          worst_gap));
   families.push_back(one("alvor_shots_total", "Shots of all solves.", MetricType::Counter, static_cast<double>(shots_)));
   families.push_back(one("alvor_rays_total", "Rays of all solves.", MetricType::Counter, static_cast<double>(rays_)));
+}
+
+std::vector<MetricFamily> DoorMetrics::Collect() const {
+  const FrontDoor::Counts counts = door_.counts();
+  return {one("alvor_connections", "Connections at --listen.", MetricType::Gauge, static_cast<double>(counts.open)),
+          one("alvor_connections_refused_total", "Connections that were closed because there were too many.", MetricType::Counter,
+              static_cast<double>(counts.refused))};
 }
 
 }  // namespace alvor

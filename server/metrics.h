@@ -16,6 +16,7 @@ class SolveStore;
 class Watches;
 class CallCounts;
 class MemoryGuard;
+class FrontDoor;
 struct KeepingCounts;
 
 /// Everything is looked up when it is asked for; nothing is counted while light is solved. Thread-safe; everything it is given
@@ -43,6 +44,16 @@ class Metrics : public prometheus::Collectable {
   mutable std::mutex lock_;
   mutable std::map<std::string, Seen> seen_;
   mutable std::uint64_t shots_ = 0, rays_ = 0;  ///< since the server was started, of solves that are gone too
+};
+
+/// Of the connections at one listener, which must outlive it. Thread-safe.
+class DoorMetrics : public prometheus::Collectable {
+ public:
+  explicit DoorMetrics(const FrontDoor& door) : door_(door) {}
+  std::vector<prometheus::MetricFamily> Collect() const override;
+
+ private:
+  const FrontDoor& door_;
 };
 
 }  // namespace alvor

@@ -27,9 +27,9 @@ void bound(grpc::ServerBuilder& builder) {
 
 }  // namespace
 
-RpcServer::RpcServer(const std::string& address, std::shared_ptr<grpc::ServerCredentials> credentials,
-                     const ConnectionLimits& limits, const Configure& configure, std::function<void()> died)
-    : door_(address, limits) {
+RpcServer::RpcServer(std::shared_ptr<FrontDoor> door, std::shared_ptr<grpc::ServerCredentials> credentials,
+                     const Configure& configure, std::function<void()> died)
+    : door_(std::move(door)) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::ServerBuilder builder;
   bound(builder);
@@ -37,19 +37,19 @@ RpcServer::RpcServer(const std::string& address, std::shared_ptr<grpc::ServerCre
       grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, std::move(credentials));
   configure(builder);
   server_ = builder.BuildAndStart();
-  if (!server_) throw std::runtime_error("gRPC cannot serve on " + address);
+  if (!server_) throw std::runtime_error("gRPC cannot serve on " + door_->address());
   const auto take = [this](int connection) {
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters accepted;
     accepted.fd = connection;
     acceptor_->HandleNewConnection(&accepted);
   };
-  door_.open(take, std::move(died));
+  door_->open(take, std::move(died));
 }
 
 RpcServer::~RpcServer() { shut_down(std::chrono::milliseconds(0)); }
 
 void RpcServer::shut_down(std::chrono::milliseconds grace) {
-  door_.close();
+  door_->close();
   server_->Shutdown(std::chrono::system_clock::now() + grace);
 }
 

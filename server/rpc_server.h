@@ -17,9 +17,9 @@ class RpcServer {
   using Configure = std::function<void(grpc::ServerBuilder&)>;
 
   /// Serves from now on. `configure` adds services and options to the builder. `died` is called, from a thread, where connections
-  /// can no longer be accepted. Throws as ListeningSockets does.
-  RpcServer(const std::string& address, std::shared_ptr<grpc::ServerCredentials> credentials, const ConnectionLimits& limits,
-            const Configure& configure, std::function<void()> died);
+  /// can no longer be accepted. Throws std::runtime_error where gRPC refuses.
+  RpcServer(std::shared_ptr<FrontDoor> door, std::shared_ptr<grpc::ServerCredentials> credentials, const Configure& configure,
+            std::function<void()> died);
   /// Ends what is under way, at once.
   ~RpcServer();
   RpcServer(const RpcServer&) = delete;
@@ -29,12 +29,12 @@ class RpcServer {
   void shut_down(std::chrono::milliseconds grace);
 
   grpc::Server& server() { return *server_; }
-  FrontDoor& door() { return door_; }
+  FrontDoor& door() { return *door_; }
   /// With the port that was taken.
-  const std::string& address() const { return door_.address(); }
+  const std::string& address() const { return door_->address(); }
 
  private:
-  FrontDoor door_;
+  const std::shared_ptr<FrontDoor> door_;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
   std::unique_ptr<grpc::Server> server_;
 };

@@ -134,11 +134,15 @@ std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const st
 }
 
 void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next) {
-  std::uint64_t waiting = 0, own = 1, leaves = next.max_leaves;
+  std::uint64_t waiting = 0, own = 1, ended = 0, leaves = next.max_leaves;
   for (const auto& [name, entry] : solves_) {
-    if (entry.solve->ended()) continue;
+    const bool is_own = entry.solve->creator.tenant == tenant;
+    if (entry.solve->ended()) {
+      ended += is_own;
+      continue;
+    }
     waiting += !entry.is_running;
-    if (entry.solve->creator.tenant != tenant) continue;
+    if (!is_own) continue;
     ++own;
     leaves += entry.solve->options.max_leaves;
   }
@@ -148,6 +152,8 @@ void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& n
     refuse(std::to_string(waiting) + " solves are waiting, as many as this server allows");
   if (own > options_.quota.solves)
     refuse("solves: " + std::to_string(options_.quota.solves) + " have not ended, as many as are allowed");
+  if (ended >= options_.quota.ended_solves)
+    refuse("solves: " + std::to_string(ended) + " that have ended are kept, as many as are allowed: delete some");
   if (leaves > options_.quota.leaves)
     refuse("solve.spec.max_elements: with the other solves that have not ended " + std::to_string(leaves) + ", " +
            std::to_string(options_.quota.leaves) + " are allowed");
