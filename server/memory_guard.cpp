@@ -1,11 +1,13 @@
 #include "server/memory_guard.h"
 
 #include "server/status_error.h"
+#include "server/task_queue.h"
 
 #include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <limits>
@@ -46,7 +48,28 @@ std::uint64_t limit_of_group() {
 
 std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
+/// Trims at most once a second: it takes a tenth of a second for a heap of gigabytes.
+class HeapTrimmer {
+ public:
+  void ask() {
+    if (is_asked_.exchange(true)) return;
+    tasks_.post_at(TaskQueue::Clock::now() + std::chrono::milliseconds(500), [this] {
+      is_asked_ = false;
+      malloc_trim(0);
+    });
+  }
+
+ private:
+  std::atomic<bool> is_asked_ = false;
+  TaskQueue tasks_;
+};
+
 }  // namespace
+
+void trim_heap_soon() {
+  static HeapTrimmer trimmer;
+  trimmer.ask();
+}
 
 ResidentMemory resident_memory() {
   std::uint64_t address_space = 0, all = 0, of_files = 0;

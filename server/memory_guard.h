@@ -18,6 +18,10 @@ ResidentMemory resident_memory();
 /// What this process has taken that nothing but memory can hold, in bytes.
 std::uint64_t held_bytes();
 
+/// Gives memory that was freed back to the system within a second, on a thread of its own: a limit counts what the allocator
+/// keeps. To be called after much was freed.
+void trim_heap_soon();
+
 /// What the control group of this process allows, or else the machine, in bytes.
 std::uint64_t allowed_memory();
 

@@ -117,6 +117,7 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
     idle_->end();
     if (is_open_) uploads_.close(caller_.tenant);
     delete this;
+    trim_heap_soon();
   }
 
   grpc::CallbackServerContext& context_;
@@ -163,7 +164,10 @@ class SendCall final : public grpc::ServerWriteReactor<Message> {
     else this->Finish({grpc::CANCELLED, "the reader has gone"});
   }
   void OnCancel() override { stop_->stop({grpc::CANCELLED, "the reader has gone"}); }
-  void OnDone() override { delete this; }
+  void OnDone() override {
+    delete this;
+    trim_heap_soon();
+  }
 
   const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
   std::shared_ptr<const SceneContent> content_;

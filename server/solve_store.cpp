@@ -7,7 +7,6 @@
 #include <spdlog/spdlog.h>
 
 #include <google/protobuf/util/message_differencer.h>
-#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <algorithm>
@@ -253,7 +252,8 @@ void SolveStore::run(Entry& entry) {
   };
   solve->run(solver, control, is_paused,
              [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", solve->name, fault); });
-  malloc_trim(0);  // a limit counts what the allocator keeps for later
+  solve->drop_log();
+  trim_heap_soon();
   report_end(*options_.logger, solve->describe());
   std::scoped_lock hold(lock_);
   settle(entry);
@@ -362,6 +362,7 @@ void SolveStore::remove(const std::string& name, const std::string& tenant) {
   if (options_.keeping.archive) options_.keeping.archive->remove_solve(old.number);
   requests_.remove(old.creator);
   removed = solves_.extract(name);
+  trim_heap_soon();
 }
 
 void SolveStore::shut_down() {

@@ -1,6 +1,7 @@
 #include "server/stored_solve.h"
 
 #include "proto/codec.h"
+#include "server/memory_guard.h"
 #include "server/pieces.h"
 #include "server/random_id.h"
 #include "server/status_error.h"
@@ -119,9 +120,10 @@ std::shared_ptr<SolutionLog> StoredSolve::log() const {
 }
 
 void StoredSolve::drop_log() {
-  std::shared_ptr<SolutionLog> dropped;  // freed after the lock is
   std::scoped_lock hold(log_lock_);
-  if (is_log_kept_ && ended() && log_.use_count() == 1) dropped = std::move(log_);
+  if (!is_log_kept_ || !ended() || log_.use_count() != 1) return;
+  log_.reset();
+  trim_heap_soon();
 }
 
 std::vector<std::byte> StoredSolve::take_checkpoint() {

@@ -101,6 +101,9 @@ void WatchCall::OnDone() {
     watches_.remove(id_);
     log_->forget(listener_);
     logger_.info("watcher {} of {} left after {} frames", id_, solve_->name, watch_->frames_sent());
+    watch_.reset();
+    log_.reset();
+    watches_.release(std::move(solve_));
   }
   delete this;
 }

@@ -73,6 +73,11 @@ void Watches::stop_all() {
   }
 }
 
+/// After the watch's last turn, which still holds it.
+void Watches::release(std::shared_ptr<StoredSolve> solve) {
+  turns_.post([solve = std::move(solve)] { solve->drop_log(); });
+}
+
 void Watches::begin(const std::shared_ptr<Watch>& watch) {
   turns_.post([this, watch] { take_turn(watch); });
 }
@@ -81,8 +86,13 @@ void Watches::ask_for_turn(const std::shared_ptr<Watch>& watch) {
   if (watch->ask_for_turn()) begin(watch);
 }
 
+/// A turn that is due later does not keep a watch that has ended.
 void Watches::take_turn(const std::shared_ptr<Watch>& watch) {
-  if (const auto due = watch->take_turn(Watch::Clock::now())) turns_.post_at(*due, [this, watch] { take_turn(watch); });
+  const auto due = watch->take_turn(Watch::Clock::now());
+  if (!due) return;
+  turns_.post_at(*due, [this, later = std::weak_ptr(watch)] {
+    if (const auto kept = later.lock()) take_turn(kept);
+  });
 }
 
 }  // namespace alvor

@@ -35,6 +35,8 @@ class Watches {
   /// Ends every watch, and lets none begin.
   void stop_all();
 
+  /// Lets the solve's log go where nobody else watches it. Requires: the caller's watch and log have gone already.
+  void release(std::shared_ptr<StoredSolve> solve);
   /// Gives a new watch its first turn, which was asked for when it was made.
   void begin(const std::shared_ptr<Watch>& watch);
   /// Quick: may be called from any callback. Two asks before the turn are one turn.

@@ -152,5 +152,15 @@ TEST(BaseMesh, FacesBackToBackAreNeighboursWhereTheFrontsAre) {
   EXPECT_TRUE(mesh.across(2, 2)->smooth);
 }
 
+TEST(BaseMesh, BuildingOneCanBeGivenUp) {
+  std::stop_source stop;
+  Scene scene;
+  scene.materials.push_back({});
+  scene.add_polygon(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0);
+  EXPECT_EQ(BaseMesh(scene, {.stop = stop.get_token()}).roots().size(), 1u);
+  stop.request_stop();
+  EXPECT_THROW(BaseMesh(scene, {.stop = stop.get_token()}), BuildStopped);
+}
+
 }  // namespace
 }  // namespace alvor

@@ -1,5 +1,6 @@
 #include "proto/codec.h"
 #include "proto/leaf_codec.h"
+#include "proto/mesh_codec.h"
 
 #include "tests/server/sample_scenes.h"
 
@@ -30,6 +31,21 @@ TEST(SceneCodec, EncodeDecodeEncodeGivesTheSameBytes) {
   const auto twice = slice(assemble(once), 1 << 20);
   ASSERT_EQ(twice.size(), 1u);
   EXPECT_EQ(once[0].SerializeAsString(), twice[0].SerializeAsString());
+}
+
+TEST(MeshCodec, MessagesWithLongNamesStayBelowGrpcsLimit) {
+  Scene scene = squares(3);
+  for (int n = 0; n < 9000; ++n) scene.materials.push_back({std::string(1000, 'x'), {}, {}, false});
+  const BaseMesh mesh(scene);
+  MeshSlicer slicer(mesh);
+  std::size_t materials = 0, roots = 0;
+  for (v1::ReadMeshResponse message; slicer.next(message);) {
+    EXPECT_LT(message.ByteSizeLong(), 4u << 20);
+    materials += static_cast<std::size_t>(message.scene_materials_size());
+    roots += static_cast<std::size_t>(message.corner_counts_size());
+  }
+  EXPECT_EQ(materials, scene.materials.size());
+  EXPECT_EQ(roots, mesh.roots().size());
 }
 
 TEST(SceneCodec, ManySmallChunksCarryTheSameScene) {

@@ -5,6 +5,7 @@
 #include "radiosity/solver.h"
 #include "server/archive.h"
 #include "server/scene_store.h"
+#include "server/solve_store.h"
 #include "tests/scenes.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/refusal.h"
@@ -357,6 +358,33 @@ TEST_F(KeepingTest, SceneThatDoesNotFitOnTheDiskIsRefusedAndLeavesNothing) {
   EXPECT_EXIT(fill_the_disk(directory), testing::ExitedWithCode(0), "");
   Archive archive(directory);
   EXPECT_EQ(archive.scenes().size(), 1u);
+}
+
+TEST_F(KeepingTest, TheLogOfAnEndedSolveIsInMemoryWhileSomebodyHoldsIt) {
+  Archive archive(directory);
+  SceneStore scenes(&archive);
+  const std::string scene = scenes.add(test::room_with_contacts(), "")->facts.name();
+  SolveStoreOptions options;
+  options.keeping.archive = &archive;
+  options.keeping.epoch = "e";
+  SolveStore solves(options, scenes);
+  v1::SolveSpec spec;
+  spec.set_max_elements(300);
+  const auto solve = solves.create(scenes.use(scene), spec);
+  while (!solve->ended()) std::this_thread::yield();
+  std::weak_ptr<SolutionLog> in_memory;
+  std::vector<LeafValue> leaves;
+  {
+    const auto log = solve->log();
+    in_memory = log;
+    leaves = log->leaves();
+    solve->drop_log();
+    EXPECT_EQ(solve->log(), log) << "somebody holds it";
+  }
+  // The solver's thread may just be dropping it too.
+  while (!in_memory.expired()) solve->drop_log();
+  EXPECT_EQ(solve->log()->leaves(), leaves);
+  EXPECT_TRUE(solve->log()->closed());
 }
 
 }  // namespace

@@ -94,6 +94,55 @@ TEST_F(ShortMemoryTest, LastAndLeastSolveEndsWithWhatItHas) {
   EXPECT_EQ(create(v1::PRIORITY_HIGH)->state(), v1::Solve::RUNNING);
 }
 
+TEST_F(ShortMemoryTest, OfTheTenantWhoTakesMostASolveEndsFirst) {
+  v1::SolveSpec spec;
+  const std::string bobs = scenes.add(squares(2), "", {"bob", ""})->facts.name();
+  const auto of_one = solves.create(scenes.use(bobs, "bob"), spec, {"bob", ""});
+  const auto first = create(v1::PRIORITY_NORMAL), second = create(v1::PRIORITY_NORMAL);
+  const auto last = solves.create(scenes.use(bobs, "bob"), spec, {"bob", ""});
+  solves.cancel(last->name, "bob");
+  for (const auto& solve : {of_one, first, second})
+    while (solve->log()->head() == 0) std::this_thread::yield();
+  while (!last->ended()) std::this_thread::yield();
+  used = 790 * mebibyte;
+  while (!second->ended()) std::this_thread::yield();
+  EXPECT_FALSE(of_one->ended());
+  EXPECT_FALSE(first->ended());
+  used = 0;
+}
+
+TEST(MemoryGuard, WhatNobodyNeedsIsGivenBackBeforeAnythingIsRefused) {
+  const MemoryGuard guard(800 * mebibyte, used_memory);
+  used = 650 * mebibyte;
+  {
+    const auto handle = guard.relieve_by([] { used = 100 * mebibyte; });
+    EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { guard.admit("scene", 100 * mebibyte); }), "");
+  }
+  const MemoryGuard other(800 * mebibyte, used_memory);
+  (void)other.relieve_by([] { used = 0; });  // is gone at once
+  used = 650 * mebibyte;
+  EXPECT_NE(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { other.admit("scene", 100 * mebibyte); }), "");
+  used = 0;
+}
+
+TEST(MemoryGuard, SomethingElseEndsBeforeASolve) {
+  used = 0;
+  SceneStore scenes;
+  const std::string scene = scenes.add(squares(2), "")->facts.name();
+  SolveStoreOptions options;
+  options.solver = wait_for_end;
+  options.memory = MemoryGuard(800 * mebibyte, used_memory);
+  std::atomic<int> spared = 0;
+  options.spare_solves = [&] { return ++spared < 3 || (used = 0, true); };
+  SolveStore solves(options, scenes);
+  const auto solve = solves.create(scenes.use(scene), {});
+  while (solve->log()->head() == 0) std::this_thread::yield();
+  used = 790 * mebibyte;
+  while (used > 0) std::this_thread::yield();
+  EXPECT_EQ(spared, 3);
+  EXPECT_FALSE(solve->ended());
+}
+
 TEST(SceneStore, SceneThatIsTooLargeForTheMemoryIsRefused) {
   used = 600 * mebibyte;
   SceneStore scenes(nullptr, {}, MemoryGuard(800 * mebibyte, used_memory));

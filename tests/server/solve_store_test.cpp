@@ -197,6 +197,23 @@ TEST_F(SolveStoreTest, TenantsSeeAndCountTheirOwn) {
   EXPECT_EQ(solves.list("scenes/-", {}, "ada").items.size(), 1u);
 }
 
+TEST(SolveQuota, ThoseThatHaveEndedAreCountedToo) {
+  StagedSolver stage;
+  SceneStore scenes;
+  const std::string scene = scenes.add(squares(2), "")->facts.name();
+  SolveStoreOptions options;
+  options.quota.ended_solves = 1;
+  options.solver = stage.solver();
+  SolveStore solves(options, scenes);
+  const auto solve = solves.create(scenes.use(scene), {});
+  stage.finish();
+  while (!solve->ended()) std::this_thread::yield();
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), {}); }),
+            "solves: 1 that have ended are kept, as many as are allowed: delete some");
+  solves.remove(solve->name);
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), {}); }), "");
+}
+
 TEST(SolveQuota, EndsWhatATenantMayStart) {
   StagedSolver stage;
   SceneStore scenes;
