@@ -1,5 +1,7 @@
 #include "server/front_door.h"
 
+#include "server/peer_address.h"
+
 #include <linux/tcp.h>  // newer than netinet/tcp.h: tcpi_bytes_received
 #include <netinet/in.h>
 #include <poll.h>
@@ -10,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -24,32 +25,6 @@ constexpr auto between_looks = 1s;
 constexpr auto least_between_looks = 50ms;  // a look takes less than a millisecond
 constexpr auto traffic_window = 5s;
 constexpr int lost_after_ms = 10'000;  // bytes that were not acknowledged for this long: the peer is gone
-
-struct Peer {
-  std::string address;  ///< of IPv4, or the network of 64 bits; "" for this machine
-  int port = 0;
-};
-
-std::string text(const void* bytes, std::size_t count) { return {static_cast<const char*>(bytes), count}; }
-
-Peer peer_v4(const in_addr& address, in_port_t port) {
-  const bool is_own = ntohl(address.s_addr) >> 24 == 127;
-  return {is_own ? "" : text(&address, sizeof address), ntohs(port)};
-}
-
-Peer peer_of(const sockaddr_storage& from) {
-  if (from.ss_family == AF_INET) {
-    const auto& v4 = reinterpret_cast<const sockaddr_in&>(from);
-    return peer_v4(v4.sin_addr, v4.sin_port);
-  }
-  if (from.ss_family != AF_INET6) return {};
-  const auto& v6 = reinterpret_cast<const sockaddr_in6&>(from);
-  if (IN6_IS_ADDR_LOOPBACK(&v6.sin6_addr)) return {"", ntohs(v6.sin6_port)};
-  if (!IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr)) return {text(&v6.sin6_addr, 8), ntohs(v6.sin6_port)};
-  in_addr v4{};
-  std::memcpy(&v4, v6.sin6_addr.s6_addr + 12, sizeof v4);
-  return peer_v4(v4, v6.sin6_port);
-}
 
 bool is_this_process(int connection) {
   ucred peer{};
@@ -138,9 +113,9 @@ bool FrontDoor::accept_all(int listening) {
       if (is_short(error)) std::this_thread::sleep_for(100ms);
       return is_passing(error);
     }
-    const Peer peer = peer_of(from);
-    const bool is_probe = from.ss_family == AF_UNIX ? is_this_process(accepted.get()) : peer.port == probe_port_;
-    admit(std::move(accepted), peer.address, is_probe);
+    const auto& peer = reinterpret_cast<const sockaddr&>(from);
+    const bool is_probe = from.ss_family == AF_UNIX ? is_this_process(accepted.get()) : port_of(peer) == probe_port_;
+    admit(std::move(accepted), is_this_machine(peer) ? "" : network_of(peer), is_probe);
   }
 }
 

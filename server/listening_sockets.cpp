@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -46,8 +47,8 @@ SocketAddress unix_address(const std::string& file) {
   auto& to = address.as<sockaddr_un>();
   to.sun_family = AF_UNIX;
   if (file.empty() || file.size() >= sizeof to.sun_path)
-    throw std::invalid_argument("unix:" + file + ": the path must have 1 to " + std::to_string(sizeof to.sun_path - 1) +
-                                " bytes");
+    throw std::invalid_argument("'" + file + "' is no path for a Unix socket: it must have 1 to " +
+                                std::to_string(sizeof to.sun_path - 1) + " bytes");
   std::memcpy(to.sun_path, file.c_str(), file.size() + 1);
   address.size = sizeof to;
   return address;
@@ -98,19 +99,33 @@ Descriptor blocking_socket(int family) {
   return client;
 }
 
-}  // namespace
+std::string path_in(const std::string& address) { return address.substr(std::string("unix:").size()); }
 
-ListeningSockets::ListeningSockets(const std::string& address) : address_(address) {
-  if (address.starts_with("unix:")) {
-    file_ = address.substr(5);
-    open_unix();
-    return;
-  }
+/// Throws std::invalid_argument.
+std::pair<std::string, std::string> host_and_port(const std::string& address) {
   const std::size_t colon = address.rfind(':');
   std::string host = address.substr(0, colon);
-  if (colon == std::string::npos || host.empty()) throw std::invalid_argument("'" + address + "' is not HOST:PORT");
+  const std::string port = colon == std::string::npos ? "" : address.substr(colon + 1);
+  const bool is_port = !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
+  if (host.empty() || !is_port || std::stoi(port) > 65535) throw std::invalid_argument("'" + address + "' is not HOST:PORT");
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  open_tcp(host, address.substr(colon + 1));
+  return {host, port};
+}
+
+}  // namespace
+
+void ListeningSockets::check(const std::string& address) {
+  if (alvor::is_unix(address)) unix_address(path_in(address));
+  else host_and_port(address);
+}
+
+ListeningSockets::ListeningSockets(const std::string& address) : address_(address) {
+  if (alvor::is_unix(address)) {
+    open_unix(path_in(address));
+    return;
+  }
+  const auto [host, port] = host_and_port(address);
+  open_tcp(host, port);
 }
 
 void ListeningSockets::open_tcp(const std::string& host, const std::string& port) {
@@ -129,22 +144,25 @@ void ListeningSockets::open_tcp(const std::string& host, const std::string& port
   address_ = with_port(address_, port_);
 }
 
-void ListeningSockets::open_unix() {
-  const std::string file = std::exchange(file_, "");  // not ours to remove before it is open
+void ListeningSockets::open_unix(const std::string& file) {
   const SocketAddress address = unix_address(file);
   struct stat found {};
   const bool is_stale = lstat(file.c_str(), &found) == 0 && S_ISSOCK(found.st_mode) && !is_answered(address);
   if (is_stale) unlink(file.c_str());
   Descriptor made = listen_on(address);
-  if (!made.is_open()) throw std::runtime_error(cannot_listen(address_));
+  if (!made.is_open()) throw std::runtime_error("cannot listen on " + address_ + ": " + std::strerror(errno));
   file_ = file;
   chmod(file.c_str(), 0660);
   all_.push_back(std::move(made));
 }
 
-ListeningSockets::~ListeningSockets() {
+ListeningSockets::~ListeningSockets() { remove_file(); }
+
+void ListeningSockets::remove_file() {
   if (!file_.empty()) unlink(file_.c_str());
 }
+
+int ListeningSockets::family(const Descriptor& socket) const { return own_address(socket.get()).bytes.ss_family; }
 
 Descriptor ListeningSockets::connect(const std::function<void(int)>& before) const {
   if (!is_unix()) return connect_tcp(before);

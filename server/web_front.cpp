@@ -11,9 +11,7 @@ namespace alvor {
 
 namespace {
 
-bool is_unix(const WebOptions& options) { return options.address.starts_with("unix:"); }
-
-bool has_tls(const WebOptions& options) { return !is_unix(options) && !options.listen->certificate.empty(); }
+bool has_tls(const WebOptions& options) { return !is_unix(options.address) && !options.listen->certificate.empty(); }
 
 PageFiles read_page(const std::filesystem::path& directory) {
   try {
@@ -29,11 +27,11 @@ std::string lower_case(std::string text) {
 }
 
 WebSite::Options site_options(const WebOptions& options) {
-  check_web_address(options.address);
+  ListeningSockets::check(options.address);
   refuse_plaintext("--web", options.address, *options.listen);
   WebSite::Options site;
-  site.only_this_machine = is_loopback(options.address) && !is_unix(options);
-  if (is_unix(options)) site.identity_header = lower_case(options.identity_header);
+  site.only_this_machine = is_loopback(options.address) && !is_unix(options.address);
+  if (is_unix(options.address)) site.identity_header = lower_case(options.identity_header);
   site.origins = options.origins;
   site.tokens = tokens_of(*options.listen);
   return site;
@@ -60,10 +58,19 @@ struct WebFront::Parts {
 };
 
 WebFront::WebFront(const WebOptions& options, std::shared_ptr<grpc::Channel> channel)
-    : parts_(std::make_unique<Parts>(options, std::move(channel))),
-      url_(is_unix(options) ? options.address
-                            : (has_tls(options) ? "https://" : "http://") +
-                                  with_port(options.address, parts_->listener.socket().port()) + "/") {}
+    : parts_(make_parts(options, std::move(channel))) {
+  const std::string& address = parts_->listener.address();
+  url_ = is_unix(address) ? address : (has_tls(options) ? "https://" : "http://") + address + "/";
+}
+
+std::unique_ptr<WebFront::Parts> WebFront::make_parts(const WebOptions& options, std::shared_ptr<grpc::Channel> channel) {
+  try {
+    return std::make_unique<Parts>(options, std::move(channel));
+  } catch (const std::exception& fault) {
+    const std::string text = fault.what();
+    throw std::invalid_argument(text.starts_with("--") ? text : "--web: " + text);
+  }
+}
 
 WebFront::~WebFront() = default;
 

@@ -37,6 +37,7 @@ class WebFront {
 
  private:
   struct Parts;
+  static std::unique_ptr<Parts> make_parts(const WebOptions& options, std::shared_ptr<grpc::Channel> channel);
   const std::unique_ptr<Parts> parts_;
   std::string url_;
 };

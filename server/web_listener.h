@@ -1,7 +1,7 @@
 #pragma once
 // Accepts browsers' connections.
 
-#include "server/listening_socket.h"
+#include "server/listening_sockets.h"
 #include "server/web_admission.h"
 #include "server/web_connection.h"
 
@@ -10,6 +10,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include <array>
+#include <list>
 #include <memory>
 #include <string>
 #include <thread>
@@ -20,29 +21,35 @@ namespace alvor {
 /// Destroying it closes what waits at once and what is answered after WebLimits::stop, and returns when all calls have ended.
 class WebListener {
  public:
-  /// `address`: as for ListeningSocket, which may throw. `tls`: null for plaintext. `shared` must outlive it.
+  /// `address`: as for ListeningSockets, which may throw. `tls`: null for plaintext. `shared` must outlive it.
   WebListener(const std::string& address, std::shared_ptr<boost::asio::ssl::context> tls, WebShared& shared);
   ~WebListener();
-  const ListeningSocket& socket() const { return socket_; }
+  /// With the port that was taken.
+  const std::string& address() const { return sockets_.address(); }
 
  private:
   using Protocol = boost::asio::generic::stream_protocol;
   using Acceptor = boost::asio::basic_socket_acceptor<Protocol, WebStrand>;
-  void await_browser();
-  void accept();
-  void admit(WebSocket socket);
-  void wait_for_descriptors();
+  using Endpoint = Protocol::endpoint;
+  /// One of the sockets.
+  struct Entrance {
+    Acceptor acceptor;
+    boost::asio::steady_timer pause;
+    Endpoint peer;
+  };
+  void await_browser(Entrance& entrance);
+  void accept(Entrance& entrance);
+  void admit(WebSocket socket, const Endpoint& peer);
+  void wait_for_descriptors(Entrance& entrance);
 
-  ListeningSocket socket_;
+  ListeningSockets sockets_;
   const std::shared_ptr<boost::asio::ssl::context> tls_;
   WebShared& shared_;
   WebAdmission admission_;
   boost::asio::io_context io_;
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
   const WebStrand strand_;
-  Acceptor acceptor_;
-  boost::asio::steady_timer pause_;
-  Protocol::endpoint peer_;
+  std::list<Entrance> entrances_;
   std::array<std::thread, 2> threads_;
 };
 
