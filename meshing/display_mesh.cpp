@@ -121,9 +121,8 @@ class Triangulation {
   void emit(std::size_t n) {
     const PatchShape shape = forest_.shape(leaves_[n]);
     const auto points = outline(shape);
-    const std::uint32_t centre =
-        add_vertex(shape.root, moved(shape.root, centre_[leaves_[n]], std::array{mesh_.roots()[shape.root].normal}),
-                   mesh_.roots()[shape.root].normal, value_[leaves_[n]]);
+    const std::uint32_t centre = add_vertex(shape.root, drawn_centre(shape.root, centre_[leaves_[n]]),
+                                            mesh_.roots()[shape.root].normal, value_[leaves_[n]]);
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
@@ -136,7 +135,7 @@ class Triangulation {
       const CornerSum& sum = sums_[key];
       const Rgb irradiance = sum.weight > 0 ? sum.irradiance * (1 / sum.weight) : Rgb{};
       const Vec3 normal = normalized(sum.normal);
-      found->second = add_vertex(root, moved(root, position(root, p), normals_around(root, p, normal)), normal, irradiance);
+      found->second = add_vertex(root, drawn_position(root, p, normal), normal, irradiance);
     }
     return found->second;
   }
@@ -161,9 +160,18 @@ class Triangulation {
     return normals;
   }
 
+  bool is_two_sided(std::uint32_t root) const { return mesh_.roots()[root].twin != RootPatch::no_twin; }
+
   /// Returns where a vertex is drawn: one of a two-sided face is moved to the front of its side, others stay.
-  Vec3 moved(std::uint32_t root, Vec3 position, std::span<const Vec3> normals) const {
-    if (mesh_.roots()[root].twin == RootPatch::no_twin) return position;
+  Vec3 drawn_position(std::uint32_t root, GridPoint p, Vec3 normal) {
+    return is_two_sided(root) ? moved(position(root, p), normals_around(root, p, normal)) : position(root, p);
+  }
+
+  Vec3 drawn_centre(std::uint32_t root, Vec3 centre) const {
+    return is_two_sided(root) ? moved(centre, std::array{mesh_.roots()[root].normal}) : centre;
+  }
+
+  Vec3 moved(Vec3 position, std::span<const Vec3> normals) const {
     return position + side_offset * mesh_.extent() * miter(normals);
   }
 

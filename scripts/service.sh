@@ -7,8 +7,7 @@ cd "$(dirname "$0")/.."
 scripts/setup.sh
 scripts/build.sh service_bench
 tables=$(build/release/bin/service_bench "${1:-60}")
-{
-  sed '/^<!-- tables -->$/q' docs/service.md
-  printf '\n%s\n' "$tables"
-} > docs/service.md.new
-mv docs/service.md.new docs/service.md
+file=$(mktemp)
+trap 'rm -f "$file"' EXIT
+printf '\n%s\n\n' "$tables" > "$file"
+sed -i -e "/^<!-- tables -->$/,/^<!-- end of tables -->$/{//!d}" -e "/^<!-- tables -->$/r $file" docs/service.md

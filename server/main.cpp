@@ -7,6 +7,7 @@
 #include "server/metrics.h"
 #include "server/rpc_server.h"
 #include "server/self_probe.h"
+#include "server/server_options.h"
 #include "server/service.h"
 #include "server/task_queue.h"
 #include "server/web_front.h"
@@ -38,86 +39,6 @@ constexpr std::uint64_t much_received = 8 << 20;
 constexpr std::uint64_t least_rpc_memory = 64 << 20;  // of gRPC's connections; a message may have as much
 
 std::atomic<bool> listener_died = false;
-
-struct Options {
-  alvor::ListenOptions listen;
-  alvor::ConnectionLimits connections;
-  std::string directory;
-  int max_solves = alvor::SolveStoreOptions{}.max_running;
-  double checkpoint_interval_s = 10;
-  std::string metrics;
-  std::string health, probe;
-  std::uint64_t memory_limit = alvor::allowed_memory();
-  std::vector<std::string> web_origins;
-  std::string web, page = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web").string();
-  alvor::Quota quota;
-  std::string log_level = "info";
-};
-
-void declare_web(CLI::App& app, Options& options) {
-  CLI::Option* web =
-      app.add_option("--web", options.web, "HOST:PORT or unix:PATH to serve the page and gRPC-Web for browsers on (not at all)");
-  app.add_option("--web-origin", options.web_origins,
-                 "Pages of this origin, as https://room.example, may call there too; may be repeated (none)")
-      ->needs(web)
-      ->type_name("ORIGIN")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  app.add_option("--page", options.page, "Directory of that page")->capture_default_str();
-}
-
-void declare(CLI::App& app, Options& options) {
-  app.set_version_flag("--version", "alvord " ALVOR_VERSION);
-  alvor::ListenOptions& listen = options.listen;
-  app.add_option("--listen", listen.address, "HOST:PORT or unix:PATH to listen on; port 0 takes a free one")
-      ->capture_default_str();
-  app.add_option("--max-connections", options.connections.in_all, "Connections to it at a time")->capture_default_str();
-  app.add_option("--max-connections-by-address", options.connections.by_address, "The same, from one address of another machine")
-      ->capture_default_str();
-  app.add_option("--tls-cert", listen.certificate, "The server's certificate, and what it takes to trust it (PEM): TLS");
-  app.add_option("--tls-key", listen.key, "The key of --tls-cert (PEM)");
-  app.add_option("--tls-client-ca", listen.client_ca, "Clients must show a certificate signed by one of these (PEM)");
-  app.add_option("--tokens", listen.tokens, "Calls must carry a bearer token of this file: lines NAME SHA256, see the README");
-  app.add_option("--identity-header", listen.identity_header,
-                 "Metadata by which a proxy says whose call it is; believed on Unix sockets alone");
-  app.add_flag("--insecure", listen.insecure, "Listen for other machines without TLS");
-  app.add_option("--data", options.directory,
-                 "Directory for scenes, solves and their checkpoints; without it they end with the server");
-  app.add_option("--checkpoint-interval", options.checkpoint_interval_s, "Seconds between checkpoints of a running solve")
-      ->check(CLI::Range(0.05, 86400.0))
-      ->capture_default_str();
-  alvor::Quota& quota = options.quota;
-  app.add_option("--quota-scenes", quota.scenes, "Scenes that each tenant may keep")->capture_default_str();
-  app.add_option("--quota-bytes", quota.scene_bytes, "Bytes that these may come to")->capture_default_str();
-  app.add_option("--quota-solves", quota.solves, "Solves of each tenant that have not ended")->capture_default_str();
-  app.add_option("--quota-ended-solves", quota.ended_solves, "Solves of each tenant that have ended and are kept")
-      ->capture_default_str();
-  app.add_option("--quota-leaves", quota.leaves, "Leaves that these may come to")->capture_default_str();
-  app.add_option("--quota-watchers", quota.watchers, "Watches that each tenant may hold open")->capture_default_str();
-  app.add_option("--max-solves", options.max_solves, "Solves that may run at a time")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option(
-         "--memory-limit", options.memory_limit,
-         "Bytes (also K, M, G) at which work is refused or ends, before the system would end the server; 0 for none; else "
-         "what the control group or the machine has")
-      ->transform(CLI::AsSizeValue(false))
-      ->capture_default_str();
-  app.add_option("--health", options.health,
-                 "HOST:PORT to tell health on (grpc.health.v1), without TLS and tokens, for probes (only where calls are taken)");
-  app.add_option("--probe", options.probe, "Only ask a server's --health HOST:PORT; fails unless it serves");
-  app.add_option("--metrics", options.metrics, "HOST:PORT to tell Prometheus on, at /metrics (not at all)");
-  declare_web(app, options);
-  app.add_option("--log-level", options.log_level, "How much to log")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
-  // Containers are told by variables: ALVORD_LISTEN is --listen.
-  for (CLI::Option* option : app.get_options()) {
-    std::string name = "ALVORD_" + option->get_single_name();
-    for (char& c : name) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (name != "ALVORD_HELP" && name != "ALVORD_VERSION" && name != "ALVORD_PROBE") option->envname(name);
-  }
-}
 
 std::shared_ptr<spdlog::logger> make_logger(const std::string& level) {
   auto logger = spdlog::stderr_color_mt("alvord");
@@ -153,8 +74,8 @@ std::string wait_for_stop(const sigset_t& signals) {
   return number == SIGINT ? "SIGINT" : "SIGTERM";
 }
 
-std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const Options& options, std::shared_ptr<alvor::FrontDoor> door,
-                                        spdlog::logger& logger) {
+std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const alvor::ServerOptions& options,
+                                        std::shared_ptr<alvor::FrontDoor> door, spdlog::logger& logger) {
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   const auto configure = [&](grpc::ServerBuilder& builder) {
     if (options.memory_limit > 0)
@@ -217,7 +138,7 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
 }
 
 // Null without an address.
-std::unique_ptr<alvor::WebFront> serve_web(const Options& options, std::size_t descriptors, grpc::Server& server,
+std::unique_ptr<alvor::WebFront> serve_web(const alvor::ServerOptions& options, std::size_t descriptors, grpc::Server& server,
                                            spdlog::logger& logger) {
   if (options.web.empty()) return nullptr;
   alvor::WebOptions web{options.web, options.page, &options.listen, options.web_origins, options.listen.identity_header, {}};
@@ -235,7 +156,7 @@ std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, std:
   return health;
 }
 
-alvor::ServiceOptions service_options(const Options& options, const std::shared_ptr<spdlog::logger>& logger,
+alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const std::shared_ptr<spdlog::logger>& logger,
                                       alvor::Archive* archive, std::shared_ptr<alvor::FrontDoor> door) {
   alvor::ServiceOptions service;
   service.solves.max_running = options.max_solves;
@@ -251,7 +172,7 @@ alvor::ServiceOptions service_options(const Options& options, const std::shared_
   return service;
 }
 
-int serve(const Options& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
+int serve(const alvor::ServerOptions& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
   const std::size_t descriptors = alvor::raise_descriptor_limit();
   alvor::ConnectionLimits limits = options.connections;
   limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
@@ -292,8 +213,8 @@ int probe(const std::string& address) {
 int main(int argc, char** argv) {
   const sigset_t signals = block_stop_signals();
   CLI::App app("The Alvor server: holds scenes, solves their light exchange and streams the growing solution.", "alvord");
-  Options options;
-  declare(app, options);
+  alvor::ServerOptions options;
+  alvor::declare(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

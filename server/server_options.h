@@ -1,0 +1,39 @@
+#pragma once
+// What alvord can be told on its command line and by variables.
+
+#include "server/caller.h"
+#include "server/front_door.h"
+#include "server/listening.h"
+#include "server/memory_guard.h"
+#include "server/solve_store.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace alvor {
+
+struct ServerOptions {
+  ListenOptions listen;
+  ConnectionLimits connections;
+  std::string directory;
+  int max_solves = SolveStoreOptions{}.max_running;
+  double checkpoint_interval_s = 10;
+  std::string metrics;
+  std::string health, probe;
+  std::uint64_t memory_limit = allowed_memory();
+  std::vector<std::string> web_origins;
+  std::string web, page = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web").string();
+  Quota quota;
+  std::string log_level = "info";
+};
+
+/// Makes `app` set `options`. Each option has a variable: --max-solves is ALVORD_MAX_SOLVES.
+void declare(CLI::App& app, ServerOptions& options);
+
+}  // namespace alvor
