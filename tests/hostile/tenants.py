@@ -21,7 +21,7 @@ class Belongings:
     self.scene = self.caller.create_scene(room(0.1 * number)).name
     self.spare_scene = self.caller.create_scene(room(0.1 * number + 0.05)).name
     self.solve = self.caller.create_solve(self.scene, pause=60, tolerance=1e-9, max_elements=500).name
-    self.watch = self.caller.WatchSolve(solves.WatchSolveRequest(name=self.solve), 30)
+    self.watch = self.caller.WatchSolve(solves.WatchSolveRequest(name=self.solve), 60)  # longer than an attack lasts
     self.frame = next(self.watch)
 
 
