@@ -49,25 +49,35 @@ grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, spdlog::l
   return reactor;
 }
 
+/// A unary call that ends its work when its caller leaves. Deletes itself.
+class UnaryCall final : public grpc::ServerUnaryReactor {
+ public:
+  std::shared_ptr<CallStop> stop() const { return stop_; }
+
+ private:
+  void OnCancel() override { stop_->stop({grpc::CANCELLED, "the caller has gone"}); }
+  void OnDone() override { delete this; }
+
+  const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
+};
+
 /// The whole of a unary call whose body may wait, for a lock or the disk: `body` is copied, and called with the tenant by a
 /// thread of `pool`.
 template <class Body>
 grpc::ServerUnaryReactor* answer_from(WorkPool& pool, const Tenants& tenants, grpc::CallbackServerContext* context,
                                       spdlog::logger& logger, const char* call, Body body) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  std::string tenant;
-  const grpc::Status refusal = attempt(logger, call, [&] { tenant = tenants.of(*context); });
-  if (!refusal.ok()) {
-    reactor->Finish(refusal);
-    return reactor;
-  }
-  const auto stop = std::make_shared<CallStop>();
-  pool.post(turn_of(tenant, *context), stop, [reactor, stop, tenant, body, &logger, call] {
-    reactor->Finish(attempt(logger, call, [&] {
-      stop->refuse_stopped();
-      body(tenant);
-    }));
+  auto* reactor = new UnaryCall;
+  const auto stop = reactor->stop();
+  const grpc::Status refusal = attempt(logger, call, [&] {
+    const std::string tenant = tenants.of(*context);
+    pool.post(turn_of(tenant, *context), stop, [reactor, stop, tenant, body, &logger, call] {
+      reactor->Finish(attempt(logger, call, [&] {
+        stop->refuse_stopped();
+        body(tenant);
+      }));
+    });
   });
+  if (!refusal.ok()) reactor->Finish(refusal);
   return reactor;
 }
 

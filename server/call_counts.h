@@ -3,24 +3,36 @@
 
 #include <grpcpp/support/server_interceptor.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 namespace alvor {
 
-/// By method and status code. Thread-safe.
+/// Calls by method and status code, and those under way by connection. Thread-safe.
 class CallCounts {
  public:
+  /// gRPC lets a client have 256 streams at a time, but does not count streams that were reset and not yet wound up.
+  static constexpr int most_of_connection = 1000;
+
+  /// `flooding` is told the peer of each connection that has more calls under way than most_of_connection, as gRPC writes it:
+  /// "ipv4:127.0.0.1:50051".
+  explicit CallCounts(std::function<void(const std::string&)> flooding) : flooding_(std::move(flooding)) {}
   using Counts = std::map<std::pair<std::string, grpc::StatusCode>, std::uint64_t>;
   void note(const std::string& method, grpc::StatusCode code);
+  void begin(const std::string& peer);
+  void end(const std::string& peer);
   Counts counts() const;
 
  private:
+  const std::function<void(const std::string&)> flooding_;
   mutable std::mutex lock_;
   Counts counts_;
+  std::unordered_map<std::string, int> under_way_;  ///< by peer
 };
 
 /// Notes each call of a server when its status is sent; one that its client breaks off before that is not noted. `counts` must

@@ -7,10 +7,12 @@
 namespace alvor {
 
 struct CallPools {
-  /// Building and loading scenes, loading solutions.
+  /// Building and loading scenes.
   WorkPool building{{.threads = 4, .of_one = 2, .time = std::chrono::minutes(1)}};
   /// Everything else that may wait for a lock or the disk.
   WorkPool keeping{{.threads = 8, .of_one = 4}};
+  /// Beginning to watch, for which a solution may have to be loaded.
+  WorkPool watching{{.threads = 4, .of_one = 2}};
   TaskQueue timers;
 };
 

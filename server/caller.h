@@ -44,7 +44,7 @@ class Tenants {
   const std::string identity_header_;
 };
 
-/// Whose turn it is where callers take turns: the tenant, or where there are no tenants the other end of the connection.
+/// Whose turn it is where callers take turns: the tenant, or without tokens the address that the call came from.
 std::string turn_of(const std::string& tenant, const grpc::ServerContextBase& context);
 
 /// Metadata in which a front end in this process says for whom it calls. The key is as random as a secret: nobody else knows it.

@@ -21,6 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr int most_of_round = 64;
 constexpr auto between_looks = 1s;
 constexpr auto least_between_looks = 50ms;  // a look takes less than a millisecond
 constexpr auto traffic_window = 5s;
@@ -93,18 +94,19 @@ void FrontDoor::run() {
   for (const Descriptor& each : sockets_.all()) waited.push_back({each.get(), POLLIN, 0});
   for (;;) {
     const int count = poll(waited.data(), waited.size(), static_cast<int>(between_looks / 1ms));
-    if (count < 0 && errno != EINTR) return died_();
+    if (count < 0 && !is_passing(errno)) return died_();
     if (waited.front().revents != 0) return;
     for (const pollfd& listening : std::span(waited).subspan(1))
-      if (count > 0 && listening.revents != 0 && !accept_all(listening.fd)) return died_();
+      if (count > 0 && listening.revents != 0 && !accept_round(listening.fd)) return died_();
     std::scoped_lock hold(lock_);
     look();
   }
 }
 
-/// Returns whether the listening socket is still of use.
-bool FrontDoor::accept_all(int listening) {
-  for (;;) {
+/// Returns whether the listening socket is still of use. What waits beyond a round is told by poll() again: a flood does not keep
+/// the thread from all else.
+bool FrontDoor::accept_round(int listening) {
+  for (int n = 0; n < most_of_round; ++n) {
     sockaddr_storage from{};
     socklen_t size = sizeof from;
     Descriptor accepted(accept4(listening, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
@@ -113,13 +115,14 @@ bool FrontDoor::accept_all(int listening) {
       if (is_short(error)) std::this_thread::sleep_for(100ms);
       return is_passing(error);
     }
-    const auto& peer = reinterpret_cast<const sockaddr&>(from);
-    const bool is_probe = from.ss_family == AF_UNIX ? is_this_process(accepted.get()) : port_of(peer) == probe_port_;
-    admit(std::move(accepted), is_this_machine(peer) ? "" : network_of(peer), is_probe);
+    admit(std::move(accepted), reinterpret_cast<const sockaddr&>(from));
   }
+  return true;
 }
 
-void FrontDoor::admit(Descriptor accepted, const std::string& address, bool is_probe) {
+void FrontDoor::admit(Descriptor accepted, const sockaddr& peer) {
+  const bool is_probe = peer.sa_family == AF_UNIX ? is_this_process(accepted.get()) : port_of(peer) == probe_port_;
+  const std::string address = is_this_machine(peer) ? "" : network_of(peer);
   {
     std::scoped_lock hold(lock_);
     if (!is_probe && !has_place_for(address)) {
@@ -127,7 +130,7 @@ void FrontDoor::admit(Descriptor accepted, const std::string& address, bool is_p
       return;
     }
     if (const auto before = connections_.find(accepted.get()); before != connections_.end()) forget(before);
-    connections_[accepted.get()] = {inode_of(accepted.get()), ++accepted_, address};
+    connections_[accepted.get()] = {inode_of(accepted.get()), ++accepted_, address, grpc_name_of(peer)};
     if (!address.empty()) ++by_address_[address];
   }
   set_up(accepted.get());
@@ -150,7 +153,9 @@ bool FrontDoor::has_place_for(const std::string& address) {
 bool FrontDoor::end_oldest_silent() {
   auto oldest = connections_.end();
   for (auto each = connections_.begin(); each != connections_.end(); ++each)
-    if ((oldest == connections_.end() || each->second.number < oldest->second.number) && is_silent(each->first)) oldest = each;
+    if ((oldest == connections_.end() || each->second.number < oldest->second.number) &&
+        inode_of(each->first) == each->second.inode && is_silent(each->first))
+      oldest = each;
   if (oldest == connections_.end()) return false;
   shutdown(oldest->first, SHUT_RDWR);
   forget(oldest);
@@ -180,22 +185,32 @@ Descriptor FrontDoor::connect_as_probe() {
 bool FrontDoor::end_greediest(std::uint64_t least) {
   std::scoped_lock hold(lock_);
   forget_ended();
-  int greediest = -1;
-  for (const auto& [descriptor, connection] : connections_) {
-    const std::uint64_t received = received_bytes(descriptor) - std::min(connection.then, received_bytes(descriptor));
-    if (received < least) continue;
-    least = received;
-    greediest = descriptor;
+  auto greediest = connections_.end();
+  for (auto each = connections_.begin(); each != connections_.end(); ++each) {
+    const std::uint64_t all = received_bytes(each->first), lately = all - std::min(all, each->second.then);
+    if (lately < least) continue;
+    least = lately;
+    greediest = each;
   }
-  if (greediest >= 0) shutdown(greediest, SHUT_RDWR);
-  return greediest >= 0;
+  if (greediest == connections_.end()) return false;
+  shutdown(greediest->first, SHUT_RDWR);
+  forget(greediest);
+  return true;
+}
+
+bool FrontDoor::end(const std::string& peer) {
+  std::scoped_lock hold(lock_);
+  forget_ended();
+  const auto found = std::ranges::find(connections_, peer, [](const auto& each) { return each.second.peer; });
+  if (peer.empty() || found == connections_.end()) return false;
+  shutdown(found->first, SHUT_RDWR);
+  return true;
 }
 
 /// Forgets what has ended, and notes now and then what was received. Requires: the lock.
 void FrontDoor::look() {
   const auto now = Clock::now();
-  if (now < last_look_ + between_looks) return;
-  forget_ended();
+  if (now >= last_look_ + between_looks) forget_ended();
   if (now < last_traffic_ + traffic_window) return;
   last_traffic_ = now;
   for (auto& [descriptor, connection] : connections_)

@@ -3,6 +3,7 @@
 
 #include "server/listening_sockets.h"
 
+#include <sys/socket.h>
 #include <sys/types.h>
 
 #include <atomic>
@@ -45,6 +46,9 @@ class FrontDoor {
   /// sent takes memory. Returns whether there was one. Connections over Unix sockets are left alone.
   bool end_greediest(std::uint64_t least);
 
+  /// Ends the connection of a peer as gRPC names it: "ipv4:127.0.0.1:50051". Returns whether there was one.
+  bool end(const std::string& peer);
+
   int port() const { return sockets_.port(); }
   const std::string& address() const { return sockets_.address(); }
   struct Counts {
@@ -60,12 +64,13 @@ class FrontDoor {
     ino_t inode = 0;
     std::uint64_t number = 0;              ///< grows: the order in which they were accepted
     std::string address;                   ///< "": counts for no address
+    std::string peer;                      ///< "": a Unix socket
     std::uint64_t received = 0, then = 0;  ///< bytes when it was looked at last, and the time before that
   };
 
   void run();
-  bool accept_all(int listening);
-  void admit(Descriptor accepted, const std::string& address, bool is_probe);
+  bool accept_round(int listening);
+  void admit(Descriptor accepted, const sockaddr& peer);
   bool has_place_for(const std::string& address);
   bool end_oldest_silent();
   void forget_ended();

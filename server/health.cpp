@@ -5,6 +5,7 @@
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 
@@ -13,7 +14,7 @@ namespace alvor {
 namespace health = grpc::health::v1;
 
 HealthPort::HealthPort(const std::string& address, std::size_t most_connections) {
-  const ConnectionLimits limits{most_connections, most_connections};
+  const ConnectionLimits limits{most_connections, std::max<std::size_t>(most_connections / 2, 1)};
   try {
     rpc_ = std::make_unique<RpcServer>(
         std::make_shared<FrontDoor>(address, limits), grpc::InsecureServerCredentials(),

@@ -56,10 +56,10 @@ SocketAddress unix_address(const std::string& file) {
 
 void set(int socket, int level, int option, int value) { setsockopt(socket, level, option, &value, sizeof value); }
 
-/// Whether somebody listens on a socket file.
-bool is_answered(const SocketAddress& address) {
-  const Descriptor client(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  return ::connect(client.get(), address.get(), address.size) == 0;
+/// Whether nobody listens on a socket file.
+bool is_left_behind(const SocketAddress& address) {
+  const Descriptor client(socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  return ::connect(client.get(), address.get(), address.size) != 0 && errno == ECONNREFUSED;
 }
 
 /// Not open where the system refuses.
@@ -68,8 +68,9 @@ Descriptor listen_on(const SocketAddress& address) {
   if (address.has_port()) set(made.get(), SOL_SOCKET, SO_REUSEADDR, 1);
   // "::" takes IPv4 too, as servers usually do; where 0.0.0.0 is asked for as well, it is a socket of its own.
   if (address.bytes.ss_family == AF_INET6) set(made.get(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
-  if (!made.is_open() || bind(made.get(), address.get(), address.size) != 0 || listen(made.get(), backlog) != 0) return {};
-  return made;
+  if (!made.is_open() || bind(made.get(), address.get(), address.size) != 0) return {};
+  if (!address.has_port()) chmod(reinterpret_cast<const sockaddr_un&>(address.bytes).sun_path, 0660);  // nobody can connect yet
+  return listen(made.get(), backlog) == 0 ? std::move(made) : Descriptor();
 }
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
@@ -147,19 +148,18 @@ void ListeningSockets::open_tcp(const std::string& host, const std::string& port
 void ListeningSockets::open_unix(const std::string& file) {
   const SocketAddress address = unix_address(file);
   struct stat found {};
-  const bool is_stale = lstat(file.c_str(), &found) == 0 && S_ISSOCK(found.st_mode) && !is_answered(address);
+  const bool is_stale = lstat(file.c_str(), &found) == 0 && S_ISSOCK(found.st_mode) && is_left_behind(address);
   if (is_stale) unlink(file.c_str());
   Descriptor made = listen_on(address);
   if (!made.is_open()) throw std::runtime_error("cannot listen on " + address_ + ": " + std::strerror(errno));
   file_ = file;
-  chmod(file.c_str(), 0660);
   all_.push_back(std::move(made));
 }
 
 ListeningSockets::~ListeningSockets() { remove_file(); }
 
 void ListeningSockets::remove_file() {
-  if (!file_.empty()) unlink(file_.c_str());
+  if (!file_.empty() && !std::exchange(is_file_removed_, true)) unlink(file_.c_str());
 }
 
 int ListeningSockets::family(const Descriptor& socket) const { return own_address(socket.get()).bytes.ss_family; }

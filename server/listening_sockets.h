@@ -44,6 +44,7 @@ class ListeningSockets {
 
   std::string address_;
   std::string file_;
+  bool is_file_removed_ = false;
   int port_ = 0;
   std::vector<Descriptor> all_;
 };

@@ -161,7 +161,10 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
   alvor::ServiceOptions service;
   service.solves.max_running = options.max_solves;
   service.solves.logger = logger;
-  service.solves.spare_solves = [door = std::move(door)] { return door->end_greediest(much_received); };
+  service.solves.spare_solves = [door] { return door->end_greediest(much_received); };
+  service.flooding = [door, logger](const std::string& peer) {
+    if (door->end(peer)) logger->warn("closed the connection of {}: it began too many calls", peer);
+  };
   service.solves.keeping.interval = seconds(options.checkpoint_interval_s);
   service.quota = options.quota;
   service.memory = alvor::MemoryGuard(options.memory_limit);

@@ -48,7 +48,7 @@ std::uint64_t limit_of_group() {
 
 std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-/// Trims at most once a second: it takes a tenth of a second for a heap of gigabytes.
+/// Trims at most twice a second: it takes a tenth of a second for a heap of gigabytes.
 class HeapTrimmer {
  public:
   void ask() {
@@ -102,8 +102,8 @@ struct MemoryGuard::Relief {
             }};
   }
   void give_back() {
-    std::scoped_lock hold(lock);
-    if (Clock::now() < last + pause) return;
+    const std::unique_lock hold(lock, std::try_to_lock);  // somebody else is at it
+    if (!hold || Clock::now() < last + pause) return;
     for (const auto& [number, way] : ways) way();
     malloc_trim(0);  // a limit counts what the allocator keeps for later
     last = Clock::now();

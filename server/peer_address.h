@@ -14,6 +14,10 @@ std::string network_of(const sockaddr& peer);
 /// Whether the address is a loopback address.
 bool is_this_machine(const sockaddr& peer);
 
+/// Returns the peer as gRPC's ServerContext::peer() names it: "ipv4:127.0.0.1:50051", "ipv6:%5B::1%5D:50051". Empty for other
+/// families than IPv4 and IPv6.
+std::string grpc_name_of(const sockaddr& peer);
+
 /// Returns 0 for other families than IPv4 and IPv6.
 int port_of(const sockaddr& peer);
 

@@ -98,10 +98,11 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
       return finish({grpc::CANCELLED, "the upload was broken off"});
     }
     message_.Clear();
-    pools_.building.post(turn_of(caller_.tenant, context_), stop_, [this] {
-      const grpc::Status status = attempt(logger_, "CreateScene", [this] { store(); });
-      finish(status);
+    const grpc::Status status = attempt(logger_, "CreateScene", [this] {
+      pools_.building.post(turn_of(caller_.tenant, context_), stop_,
+                           [this] { finish(attempt(logger_, "CreateScene", [this] { store(); })); });
     });
+    if (!status.ok()) finish(status);
   }
 
   void OnCancel() override { stop_->stop({grpc::CANCELLED, "the client has gone"}); }
@@ -143,15 +144,23 @@ bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.nex
 template <class Message, class Slicer, class Part>
 class SendCall final : public grpc::ServerWriteReactor<Message> {
  public:
-  /// `load` returns the content, by a thread of `pool`.
+  /// `load` returns the content, by a thread of the pool for building. A reader who takes nothing for as long as `patience` is
+  /// given up: the content takes memory.
   template <class Load>
-  SendCall(WorkPool& pool, const std::string& turn, spdlog::logger& logger, const char* call, Part part, Load load) {
-    pool.post(turn, stop_, [this, &logger, call, part, load] {
-      const grpc::Status status = attempt(logger, call, [&] { content_ = load(*stop_); });
-      if (!status.ok()) return this->Finish(status);
-      slicer_.emplace((*content_).*part);
-      send_next();
+  SendCall(grpc::CallbackServerContext& context, CallPools& pools, std::chrono::steady_clock::duration patience,
+           const std::string& turn, spdlog::logger& logger, const char* call, Part part, Load load)
+      : idle_(std::make_shared<IdleWatch>(pools.timers, patience, [&context] { context.TryCancel(); })) {
+    const grpc::Status refusal = attempt(logger, call, [&] {
+      pools.building.post(turn, stop_, [this, &logger, call, part, load] {
+        const grpc::Status status = attempt(logger, call, [&] { content_ = load(*stop_); });
+        if (!status.ok()) return this->Finish(status);
+        slicer_.emplace((*content_).*part);
+        idle_->note_message();
+        idle_->wait();
+        send_next();
+      });
     });
+    if (!refusal.ok()) this->Finish(refusal);
   }
 
  private:
@@ -160,15 +169,19 @@ class SendCall final : public grpc::ServerWriteReactor<Message> {
     else this->Finish(grpc::Status::OK);
   }
   void OnWriteDone(bool ok) override {
+    idle_->note_message();
     if (ok) send_next();
     else this->Finish({grpc::CANCELLED, "the reader has gone"});
   }
   void OnCancel() override { stop_->stop({grpc::CANCELLED, "the reader has gone"}); }
   void OnDone() override {
+    idle_->end();
+    const bool held_content = content_ != nullptr;
     delete this;
-    trim_heap_soon();
+    if (held_content) trim_heap_soon();
   }
 
+  const std::shared_ptr<IdleWatch> idle_;
   const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
   std::shared_ptr<const SceneContent> content_;
   std::optional<Slicer> slicer_;
@@ -219,8 +232,13 @@ grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const ch
   std::string tenant;
   const grpc::Status refusal = attempt(logger_, call, [&] { tenant = tenants_.of(context); });
   if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(refusal);
-  const auto load = [this, scene, tenant](const CallStop& stop) { return scenes_.find(scene, tenant)->content(stop); };
-  return new SendCall<Message, Slicer, Part>(pools_.building, turn_of(tenant, context), logger_, call, part, load);
+  const auto load = [this, scene, tenant](const CallStop& stop) {
+    const auto stored = scenes_.find(scene, tenant);
+    limits_.memory.admit("scene", 2 * stored->facts.content_bytes());
+    return stored->content(stop);
+  };
+  return new SendCall<Message, Slicer, Part>(context, pools_, limits_.patience, turn_of(tenant, context), logger_, call, part,
+                                             load);
 }
 
 grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context* context, const v1::ReadSceneRequest* request) {

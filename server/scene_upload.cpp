@@ -18,7 +18,7 @@ void SceneUpload::add(const v1::CreateSceneRequest& message) {
   constexpr std::uint64_t bytes_of_material = 100;  // in memory; on the wire an empty one is two
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size());
   check_limit(bytes_, limits_.bytes, "bytes");
-  limits_.memory.admit("scene", message.ByteSizeLong());
+  limits_.memory.refuse_without_room("scene", message.ByteSizeLong());
   if (message.has_scene() == begun_)
     throw invalid_argument(begun_ ? "scene: only the first message may set it" : "scene: the first message must set it");
   if (!begun_) {

@@ -34,7 +34,8 @@ UploadLimits upload_limits(const ServiceOptions& service) {
 // In the order of use: each may refer to those above it.
 struct Service::Parts {
   explicit Parts(const ServiceOptions& options)
-      : watches(random_id('e'), options.quota.watchers),
+      : calls(options.flooding),
+        watches(random_id('e'), options.quota.watchers),
         solve_store_options(solve_options(options, watches.epoch())),
         logger(solve_store_options.logger),
         scenes(options.archive, options.quota, options.memory),
@@ -76,8 +77,7 @@ void Service::register_with(grpc::ServerBuilder& builder) {
 std::shared_ptr<prometheus::Collectable> Service::metrics() const { return parts_->metrics; }
 
 void Service::shut_down() {
-  parts_->pools.building.stop();
-  parts_->pools.keeping.stop();
+  for (WorkPool* pool : {&parts_->pools.building, &parts_->pools.keeping, &parts_->pools.watching}) pool->stop();
   parts_->watches.stop_all();
   parts_->solves.shut_down();
 }

@@ -7,6 +7,7 @@
 #include <grpcpp/server_builder.h>
 #include <prometheus/collectable.h>
 
+#include <functional>
 #include <memory>
 
 namespace alvor {
@@ -19,6 +20,8 @@ struct ServiceOptions {
   std::shared_ptr<const BearerTokens> tokens;
   std::string identity_header;  ///< see ListenOptions
   MemoryGuard memory;
+  /// Is told of connections with too many calls under way, see CallCounts. From any thread.
+  std::function<void(const std::string& peer)> flooding = [](const std::string&) {};
   SolveStoreOptions solves;  ///< its logger is that of the whole service
 };
 

@@ -75,14 +75,17 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context* co
   });
   if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<grpc::ByteBuffer>>(refusal);
   auto* call = new WatchCall(*context, watches_, logger_);  // deletes itself
-  pools_.building.post(turn_of(tenant, *context), call->stop(), [this, call, tenant, watch] {
+  const auto start = [this, call, tenant, watch] {
     const auto stop = call->stop();  // once it was started, the call may end at any time
     const grpc::Status status = attempt(logger_, "WatchSolve", [&] {
       stop->refuse_stopped();
       call->start(solves_.find(watch.name(), tenant), watch);
     });
     if (!status.ok()) call->Finish(status);
-  });
+  };
+  const grpc::Status full =
+      attempt(logger_, "WatchSolve", [&] { pools_.watching.post(turn_of(tenant, *context), call->stop(), start); });
+  if (!full.ok()) call->Finish(full);
   return call;
 }
 

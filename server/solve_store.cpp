@@ -182,6 +182,7 @@ SolveStore::Entry* SolveStore::next_waiting() {
 }
 
 void SolveStore::watch_memory() {
+  options_.memory.make_room(0);
   if (options_.memory.is_short()) relieve_memory();
   watching_memory_->post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
 }
@@ -189,8 +190,7 @@ void SolveStore::watch_memory() {
 /// Of the tenant whose solves take most, the solve that came last must end with what it has; one after the other until there is
 /// room. Before that goes what nobody needs, and what else can.
 void SolveStore::relieve_memory() {
-  options_.memory.make_room(0);
-  if (!options_.memory.is_short() || options_.spare_solves()) return;
+  if (options_.spare_solves()) return;
   std::scoped_lock hold(lock_);
   const std::string tenant = hungriest_tenant();
   Entry* last = nullptr;

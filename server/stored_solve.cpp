@@ -120,9 +120,10 @@ std::shared_ptr<SolutionLog> StoredSolve::log() const {
 }
 
 void StoredSolve::drop_log() {
-  std::scoped_lock hold(log_lock_);
-  if (!is_log_kept_ || !ended() || log_.use_count() != 1) return;
-  log_.reset();
+  std::shared_ptr<SolutionLog> dropped;                      // freed after the lock is
+  const std::unique_lock hold(log_lock_, std::try_to_lock);  // else somebody is loading it
+  if (!hold || !is_log_kept_ || !ended() || log_.use_count() != 1) return;
+  dropped = std::move(log_);
   trim_heap_soon();
 }
 

@@ -51,13 +51,13 @@ WatchCall::WatchCall(grpc::CallbackServerContext& context, Watches& watches, spd
 
 void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request) {
   WatchPlan plan = plan_of(request);
+  solve_ = solve;
   log_ = solve->log();  // loaded here, where it may fail
   if (solve->knows(request.epoch(), request.base_revision())) plan.start.base = request.base_revision();
   else if (request.base_revision() > 0) reset_field_ = field([](auto& message) { message.set_reset(true); });
   const auto watch = std::make_shared<Watch>(watches_.frames_of(solve), plan, *this);
   watch->ask_for_turn();  // nobody else gets it a turn before begin(): then it may end, and this be gone
   watches_.add(id_, watch, solve->creator.tenant);
-  solve_ = solve;
   listener_ = log_->listen([&watches = watches_, watch] { watches.ask_for_turn(watch); });
   set_watch(watch);
   logger_.info("watcher {} of {} joined at revision {}", id_, solve->name, plan.start.base);
@@ -66,7 +66,7 @@ void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::Watch
 
 void WatchCall::set_watch(const std::shared_ptr<Watch>& watch) {
   std::scoped_lock hold(lock_);
-  if (stop_->token().stop_requested()) watch->stop({grpc::CANCELLED, "the watcher has gone"});
+  if (const grpc::Status why = stop_->reason(); !why.ok()) watch->stop(why);
   watch_ = watch;
 }
 
@@ -101,10 +101,9 @@ void WatchCall::OnDone() {
     watches_.remove(id_);
     log_->forget(listener_);
     logger_.info("watcher {} of {} left after {} frames", id_, solve_->name, watch_->frames_sent());
-    watch_.reset();
-    log_.reset();
-    watches_.release(std::move(solve_));
   }
+  watch_.reset();
+  if (std::exchange(log_, nullptr)) watches_.release(std::move(solve_));
   delete this;
 }
 

@@ -20,8 +20,12 @@ void CallStop::stop(const grpc::Status& why) {
 }
 
 void CallStop::refuse_stopped() const {
+  if (const grpc::Status why = reason(); !why.ok()) throw StatusError(why.error_code(), why.error_message());
+}
+
+grpc::Status CallStop::reason() const {
   std::scoped_lock hold(lock_);
-  if (!why_.ok()) throw StatusError(why_.error_code(), why_.error_message());
+  return why_;
 }
 
 WorkPool::WorkPool(const WorkLimits& limits) : limits_(limits) {
@@ -41,8 +45,12 @@ WorkPool::~WorkPool() {
 void WorkPool::post(const std::string& caller, std::shared_ptr<CallStop> stop, std::function<void()> task) {
   {
     std::scoped_lock hold(lock_);
+    Queue& queue = queues_[caller];
+    if (queue.waiting.size() >= limits_.waiting)
+      throw StatusError(grpc::RESOURCE_EXHAUSTED,
+                        "calls: " + std::to_string(limits_.waiting) + " wait already, as many as are allowed");
     if (is_stopped_) stop->stop(stopping);
-    queues_[caller].waiting.push_back({std::move(stop), std::move(task), {}});
+    queue.waiting.push_back({std::move(stop), std::move(task), {}});
   }
   changed_.notify_one();
 }

@@ -27,6 +27,8 @@ class CallStop {
   std::stop_token token() const { return source_.get_token(); }
   /// Throws StatusError with the reason, if there is one.
   void refuse_stopped() const;
+  /// OK where it was not stopped.
+  grpc::Status reason() const;
 
  private:
   std::stop_source source_;
@@ -35,6 +37,7 @@ class CallStop {
 };
 
 struct WorkLimits {
+  std::size_t waiting = 1000;  ///< tasks of one caller
   int threads = 4;
   int of_one = 2;                                                   ///< threads that the work of one caller takes at most
   std::chrono::steady_clock::duration time{std::chrono::hours(1)};  ///< of one task; then it is RESOURCE_EXHAUSTED
@@ -50,7 +53,7 @@ class WorkPool {
   WorkPool(const WorkPool&) = delete;
   WorkPool& operator=(const WorkPool&) = delete;
 
-  /// `caller` is a name that other callers do not have.
+  /// `caller` is a name that other callers do not have. Throws StatusError where too many of its tasks wait: RESOURCE_EXHAUSTED.
   void post(const std::string& caller, std::shared_ptr<CallStop> stop, std::function<void()> task);
   /// Stops all tasks, those to come too: UNAVAILABLE.
   void stop();

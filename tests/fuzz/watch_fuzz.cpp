@@ -54,7 +54,7 @@ void run(fuzz::Input input) {
   for (int step = 0; step < 200 && !input.empty(); ++step) {
     switch (input.byte() % 9) {
       case 0:
-        if (!solve->ended()) solve->log().publish(leaves.next(), {});
+        if (!solve->ended()) solve->log()->publish(leaves.next(), {});
         break;
       case 1:
       case 2: watch.take_turn(now); break;
@@ -83,8 +83,8 @@ void run(fuzz::Input input) {
     }
     expect(client.frames - acknowledged <= Watch::window + 1);  // a frame that says that the server stops needs no window
   }
-  if (client.mirror.whole() && client.mirror.revision() == solve->log().head() && client.frames > 0)
-    expect(client.mirror.leaves() == solve->log().leaves(plan.detail));
+  if (client.mirror.whole() && client.mirror.revision() == solve->log()->head() && client.frames > 0)
+    expect(client.mirror.leaves() == solve->log()->leaves(plan.detail));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "server/front_door.h"
 
+#include "server/call_counts.h"
 #include "server/health.h"
+#include "server/peer_address.h"
 #include "server/self_probe.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/refusal.h"
@@ -132,6 +134,44 @@ TEST(FrontDoor, EndsTheConnectionThatSendsMost) {
   while (!open.door.end_greediest(1000)) std::this_thread::yield();
   EXPECT_TRUE(is_ended(loud));
   EXPECT_EQ(send(quiet.get(), "x", 1, MSG_NOSIGNAL), 1);
+}
+
+TEST(FrontDoor, EndsTheConnectionOfAPeerByGrpcsName) {
+  OpenDoor open({});
+  const Descriptor flooding = talkative(open.door.port()), other = talkative(open.door.port());
+  open.wait_for(2);
+  sockaddr_in own{};
+  socklen_t size = sizeof own;
+  ASSERT_EQ(getsockname(flooding.get(), reinterpret_cast<sockaddr*>(&own), &size), 0);
+  EXPECT_FALSE(open.door.end("ipv4:127.0.0.1:1"));
+  EXPECT_TRUE(open.door.end("ipv4:127.0.0.1:" + std::to_string(ntohs(own.sin_port))));
+  EXPECT_TRUE(is_ended(flooding));
+  EXPECT_EQ(send(other.get(), "x", 1, MSG_NOSIGNAL), 1);
+}
+
+TEST(FrontDoor, PeersHaveGrpcsNames) {
+  sockaddr_in6 peer{};
+  peer.sin6_family = AF_INET6;
+  peer.sin6_port = htons(50051);
+  const auto name_of = [&](const char* address) {
+    inet_pton(AF_INET6, address, &peer.sin6_addr);
+    return grpc_name_of(reinterpret_cast<const sockaddr&>(peer));
+  };
+  EXPECT_EQ(name_of("::1"), "ipv6:%5B::1%5D:50051");
+  EXPECT_EQ(name_of("::ffff:10.0.0.7"), "ipv4:10.0.0.7:50051");
+}
+
+TEST(CallCounts, TellWhoHasTooManyCallsUnderWay) {
+  std::vector<std::string> told;
+  CallCounts counts([&](const std::string& peer) { told.push_back(peer); });
+  for (int n = 0; n < CallCounts::most_of_connection; ++n)
+    for (const char* peer : {"ipv4:10.0.0.7:1", "ipv4:10.0.0.7:2", "unix:", "unix:"}) counts.begin(peer);
+  EXPECT_TRUE(told.empty()) << "each has as many as it may, and a front end more";
+  counts.end("ipv4:10.0.0.7:1");
+  counts.begin("ipv4:10.0.0.7:1");
+  EXPECT_TRUE(told.empty());
+  counts.begin("ipv4:10.0.0.7:2");
+  EXPECT_EQ(told, std::vector<std::string>{"ipv4:10.0.0.7:2"});
 }
 
 TEST(FrontDoor, ASocketFileIsForItsGroupAndGoesWithTheServer) {

@@ -80,6 +80,21 @@ TEST(WorkPool, WhatTakesTooLongIsStopped) {
             "takes longer than 0 s, the limit of this server");
 }
 
+TEST(WorkPool, WhatWaitsOfOneCallerIsBounded) {
+  Gate gate;
+  std::latch others(1);
+  WorkPool pool({.waiting = 2, .threads = 1});
+  const auto stop = std::make_shared<CallStop>();
+  pool.post("ali", stop, [&] { gate.pass(); });
+  gate.begun.wait();
+  for (int n = 0; n < 2; ++n) pool.post("ali", stop, [] {});
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { pool.post("ali", stop, [] {}); }),
+            "calls: 2 wait already, as many as are allowed");
+  pool.post("bob", stop, [&] { others.count_down(); });
+  gate.open.count_down();
+  others.wait();
+}
+
 TEST(CallStop, TheFirstReasonCounts) {
   CallStop stop;
   EXPECT_EQ(refusal_of(grpc::CANCELLED, [&] { stop.refuse_stopped(); }), "");
