@@ -1,5 +1,7 @@
 #include "server/call_counts.h"
 
+#include <grpcpp/server_context.h>
+
 namespace alvor {
 
 namespace {
