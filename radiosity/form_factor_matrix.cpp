@@ -280,7 +280,8 @@ class FormFactorRows::Pairs {
     return {mean, error + unseen(look, share)};
   }
 
-  /// What the points may have missed. Where the faces cross each other's planes it may be all: few points lie in front.
+  /// Returns a bound on the part of the form factor that no sample point saw. Faces that cross each other's planes have few
+  /// points in front: then the bound is the whole form factor without blockers.
   static double unseen(const Look& look, double share) {
     if (heights(look.from, look.to.plane).low < 0 || heights(look.to, look.from.plane).low < 0)
       return polygon_form_factor(look.from.polygon, look.to.polygon, 1e-6).value;

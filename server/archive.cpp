@@ -235,7 +235,7 @@ void Archive::remove_pieces_of_solve(std::int64_t number) {
                 [&](SQLite::Statement& batch) { batch.bind(1, number); });
 }
 
-/// What a crash or a fault kept from being removed. Does not throw.
+/// Removes pieces whose scene or solve is gone: a crash or a fault can leave them behind. Does not throw.
 void Archive::remove_leftovers() {
   if (!has_leftovers_.exchange(false)) return;
   std::vector<std::string> contents;

@@ -87,7 +87,7 @@ class Archive {
   std::vector<std::byte> log(std::uint64_t solve);
   std::vector<std::byte> state(std::uint64_t solve);
 
-  /// Where a kind of row is, for its own use.
+  /// A kind of row ("scene" or "solve") and its table, index and columns in the database. For the archive's own functions.
   struct Rows {
     const char *what, *table, *index, *columns;
   };

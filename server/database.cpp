@@ -34,8 +34,8 @@ constexpr const char* schema = R"(
   CREATE INDEX checkpoint_pieces_of ON checkpoint_pieces(solve, kind, n);
 )";
 
-// What came later, and what older servers of the same version do not miss. `unkept` has the moment of a run, in microseconds,
-// since which the work of a running solve is in no checkpoint.
+// Tables that were added to version 2 of the schema; older servers of that version ignore them. `unkept` has the moment of a run,
+// in microseconds, since which the work of a running solve is in no checkpoint.
 constexpr const char* additions = R"(
   CREATE TABLE IF NOT EXISTS unkept(solve INTEGER PRIMARY KEY REFERENCES solves ON DELETE CASCADE, run TEXT NOT NULL,
     age INTEGER NOT NULL);
@@ -206,7 +206,7 @@ void Database::read(const Body& body) {
   attempt(body);
 }
 
-/// Where there was no room for it when the database was opened. Requires: the lock.
+/// Makes the tables of `additions` if opening the database could not, for want of room. Requires: the lock.
 void Database::complete_schema() {
   if (is_complete_) return;
   attempt([](SQLite::Database& connection) { connection.exec(additions); });

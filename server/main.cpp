@@ -34,7 +34,8 @@
 
 namespace {
 
-// Of one connection within seconds: where memory is short, it is a flood. Scenes are refused long before.
+// Bytes received over one connection within seconds. When memory is short, a connection with more is ended as a flood; new scenes
+// are refused long before memory is that short.
 constexpr std::uint64_t much_received = 8 << 20;
 constexpr std::uint64_t least_rpc_memory = 64 << 20;  // of gRPC's connections; a message may have as much
 
@@ -82,7 +83,7 @@ std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const alvor::Se
       builder.SetResourceQuota(grpc::ResourceQuota("alvord").Resize(std::max(options.memory_limit / 8, least_rpc_memory)));
     service.register_with(builder);
   };
-  // What cannot listen any more is of no use: whoever watches over it starts it again.
+  // A server that cannot accept connections ends, so that its supervisor starts it again.
   const auto died = [&logger] {
     logger.critical("no connection can be accepted any more");
     listener_died = true;
@@ -179,7 +180,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
   const std::size_t descriptors = alvor::raise_descriptor_limit();
   alvor::ConnectionLimits limits = options.connections;
   limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
-  alvor::credentials_of(options.listen);  // what is wrong with the options is said before anything is opened
+  alvor::check(options);
   const auto door = std::make_shared<alvor::FrontDoor>(options.listen.address, limits);
   std::unique_ptr<alvor::Archive> archive;
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
@@ -191,7 +192,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
   const auto web = serve_web(options, descriptors, rpc->server(), *logger);
   tell_health(true, *rpc, health.get());
   const Heartbeat heartbeat(archive.get());
-  auto self_probe = std::make_unique<alvor::SelfProbe>(*door, !options.listen.certificate.empty(), [&](bool is_answered) {
+  alvor::SelfProbe self_probe(*door, !options.listen.certificate.empty(), [&](bool is_answered) {
     logger->log(is_answered ? spdlog::level::info : spdlog::level::err, "new connections are {}",
                 is_answered ? "served again" : "not served");
     tell_health(is_answered, *rpc, health.get());
@@ -199,7 +200,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
   logger->info("{} descriptors; at most {} connections, {} of one address", descriptors, limits.in_all, limits.by_address);
   logger->info("listening on {}", rpc->address());
   logger->info("stopping: {}", wait_for_stop(signals));
-  self_probe.reset();
+  self_probe.stop();
   stop(service, *rpc, health.get());
   logger->info("stopped");
   return listener_died ? 1 : 0;

@@ -34,7 +34,7 @@ class MemoryGuard {
 
   /// As make_room(), then as refuse_without_room().
   void admit(const std::string& what, std::uint64_t bytes) const;
-  /// Where there is no room for `bytes`, gives back what nobody needs. Takes locks of those who do.
+  /// Calls the ways of relief if `bytes` more would not fit. The caller must not hold a lock that one of them takes.
   void make_room(std::uint64_t bytes) const;
   /// RESOURCE_EXHAUSTED, saying that `what` needs it, where more than three quarters would be in use with `bytes` more.
   void refuse_without_room(const std::string& what, std::uint64_t bytes) const;

@@ -46,12 +46,14 @@ SelfProbe::SelfProbe(FrontDoor& door, bool with_tls, std::function<void(bool)> t
     : tell_(std::move(tell)), thread_([this, &door, with_tls] { run(door, with_tls); }) {}
 
 SelfProbe::~SelfProbe() {
-  {
-    std::scoped_lock hold(lock_);
-    is_stopped_ = true;
-  }
-  stopped_.notify_one();
+  stop();
   thread_.join();
+}
+
+void SelfProbe::stop() {
+  std::scoped_lock hold(lock_);
+  is_stopped_ = true;
+  stopped_.notify_one();
 }
 
 void SelfProbe::run(FrontDoor& door, bool with_tls) {

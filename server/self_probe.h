@@ -18,8 +18,10 @@ class SelfProbe {
   /// `tell` is called from a thread when the answer differs from the one before; the first is taken to be yes. `door` must
   /// outlive this.
   SelfProbe(FrontDoor& door, bool with_tls, std::function<void(bool)> tell);
-  /// `tell` is not called any more.
+  /// As stop(); waits for a probe that is under way.
   ~SelfProbe();
+  /// When it returns, `tell` is not called any more. Does not wait.
+  void stop();
 
  private:
   void run(FrontDoor& door, bool with_tls);

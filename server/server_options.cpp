@@ -31,6 +31,12 @@ void declare_variables(CLI::App& app) {
 
 }  // namespace
 
+void check(const ServerOptions& options) {
+  credentials_of(options.listen);
+  if (!options.listen.identity_header.empty() && !is_unix(options.listen.address) && !is_unix(options.web))
+    throw std::invalid_argument("--identity-header is believed on Unix sockets alone: give --listen or --web unix:PATH");
+}
+
 void declare(CLI::App& app, ServerOptions& options) {
   app.set_version_flag("--version", "alvord " ALVOR_VERSION);
   ListenOptions& listen = options.listen;

@@ -33,6 +33,9 @@ struct ServerOptions {
   std::string log_level = "info";
 };
 
+/// Refuses options that do not go together or name files that cannot be read. Opens nothing. Throws std::invalid_argument.
+void check(const ServerOptions& options);
+
 /// Makes `app` set `options`. Each option has a variable: --max-solves is ALVORD_MAX_SOLVES.
 void declare(CLI::App& app, ServerOptions& options);
 

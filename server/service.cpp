@@ -18,6 +18,7 @@ SolveStoreOptions solve_options(const ServiceOptions& service, const std::string
   SolveStoreOptions options = service.solves;
   options.keeping.archive = service.archive;
   options.keeping.epoch = epoch;
+  options.keeping.memory = service.memory;
   options.quota = service.quota;
   options.memory = service.memory;
   return options;

@@ -59,45 +59,48 @@ SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : op
     watching_memory_ = std::make_unique<TaskQueue>();
     watching_memory_->post([this] { watch_memory(); });
   }
-  if (!options_.keeping.archive) return;
+  if (options_.keeping.archive) restore(*options_.keeping.archive, scenes);
+}
+
+void SolveStore::restore(Archive& archive, const SceneStore& scenes) {
   std::scoped_lock hold(lock_);
-  for (Archive::SolveRow& row : options_.keeping.archive->solves()) {
-    const std::string name = row.facts.name(), tenant = row.tenant;
-    SceneUse scene;
+  for (Archive::SolveRow& row : archive.solves()) {
+    const std::uint64_t number = row.number;
     try {
-      scene = scenes.use(name.substr(0, name.find("/solves/")), tenant);
+      restore(std::move(row), scenes);
     } catch (const StatusError& fault) {
-      options_.logger->error("solve number {} is not served: {}", row.number, fault.what());
-      continue;
+      options_.logger->error("solve number {} is not served: {}", number, fault.what());
     }
-    SolveOptions how;
-    std::string refusal;
-    try {
-      how = options_of(row.facts.spec(), options_.limits);
-    } catch (const StatusError& fault) {
-      refusal = fault.what();  // the limits, or the machine, were larger when it was made
-    }
-    auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
-    if (!refusal.empty() && !solve->ended()) {
-      options_.logger->error("solve {} cannot go on: {}", name, refusal);
-      try {
-        solve->set_waiting_state(v1::Solve::CANCELLED);
-      } catch (const StatusError& fault) {
-        options_.logger->error("solve {} is not served: it cannot be kept: {}", name, fault.what());
-        continue;
-      }
-    }
-    if (!solve->ended())
-      options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
-    requests_.add(solve->creator, name);
-    Entry& entry = solves_[name];
-    entry.scene = std::move(scene);
-    entry.shall_pause = solve->state() == v1::Solve::PAUSED;
-    entry.solve = std::move(solve);
   }
-  next_number_ = options_.keeping.archive->last_solve() + 1;
-  for (const std::string& fault : options_.keeping.archive->take_faults()) options_.logger->error(fault);
+  next_number_ = archive.last_solve() + 1;
+  for (const std::string& fault : archive.take_faults()) options_.logger->error(fault);
   start_waiting();
+}
+
+/// Requires: the lock. A solve that must not go on any more is cancelled: the limits, or the machine, were larger when it was
+/// made.
+void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
+  const std::string name = row.facts.name();
+  SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), row.tenant);
+  SolveOptions how;
+  std::string refusal;
+  try {
+    how = options_of(row.facts.spec(), options_.limits);
+  } catch (const StatusError& fault) {
+    refusal = fault.what();
+  }
+  auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
+  if (!refusal.empty() && !solve->ended()) {
+    options_.logger->error("solve {} cannot go on: {}", name, refusal);
+    solve->set_waiting_state(v1::Solve::CANCELLED);
+  }
+  if (!solve->ended())
+    options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
+  requests_.add(solve->creator, name);
+  Entry& entry = solves_[name];
+  entry.scene = std::move(scene);
+  entry.shall_pause = solve->state() == v1::Solve::PAUSED;
+  entry.solve = std::move(solve);
 }
 
 SolveStore::~SolveStore() { shut_down(); }

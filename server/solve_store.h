@@ -79,6 +79,8 @@ class SolveStore {
   const Entry& entry(const std::string& name, const std::string& tenant) const {
     return const_cast<SolveStore&>(*this).entry(name, tenant);
   }
+  void restore(Archive& archive, const SceneStore& scenes);
+  void restore(Archive::SolveRow row, const SceneStore& scenes);
   std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec);
   void check_capacity(const std::string& tenant, const SolveOptions& next);
   void start_waiting();

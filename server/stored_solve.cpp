@@ -1,7 +1,6 @@
 #include "server/stored_solve.h"
 
 #include "proto/codec.h"
-#include "server/memory_guard.h"
 #include "server/pieces.h"
 #include "server/random_id.h"
 #include "server/status_error.h"
@@ -17,7 +16,8 @@ using google::protobuf::util::TimeUtil;
 
 namespace {
 
-constexpr int least_share = 20;  // of the time between checkpoints goes into them
+constexpr int least_share = 20;                    // of the time between checkpoints goes into them
+constexpr std::uint64_t bytes_a_logged_leaf = 80;  // while it is loaded: 32 that stay, and the pieces it is read from
 
 bool is_final(v1::Solve::State state) {
   return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
@@ -103,7 +103,22 @@ Archive::SolveRow StoredSolve::row() const {
   return row;
 }
 
+/// The guard may ask other solves to drop their logs, and this one: it must be called without log_lock_.
+void StoredSolve::admit_log() const {
+  {
+    std::scoped_lock hold(log_lock_);
+    if (log_) return;
+  }
+  std::uint64_t leaves = 0;
+  {
+    std::scoped_lock hold(lock_);
+    leaves = facts_.last_step().leaves();
+  }
+  keeping_.memory.admit("solution", bytes_a_logged_leaf * leaves);
+}
+
 std::shared_ptr<SolutionLog> StoredSolve::log() const {
+  admit_log();
   std::scoped_lock hold(log_lock_);
   if (log_) return log_;
   const auto bytes = keeping_.archive->log(number);
@@ -319,7 +334,10 @@ void StoredSolve::set_waiting_state(v1::Solve::State state) {
     facts_ = next.facts;
     if (is_final(state)) state_in_memory_.clear();
   }
-  if (is_final(state)) close_log();
+  if (!is_final(state)) return;
+  close_log();
+  std::scoped_lock hold(log_lock_);
+  is_log_kept_ = log_ && next.lineage.contains(keeping_.epoch) && next.lineage.at(keeping_.epoch) == log_->head();
 }
 
 v1::Solve::State StoredSolve::state() const {

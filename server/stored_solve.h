@@ -4,6 +4,7 @@
 #include "alvor/v1/solve_service.pb.h"
 #include "radiosity/solver.h"
 #include "server/archive.h"
+#include "server/memory_guard.h"
 #include "server/scene_store.h"
 
 #include <atomic>
@@ -28,6 +29,7 @@ struct KeepingCounts {
 struct Keeping {
   Archive* archive = nullptr;  ///< null: in memory, and only what a paused solve needs
   std::string epoch;           ///< of this run of the server
+  MemoryGuard memory = {};     ///< admits solutions that are loaded again
   std::shared_ptr<KeepingCounts> counts = std::make_shared<KeepingCounts>();
   std::chrono::steady_clock::duration interval =
       std::chrono::seconds(10);  ///< between checkpoints, if they take a twentieth of it or less
@@ -59,7 +61,8 @@ class StoredSolve {
   /// Makes it known to the archive. Throws StatusError.
   void keep();
 
-  /// Loaded at the first call where it was kept. Throws StatusError where it cannot be.
+  /// Loaded at the first call where it was kept. Throws StatusError: DATA_LOSS, UNAVAILABLE, or RESOURCE_EXHAUSTED when there is
+  /// no memory for it. Takes the locks of the ways of relief of the memory guard.
   std::shared_ptr<SolutionLog> log() const;
 
   /// Solves on the calling thread; an exception of the solver makes the solve FAILED. When it returns the solve has ended and the
@@ -88,6 +91,7 @@ class StoredSolve {
  private:
   using Clock = std::chrono::steady_clock;
   void show(const Plan& plan);
+  void admit_log() const;
   void close_log();
   void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);

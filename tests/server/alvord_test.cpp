@@ -133,5 +133,11 @@ TEST(AlvordProgram, PortInUseIsOneLineAndStatusOne) {
   EXPECT_EQ(second.exit_status(), 1);
 }
 
+TEST(AlvordProgram, IdentityHeaderWithoutAUnixSocketIsRefused) {
+  Alvord alvord({"--listen", "127.0.0.1:0", "--identity-header", "x-who"});
+  EXPECT_EQ(alvord.line(), "alvord: --identity-header is believed on Unix sockets alone: give --listen or --web unix:PATH\n");
+  EXPECT_EQ(alvord.exit_status(), 2);
+}
+
 }  // namespace
 }  // namespace alvor

@@ -197,41 +197,42 @@ TEST_F(SolveStoreTest, TenantsSeeAndCountTheirOwn) {
   EXPECT_EQ(solves.list("scenes/-", {}, "ada").items.size(), 1u);
 }
 
-TEST(SolveQuota, ThoseThatHaveEndedAreCountedToo) {
+class SolveQuotaTest : public testing::Test {
+ protected:
+  SolveStore solves_with(const Quota& quota) {
+    SolveStoreOptions options;
+    options.quota = quota;
+    options.solver = stage.solver();
+    return {options, scenes};
+  }
+  /// Says how creating one more is refused; "" where it is not.
+  std::string refusal(SolveStore& solves, const v1::SolveSpec& spec = {}) {
+    return refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); });
+  }
   StagedSolver stage;
   SceneStore scenes;
   const std::string scene = scenes.add(squares(2), "")->facts.name();
-  SolveStoreOptions options;
-  options.quota.ended_solves = 1;
-  options.solver = stage.solver();
-  SolveStore solves(options, scenes);
+};
+
+TEST_F(SolveQuotaTest, ThoseThatHaveEndedAreCountedToo) {
+  SolveStore solves = solves_with({.ended_solves = 1});
   const auto solve = solves.create(scenes.use(scene), {});
   stage.finish();
   while (!solve->ended()) std::this_thread::yield();
-  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), {}); }),
-            "solves: 1 that have ended are kept, as many as are allowed: delete some");
+  EXPECT_EQ(refusal(solves), "solves: 1 that have ended are kept, as many as are allowed: delete some");
   solves.remove(solve->name);
-  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), {}); }), "");
+  EXPECT_EQ(refusal(solves), "");
 }
 
-TEST(SolveQuota, EndsWhatATenantMayStart) {
-  StagedSolver stage;
-  SceneStore scenes;
-  const std::string scene = scenes.add(squares(2), "")->facts.name();
-  SolveStoreOptions options;
-  options.quota.solves = 2;
-  options.quota.leaves = 1000;
-  options.solver = stage.solver();
-  SolveStore solves(options, scenes);
+TEST_F(SolveQuotaTest, EndsWhatATenantMayStart) {
+  SolveStore solves = solves_with({.solves = 2, .leaves = 1000});
   v1::SolveSpec spec;
   spec.set_max_elements(600);
-  solves.create(scenes.use(scene), spec);
-  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); }),
-            "solve.spec.max_elements: with the other solves that have not ended 1200, 1000 are allowed");
+  EXPECT_EQ(refusal(solves, spec), "");
+  EXPECT_EQ(refusal(solves, spec), "solve.spec.max_elements: with the other solves that have not ended 1200, 1000 are allowed");
   spec.set_max_elements(400);
-  solves.create(scenes.use(scene), spec);
-  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); }),
-            "solves: 2 have not ended, as many as are allowed");
+  EXPECT_EQ(refusal(solves, spec), "");
+  EXPECT_EQ(refusal(solves, spec), "solves: 2 have not ended, as many as are allowed");
 }
 
 TEST_F(SolveStoreTest, RunningSolveCannotBeDeletedAndItsSceneNeither) {
