@@ -1,9 +1,9 @@
 // form_factor_table form_factors.csv: every method against the exact value of every reference geometry, as the page
 // docs/form-factors.md.
 
-#include "radiosity/closed_forms.h"
-#include "radiosity/face_form_factor.h"
-#include "radiosity/form_factor.h"
+#include "radiosity/form_factors/closed_forms.h"
+#include "radiosity/form_factors/face_form_factor.h"
+#include "radiosity/form_factors/form_factor.h"
 #include "tests/truth/reference_form_factors.h"
 
 #include <chrono>

@@ -1,16 +1,16 @@
 // alvord: the Alvor server.
 
-#include "server/descriptor_limit.h"
-#include "server/health.h"
-#include "server/listening.h"
-#include "server/memory_guard.h"
-#include "server/metrics.h"
-#include "server/rpc_server.h"
-#include "server/self_probe.h"
+#include "server/access/listening.h"
+#include "server/base/descriptor_limit.h"
+#include "server/base/memory_guard.h"
+#include "server/base/task_queue.h"
+#include "server/rpc/health.h"
+#include "server/rpc/metrics.h"
+#include "server/rpc/rpc_server.h"
+#include "server/rpc/self_probe.h"
+#include "server/rpc/service.h"
 #include "server/server_options.h"
-#include "server/service.h"
-#include "server/task_queue.h"
-#include "server/web_front.h"
+#include "server/web/web_front.h"
 
 #include <google/protobuf/stubs/logging.h>
 #include <grpc/support/log.h>

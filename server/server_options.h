@@ -1,11 +1,11 @@
 #pragma once
 // What alvord can be told on its command line and by variables.
 
-#include "server/caller.h"
-#include "server/front_door.h"
-#include "server/listening.h"
-#include "server/memory_guard.h"
-#include "server/solve_store.h"
+#include "server/access/front_door.h"
+#include "server/access/listening.h"
+#include "server/base/caller.h"
+#include "server/base/memory_guard.h"
+#include "server/solves/solve_store.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include "bench/error_vs_time/fixed_mesh_shooting.h"
 #include "bench/error_vs_time/stopwatch.h"
 #include "client/verify/irradiance_estimate.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 
 namespace alvor::bench {
 

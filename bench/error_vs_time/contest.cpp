@@ -3,9 +3,9 @@
 #include "bench/error_vs_time/contenders.h"
 #include "bench/error_vs_time/figures.h"
 #include "bench/error_vs_time/stopwatch.h"
-#include "client/scene_file.h"
 #include "client/verify/irradiance_estimate.h"
 #include "client/verify/surface_points.h"
+#include "import/scene_file.h"
 
 #include <utility>
 

@@ -2,7 +2,7 @@
 
 #include "bench/error_vs_time/comparisons.h"
 #include "bench/error_vs_time/figures.h"
-#include "client/whole_file.h"
+#include "import/whole_file.h"
 
 namespace alvor::bench {
 

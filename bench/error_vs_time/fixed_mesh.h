@@ -2,7 +2,7 @@
 // Elements and the patches that they belong to.
 
 #include "meshing/base_mesh.h"
-#include "radiosity/visibility.h"
+#include "radiosity/rays/visibility.h"
 #include "solution/patch_id.h"
 
 #include <array>

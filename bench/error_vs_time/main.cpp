@@ -2,7 +2,7 @@
 
 #include "bench/error_vs_time/curves.h"
 #include "bench/error_vs_time/page.h"
-#include "client/whole_file.h"
+#include "import/whole_file.h"
 
 #include <exception>
 #include <iostream>

@@ -1,8 +1,8 @@
 #include "bench/error_vs_time/truth.h"
 
 #include "bench/error_vs_time/truth_file.h"
-#include "client/probe.h"
 #include "client/verify/irradiance_estimate.h"
+#include "client/verify/probe.h"
 #include "client/verify/surface_points.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "bench/error_vs_time/truth_file.h"
 
-#include "client/whole_file.h"
+#include "import/whole_file.h"
 #include "solution/patch_id.h"
 
 #include <bit>

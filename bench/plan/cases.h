@@ -2,7 +2,7 @@
 // Scenes that can do without a feature.
 
 #include "meshing/scene.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 
 #include <string>
 #include <vector>

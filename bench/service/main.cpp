@@ -5,7 +5,7 @@
 #include "bench/service/publishing.h"
 #include "bench/service/serving.h"
 #include "bench/service/watching.h"
-#include "client/client.h"
+#include "client/rpc/client.h"
 #include "proto/codec.h"
 #include "tests/server/child_process.h"
 #include "tests/server/sample_scenes.h"

@@ -1,6 +1,6 @@
 #include "bench/service/serving.h"
 
-#include "server/service.h"
+#include "server/rpc/service.h"
 
 #include <grpcpp/grpcpp.h>
 

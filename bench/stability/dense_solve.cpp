@@ -1,6 +1,6 @@
 #include "bench/stability/dense_solve.h"
 
-#include "radiosity/dense_lu.h"
+#include "radiosity/exchange/dense_lu.h"
 
 namespace alvor::bench {
 

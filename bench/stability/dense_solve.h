@@ -1,7 +1,7 @@
 #pragma once
 // The system of transport rows as a dense matrix: the slow and sure way.
 
-#include "radiosity/shooting.h"
+#include "radiosity/exchange/shooting.h"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 #include "bench/error_vs_time/stopwatch.h"
 #include "bench/stability/dense_solve.h"
 #include "bench/stability/solved_scene.h"
-#include "radiosity/solve_state.h"
+#include "radiosity/solve/solve_state.h"
 
 #include <tbb/task_arena.h>
 

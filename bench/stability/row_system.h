@@ -2,8 +2,8 @@
 // The rows of a scene on its first mesh, solved by sweeps and by a dense matrix.
 
 #include "bench/stability/case.h"
-#include "radiosity/shooting.h"
-#include "radiosity/solver.h"
+#include "radiosity/exchange/shooting.h"
+#include "radiosity/solve/solver.h"
 
 #include <memory>
 

@@ -2,7 +2,7 @@
 // A scene and what solving it published.
 
 #include "bench/stability/case.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 
 #include <functional>
 #include <optional>

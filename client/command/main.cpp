@@ -1,11 +1,11 @@
 // The command `alvor`.
 
-#include "client/command/commands.h"
-#include "client/command/failure.h"
-#include "client/command/notes.h"
-#include "client/command/usage_message.h"
-#include "client/scene_file.h"
-#include "client/solution_file.h"
+#include "client/command/commands/commands.h"
+#include "client/command/options/usage_message.h"
+#include "client/command/output/failure.h"
+#include "client/command/output/notes.h"
+#include "client/export/solution_file.h"
+#include "import/scene_file.h"
 
 #include <google/protobuf/stubs/common.h>
 

@@ -1,9 +1,9 @@
 #include "client/verify/error_picture.h"
 
-#include "client/legend.h"
-#include "client/render.h"
-#include "client/round_number.h"
-#include "client/stage.h"
+#include "client/picture/legend.h"
+#include "client/picture/render.h"
+#include "client/picture/round_number.h"
+#include "client/picture/stage.h"
 #include "client/verify/error_field.h"
 
 #include <algorithm>

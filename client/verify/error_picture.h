@@ -1,8 +1,8 @@
 #pragma once
 // Where a solution is too dark, and where too bright.
 
-#include "client/camera.h"
-#include "client/png_file.h"
+#include "client/picture/camera.h"
+#include "client/picture/png_file.h"
 #include "client/verify/verification.h"
 
 namespace alvor {

@@ -1,7 +1,7 @@
 #include "client/verify/path_tracer.h"
 
 #include "client/verify/cosine_direction.h"
-#include "radiosity/visibility.h"
+#include "radiosity/rays/visibility.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "client/verify/verification.h"
 
-#include "client/probe.h"
+#include "client/verify/probe.h"
 #include "client/verify/surface_points.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 // What every scene of ours promises.
 
-#include "client/scene_file.h"
+#include "import/scene_file.h"
 #include "tests/bench/light_walk.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include "bench/error_vs_time/targets.h"
 #include "bench/error_vs_time/truth.h"
 #include "bench/error_vs_time/truth_file.h"
-#include "client/scene_file.h"
+#include "import/scene_file.h"
 
 #include <gtest/gtest.h>
 

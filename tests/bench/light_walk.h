@@ -2,7 +2,7 @@
 // Light on its way from the lamps of a scene, one bounce after the other.
 
 #include "meshing/base_mesh.h"
-#include "radiosity/visibility.h"
+#include "radiosity/rays/visibility.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
 // The command `alvor` as its users meet it: exit statuses, streams and files. Runs the built binary.
 
-#include "client/command/snapshots.h"
+#include "client/command/output/snapshots.h"
 #include "tests/command_line.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // False colour: the map, the scale, the legend, and the pictures they make.
 
-#include "client/colour_map.h"
-#include "client/legend.h"
-#include "client/round_number.h"
-#include "client/tone_map.h"
+#include "client/picture/colour_map.h"
+#include "client/picture/legend.h"
+#include "client/picture/round_number.h"
+#include "client/picture/tone_map.h"
 #include "tests/client/pictures.h"
 
 #include <gtest/gtest.h>

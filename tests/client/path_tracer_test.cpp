@@ -1,8 +1,8 @@
 // Path tracing against closed forms and against Monte Carlo of others.
 
-#include "client/scene_file.h"
 #include "client/verify/irradiance_estimate.h"
 #include "client/verify/surface_points.h"
+#include "import/scene_file.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #pragma once
 // What tests of pictures share: a wall, a camera that faces it, and pixels.
 
-#include "client/png_file.h"
-#include "client/render.h"
+#include "client/picture/png_file.h"
+#include "client/picture/render.h"
 #include "tests/client/hand_made_mesh.h"
 
 #include <array>

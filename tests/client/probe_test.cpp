@@ -1,7 +1,7 @@
 // Points in, irradiance and radiosity out.
 
-#include "client/probe.h"
-#include "client/whole_file.h"
+#include "client/verify/probe.h"
+#include "import/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
 
 #include <gtest/gtest.h>

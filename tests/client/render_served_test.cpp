@@ -1,7 +1,7 @@
 // alvor render of a solve on a server. Runs the built binary against a service in this process whose solver waits to be told.
 
-#include "client/client.h"
-#include "server/service.h"
+#include "client/rpc/client.h"
+#include "server/rpc/service.h"
 #include "tests/command_line.h"
 #include "tests/server/growing_leaves.h"
 #include "tests/server/sample_scenes.h"

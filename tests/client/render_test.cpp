@@ -1,7 +1,7 @@
 // Pictures: what a pixel shows, where the camera stands, how bright it all is.
 
-#include "client/render.h"
-#include "client/tone_map.h"
+#include "client/picture/render.h"
+#include "client/picture/tone_map.h"
 #include "tests/client/pictures.h"
 
 #include <gtest/gtest.h>

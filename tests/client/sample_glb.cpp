@@ -1,6 +1,6 @@
 // sample_glb FILE: writes a solution for the validator, far from the origin.
 
-#include "client/solution_file.h"
+#include "client/export/solution_file.h"
 #include "tests/client/hand_made_mesh.h"
 
 int main(int count, char** arguments) {

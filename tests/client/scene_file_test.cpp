@@ -1,7 +1,7 @@
-#include "client/scene_file.h"
+#include "import/scene_file.h"
 
-#include "client/child_import.h"
-#include "client/import_error.h"
+#include "import/child_import.h"
+#include "import/import_error.h"
 
 #include "meshing/base_mesh.h"
 #include "tests/client/faces.h"

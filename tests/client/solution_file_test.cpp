@@ -1,9 +1,9 @@
 // Solution files: what comes back, what is refused, and what is left behind.
 
-#include "client/solution_file.h"
-#include "client/glb_file.h"
-#include "client/ply_file.h"
-#include "client/whole_file.h"
+#include "client/export/solution_file.h"
+#include "client/export/glb_file.h"
+#include "client/export/ply_file.h"
+#include "import/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
 
 #include <gtest/gtest.h>

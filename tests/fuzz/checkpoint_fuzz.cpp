@@ -1,7 +1,7 @@
 // What a server reads back after a restart: any bytes for a log and for a solve's state.
 
-#include "radiosity/solver.h"
-#include "server/pieces.h"
+#include "radiosity/solve/solver.h"
+#include "server/archive/pieces.h"
 #include "tests/fuzz/input.h"
 #include "tests/scenes.h"
 

@@ -1,7 +1,8 @@
-// Scene and solution files that are read by our own importers: OBJ, MTL, glTF and GLB with their parts, GLB and PLY of a solution.
+// Scene and solution files that are read by our own importers: OBJ, MTL, glTF and GLB with their parts, GLB and PLY of a
+// solution.
 
-#include "client/scene_file.h"
-#include "client/solution_file.h"
+#include "client/export/solution_file.h"
+#include "import/scene_file.h"
 #include "tests/fuzz/input.h"
 
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // A scene on its way in: any messages, in any order.
 
-#include "server/scene_upload.h"
-#include "server/status_error.h"
+#include "server/base/status_error.h"
+#include "server/scenes/scene_upload.h"
 #include "tests/fuzz/allocation_limit.h"
 #include "tests/fuzz/input.h"
 

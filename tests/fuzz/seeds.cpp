@@ -2,8 +2,8 @@
 // files.
 
 #include "proto/codec.h"
-#include "radiosity/solver.h"
-#include "server/pieces.h"
+#include "radiosity/solve/solver.h"
+#include "server/archive/pieces.h"
 #include "tests/fuzz/input.h"
 #include "tests/scenes.h"
 

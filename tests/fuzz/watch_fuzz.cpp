@@ -1,8 +1,8 @@
 // A watch and whatever may happen to it, in any order. Aborts where it breaks what it promises.
 
 #include "proto/codec.h"
-#include "server/status_error.h"
-#include "server/watch.h"
+#include "server/base/status_error.h"
+#include "server/watch/watch.h"
 #include "solution/solution_mirror.h"
 #include "tests/fuzz/input.h"
 #include "tests/server/growing_leaves.h"

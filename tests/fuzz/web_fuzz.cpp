@@ -1,6 +1,6 @@
 // A browser's connection: any bytes, in any parts, with a server behind it that sends back what it is sent.
 
-#include "server/web_connection.h"
+#include "server/web/web_connection.h"
 #include "tests/fuzz/allocation_limit.h"
 #include "tests/fuzz/input.h"
 

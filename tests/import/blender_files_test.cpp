@@ -1,8 +1,8 @@
 // What Blender's exporters write, against what Blender says of the room: blender/README.md.
 
-#include "client/scene_file.h"
+#include "import/scene_file.h"
 #include "meshing/base_mesh.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

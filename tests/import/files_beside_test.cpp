@@ -1,6 +1,6 @@
 // glTF files in several parts: what is read, and what is refused.
 
-#include "client/scene_file.h"
+#include "import/scene_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

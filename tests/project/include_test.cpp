@@ -1,41 +1,58 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
 namespace fs = std::filesystem;
 
-// Who may include whom, and the few files that may do more; ARCHITECTURE.md says why.
+// The layers. What a folder may include besides itself, and the few files that may do more; docs/design/structure.md says why.
 const std::map<std::string, std::set<std::string>> allowed{
     {"solution", {}},
     {"meshing", {"solution"}},
     {"radiosity", {"meshing", "solution"}},
     {"proto", {"solution", "meshing"}},
-    {"server", {"radiosity", "meshing", "solution", "proto"}},
-    {"client", {"solution", "meshing", "proto"}},
+    {"import", {"meshing", "solution", "proto"}},
+    {"server", {"radiosity", "meshing", "solution", "proto", "import"}},
+    {"client", {"solution", "meshing", "proto", "import"}},
+};
+// The rooms of a folder from the lowest to the highest: a file includes files of its own room and of lower ones.
+const std::map<std::string, std::vector<std::string>> rooms{
+    {"radiosity", {"rays", "form_factors", "direct", "exchange", "estimate", "plan", "solve"}},
+    {"server", {"base", "archive", "scenes", "solves", "watch", "access", "rpc", "web"}},
+    {"client", {"picture", "export", "rpc", "verify", "command"}},
+    {"client/command", {"output", "options", "commands"}},
 };
 const std::set<std::pair<std::string, std::string>> exceptions{
-    {"client/in_process.cpp", "server"},
-    {"client/gather.cpp", "radiosity"},
-    {"client/gather.h", "radiosity"},
-    {"client/probe.cpp", "radiosity"},
-    {"client/stage.h", "radiosity"},
-    {"client/camera.cpp", "radiosity"},
+    {"client/rpc/in_process.cpp", "server"},
+    {"client/verify/gather.cpp", "radiosity"},
+    {"client/verify/gather.h", "radiosity"},
+    {"client/verify/probe.cpp", "radiosity"},
+    {"client/picture/stage.h", "radiosity"},
+    {"client/picture/camera.cpp", "radiosity"},
     {"client/verify/path_tracer.cpp", "radiosity"},
-    {"client/command/compare_command.cpp", "radiosity"},
-    {"client/command/explain_command.cpp", "radiosity"},
-    {"client/command/form_factor_command.cpp", "radiosity"},
-    {"client/command/form_factors_command.cpp", "radiosity"},
+    {"client/command/commands/compare_command.cpp", "radiosity"},
+    {"client/command/commands/explain_command.cpp", "radiosity"},
+    {"client/command/commands/form_factor_command.cpp", "radiosity"},
+    {"client/command/commands/form_factors_command.cpp", "radiosity"},
 };
 // Libraries that stay behind one folder or file.
 const std::map<std::string, std::string> kept_behind{
-    {"embree", "radiosity/visibility.cpp"}, {"OpenMesh/", "meshing/base_mesh.cpp"}, {"spdlog/", "server/"}};
+    {"embree", "radiosity/rays/visibility.cpp"},
+    {"OpenMesh/", "meshing/base_mesh.cpp"},
+    {"spdlog/", "server/"},
+    {"SQLiteCpp/", "server/archive/"},
+    {"sqlite3.h", "server/archive/"},
+    {"boost/", "server/web/"},
+    {"assimp/", "import/"},
+};
 
 struct Include {
   std::string file, target;
@@ -67,6 +84,31 @@ TEST(Includes, ArrowsPointDownTheLayers) {
     if (!allowed.contains(to) || to == from) continue;
     EXPECT_TRUE(allowed.at(from).contains(to) || exceptions.contains({file, to})) << file << " includes " << target;
   }
+}
+
+/// Returns how high the room of `path` in `folder` is; -1 where it is not in one.
+int height(const std::string& path, const std::string& folder) {
+  if (!path.starts_with(folder + "/")) return -1;
+  const std::string rest = path.substr(folder.size() + 1), room = first_folder(rest);
+  const auto& order = rooms.at(folder);
+  const auto found = std::ranges::find(order, room);
+  return rest == room || found == order.end() ? -1 : static_cast<int>(found - order.begin());
+}
+
+TEST(Includes, ArrowsBetweenRoomsPointDown) {
+  for (const auto& [file, target] : all_includes())
+    for (const auto& [folder, order] : rooms) {
+      const int from = height(file, folder), to = height(target, folder);
+      EXPECT_TRUE(from < 0 || to <= from) << file << " includes " << target;
+    }
+}
+
+TEST(Includes, EveryFileOfAFolderWithRoomsIsInOne) {
+  const std::set<std::string> programs{"server/main.cpp", "server/server_options.cpp", "server/server_options.h",
+                                       "client/command/main.cpp"};
+  for (const auto& [file, target] : all_includes())
+    for (const auto& [folder, order] : rooms)
+      EXPECT_TRUE(!file.starts_with(folder + "/") || height(file, folder) >= 0 || programs.contains(file)) << file;
 }
 
 TEST(Includes, LibrariesStayBehindTheirFolders) {

@@ -1,6 +1,6 @@
 // A solve that is interrupted and goes on later.
 
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "radiosity/coarse_grid.h"
+#include "radiosity/exchange/coarse_grid.h"
 
-#include "radiosity/gathering.h"
+#include "radiosity/exchange/gathering.h"
 #include "tests/radiosity/systems.h"
 
 #include <gtest/gtest.h>

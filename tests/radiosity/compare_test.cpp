@@ -1,4 +1,4 @@
-#include "radiosity/compare.h"
+#include "radiosity/solve/compare.h"
 
 #include "tests/scenes.h"
 

@@ -1,6 +1,6 @@
-#include "radiosity/direct_light.h"
+#include "radiosity/direct/direct_light.h"
 
-#include "radiosity/form_factor.h"
+#include "radiosity/form_factors/form_factor.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "radiosity/exchange.h"
+#include "radiosity/exchange/exchange.h"
 
-#include "radiosity/strategies.h"
+#include "radiosity/exchange/strategies.h"
 #include "tests/radiosity/systems.h"
 
 #include <gtest/gtest.h>

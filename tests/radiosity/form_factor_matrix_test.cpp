@@ -1,7 +1,7 @@
-#include "radiosity/form_factor_matrix.h"
+#include "radiosity/form_factors/form_factor_matrix.h"
 
-#include "radiosity/hemicube.h"
-#include "radiosity/visible_form_factor.h"
+#include "radiosity/form_factors/visible_form_factor.h"
+#include "radiosity/rays/hemicube.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

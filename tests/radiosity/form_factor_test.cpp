@@ -1,4 +1,4 @@
-#include "radiosity/form_factor.h"
+#include "radiosity/form_factors/form_factor.h"
 
 #include <gtest/gtest.h>
 

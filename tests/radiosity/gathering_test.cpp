@@ -1,4 +1,4 @@
-#include "radiosity/gathering.h"
+#include "radiosity/exchange/gathering.h"
 
 #include "tests/radiosity/systems.h"
 

@@ -1,7 +1,7 @@
 // What holds of every solution, on two scenes made by hand; tests/random looks for scenes in which it does not.
 
-#include "radiosity/solve_state.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/solver.h"
 #include "tests/scene_changes.h"
 #include "tests/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "radiosity/irradiance_field.h"
+#include "radiosity/exchange/irradiance_field.h"
 
 #include "tests/scenes.h"
 

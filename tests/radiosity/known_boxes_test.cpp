@@ -1,6 +1,6 @@
 // One unknown per face: the system of a box with exact form factors has six equations.
 
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "radiosity/light_tree.h"
+#include "radiosity/direct/light_tree.h"
 
-#include "radiosity/direct_light.h"
-#include "radiosity/form_factor.h"
+#include "radiosity/direct/direct_light.h"
+#include "radiosity/form_factors/form_factor.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

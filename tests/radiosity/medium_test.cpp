@@ -1,7 +1,7 @@
 // Light that fades on its way, against independent Monte Carlo and closed forms.
 
 #include "meshing/patch_place.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "radiosity/plan.h"
+#include "radiosity/plan/plan.h"
 
-#include "radiosity/point_tree.h"
-#include "radiosity/solver.h"
+#include "radiosity/plan/point_tree.h"
+#include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "radiosity/solve_state.h"
+#include "radiosity/solve/solve_state.h"
 
 #include "tests/scenes.h"
 

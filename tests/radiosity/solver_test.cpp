@@ -1,4 +1,4 @@
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 
 #include "meshing/patch_place.h"
 #include "tests/scenes.h"

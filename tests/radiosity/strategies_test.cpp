@@ -1,6 +1,6 @@
-#include "radiosity/strategies.h"
+#include "radiosity/exchange/strategies.h"
 
-#include "radiosity/solve_state.h"
+#include "radiosity/solve/solve_state.h"
 #include "tests/radiosity/systems.h"
 #include "tests/scenes.h"
 

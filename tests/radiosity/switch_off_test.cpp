@@ -1,6 +1,6 @@
 // A feature that the plan switches off is forced on: the answer stays, and takes more work.
 
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 #pragma once
 // Small linear systems of light that tests share.
 
-#include "radiosity/shooting.h"
-#include "radiosity/strategies.h"
+#include "radiosity/exchange/shooting.h"
+#include "radiosity/exchange/strategies.h"
 
 #include <gtest/gtest.h>
 

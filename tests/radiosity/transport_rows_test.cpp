@@ -1,14 +1,14 @@
-#include "radiosity/transport_rows.h"
+#include "radiosity/rays/transport_rows.h"
 
 #include "meshing/patch_forest.h"
-#include "radiosity/form_factor.h"
+#include "radiosity/form_factors/form_factor.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <numeric>
 #include <map>
+#include <numeric>
 
 namespace alvor {
 namespace {

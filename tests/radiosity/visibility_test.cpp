@@ -1,4 +1,4 @@
-#include "radiosity/visibility.h"
+#include "radiosity/rays/visibility.h"
 
 #include "tests/scenes.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "radiosity/sampling.h"
+#include "radiosity/rays/sampling.h"
 
 #include <cmath>
 #include <cstddef>

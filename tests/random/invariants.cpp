@@ -1,6 +1,6 @@
 #include "tests/random/invariants.h"
 
-#include "radiosity/solve_state.h"
+#include "radiosity/solve/solve_state.h"
 #include "tests/random/dice.h"
 #include "tests/random/text.h"
 #include "tests/scene_changes.h"

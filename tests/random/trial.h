@@ -2,7 +2,7 @@
 // A random scene and how to solve it.
 
 #include "meshing/scene.h"
-#include "radiosity/solver.h"
+#include "radiosity/solve/solver.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 // The alvord program, as an operator and a load balancer see it.
 
-#include "client/client.h"
+#include "client/rpc/client.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/sample_scenes.h"
 

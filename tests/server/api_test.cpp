@@ -1,4 +1,4 @@
-#include "client/client.h"
+#include "client/rpc/client.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "proto/codec.h"

@@ -1,6 +1,6 @@
 // What is served of a database of which parts are damaged.
 
-#include "server/solve_store.h"
+#include "server/solves/solve_store.h"
 #include "tests/server/kept_directory.h"
 #include "tests/server/refusal.h"
 

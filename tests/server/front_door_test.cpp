@@ -1,9 +1,9 @@
-#include "server/front_door.h"
+#include "server/access/front_door.h"
 
-#include "server/call_counts.h"
-#include "server/health.h"
-#include "server/peer_address.h"
-#include "server/self_probe.h"
+#include "server/access/peer_address.h"
+#include "server/rpc/call_counts.h"
+#include "server/rpc/health.h"
+#include "server/rpc/self_probe.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/refusal.h"
 

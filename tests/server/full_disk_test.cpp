@@ -1,7 +1,7 @@
 // A data directory on a disk that is full, or cannot be written.
 
-#include "client/client.h"
-#include "server/scene_store.h"
+#include "client/rpc/client.h"
+#include "server/scenes/scene_store.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/kept_directory.h"
 #include "tests/server/refusal.h"

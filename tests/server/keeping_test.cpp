@@ -1,11 +1,11 @@
 // What outlives a server that is killed, stopped, or never gets to write.
 
-#include "client/client.h"
+#include "client/rpc/client.h"
 #include "proto/codec.h"
-#include "radiosity/solver.h"
-#include "server/archive.h"
-#include "server/scene_store.h"
-#include "server/solve_store.h"
+#include "radiosity/solve/solver.h"
+#include "server/archive/archive.h"
+#include "server/scenes/scene_store.h"
+#include "server/solves/solve_store.h"
 #include "tests/scenes.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/refusal.h"

@@ -1,7 +1,7 @@
 #pragma once
 // A data directory for a test, and its database as others see it.
 
-#include "server/archive.h"
+#include "server/archive/archive.h"
 #include "tests/server/sample_scenes.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>

@@ -1,7 +1,7 @@
-#include "server/listening.h"
+#include "server/access/listening.h"
 
-#include "server/bearer_tokens.h"
-#include "server/sha256.h"
+#include "server/access/bearer_tokens.h"
+#include "server/base/sha256.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "server/memory_guard.h"
+#include "server/base/memory_guard.h"
 
-#include "server/solve_store.h"
+#include "server/solves/solve_store.h"
 #include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"
 

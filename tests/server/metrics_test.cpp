@@ -1,4 +1,4 @@
-#include "client/client.h"
+#include "client/rpc/client.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
 #include "tests/server/test_server.h"

@@ -1,7 +1,7 @@
 // What a client does about a server that is lost.
 
-#include "client/client.h"
-#include "server/health.h"
+#include "client/rpc/client.h"
+#include "server/rpc/health.h"
 
 #include <gtest/gtest.h>
 

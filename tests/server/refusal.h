@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/status_error.h"
+#include "server/base/status_error.h"
 
 #include <string>
 

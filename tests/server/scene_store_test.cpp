@@ -1,6 +1,6 @@
-#include "server/scene_store.h"
+#include "server/scenes/scene_store.h"
 
-#include "server/scene_upload.h"
+#include "server/scenes/scene_upload.h"
 #include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "server/solve_store.h"
+#include "server/solves/solve_store.h"
 
 #include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"

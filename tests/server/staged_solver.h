@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/stored_solve.h"
+#include "server/solves/stored_solve.h"
 
 #include <condition_variable>
 #include <mutex>

@@ -1,8 +1,8 @@
 // Calls of several tenants over one TLS connection: each sees its own, whatever the others do meanwhile.
 
-#include "server/listening.h"
-#include "server/service.h"
-#include "server/sha256.h"
+#include "server/access/listening.h"
+#include "server/base/sha256.h"
+#include "server/rpc/service.h"
 #include "tests/server/sample_scenes.h"
 
 #include "alvor/v1/scene_service.grpc.pb.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/service.h"
+#include "server/rpc/service.h"
 
 #include <grpcpp/grpcpp.h>
 

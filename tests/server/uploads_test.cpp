@@ -1,6 +1,6 @@
 // Which broken uploads are kept when there are too many.
 
-#include "server/uploads.h"
+#include "server/scenes/uploads.h"
 
 #include "tests/server/refusal.h"
 

@@ -1,4 +1,4 @@
-#include "server/watch.h"
+#include "server/watch/watch.h"
 
 #include "proto/codec.h"
 #include "solution/solution_mirror.h"

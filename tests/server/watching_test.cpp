@@ -1,6 +1,6 @@
 // Watchers of one solve, over gRPC.
 
-#include "client/client.h"
+#include "client/rpc/client.h"
 #include "tests/server/growing_leaves.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"

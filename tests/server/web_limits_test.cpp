@@ -1,10 +1,10 @@
 // What browsers may take of the server, and that it serves others whatever they do.
 
-#include "server/web_limits.h"
+#include "server/web/web_limits.h"
 
 #include "alvor/v1/solve_service.pb.h"
 #include "proto/codec.h"
-#include "server/web_front.h"
+#include "server/web/web_front.h"
 #include "tests/server/raw_browser.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"

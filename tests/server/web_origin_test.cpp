@@ -1,6 +1,6 @@
 // gRPC-Web for pages of other origins, as browsers ask for it over HTTP.
 
-#include "server/web_front.h"
+#include "server/web/web_front.h"
 #include "tests/server/alvord_process.h"
 #include "tests/server/test_server.h"
 

@@ -1,6 +1,6 @@
 // Requests out of bytes, and what is refused because two readers could understand it in two ways.
 
-#include "server/web_request.h"
+#include "server/web/web_request.h"
 
 #include <gtest/gtest.h>
 

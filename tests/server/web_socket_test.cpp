@@ -1,7 +1,7 @@
 // The page's port as a Unix socket, behind a front end that says who calls.
 
-#include "server/sha256.h"
-#include "server/web_front.h"
+#include "server/base/sha256.h"
+#include "server/web/web_front.h"
 
 #include "alvor/v1/scene_service.pb.h"
 #include "proto/codec.h"

@@ -1,8 +1,8 @@
-#include "server/web_front.h"
+#include "server/web/web_front.h"
 
 #include "alvor/v1/solve_service.pb.h"
 #include "proto/codec.h"
-#include "server/web_messages.h"
+#include "server/web/web_messages.h"
 #include "tests/server/raw_browser.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"

@@ -1,6 +1,6 @@
 // How much work of a running solve a crash cost, by the clock of the run that crashed.
 
-#include "server/stored_solve.h"
+#include "server/solves/stored_solve.h"
 #include "tests/server/kept_directory.h"
 
 #include <google/protobuf/util/time_util.h>

@@ -1,4 +1,4 @@
-#include "server/work_pool.h"
+#include "server/base/work_pool.h"
 
 #include "tests/server/refusal.h"
 

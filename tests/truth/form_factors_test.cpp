@@ -1,9 +1,9 @@
 // Every method against exact form factors.
 
-#include "radiosity/closed_forms.h"
-#include "radiosity/face_form_factor.h"
-#include "radiosity/form_factor.h"
-#include "radiosity/form_factor_matrix.h"
+#include "radiosity/form_factors/closed_forms.h"
+#include "radiosity/form_factors/face_form_factor.h"
+#include "radiosity/form_factors/form_factor.h"
+#include "radiosity/form_factors/form_factor_matrix.h"
 #include "tests/truth/reference_form_factors.h"
 
 #include <gtest/gtest.h>

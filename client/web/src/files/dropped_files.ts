@@ -26,7 +26,7 @@ export class DroppedFiles {
     return this.byPath.get(this.folder + steps.join("/")) ?? this.byPath.get(steps.at(-1) ?? "");
   }
 
-  /** Returns the name that a relative URI of glTF stands for (RFC 3986). Throws ImportError as client/file_beside.cpp does. */
+  /** Returns the name that a relative URI of glTF stands for (RFC 3986). Throws ImportError as import/file_beside.cpp does. */
   nameOf(uri: string, place: string): string {
     const name = new TextDecoder().decode(percentDecoded(uri));
     const reason = reasonAgainst(name);

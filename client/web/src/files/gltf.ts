@@ -1,4 +1,4 @@
-// The default scene of a glTF 2.0 file, as client/gltf_import.cpp and client/gltf_material.cpp read it.
+// The default scene of a glTF 2.0 file, as import/gltf_import.cpp and import/gltf_material.cpp read it.
 
 import type { DroppedFiles } from "./dropped_files";
 import { GltfFile } from "./gltf_file";

@@ -1,4 +1,4 @@
-// A glTF 2.0 file, text or binary, and the bytes of its parts, as client/gltf_file.cpp and client/gltf_accessor.cpp read them.
+// A glTF 2.0 file, text or binary, and the bytes of its parts, as import/gltf_file.cpp and import/gltf_accessor.cpp read them.
 
 import { percentDecoded, type DroppedFiles } from "./dropped_files";
 import type { Gltf, GltfAccessor } from "./gltf_format";

@@ -31,7 +31,7 @@ export function isFiniteNumber(word: string): boolean {
   return NUMBER.test(word) && Number.isFinite(Number(word));
 }
 
-/** Returns the first three numbers of a line. Throws ImportError as client/obj_lines.cpp does. */
+/** Returns the first three numbers of a line. Throws ImportError as import/obj_lines.cpp does. */
 export function tripleOf({ number, keyword, rest }: Line, file = ""): [number, number, number] {
   const words = wordsOf(rest);
   const place = `${file ? `${file} ` : ""}line ${number}`;

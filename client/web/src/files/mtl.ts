@@ -1,4 +1,4 @@
-// Material libraries of OBJ, as client/obj_import.cpp reads them.
+// Material libraries of OBJ, as import/obj_import.cpp reads them.
 
 import { linesOf, tripleOf, wordsOf } from "./lines";
 import type { Bands } from "./texture_colour";

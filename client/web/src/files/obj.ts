@@ -1,4 +1,4 @@
-// OBJ with its MTL files, as client/obj_import.cpp reads them: faces in the order of the `f` lines, polygons of any size.
+// OBJ with its MTL files, as import/obj_import.cpp reads them: faces in the order of the `f` lines, polygons of any size.
 
 import type { DroppedFiles } from "./dropped_files";
 import { ImportError } from "./import_error";

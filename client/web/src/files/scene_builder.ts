@@ -5,7 +5,7 @@ import { CreateSceneRequestSchema, UpAxis, type CreateSceneRequest, type Geometr
 import { ImportError } from "./import_error";
 import type { Bands } from "./texture_colour";
 
-// As in client/scene_file.cpp and client/placement.h.
+// As in import/scene_file.cpp and client/placement.h.
 const CLAMPED_REFLECTANCE = 0.95;
 export const DEFAULT_REFLECTANCE: Bands = [0.5, 0.5, 0.5];
 

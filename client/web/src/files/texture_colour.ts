@@ -1,4 +1,4 @@
-// Textures count by their mean colour, as in client/texture_colour.cpp: a patch has one reflectance and one emission.
+// Textures count by their mean colour, as in import/texture_colour.cpp: a patch has one reflectance and one emission.
 
 import { isPng, sumOfPng } from "./png";
 import { linearTable } from "./srgb";

@@ -1,0 +1,33 @@
+#pragma once
+// Following a solve from its first frame to its end.
+
+#include "client/command/output/snapshots.h"
+#include "client/rpc/client.h"
+
+#include <chrono>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+struct FollowOptions {
+  std::chrono::steady_clock::time_point begin;  ///< when the wait for the first frame began
+  bool keep_snapshots = false;
+};
+
+struct Followed {
+  v1::Solve solve;  ///< its last known state
+  SolutionMirror mirror;
+  std::vector<Snapshot> snapshots;  ///< ending with the last state; empty unless asked for
+  double first_frame_s = 0;         ///< from `begin` to the first frame in the mirror
+};
+
+/// Shows progress on stderr. Returns when the solve has ended or a stop was requested; the solve then goes on. Picks up lost
+/// connections. Throws RpcError when the server stays away.
+Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop);
+
+/// The same, but a stop request cancels the solve, and its end is awaited.
+Followed follow_own(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop);
+
+}  // namespace alvor

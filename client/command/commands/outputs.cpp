@@ -1,0 +1,75 @@
+#include "client/command/commands/outputs.h"
+
+#include "client/command/commands/report.h"
+#include "client/command/output/display.h"
+#include "client/command/output/files.h"
+#include "client/command/output/frames.h"
+#include "client/command/output/notes.h"
+#include "client/export/solution_file.h"
+
+#include <iostream>
+
+namespace alvor {
+
+namespace {
+
+void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
+  if (is_stream(output.path)) write_output(output.path, encode_solution(mesh, extension_of(output, solution_kind)));
+  else write_solution_file(output.path, mesh);
+}
+
+// Nothing was published if the solve failed at once: then there is nothing to draw either.
+void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
+  if (followed.mirror.steps().empty() || (options.solution.path.empty() && options.frames.empty())) return;
+  const BaseMesh mesh(scene);
+  if (!options.solution.path.empty()) write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
+  if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
+}
+
+void print_written(const std::filesystem::path& path) {
+  if (!path.empty() && !is_stream(path)) notes() << "wrote " << path.string() << '\n';
+}
+
+void print_for_people(const OutputOptions& options, const Followed& followed) {
+  notes() << summary(followed);
+  for (const auto& path : {options.solution.path, options.report, options.frames}) print_written(path);
+}
+
+std::string unfinished(const v1::Solve& solve) {
+  switch (solve.state()) {
+    case v1::Solve::FAILED: return "the solve failed: " + solve.end_reason();
+    case v1::Solve::CANCELLED: return "the solve was cancelled";
+    default: return "stopped watching before the solve had ended";
+  }
+}
+
+}  // namespace
+
+void add_output_options(CLI::App& command, OutputOptions& options) {
+  add_output_option(command, options.solution, solution_kind, "Write the solution: .glb or .ply")->type_name("SOLUTION");
+  command.add_option("--report", options.report, "Write one CSV line per published step")->type_name("R.csv");
+  command.add_option("--frames", options.frames, "Draw the growing solution as frame_0000.png ... in this folder")
+      ->type_name("DIR");
+  command.add_flag("--no-ambient", options.no_ambient, "Draw frames without the ambient term");
+  command.add_flag("--json", options.json, "Print one JSON object instead of a summary");
+}
+
+void prepare_outputs(const OutputOptions& options) {
+  require_output(options.solution, solution_kind, "--output");
+  require_output({options.report, {}}, table_kind, "--report");
+  reserve_stdout_for({options.solution.path, options.report});
+  if (!options.frames.empty()) make_folder(options.frames, "frame_0000.png", "--frames");
+}
+
+void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
+  // What goes to stdout comes last: its reader may have left.
+  const auto write_report = [&] { write_output(options.report, step_table(followed.mirror.steps())); };
+  if (!options.report.empty() && !is_stream(options.report)) write_report();
+  write_pictures(options, scene, followed);
+  if (is_stream(options.report)) write_report();
+  if (options.json) results() << outcome_json(followed, warnings);
+  else print_for_people(options, followed);
+  if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));
+}
+
+}  // namespace alvor

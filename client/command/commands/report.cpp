@@ -1,0 +1,66 @@
+#include "client/command/commands/report.h"
+
+#include "client/command/output/numbers.h"
+#include "proto/codec.h"
+
+#include <nlohmann/json.hpp>
+
+namespace alvor {
+
+namespace {
+
+std::string line_of(const Step& step) {
+  return shortest(step.elapsed_s) + ',' + std::to_string(step.step) + ',' + std::to_string(step.shots) + ',' +
+         std::to_string(step.rays) + ',' + std::to_string(step.leaves) + ',' + shortest(step.unshot_fraction) + ',' +
+         shortest(step.estimated_error) + '\n';
+}
+
+Step last_step(const Followed& followed) {
+  const std::vector<Step>& steps = followed.mirror.steps();
+  return steps.empty() ? Step{} : steps.back();
+}
+
+/// What looks black, but is not known.
+std::string unlit(const Step& step) {
+  if (step.unlit_fraction == 0) return {};
+  return percent(step.unlit_fraction) +
+         " of the surface that light may reach has no light yet: the solve ended before its turn\n";
+}
+
+}  // namespace
+
+std::string step_table(std::span<const Step> steps) {
+  std::string table = "elapsed_s,step,shots,rays,leaves,unshot_fraction,estimated_error\n";
+  for (const Step& step : steps) table += line_of(step);
+  return table;
+}
+
+std::string outcome_json(const Followed& followed, std::span<const std::string> warnings) {
+  const Step last = last_step(followed);
+  nlohmann::ordered_json json;
+  json["solve"] = followed.solve.name();
+  json["state"] = v1::Solve::State_Name(followed.solve.state());
+  json["end_reason"] = followed.solve.end_reason();
+  json["elapsed_s"] = last.elapsed_s;
+  json["cpu_s"] = decode_seconds(followed.solve.cpu_time());
+  json["traversal_share"] = followed.solve.traversal_share();
+  json["shots"] = last.shots;
+  json["rays"] = last.rays;
+  json["leaves"] = last.leaves;
+  json["unshot_fraction"] = last.unshot_fraction;
+  json["estimated_error"] = last.estimated_error;
+  json["unlit_fraction"] = last.unlit_fraction;
+  json["first_frame_s"] = followed.first_frame_s;
+  json["warnings"] = std::vector<std::string>(warnings.begin(), warnings.end());
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+std::string summary(const Followed& followed) {
+  const Step last = last_step(followed);
+  const std::string& reason = followed.solve.end_reason();
+  return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
+         seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + ": " +
+         (reason.empty() ? "still running" : reason) + '\n' + unlit(last);
+}
+
+}  // namespace alvor

@@ -1,0 +1,55 @@
+#include "client/command/commands/served_solution.h"
+
+#include "client/command/commands/connection.h"
+#include "client/command/options/solve_name.h"
+#include "client/command/output/display.h"
+#include "client/command/output/failure.h"
+#include "client/export/glb_file.h"
+
+#include <utility>
+
+namespace alvor {
+
+namespace {
+
+/// A state of a solve, and the solve when it was read.
+struct State {
+  v1::Solve solve;
+  SolutionMirror mirror;
+};
+
+State newest_state(Client& client, const std::string& solve) {
+  Client::Watch watch;
+  std::stop_source enough;
+  const auto stop_when_whole = [&](const Client::Watch& now) {
+    if (now.mirror.whole()) enough.request_stop();
+  };
+  v1::Solve now = client.watch_solve(solve, watch, stop_when_whole, enough.get_token());
+  return {std::move(now), std::move(watch.mirror)};
+}
+
+void require_published(const State& state, const std::string& solve) {
+  if (!state.mirror.steps().empty()) return;
+  const bool running = state.solve.state() == v1::Solve::RUNNING;
+  throw Failure(ExitStatus::failed, solve + (running ? " has published nothing yet" : " has ended and published nothing"));
+}
+
+// Only where a solve has succeeded does exactly dark mean hidden; before, light may not have come that far.
+DisplayMesh mesh_of(const BaseMesh& base, const State& state, bool ambient) {
+  if (!ambient) return solution_mesh(base, state.mirror.leaves());
+  const Snapshot moment = snapshot_of(state.mirror);
+  return state.solve.state() == v1::Solve::SUCCEEDED ? shown_mesh(base, moment, moment) : brightened_mesh(base, moment);
+}
+
+}  // namespace
+
+DisplayMesh read_served_solution(const ServedSolution& source) {
+  const std::string scene_name = scene_name_of(source.solve);
+  Connection connection(source.server);
+  const State state = newest_state(connection.client(), source.solve);
+  require_published(state, source.solve);
+  const BaseMesh base(connection.client().read_scene(scene_name));
+  return decode_glb(encode_glb(mesh_of(base, state, source.ambient)));
+}
+
+}  // namespace alvor

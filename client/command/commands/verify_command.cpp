@@ -1,0 +1,127 @@
+// alvor verify SCENE SOLUTION: how far a solution is from path tracing.
+
+#include "client/command/commands/commands.h"
+#include "client/command/commands/outputs.h"
+#include "client/command/options/absorption_option.h"
+#include "client/command/options/input_file.h"
+#include "client/command/options/option_checks.h"
+#include "client/command/options/up_option.h"
+#include "client/command/output/failure.h"
+#include "client/command/output/files.h"
+#include "client/command/output/notes.h"
+#include "client/command/output/numbers.h"
+#include "client/command/output/output_file.h"
+#include "client/command/output/status_line.h"
+#include "client/command/output/verify_report.h"
+#include "client/verify/error_picture.h"
+
+#include <chrono>
+#include <ctime>
+#include <memory>
+#include <optional>
+
+namespace alvor {
+
+namespace {
+
+struct VerifyCommand {
+  std::filesystem::path scene, solution;
+  std::string format;  ///< of the one that comes from stdin
+  VerifyOptions options;
+  std::string absorption;  ///< three numbers; empty: none
+  std::string up;          ///< "y" or "z"; empty: as the solution says
+  std::optional<double> max_error;
+  std::filesystem::path csv, picture;  ///< empty paths were not asked for
+  bool json = false;
+};
+
+Verification verify_with_progress(const VerifyCommand& command, const Scene& scene, const DisplayMesh& solution) {
+  StatusLine line;
+  VerifyOptions options = command.options;
+  options.trace.on_progress = [&](double share) {
+    if (line.on_terminal() && (line.due() || share == 1)) line.show(progress_bar(share) + " " + percent(share) + " of the paths");
+  };
+  try {
+    return verify(scene, solution, options);
+  } catch (const MismatchError& error) {
+    throw Failure(ExitStatus::bad_scene, name_of(command.solution) + ": " + error.what());
+  }
+}
+
+Verification verify_timed(const VerifyCommand& command, const Scene& scene, const DisplayMesh& solution, VerifyTimes& times) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  const std::clock_t cpu_begin = std::clock();
+  Verification verification = verify_with_progress(command, scene, solution);
+  times.elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  times.cpu_s = static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
+  return verification;
+}
+
+void require_small_error(const VerifyCommand& command, double nrmse) {
+  if (!command.max_error || nrmse <= *command.max_error) return;
+  throw Failure(ExitStatus::failed, "nRMSE " + percent(nrmse) + " exceeds --max-error " + percent(*command.max_error));
+}
+
+void require_outputs(const VerifyCommand& command) {
+  require_output({command.csv, {}}, table_kind, "--csv");
+  require_output({command.picture, {}}, picture_kind, "--picture");
+  reserve_stdout_for({command.csv, command.picture});
+}
+
+void run_verify(const VerifyCommand& command) {
+  require_inputs({{InputKind::scene, command.scene}, {InputKind::solution, command.solution}}, command.format);
+  require_outputs(command);
+  SceneFile file = read_scene(command.scene, command.format);
+  take_absorption(command.absorption, file.scene);
+  warn(file.warnings);
+  DisplayMesh solution = read_solution(command.solution, command.format);
+  take_up(command.up, solution.up);
+  VerifyTimes times;
+  const Verification verification = verify_timed(command, file.scene, solution, times);
+  if (!command.csv.empty()) write_output(command.csv, verified_csv(verification.points));
+  if (!command.picture.empty()) write_picture(command.picture, error_picture(solution, verification, {}));
+  results() << (command.json ? verify_json(file.scene, verification, times, file.warnings)
+                             : verify_summary(file.scene, verification, times));
+  require_small_error(command, verification.errors.nrmse.value);
+}
+
+constexpr std::size_t most_points = 10'000'000;  // of some hundred bytes each
+
+void add_effort(CLI::App& command, VerifyCommand& options) {
+  TraceOptions& trace = options.options.trace;
+  command.add_option("--points", options.options.points, "Points, uniform by area over all fronts (1000)")
+      ->check(whole_from(2))
+      ->check(CLI::Range(std::size_t{2}, most_points));
+  command.add_option("--paths", trace.paths, "Paths from each point, rounded up to whole rounds (1000)")->check(whole_from(2));
+  command.add_option("--time-limit", trace.time_limit_s, "Send no more paths from any point after this many seconds")
+      ->check(above_up_to(0, 1e9));
+  command.add_option("--seed", trace.seed, "The same seed gives the same points and paths (1)")->check(whole_from(0));
+  command.add_option("--threads", trace.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
+}
+
+void add_results(CLI::App& command, VerifyCommand& options) {
+  command.add_option("--max-error", options.max_error, "Exit with 5 if the nRMSE, not its interval, exceeds this; 0.02 is 2 %")
+      ->check(above_up_to(0, 1e9));
+  command.add_option("--csv", options.csv, "Write truth, standard error and solution of each point")->type_name("FILE");
+  command.add_option("--picture", options.picture, "Draw the error, blue where the solution is too dark, red where too bright")
+      ->type_name("FILE.png");
+  add_up_option(command, options.up);
+  command.add_flag("--json", options.json, "Print one JSON object instead of a summary");
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app) {
+  const auto options = std::make_shared<VerifyCommand>();
+  CLI::App& command = *app.add_subcommand("verify", "Measure the error of a solution by unbiased path tracing");
+  command.add_option("scene", options->scene, "The scene file that was solved; - is stdin")->required()->type_name("SCENE");
+  command.add_option("solution", options->solution, "What solve wrote; - is stdin")->required()->type_name("SOLUTION");
+  add_format_option(command, options->format);
+  add_absorption_option(command, options->absorption);
+  add_effort(command, *options);
+  add_results(command, *options);
+  command.callback([options] { run_verify(*options); });
+}
+
+}  // namespace alvor

@@ -1,0 +1,55 @@
+#include "client/command/options/false_colour_options.h"
+
+#include "client/command/output/failure.h"
+#include "client/command/output/notes.h"
+#include "client/command/output/numbers.h"
+#include "client/picture/legend.h"
+
+#include <array>
+#include <map>
+
+namespace alvor {
+
+namespace {
+
+const std::map<std::string, Band> bands{{"mean", Band::mean}, {"r", Band::red}, {"g", Band::green}, {"b", Band::blue}};
+
+ColourScale scale_of(const FalseColourOptions& options) {
+  const auto ends = parse_numbers(options.range, 2);
+  if (!ends || !((*ends)[0] < (*ends)[1]))
+    throw Failure(ExitStatus::usage, "--range " + options.range + " is not two numbers, the lower one first, like 0,5");
+  if (options.logarithmic && !((*ends)[0] > 0))
+    throw Failure(ExitStatus::usage, "--range " + options.range + ": a logarithmic scale begins above 0");
+  return {(*ends)[0], (*ends)[1], options.logarithmic};
+}
+
+void warn_of_no_room(PictureSize size) {
+  const std::string picture = std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels";
+  warn(std::array{"the picture has no legend: " + picture + " are too few for one"});
+}
+
+}  // namespace
+
+CLI::Option* add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
+  CLI::Option* wanted =
+      command.add_flag("--false-colour,--false-color", options.wanted, "Colour surfaces by irradiance, with a legend in W/m2");
+  command.add_option("--band", options.band, "Which irradiance (mean of the three)")
+      ->type_name("BAND")
+      ->check(CLI::IsMember({"r", "g", "b", "mean"}))
+      ->needs(wanted);
+  command.add_option("--range", options.range, "Ends of the scale, W/m2 (from 0, to suit the picture)")
+      ->type_name("LOW,HIGH")
+      ->needs(wanted);
+  command.add_flag("--log-scale", options.logarithmic, "Equal ratios get equal steps of colour")->needs(wanted);
+  return wanted;
+}
+
+std::optional<FalseColour> false_colour_of(const FalseColourOptions& options, PictureSize size) {
+  if (!options.wanted) return std::nullopt;
+  FalseColour chosen{bands.at(options.band), std::nullopt, options.logarithmic, legend_fits(size)};
+  if (!options.range.empty()) chosen.scale = scale_of(options);
+  if (!chosen.legend) warn_of_no_room(size);
+  return chosen;
+}
+
+}  // namespace alvor

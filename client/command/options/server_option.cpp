@@ -1,0 +1,25 @@
+#include "client/command/options/server_option.h"
+
+namespace alvor {
+
+CLI::Option& add_server_option(CLI::App& command, ServerChoice& server, const std::string& description) {
+  CLI::Option* address = command.add_option("--server", server.address, description)->type_name("HOST:PORT");
+  const auto add_file = [&](const char* name, std::string& file, const char* what) {
+    return command.add_option(name, file, what)->check(CLI::ExistingFile)->type_name("FILE")->needs(address);
+  };
+  CLI::Option* ca = add_file("--tls-ca", server.ca, "Use TLS; who signed the server's certificate (PEM)");
+  CLI::Option* key = add_file("--tls-key", server.key, "The key of --tls-cert (PEM)")->needs(ca);
+  CLI::Option* certificate = add_file("--tls-cert", server.certificate, "The certificate to show to the server (PEM)")->needs(ca);
+  key->needs(certificate);
+  certificate->needs(key);
+  add_file("--token-file", server.token_file, "A file with the token to show to the server")->needs(ca);
+  command
+      .add_option("--patience", server.patience_s,
+                  "Seconds to go on trying when the server is lost (not when it was never there)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(address)
+      ->capture_default_str();
+  return *address;
+}
+
+}  // namespace alvor

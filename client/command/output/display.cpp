@@ -1,0 +1,48 @@
+#include "client/command/output/display.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+// A mirror holds no leaf for a root that nothing was said about.
+std::vector<LeafValue> covering(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
+  std::vector<LeafValue> all;
+  all.reserve(leaves.size());
+  auto leaf = leaves.begin();
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
+    if (leaf == leaves.end() || leaf->patch.root_face() != root) all.push_back({PatchId::root(root), {}});
+    for (; leaf != leaves.end() && leaf->patch.root_face() == root; ++leaf) all.push_back(*leaf);
+  }
+  return all;
+}
+
+// `leaves` are sorted by id, so what lies within a patch is contiguous.
+bool stays_dark(PatchId patch, std::span<const LeafValue> last) {
+  auto leaf = std::ranges::lower_bound(last, patch.range_min(), {}, &LeafValue::patch);
+  for (; leaf != last.end() && patch.contains(leaf->patch); ++leaf)
+    if (!leaf->irradiance.is_zero()) return false;
+  return true;
+}
+
+}  // namespace
+
+DisplayMesh solution_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
+  return build_display_mesh(mesh, covering(mesh, leaves));
+}
+
+DisplayMesh shown_mesh(const BaseMesh& mesh, const Snapshot& moment, const Snapshot& last) {
+  std::vector<LeafValue> leaves = covering(mesh, moment.leaves);
+  for (LeafValue& leaf : leaves)
+    if (!stays_dark(leaf.patch, last.leaves)) leaf.irradiance += moment.ambient_irradiance;
+  return build_display_mesh(mesh, leaves);
+}
+
+DisplayMesh brightened_mesh(const BaseMesh& mesh, const Snapshot& moment) {
+  std::vector<LeafValue> leaves = covering(mesh, moment.leaves);
+  for (LeafValue& leaf : leaves) leaf.irradiance += moment.ambient_irradiance;
+  return build_display_mesh(mesh, leaves);
+}
+
+}  // namespace alvor

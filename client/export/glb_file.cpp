@@ -1,0 +1,160 @@
+#include "client/export/glb_file.h"
+
+#include "client/export/solution_file.h"
+#include "client/picture/tone_map.h"
+#include "import/bytes.h"
+#include "import/glb_format.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace alvor {
+namespace {
+
+using namespace glb;
+using nlohmann::json;
+
+using Float3 = std::array<float, 3>;
+
+Float3 float3(const Vec3& a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
+Float3 float3(const RgbF& a) { return {a.r, a.g, a.b}; }
+
+Vec3 middle_of_box(const std::vector<Vec3>& points) {
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  return lerp(low, high, 0.5);
+}
+
+/// Gathers the binary chunk and the accessors that describe it.
+class BinaryChunk {
+ public:
+  /// Appends `value(i)` for each of `count` vertices; returns the accessor's index.
+  template <class Value>
+  std::size_t add_vectors(std::size_t count, Value value) {
+    add_view(count * vec3_size, array_buffer);
+    for (std::size_t i = 0; i < count; ++i)
+      for (const float x : value(i)) append_value(bytes_, x);
+    return add_accessor(count, "VEC3", float_component);
+  }
+  std::size_t add_indices(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    add_view(triangles.size() * 3 * sizeof(std::uint32_t), element_array_buffer);
+    for (const auto& triangle : triangles)
+      for (const std::uint32_t vertex : triangle) append_value(bytes_, vertex);
+    return add_accessor(triangles.size() * 3, "SCALAR", uint_component);
+  }
+  /// Sets min and max of a VEC3 accessor; POSITION needs them.
+  void set_bounds(std::size_t accessor) {
+    Float3 low, high;
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+    const std::size_t start = views_[accessor]["byteOffset"], end = start + views_[accessor]["byteLength"].get<std::size_t>();
+    for (std::size_t at = start, axis = 0; at < end; at += sizeof(float), axis = (axis + 1) % 3) {
+      low[axis] = std::min(low[axis], value_at<float>(bytes_, at));
+      high[axis] = std::max(high[axis], value_at<float>(bytes_, at));
+    }
+    accessors_[accessor]["min"] = low;
+    accessors_[accessor]["max"] = high;
+  }
+
+  const json& views() const { return views_; }
+  const json& accessors() const { return accessors_; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  void add_view(std::size_t size, int target) {
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}, {"target", target}});
+  }
+  std::size_t add_accessor(std::size_t count, const char* type, int component) {
+    accessors_.push_back({{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+    return accessors_.size() - 1;
+  }
+
+  json views_ = json::array(), accessors_ = json::array();
+  std::string bytes_;
+};
+
+json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin) {
+  const std::size_t count = mesh.positions.size();
+  const double exposure = automatic_exposure(mesh);
+  json attributes;
+  attributes["POSITION"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.positions[i] - origin); });
+  chunk.set_bounds(attributes["POSITION"]);
+  attributes["NORMAL"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.normals[i]); });
+  attributes["_IRRADIANCE"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.irradiance[i]); });
+  attributes["_RADIOSITY"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.radiosity[i]); });
+  // glTF defines COLOR_0 as linear: no sRGB encoding here.
+  attributes["COLOR_0"] =
+      chunk.add_vectors(count, [&](std::size_t i) { return float3(narrow(tone_map(exposure * widen(mesh.radiosity[i])))); });
+  return attributes;
+}
+
+/// Shown as it is: the light is in the vertex colours. The base values are for viewers that do not know the extension.
+json unlit_material() {
+  return {{"name", "solution"},
+          {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+          {"doubleSided", false},
+          {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+}
+
+json node_of(const Vec3& origin, UpAxis up) {
+  json node = {{"name", "solution"}, {"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}};
+  if (up == UpAxis::y) return node;
+  node["translation"] = {origin.x, origin.z, -origin.y};
+  node["rotation"] = z_up_rotation;
+  node["extras"] = {{up_key, "z"}};
+  return node;
+}
+
+json document(const BinaryChunk& chunk, const json& attributes, std::size_t indices, const json& node) {
+  json root;
+  root["asset"] = {{"version", "2.0"}, {"generator", "Alvor"}};
+  root["extensionsUsed"] = json::array({"KHR_materials_unlit"});
+  root["scene"] = 0;
+  root["scenes"] = json::array({{{"nodes", {0}}}});
+  root["nodes"] = json::array({node});
+  const json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
+  root["meshes"] = json::array({{{"name", "solution"}, {"primitives", json::array({primitive})}}});
+  root["materials"] = json::array({unlit_material()});
+  root["buffers"] = json::array({{{"byteLength", chunk.bytes().size()}}});
+  root["bufferViews"] = chunk.views();
+  root["accessors"] = chunk.accessors();
+  return root;
+}
+
+void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes) {
+  append_value(glb, static_cast<std::uint32_t>(bytes.size()));
+  append_value(glb, type);
+  glb += bytes;
+}
+
+}  // namespace
+
+std::string encode_glb(const DisplayMesh& mesh) {
+  if (mesh.triangles.empty()) throw SolutionFileError("mesh: has no triangles");
+  const std::size_t estimate = mesh.positions.size() * 5 * vec3_size + mesh.triangles.size() * vec3_size;
+  if (estimate > std::numeric_limits<std::uint32_t>::max() - largest_json)
+    throw SolutionFileError("mesh: too large for GLB, which ends at 4 GB");
+
+  const Vec3 origin = middle_of_box(mesh.positions);
+  BinaryChunk chunk;
+  const json attributes = add_attributes(chunk, mesh, origin);
+  const std::size_t indices = chunk.add_indices(mesh.triangles);
+  std::string text = document(chunk, attributes, indices, node_of(origin, mesh.up)).dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+
+  std::string glb;
+  append_value(glb, magic);
+  append_value(glb, std::uint32_t{2});
+  append_value(glb, static_cast<std::uint32_t>(file_header_size + 2 * chunk_header_size + text.size() + chunk.bytes().size()));
+  append_chunk(glb, json_chunk, text);
+  append_chunk(glb, binary_chunk, chunk.bytes());
+  return glb;
+}
+
+}  // namespace alvor

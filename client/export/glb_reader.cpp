@@ -1,0 +1,185 @@
+#include "client/export/glb_file.h"
+#include "client/export/solution_file.h"
+#include "import/bytes.h"
+#include "import/glb_format.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace alvor {
+namespace {
+
+using namespace glb;
+using nlohmann::json;
+
+[[noreturn]] void fail(const std::string& place, const std::string& reason) { throw SolutionFileError(place + ": " + reason); }
+
+struct Chunks {
+  std::string_view text, binary;
+};
+
+/// Takes a chunk of this type off the front of `rest`.
+std::string_view take_chunk(std::string_view& rest, std::uint32_t type, const std::string& place) {
+  if (rest.size() < chunk_header_size) fail(place, "missing");
+  const std::size_t size = value_at<std::uint32_t>(rest, 0);
+  if (value_at<std::uint32_t>(rest, 4) != type) fail(place, "missing");
+  if (size > rest.size() - chunk_header_size) fail(place, "longer than the file");
+  const std::string_view bytes = rest.substr(chunk_header_size, size);
+  rest.remove_prefix(chunk_header_size + size);
+  return bytes;
+}
+
+Chunks chunks_of(std::string_view glb) {
+  if (glb.size() < file_header_size || value_at<std::uint32_t>(glb, 0) != magic) fail("header", "not a GLB file");
+  if (value_at<std::uint32_t>(glb, 4) != 2) fail("header", "not version 2");
+  if (value_at<std::uint32_t>(glb, 8) != glb.size()) fail("header", "the length is not that of the file");
+  std::string_view rest = glb.substr(file_header_size);
+  Chunks chunks;
+  chunks.text = take_chunk(rest, json_chunk, "JSON chunk");
+  chunks.binary = take_chunk(rest, binary_chunk, "binary chunk");
+  return chunks;
+}
+
+json parse_text(std::string_view text) {
+  if (text.size() > largest_json) fail("JSON chunk", "too long for a solution");
+  json root = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!root.is_object()) fail("JSON chunk", "not a JSON object");
+  return root;
+}
+
+const json& member(const json& object, const char* key, const std::string& place) {
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  if (found == object.end()) fail(place, std::string("no '") + key + "'");
+  return *found;
+}
+
+/// A whole number in [0, 2^32).
+std::size_t whole_number(const json& value, const std::string& place) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+    fail(place, "not a whole number below 2^32");
+  return value.get<std::size_t>();
+}
+std::size_t whole_number(const json& object, const char* key, const std::string& place) {
+  return whole_number(member(object, key, place), place + "." + key);
+}
+std::size_t whole_number_or(const json& object, const char* key, std::size_t otherwise, const std::string& place) {
+  return object.is_object() && object.contains(key) ? whole_number(object, key, place) : otherwise;
+}
+
+const json& element(const json& root, const char* list, std::size_t index) {
+  const json& elements = member(root, list, "JSON chunk");
+  if (!elements.is_array() || index >= elements.size()) fail(list, "no element " + std::to_string(index));
+  return elements[index];
+}
+
+/// The bytes of an accessor's elements, `stride` apart; every element lies within.
+struct Elements {
+  std::string_view bytes;
+  std::size_t count = 0, stride = 0;
+  template <class T>
+  T at(std::size_t i, std::size_t component = 0) const {
+    return value_at<T>(bytes, i * stride + component * sizeof(T));
+  }
+};
+
+struct ElementKind {
+  const char* type;
+  int component;
+  std::size_t size;
+};
+
+void check_kind(const json& accessor, const ElementKind& kind, const std::string& place) {
+  if (member(accessor, "type", place) != kind.type || member(accessor, "componentType", place) != kind.component)
+    fail(place, "not of the type that Alvor writes");
+  if (accessor.contains("sparse")) fail(place, "sparse accessors are not read");
+}
+
+std::string_view bytes_of_view(const json& view, std::string_view binary, const std::string& place) {
+  if (whole_number_or(view, "buffer", 0, place) != 0) fail(place, "not in the binary chunk");
+  const std::size_t offset = whole_number_or(view, "byteOffset", 0, place), size = whole_number(view, "byteLength", place);
+  if (offset > binary.size() || size > binary.size() - offset) fail(place, "beyond the binary chunk");
+  return binary.substr(offset, size);
+}
+
+Elements elements_of(const json& root, std::string_view binary, std::size_t index, const ElementKind& kind) {
+  const std::string place = "accessor " + std::to_string(index);
+  const json& accessor = element(root, "accessors", index);
+  check_kind(accessor, kind, place);
+  const std::size_t view_index = whole_number(accessor, "bufferView", place);
+  const json& view = element(root, "bufferViews", view_index);
+  const std::string view_place = "bufferView " + std::to_string(view_index);
+
+  Elements found;
+  found.bytes = bytes_of_view(view, binary, view_place);
+  found.count = whole_number(accessor, "count", place);
+  found.stride = whole_number_or(view, "byteStride", kind.size, view_place);
+  const std::size_t offset = whole_number_or(accessor, "byteOffset", 0, place);
+  if (found.stride < kind.size || found.count == 0) fail(place, "no elements");
+  // All four are below 2^32, so that nothing here overflows.
+  if (offset + (found.count - 1) * found.stride + kind.size > found.bytes.size()) fail(place, "beyond its bufferView");
+  found.bytes.remove_prefix(offset);
+  return found;
+}
+
+/// Reads one attribute of the primitive as vectors of T{x, y, z}, moved by `offset`.
+template <class T>
+std::vector<T> read_vectors(const json& root, std::string_view binary, const char* name, const T& offset) {
+  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
+  const json& attributes = member(primitive, "attributes", "meshes[0].primitives[0]");
+  const std::size_t accessor = whole_number(attributes, name, "attributes");
+  const Elements elements = elements_of(root, binary, accessor, {"VEC3", float_component, vec3_size});
+  std::vector<T> vectors(elements.count);
+  for (std::size_t i = 0; i < elements.count; ++i)
+    vectors[i] = offset + T{elements.at<float>(i, 0), elements.at<float>(i, 1), elements.at<float>(i, 2)};
+  return vectors;
+}
+
+std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::string_view binary) {
+  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
+  if (whole_number_or(primitive, "mode", 4, "primitive") != 4) fail("primitive", "not triangles");
+  const std::size_t accessor = whole_number(primitive, "indices", "primitive");
+  const Elements indices = elements_of(root, binary, accessor, {"SCALAR", uint_component, sizeof(std::uint32_t)});
+  if (indices.count % 3 != 0) fail("indices", "not three for each triangle");
+  std::vector<std::array<std::uint32_t, 3>> triangles(indices.count / 3);
+  for (std::size_t i = 0; i < indices.count; ++i) triangles[i / 3][i % 3] = indices.at<std::uint32_t>(i);
+  return triangles;
+}
+
+UpAxis up_axis(const json& root) {
+  const json& node = element(root, "nodes", 0);
+  const auto extras = node.is_object() ? node.find("extras") : node.end();
+  const bool is_z = extras != node.end() && extras->is_object() && extras->value(up_key, json()) == "z";
+  return is_z ? UpAxis::z : UpAxis::y;
+}
+
+Vec3 translation(const json& root) {
+  const json& node = element(root, "nodes", 0);
+  if (!node.is_object() || !node.contains("translation")) return {};
+  const json& list = node["translation"];
+  const auto is_number = [](const json& value) { return value.is_number(); };
+  if (!list.is_array() || list.size() != 3 || !std::ranges::all_of(list, is_number))
+    fail("nodes[0].translation", "not three numbers");
+  return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
+}
+
+}  // namespace
+
+DisplayMesh decode_glb(std::string_view bytes) {
+  const Chunks chunks = chunks_of(bytes);
+  const json root = parse_text(chunks.text);
+  DisplayMesh mesh;
+  mesh.up = up_axis(root);
+  const Vec3 shown = translation(root);
+  const Vec3 origin = mesh.up == UpAxis::z ? Vec3{shown.x, -shown.z, shown.y} : shown;
+  mesh.positions = read_vectors<Vec3>(root, chunks.binary, "POSITION", origin);
+  mesh.normals = read_vectors<Vec3>(root, chunks.binary, "NORMAL", {});
+  mesh.irradiance = read_vectors<RgbF>(root, chunks.binary, "_IRRADIANCE", {});
+  mesh.radiosity = read_vectors<RgbF>(root, chunks.binary, "_RADIOSITY", {});
+  mesh.triangles = read_triangles(root, chunks.binary);
+  return mesh;
+}
+
+}  // namespace alvor

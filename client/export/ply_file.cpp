@@ -1,0 +1,186 @@
+#include "client/export/ply_file.h"
+
+#include "client/export/solution_file.h"
+#include "client/picture/tone_map.h"
+#include "import/bytes.h"
+
+#include <charconv>
+#include <limits>
+
+namespace alvor {
+namespace {
+
+constexpr std::string_view first_lines = "ply\nformat binary_little_endian 1.0\n";
+constexpr std::string_view vertex_element = "element vertex ", face_element = "element face ";
+constexpr std::string_view vertex_properties =
+    "property double x\nproperty double y\nproperty double z\n"
+    "property float nx\nproperty float ny\nproperty float nz\n"
+    "property float irradiance_r\nproperty float irradiance_g\nproperty float irradiance_b\n"
+    "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
+    "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+constexpr std::string_view face_properties = "property list uchar int vertex_indices\n";
+constexpr std::string_view z_up_comment = "comment z up\n";
+constexpr std::string_view last_line = "end_header\n";
+constexpr std::size_t vertex_size = 3 * sizeof(double) + 9 * sizeof(float) + 3;
+constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
+
+[[noreturn]] void fail(const std::string& place, const std::string& reason) { throw SolutionFileError(place + ": " + reason); }
+
+std::string header(std::size_t vertices, std::size_t faces, UpAxis up) {
+  std::string text(first_lines);
+  text += "comment Alvor solution: metres, W/m2\n";
+  if (up == UpAxis::z) text += z_up_comment;
+  text.append(vertex_element).append(std::to_string(vertices)).append("\n").append(vertex_properties);
+  text.append(face_element).append(std::to_string(faces)).append("\n").append(face_properties);
+  return text.append(last_line);
+}
+
+template <class T>
+void append_xyz(std::string& bytes, const Vec3& a) {
+  for (const double x : {a.x, a.y, a.z}) append_value(bytes, static_cast<T>(x));
+}
+void append_rgb(std::string& bytes, const RgbF& a) {
+  for (const float x : {a.r, a.g, a.b}) append_value(bytes, x);
+}
+void append_colour(std::string& bytes, const Rgb& linear) {
+  for (const double x : {linear.r, linear.g, linear.b}) append_value(bytes, srgb_byte(x));
+}
+
+/// Reads values one after the other. Requires that what is read lies within.
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  template <class T>
+  T next() {
+    const T value = value_at<T>(bytes_, at_);
+    at_ += sizeof(T);
+    return value;
+  }
+  template <class T>
+  Vec3 next_xyz() {
+    const double x = next<T>(), y = next<T>(), z = next<T>();
+    return {x, y, z};
+  }
+  RgbF next_rgb() {
+    const float r = next<float>(), g = next<float>(), b = next<float>();
+    return {r, g, b};
+  }
+  void skip(std::size_t size) { at_ += size; }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+/// The header's text without comments, and the rest of the file.
+struct Parts {
+  std::string header;
+  std::string_view body;
+  UpAxis up = UpAxis::y;
+};
+
+Parts parts_of(std::string_view bytes) {
+  constexpr std::size_t longest_header = 4096;
+  const std::size_t end = bytes.substr(0, longest_header).find("\nend_header\n");
+  if (!bytes.starts_with("ply\n") || end == std::string_view::npos) fail("header", "not a PLY file of Alvor");
+  Parts parts{{}, bytes.substr(end + 1 + last_line.size())};
+  for (std::string_view rest = bytes.substr(0, end + 1); !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n') + 1);
+    if (line == z_up_comment) parts.up = UpAxis::z;
+    if (!line.starts_with("comment")) parts.header += line;
+    rest.remove_prefix(line.size());
+  }
+  return parts;
+}
+
+/// Takes `expected` off the front of a header.
+void take(std::string_view& text, std::string_view expected) {
+  if (!text.starts_with(expected))
+    fail("header", "expected '" + std::string(expected.substr(0, expected.find('\n'))) + "' and what Alvor writes after it");
+  text.remove_prefix(expected.size());
+}
+
+std::size_t take_count(std::string_view& text) {
+  std::uint32_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc{} || count > std::numeric_limits<std::int32_t>::max()) fail("header", "a count is not below 2^31");
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  take(text, "\n");
+  return count;
+}
+
+struct Counts {
+  std::size_t vertices = 0, faces = 0;
+};
+
+Counts counts_of(std::string_view text) {
+  Counts counts;
+  take(text, first_lines);
+  take(text, vertex_element);
+  counts.vertices = take_count(text);
+  take(text, vertex_properties);
+  take(text, face_element);
+  counts.faces = take_count(text);
+  take(text, face_properties);
+  if (!text.empty()) fail("header", "more than vertices and faces");
+  return counts;
+}
+
+void read_vertices(Reader& reader, std::size_t count, DisplayMesh& mesh) {
+  mesh.positions.resize(count);
+  mesh.normals.resize(count);
+  mesh.irradiance.resize(count);
+  mesh.radiosity.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    mesh.positions[i] = reader.next_xyz<double>();
+    mesh.normals[i] = reader.next_xyz<float>();
+    mesh.irradiance[i] = reader.next_rgb();
+    mesh.radiosity[i] = reader.next_rgb();
+    reader.skip(3);
+  }
+}
+
+void read_faces(Reader& reader, std::size_t count, DisplayMesh& mesh) {
+  mesh.triangles.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (reader.next<std::uint8_t>() != 3) fail("face " + std::to_string(i), "not a triangle");
+    for (std::uint32_t& vertex : mesh.triangles[i]) vertex = reader.next<std::uint32_t>();
+  }
+}
+
+}  // namespace
+
+std::string encode_ply(const DisplayMesh& mesh) {
+  if (mesh.triangles.empty()) fail("mesh", "has no triangles");
+  if (mesh.positions.size() > std::numeric_limits<std::int32_t>::max()) fail("mesh", "has 2^31 vertices or more");
+  const double exposure = automatic_exposure(mesh);
+  std::string bytes = header(mesh.positions.size(), mesh.triangles.size(), mesh.up);
+  bytes.reserve(bytes.size() + mesh.positions.size() * vertex_size + mesh.triangles.size() * face_size);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    append_xyz<double>(bytes, mesh.positions[i]);
+    append_xyz<float>(bytes, mesh.normals[i]);
+    append_rgb(bytes, mesh.irradiance[i]);
+    append_rgb(bytes, mesh.radiosity[i]);
+    append_colour(bytes, tone_map(exposure * widen(mesh.radiosity[i])));
+  }
+  for (const auto& triangle : mesh.triangles) {
+    append_value(bytes, std::uint8_t{3});
+    for (const std::uint32_t vertex : triangle) append_value(bytes, static_cast<std::int32_t>(vertex));
+  }
+  return bytes;
+}
+
+DisplayMesh decode_ply(std::string_view bytes) {
+  const Parts parts = parts_of(bytes);
+  const Counts counts = counts_of(parts.header);
+  if (parts.body.size() != counts.vertices * vertex_size + counts.faces * face_size)
+    fail("body", "the size is not that of the vertices and faces the header counts");
+  DisplayMesh mesh;
+  mesh.up = parts.up;
+  Reader reader(parts.body);
+  read_vertices(reader, counts.vertices, mesh);
+  read_faces(reader, counts.faces, mesh);
+  return mesh;
+}
+
+}  // namespace alvor

@@ -1,0 +1,89 @@
+#include "client/export/solution_file.h"
+
+#include "client/export/glb_file.h"
+#include "client/export/ply_file.h"
+#include "import/scene_format.h"
+#include "import/whole_file.h"
+
+#include <cmath>
+
+namespace alvor {
+namespace {
+
+struct Format {
+  std::string (*encode)(const DisplayMesh&);
+  DisplayMesh (*decode)(std::string_view);
+};
+
+Format format_of(const std::string& extension, const std::string& name) {
+  if (extension == ".glb") return {encode_glb, decode_glb};
+  if (extension == ".ply") return {encode_ply, decode_ply};
+  throw SolutionFileError(name + ": name: a solution file ends in .glb or .ply");
+}
+
+constexpr double largest_coordinate = 1e10;  // metres; scenes end at 1e9
+
+bool is_place(const Vec3& p) {
+  return std::abs(p.x) < largest_coordinate && std::abs(p.y) < largest_coordinate && std::abs(p.z) < largest_coordinate;
+}
+
+/// Throws unless whoever draws or probes the mesh can rely on it.
+void check_vertices(const DisplayMesh& mesh) {
+  const std::size_t count = mesh.positions.size();
+  if (mesh.normals.size() != count || mesh.irradiance.size() != count || mesh.radiosity.size() != count)
+    throw SolutionFileError("vertices: positions, normals and values are not equally many");
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool values = mesh.irradiance[i].is_finite() && mesh.radiosity[i].is_finite();
+    if (!values || !is_place(mesh.positions[i]) || !is_place(mesh.normals[i]))
+      throw SolutionFileError("vertex " + std::to_string(i) + ": not finite, or beyond 1e10 m");
+  }
+}
+
+void check_triangles(const DisplayMesh& mesh) {
+  if (mesh.triangles.empty()) throw SolutionFileError("triangles: there are none");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      if (vertex >= mesh.positions.size())
+        throw SolutionFileError("triangle " + std::to_string(i) + ": there is no vertex " + std::to_string(vertex));
+}
+
+DisplayMesh checked(DisplayMesh mesh) {
+  check_vertices(mesh);
+  check_triangles(mesh);
+  return mesh;
+}
+
+/// Calls `work`; its errors leave as SolutionFileError that begin with the file.
+template <class Work>
+auto naming(const std::string& name, Work work) {
+  try {
+    return work();
+  } catch (const SolutionFileError& error) {
+    throw SolutionFileError(name + ": " + error.what());
+  } catch (const FileError& error) {
+    throw SolutionFileError(error.what());
+  }
+}
+
+}  // namespace
+
+void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh) {
+  const Format format = format_of(lower_case_extension(path), path.string());
+  naming(path.string(), [&] { write_whole_file(path, format.encode(mesh)); });
+}
+
+std::string encode_solution(const DisplayMesh& mesh, const std::string& extension) {
+  return format_of(extension, extension).encode(mesh);
+}
+
+DisplayMesh read_solution_file(const std::filesystem::path& path) {
+  const Format format = format_of(lower_case_extension(path), path.string());
+  return naming(path.string(), [&] { return checked(format.decode(read_whole_file(path))); });
+}
+
+DisplayMesh decode_solution(std::string_view bytes, const std::string& extension, const std::string& name) {
+  const Format format = format_of(extension, name);
+  return naming(name, [&] { return checked(format.decode(bytes)); });
+}
+
+}  // namespace alvor

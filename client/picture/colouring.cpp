@@ -1,0 +1,34 @@
+#include "client/picture/colouring.h"
+
+#include "client/picture/colour_map.h"
+
+#include <utility>
+
+namespace alvor {
+namespace {
+
+ColourScale scale_for(const Stage& stage, const Camera& camera, const FalseColour& options) {
+  if (options.scale) return *options.scale;
+  std::vector<double> values;
+  stage.glance(camera, [&](const Seen& seen) { values.push_back(value_of(stage.irradiance(seen), options.band)); });
+  return automatic_scale(std::move(values), options.logarithmic);
+}
+
+// Most find the note taken: reading it does not slow the other threads down.
+void note(std::atomic<bool>& flag) {
+  if (!flag.load(std::memory_order_relaxed)) flag.store(true, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+Colouring::Colouring(const Stage& stage, const Camera& camera, const FalseColour& options)
+    : stage_(stage), band_(options.band), scale_(scale_for(stage, camera, options)) {}
+
+Rgb Colouring::colour(const Seen& seen) const {
+  const double value = value_of(stage_.irradiance(seen), band_);
+  if (value < scale_.low) note(below_);
+  if (value > scale_.high) note(above_);
+  return colour_map(scale_.position(value));
+}
+
+}  // namespace alvor

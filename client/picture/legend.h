@@ -1,0 +1,41 @@
+#pragma once
+// What the colours of a false-colour picture mean, drawn beside it.
+
+#include "client/picture/camera.h"
+#include "client/picture/colour_map.h"
+#include "client/picture/colour_scale.h"
+#include "client/picture/png_file.h"
+
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+struct Legend {
+  ColourScale scale;
+  std::vector<std::string> title;  ///< lines above the bar; the unit is the last
+  bool values_below = false;       ///< the ends stand for what lies beyond them too, and say so
+  bool values_above = false;
+  Rgb (*colours)(double position) = colour_map;  ///< of the bar
+};
+
+/// A label of the bar.
+struct LegendLabel {
+  double position = 0;  ///< 0 at the bar's foot, 1 at its top
+  std::string text;
+};
+
+/// From the foot up: the ends of the scale, and the round numbers between them that keep `least_distance` from the others.
+/// Requires: 0 < least_distance <= 1.
+std::vector<LegendLabel> labels_of(const Legend& legend, double least_distance);
+
+/// What a legend adds to the width of a picture of this height, pixels.
+int legend_width(int picture_height);
+
+/// Whether a picture of this size has room for a legend and something to see beside it.
+bool legend_fits(PictureSize picture);
+
+/// `view` with the legend at its right: wider by legend_width. Labels of very many digits cover a little of the view.
+Image with_legend(const Image& view, const Legend& legend);
+
+}  // namespace alvor

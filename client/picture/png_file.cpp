@@ -1,0 +1,48 @@
+#include "client/picture/png_file.h"
+
+#include "import/whole_file.h"
+
+#include <png.h>
+
+#include <cassert>
+#include <string>
+
+namespace alvor {
+namespace {
+
+/// libpng's simplified interface: no setjmp. Frees what it holds at the end of scope.
+struct PngWriter {
+  png_image header{};
+  explicit PngWriter(const Image& image) {
+    header.version = PNG_IMAGE_VERSION;
+    header.width = static_cast<png_uint_32>(image.width);
+    header.height = static_cast<png_uint_32>(image.height);
+    header.format = PNG_FORMAT_RGB;
+  }
+  ~PngWriter() { png_image_free(&header); }
+  PngWriter(const PngWriter&) = delete;
+  PngWriter& operator=(const PngWriter&) = delete;
+
+  bool encode(const Image& image, void* out, png_alloc_size_t& size) {
+    return png_image_write_to_memory(&header, out, &size, 0, image.rgb.data(), 0, nullptr) != 0;
+  }
+};
+
+}  // namespace
+
+std::string encode_png(const Image& image, const std::string& name) {
+  assert(image.rgb.size() == std::size_t{3} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  PngWriter writer(image);
+  // Not compressible means a few bytes more than the pixels; the macro is libpng's bound for that.
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(writer.header);
+  std::string bytes(size, '\0');
+  if (!writer.encode(image, bytes.data(), size)) throw FileError(name + ": encode: " + writer.header.message);
+  bytes.resize(size);
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  write_whole_file(path, encode_png(image, path.string()));
+}
+
+}  // namespace alvor

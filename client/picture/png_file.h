@@ -1,0 +1,24 @@
+#pragma once
+// Pictures out.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+/// Rows from the top; three sRGB bytes per pixel.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// Returns the bytes of a PNG file. Throws FileError (import/whole_file.h) that begins with `name`.
+std::string encode_png(const Image& image, const std::string& name);
+
+/// The file appears whole or not at all. Throws FileError.
+void write_png(const std::filesystem::path& path, const Image& image);
+
+}  // namespace alvor

@@ -1,2 +1,0 @@
-#define TINYGLTF_IMPLEMENTATION
-#include "client/tiny_gltf.h"

@@ -1,0 +1,138 @@
+#include "client/verify/gather.h"
+
+#include "client/picture/tone_map.h"
+#include "client/verify/cosine_direction.h"
+#include "client/verify/irradiance_estimate.h"
+#include "radiosity/form_factors/form_factor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::uint32_t rounds = 64, rays_per_round = 64;
+/// Shadow rays, shared among emitting triangles by what each could bring at most; each has some.
+constexpr double shadow_rays = 2048;
+constexpr std::uint32_t least_shadow_rays = 4;
+constexpr std::uint32_t trial_rays = 128;
+/// Shadow rays end this far before the emitter, of their length: float32 would meet it.
+constexpr double before_emitter = 1e-5;
+
+// Streams of random numbers of one point.
+enum Purpose : std::uint64_t { trial, indirect, direct };
+
+/// What one emitting triangle brings where nothing stands between.
+struct Unblocked {
+  std::uint32_t triangle;
+  Rgb irradiance;
+};
+
+}  // namespace
+
+Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption)
+    : mesh_(mesh), caster_(caster), medium_{absorption}, is_emitter_(mesh.triangles.size()) {
+  const auto vertex_emits = [&](std::uint32_t vertex) { return emits(mesh.radiosity[vertex], mesh.irradiance[vertex]); };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    is_emitter_[t] = std::ranges::any_of(mesh.triangles[t], vertex_emits);
+    if (is_emitter_[t]) emitters_.push_back(t);
+  }
+}
+
+std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+  if (is_enclosed(point, stream)) return std::nullopt;
+  const GatheredIrradiance first = from_emitters(point, normal, stream), second = from_other_surfaces(point, normal, stream);
+  return GatheredIrradiance{first.irradiance + second.irradiance, std::hypot(first.standard_error, second.standard_error)};
+}
+
+bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
+  PathRandom random(stream, trial, 0);
+  const EvenPairs directions(random);
+  std::uint32_t fronts = 0, backs = 0;
+  for (std::uint32_t n = 0; n < trial_rays; ++n) {
+    const Vec3 direction = uniform_direction(directions[n]);
+    const auto hit = caster_.cast(point, direction);
+    if (!hit) continue;
+    const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
+    ++(dot(area, direction) < 0 ? fronts : backs);
+  }
+  return backs >= fronts;
+}
+
+GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+  std::vector<Unblocked> unblocked;
+  double total = 0;
+  for (const std::uint32_t t : emitters_) {
+    const std::array<Vec3, 3> corners{corner(t, 0), corner(t, 1), corner(t, 2)};
+    const double form_factor = point_to_polygon(point, normal, corners);
+    if (form_factor <= 0) continue;
+    unblocked.push_back({t, form_factor * radiosity(t, 1.0 / 3, 1.0 / 3)});
+    total += unblocked.back().irradiance.mean();
+  }
+  GatheredIrradiance sum;
+  double variance = 0;
+  for (const auto& [triangle, most] : unblocked) {
+    const auto rays = least_shadow_rays + static_cast<std::uint32_t>(shadow_rays * most.mean() / total);
+    const VisibleShare share = visible_share(point, normal, triangle, rays, stream);
+    sum.irradiance += share.mean * most;
+    variance += most.mean() * most.mean() * share.variance;
+  }
+  sum.standard_error = std::sqrt(variance);
+  return sum;
+}
+
+Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uint32_t triangle, std::uint32_t rays,
+                                               std::uint64_t stream) const {
+  PathRandom random(stream, direct, triangle);
+  const EvenPairs places(random);
+  const Vec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2), area = cross(b - a, c - a);
+  // The kernel at each place, cos cos / r2 up to a factor, and how much of the light gets here: a ratio estimate of both.
+  Rgb arriving;
+  double all = 0, all_squared = 0, product = 0, arriving_squared = 0, used = 0;
+  for (std::uint32_t n = 0; n < rays; ++n) {
+    const auto [u, v] = places[n];
+    const double edge = std::sqrt(u);
+    const Vec3 place = a + edge * (1 - v) * (b - a) + edge * v * (c - a), way = place - point;
+    const double kernel = std::max(0.0, dot(normal, way)) * std::max(0.0, -dot(area, way)) / std::pow(dot(way, way), 2);
+    if (!(kernel > 0)) continue;
+    ++used;
+    all += kernel;
+    all_squared += kernel * kernel;
+    if (caster_.is_blocked(point, lerp(place, point, before_emitter))) continue;
+    const Rgb light = kernel * medium_.transmittance(length(way));
+    arriving += light;
+    product += kernel * light.mean();
+    arriving_squared += light.mean() * light.mean();
+  }
+  if (used < 2) return {{1, 1, 1}, 0.25};  // a sliver above the horizon
+  const Rgb mean = arriving * (1 / all);
+  const double m = mean.mean();
+  return {mean, std::max(0.0, arriving_squared - 2 * m * product + m * m * all_squared) / (all * all) * used / (used - 1)};
+}
+
+GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+  IrradianceEstimate estimate;
+  for (std::uint32_t round = 0; round < rounds; ++round) {
+    PathRandom random(stream, indirect, round);
+    const EvenPairs directions(random);
+    Rgb sum;
+    for (std::uint32_t n = 0; n < rays_per_round; ++n) {
+      const Vec3 direction = cosine_direction(normal, directions[n]);
+      const auto hit = caster_.cast(point, direction);
+      if (!hit || is_emitter_[hit->triangle]) continue;
+      const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
+      if (dot(area, direction) < 0) sum += medium_.transmittance(hit->distance) * radiosity(hit->triangle, hit->u, hit->v);
+    }
+    estimate.add(sum * (1.0 / rays_per_round));
+  }
+  return {estimate.mean(), std::sqrt(estimate.variance_of_band_mean())};
+}
+
+Rgb Gatherer::radiosity(std::uint32_t triangle, double u, double v) const {
+  const auto [a, b, c] = mesh_.triangles[triangle];
+  return (1 - u - v) * widen(mesh_.radiosity[a]) + u * widen(mesh_.radiosity[b]) + v * widen(mesh_.radiosity[c]);
+}
+
+}  // namespace alvor

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "import/scene_file.h"
+
+#include <iosfwd>
+
+namespace alvor {
+
+/// Reads OBJ with its MTL files through tinyobjloader: faces in the order of the `f` lines, polygons of any size, coordinates in
+/// double. (Assimp regroups the faces by object and material, and rounds to float.) Points, lines and two-cornered faces are
+/// skipped; materials that no face uses are left out. The scene is not checked further. Throws ImportError.
+SceneFile import_obj(const std::filesystem::path& path);
+
+/// Reads OBJ from a stream; `folder` is where its MTL files and textures are.
+SceneFile import_obj(std::istream& stream, const std::filesystem::path& folder);
+
+}  // namespace alvor

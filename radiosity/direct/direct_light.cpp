@@ -1,0 +1,329 @@
+#include "radiosity/direct/direct_light.h"
+
+#include "radiosity/direct/quarter_plane.h"
+#include "radiosity/direct/visible_fraction.h"
+#include "radiosity/form_factors/form_factor.h"
+#include "radiosity/rays/medium.h"
+#include "radiosity/rays/ray_source.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t receivers_per_batch = 64;
+constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
+constexpr double worth_a_closer_look = 0.1;  // of what arrives: weaker emitters get no more rays
+constexpr float short_of_emitter = 1 - 1e-4f;
+
+using Lanes = std::array<float, RayPacket::width>;
+
+/// The shadow rays of a batch of receivers.
+template <bool occlusion, bool medium>
+class ShadowBatch {
+ public:
+  ShadowBatch(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers, std::uint64_t seed,
+              RayBudget& budget, std::span<DirectLight> light)
+      : scene_(scene),
+        medium_{scene.mesh().absorption()},
+        emitters_(emitters),
+        receivers_(receivers),
+        seed_(seed),
+        budget_(budget),
+        light_(light) {}
+
+  void add_all() {
+    if (occlusion || medium) place_points();
+    for (std::size_t r = 0; r < receivers_.size(); ++r)
+      for (std::uint32_t e = 0; e < emitters_.size(); ++e) look_at(r, e);
+    add_looked_at();
+  }
+
+  void add_chosen(const LightTree& tree) {
+    place_points();
+    std::vector<LightChoice> choices(receivers_.size());
+    for (std::size_t r = 0; r < receivers_.size(); ++r) {
+      if (receivers_[r].hidden_origins == 0xffff) continue;
+      const Sphere sphere = around(receivers_[r].shape);
+      choices[r] = tree.choose(sphere.centre, sphere.radius, normal_of(receivers_[r]));
+      std::ranges::sort(choices[r].single);
+      for (const std::uint32_t e : choices[r].single) look_at(r, e);
+    }
+    add_looked_at();
+    for (std::size_t r = 0; r < receivers_.size(); ++r)
+      if (choices[r].rest_bound > 0) add_rest(r, choices[r], tree);
+  }
+
+ private:
+  /// A receiver and an emitter that face each other.
+  struct Lit {
+    std::size_t receiver;
+    std::uint32_t emitter;
+    std::array<double, 4> form_factor;  // by quarter
+    VisibleFraction fraction;
+    double mean_form_factor() const { return (form_factor[0] + form_factor[1] + form_factor[2] + form_factor[3]) / 4; }
+  };
+  struct Sphere {
+    Vec3 centre;
+    double radius;
+  };
+
+  void place_points() {
+    for (const Receiver& receiver : receivers_) {
+      RandomStream random(seed_, receiver.patch);
+      points_.push_back(sample_points(scene_, receiver.shape, random));
+    }
+  }
+  Vec3 normal_of(const Receiver& receiver) const { return scene_.mesh().roots()[receiver.shape.root].normal; }
+  Vec3 local_point(Uv at, std::uint32_t root) const {
+    return scene_.frame().to_local(scene_.mesh().roots()[root].at(at.u, at.v));
+  }
+  Sphere around(const PatchShape& shape) const {
+    Sphere sphere{local_point(shape.centre(), shape.root), 0};
+    const auto corners = corners_of(scene_.mesh(), shape);
+    for (int c = 0; c < shape.corner_count; ++c)
+      sphere.radius = std::max(sphere.radius, length(scene_.frame().to_local(corners[c]) - sphere.centre));
+    return sphere;
+  }
+
+  void look_at(std::size_t r, std::uint32_t e) {
+    const PatchShape& shape = receivers_[r].shape;
+    const std::uint32_t root = emitters_[e].root;
+    if (shape.root == root || receivers_[r].hidden_origins == 0xffff) return;
+    const auto corners = scene_.corners(root);
+    const Vec3 normal = normal_of(receivers_[r]), front = scene_.mesh().roots()[root].normal;
+    Lit lit{r, e, {}, {}};
+    for (int k = 0; k < 4; ++k) {
+      const Vec3 at = local_point(shape.child(k).centre(), shape.root);
+      if (dot(at - corners[0], front) > 0) lit.form_factor[k] = point_to_polygon(at, normal, corners);
+    }
+    if (lit.mean_form_factor() > 0) lit_.push_back(lit);
+  }
+
+  void add_looked_at() {
+    if constexpr (occlusion || medium) trace_looked_at();
+    else
+      for (Lit& lit : lit_) lit.fraction = VisibleFraction::all();
+    for (const Lit& lit : lit_) add(lit);
+  }
+  void trace_looked_at() {
+    std::vector<std::size_t> some(lit_.size());
+    for (std::size_t k = 0; k < some.size(); ++k) some[k] = k;
+    trace(some, 0, 1);
+    const std::vector<double> brightness = brightness_of_receivers();
+    std::erase_if(some, [&](std::size_t k) {
+      return !lit_[k].fraction.mixed() || unblocked(lit_[k]) < worth_a_closer_look * brightness[lit_[k].receiver];
+    });
+    trace(some, 1, packets_when_mixed);
+    for (Lit& lit : lit_) lit.fraction.finish();
+  }
+  double unblocked(const Lit& lit) const { return lit.mean_form_factor() * emitters_[lit.emitter].emission.mean(); }
+  /// What the first rays say.
+  std::vector<double> brightness_of_receivers() {
+    std::vector<double> brightness(receivers_.size());
+    for (Lit& lit : lit_) {
+      lit.fraction.finish();
+      brightness[lit.receiver] += unblocked(lit) * lit.fraction.value();
+    }
+    return brightness;
+  }
+
+  void add(const Lit& lit) const {
+    DirectLight& light = light_[lit.receiver];
+    const Rgb& emission = emitters_[lit.emitter].emission;
+    const double form_factor = lit.mean_form_factor(), visible = form_factor * lit.fraction.value();
+    if (visible <= 0) return;
+    const Rgb arriving = medium ? form_factor * (lit.fraction.dimmed() * emission) : visible * emission;
+    light.irradiance += arriving;
+    const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / form_factor;
+    const QuarterPlane unblocked(lit.form_factor, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
+    for (int o = 0; o < origins_per_patch; ++o)
+      light.at_origin[o] += static_cast<float>(scale * unblocked.at_origin(o) * lit.fraction.value(o));
+    light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());
+    light.origin_variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.origin_variance());
+  }
+
+  void trace(std::span<const std::size_t> lit, std::uint32_t first_round, std::uint32_t rounds) {
+    rays_.resize(lit.size() * rounds);
+    weights_.resize(rays_.size());
+    blocked_.resize(rays_.size());
+    for (std::size_t n = 0; n < rays_.size(); ++n) {
+      const Lit& pair = lit_[lit[n / rounds]];
+      aim(pair.receiver, emitters_[pair.emitter], first_round + static_cast<std::uint32_t>(n % rounds), n);
+    }
+    if (rays_.empty()) return;
+    find_blocked();
+    for (std::size_t n = 0; n < rays_.size(); ++n) count(lit_[lit[n / rounds]].fraction, n);
+  }
+
+  void find_blocked() {
+    if constexpr (occlusion)
+      budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
+  }
+
+  /// Ray o goes from origin o to a point of the emitter; `round` counts the packets of one pair.
+  void aim(std::size_t r, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
+    const Receiver& receiver = receivers_[r];
+    const PatchPoints& from = points_[r];
+    const std::uint64_t scramble =
+        mix_bits(seed_ ^ mix_bits(receiver.patch.bits()) ^ (emitter.root + 1ull) * 0x9e3779b97f4a7c15u);
+    const std::uint32_t turn = static_cast<std::uint32_t>(scramble >> 60) ^ (round * 5);
+    for (std::uint32_t o = 0; o < origins_per_patch; ++o) {
+      const Uv target = sobol_point(16 * round + (o ^ turn), static_cast<std::uint32_t>(scramble),
+                                    static_cast<std::uint32_t>(mix_bits(scramble)));
+      set_ray(packet, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root, target);
+    }
+    hide(packet, receiver);
+  }
+
+  void set_ray(std::size_t packet, int o, Float3 from, std::uint32_t root, Uv target) {
+    const LocalRoot& to = scene_.root(root);
+    if (!to.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
+    const auto u = static_cast<float>(target.u), v = static_cast<float>(target.v);
+    const auto at = [&](float origin, float edge_u, float edge_v, float twist) {
+      return origin + u * edge_u + v * edge_v + u * v * twist;
+    };
+    RayPacket& rays = rays_[packet];
+    rays.origin_x[o] = from.x, rays.origin_y[o] = from.y, rays.origin_z[o] = from.z;
+    rays.direction_x[o] = at(to.origin.x, to.edge_u.x, to.edge_v.x, to.twist.x) - from.x;
+    rays.direction_y[o] = at(to.origin.y, to.edge_u.y, to.edge_v.y, to.twist.y) - from.y;
+    rays.direction_z[o] = at(to.origin.z, to.edge_u.z, to.edge_v.z, to.twist.z) - from.z;
+    rays.t_min[o] = 0;
+    rays.t_max[o] = short_of_emitter;
+    there_[o] = to.normal;
+  }
+
+  /// Weighs each ray by cos cos / r2, direction being from patch to emitter; 0 for hidden origins.
+  void hide(std::size_t packet, const Receiver& receiver) {
+    const Float3& n = scene_.root(receiver.shape.root).normal;
+    const RayPacket& rays = rays_[packet];
+    for (int o = 0; o < RayPacket::width; ++o) {
+      const Float3& m = there_[o];
+      const float x = rays.direction_x[o], y = rays.direction_y[o], z = rays.direction_z[o];
+      const float squared = x * x + y * y + z * z;
+      const float here = std::max(0.0f, x * n.x + y * n.y + z * n.z), there = std::max(0.0f, -(x * m.x + y * m.y + z * m.z));
+      weights_[packet][o] = receiver.hidden_origins >> o & 1 ? 0 : here * there / (squared * squared + 1e-30f);
+    }
+  }
+
+  void count(VisibleFraction& fraction, std::size_t packet) const {
+    ++fraction.rays_per_origin;
+    for (int o = 0; o < RayPacket::width; ++o) {
+      const float weight = weights_[packet][o];
+      if (weight == 0) continue;
+      fraction.weight[o] += weight;
+      const bool is_blocked = blocked_[packet] >> o & 1;
+      (is_blocked ? fraction.any_blocked : fraction.any_visible) = true;
+      if (is_blocked) continue;
+      fraction.visible[o] += weight;
+      if constexpr (medium) fraction.arriving += double(weight) * medium_.transmittance(distance(rays_[packet], o));
+    }
+  }
+  double distance(const RayPacket& rays, int o) const {
+    return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
+  }
+
+  /// Emitters that bring little each: a number of rays that does not depend on what they find, or the mean would be dark.
+  void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
+    const Samples samples = sample_rest(r, choice, tree);
+    if (samples.count == 0) return;
+    const Rgb mean = (1 / samples.count) * samples.sum;
+    light_[r].irradiance += mean;
+    for (float& there : light_[r].at_origin) there += static_cast<float>(mean.mean());
+    light_[r].variance +=
+        static_cast<float>(std::max(0.0, samples.squares / samples.count - mean.mean() * mean.mean()) / samples.count);
+  }
+  struct Samples {
+    Rgb sum;
+    double squares = 0, count = 0;
+  };
+  Samples sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
+    const Receiver& receiver = receivers_[r];
+    const PatchPoints& from = points_[r];
+    RandomStream random(seed_ + 1, receiver.patch);
+    const Sphere sphere = around(receiver.shape);
+    rays_.resize(packets_of_rest);
+    weights_.resize(packets_of_rest);
+    blocked_.resize(packets_of_rest);
+    std::array<Rgb, packets_of_rest * RayPacket::width> brings{};
+    for (std::size_t n = 0; n < brings.size(); ++n) {
+      const auto o = n % RayPacket::width;
+      const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
+      const Emitter& emitter = emitters_[drawn.emitter];
+      const double scale = scene_.frame().metres_per_unit, area = scene_.mesh().roots()[emitter.root].area / (scale * scale);
+      set_ray(n / RayPacket::width, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root,
+              {random.next(), random.next()});
+      if (drawn.probability > 0) brings[n] = (area / (std::numbers::pi * drawn.probability)) * emitter.emission;
+      if (o + 1 == RayPacket::width) hide(n / RayPacket::width, receiver);
+    }
+    find_blocked();
+    Samples samples;
+    for (std::size_t n = 0; n < brings.size(); ++n) {
+      const auto packet = n / RayPacket::width, o = n % RayPacket::width;
+      if (receiver.hidden_origins >> o & 1) continue;
+      samples.count += 1;
+      if (blocked_[packet] >> o & 1) continue;
+      Rgb arriving = double(weights_[packet][o]) * brings[n];
+      if constexpr (medium) arriving = medium_.transmittance(distance(rays_[packet], static_cast<int>(o))) * arriving;
+      samples.sum += arriving;
+      samples.squares += arriving.mean() * arriving.mean();
+    }
+    return samples;
+  }
+
+  const LocalScene& scene_;
+  Medium medium_;
+  std::span<const Emitter> emitters_;
+  std::span<const Receiver> receivers_;
+  std::uint64_t seed_;
+  RayBudget& budget_;
+  std::span<DirectLight> light_;
+  std::vector<PatchPoints> points_;  // by receiver
+  std::vector<Lit> lit_;
+  std::vector<RayPacket> rays_;
+  std::vector<Lanes> weights_;
+  std::vector<std::uint16_t> blocked_;
+  std::array<Float3, RayPacket::width> there_;
+};
+
+/// Calls work(batch) for each batch of receivers, in parallel.
+template <bool occlusion, bool medium, class Work>
+void in_batches(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
+                std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, Work&& work) {
+  const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
+  tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
+    if (budget.is_out()) return;
+    const std::size_t first = batch * receivers_per_batch, count = std::min(receivers_per_batch, receivers.size() - first);
+    work(ShadowBatch<occlusion, medium>(scene, emitters, receivers.subspan(first, count), seed, budget,
+                                        light.subspan(first, count)));
+  });
+}
+
+/// Calls in_batches with these arguments, compiled for what is needed.
+template <class... Arguments>
+void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
+  if (needs.occlusion && needs.medium) return in_batches<true, true>(arguments...);
+  if (needs.occlusion) return in_batches<true, false>(arguments...);
+  if (needs.medium) return in_batches<false, true>(arguments...);
+  in_batches<false, false>(arguments...);
+}
+
+}  // namespace
+
+void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
+                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs) {
+  in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [](auto&& batch) { batch.add_all(); });
+}
+
+void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
+                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light,
+                      ShadowNeeds needs) {
+  in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [&](auto&& batch) { batch.add_chosen(tree); });
+}
+
+}  // namespace alvor

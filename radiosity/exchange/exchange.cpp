@@ -1,0 +1,38 @@
+#include "radiosity/exchange/exchange.h"
+
+#include <limits>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t most_steps = 1000;  // per patch: no strategy needs them unless rho is above 0.99
+constexpr std::size_t patience = 64;      // steps per patch without a new low
+
+double share(double remaining, double all) {
+  if (remaining == 0) return 0;
+  return all > 0 ? remaining / all : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double Exchange::remaining_error() const {
+  const Rgb remaining = amplification() * unshot_rms(), all = mean_radiosity();
+  return Rgb{share(remaining.r, all.r), share(remaining.g, all.g), share(remaining.b, all.b)}.max();
+}
+
+Settling settle(Exchange& exchange, double enough, const std::function<bool(std::size_t steps)>& after_each) {
+  double lowest = exchange.remaining_error();
+  std::size_t steps = 0, low_at = 0;
+  while (lowest > enough) {
+    const std::size_t done = exchange.sweep();
+    steps += done;
+    if (!after_each(done)) return Settling::stopped;
+    if (const double now = exchange.remaining_error(); now < lowest) lowest = now, low_at = steps;
+    const std::size_t patches = exchange.patch_count();
+    if (done == 0 || steps - low_at > patience * patches || steps > most_steps * patches) break;
+  }
+  return lowest <= enough ? Settling::settled : Settling::stalled;
+}
+
+}  // namespace alvor

@@ -1,0 +1,197 @@
+#include "radiosity/exchange/gathering.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+constexpr double least_gain = 0.01;          // of the squared residual: with less a plain step does better, and ends what stalls
+constexpr std::size_t few_units = 128;       // of a coarse grid that costs next to nothing
+constexpr std::size_t many_units = 400;      // of one for light that goes round slowly
+constexpr std::size_t sweeps_looked_at = 4;  // to see whether it does
+constexpr double slow = 0.004;               // of the squared residual: more is left after these, half in each
+
+Rgb ratio(const Rgb& a, const Rgb& b) {
+  const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
+  return {band(a.r, b.r), band(a.g, b.g), band(a.b, b.b)};
+}
+
+}  // namespace
+
+Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
+                     std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
+                     std::vector<PatchId> ids, GatheringNeeds needs)
+    : patches_(patches),
+      leaf_of_place_(leaf_of_place),
+      own_radiosity_(own_radiosity),
+      hit_leaf_(std::move(hit_leaf)),
+      is_accelerated_(needs.acceleration),
+      leaving_(leaf_count, needs.three_bands),
+      irradiance_(std::move(irradiance)),
+      residual_(patches.size()),
+      ids_(std::move(ids)) {
+  for (const ShootingPatch& patch : patches_) {
+    power_weight_.push_back(patch.area * patch.reflectance);
+    area_ += patch.area;
+  }
+  find_own_power();
+  ambient_gain_ = ambient_gain(patches_);
+  amplification_ = alvor::amplification(patches_, reflectance_seen());
+  spread([this](std::size_t p, std::uint32_t place) { return own_radiosity_[place] + patches_[p].reflectance * irradiance_[p]; });
+  gather(residual_);
+  for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
+  find_unshot();
+  squares_before_ = product(residual_, residual_);
+  if (!is_accelerated_) return;
+  if (CoarseUnits units = ancestors(ids_, few_units); units.count > 1 && units.count <= few_units) coarsen(std::move(units));
+}
+
+void Gathering::coarsen(CoarseUnits units) {
+  patch_of_leaf_.resize(leaving_.size());
+  for (std::uint32_t p = 0; p < patches_.size(); ++p)
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      patch_of_leaf_[leaf_of_place_[k]] = p;
+  const RowHits hits{patches_, hit_leaf_, patch_of_leaf_};
+  join_pairs(units, hits, many_units);
+  if (units.count <= many_units) coarse_.emplace(std::move(units), hits);
+}
+
+void Gathering::watch_decrease() {
+  if (++sweeps_ % sweeps_looked_at != 0 || is_finest_ || ids_.empty()) return;
+  const Rgb squares = product(residual_, residual_), limit = slow * squares_before_;
+  squares_before_ = squares;
+  if (squares.r <= limit.r && squares.g <= limit.g && squares.b <= limit.b) return;
+  coarsen(ancestors(ids_, many_units));
+  is_finest_ = true;
+}
+
+template <class Light>
+void Gathering::spread(Light&& light) {
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      leaving_.set(leaf_of_place_[k], light(p, k));
+  });
+}
+
+Rgb Gathering::row_times_radiosity(std::size_t p) const {
+  const TransportRow& row = *patches_[p].row;
+  if (row.rays == 0) return {};
+  const std::span leaf(hit_leaf_[p], row.hits.size());
+  return (1.0 / row.rays) * (row.hit_weight.empty() ? leaving_.sum(leaf) : leaving_.weighted_sum(leaf, row.hit_weight));
+}
+
+void Gathering::gather(std::vector<Rgb>& received) {
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
+}
+
+std::vector<Rgb> Gathering::reflectance_seen() {
+  std::vector<Rgb> seen(patches_.size());
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance; });
+  gather(seen);
+  return seen;
+}
+
+Rgb Gathering::product(std::span<const Rgb> a, std::span<const Rgb> b) const {
+  Rgb sum;
+  for (std::size_t p = 0; p < a.size(); ++p) sum += patches_[p].area * (a[p] * b[p]);
+  return sum;
+}
+
+// As if all leaves of a patch had the same area: it only says how much light there is.
+void Gathering::find_own_power() {
+  for (const ShootingPatch& patch : patches_)
+    for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k)
+      own_power_ += (patch.area / patch.leaf_count) * own_radiosity_[k];
+}
+
+void Gathering::find_unshot() {
+  unshot_power_ = 0;
+  unshot_sum_ = {};
+  Rgb squares;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Rgb unshot = power_weight_[p] * residual_[p];
+    unshot_power_ += absolute(unshot).sum();
+    unshot_sum_ += unshot;
+    if (patches_[p].area > 0) squares += (1 / patches_[p].area) * (unshot * unshot);
+  }
+  unshot_rms_ = {std::sqrt(squares.r / area_), std::sqrt(squares.g / area_), std::sqrt(squares.b / area_)};
+}
+
+void Gathering::make_conjugate(Direction& next) const {
+  for (const Direction& other : directions_) {
+    const Rgb overlap = ratio(product(next.change, other.change), other.norm);
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      next.change[p] -= overlap * other.change[p];
+      next.step[p] -= overlap * other.step[p];
+    }
+  }
+  next.norm = product(next.change, next.change);
+}
+
+std::size_t Gathering::sweep() {
+  if (unshot_power_ == 0) return 0;
+  is_accelerated_ ? conjugate_step() : plain_step();
+  find_unshot();
+  return patches_.size();
+}
+
+/// y := F (e + rho y).
+void Gathering::plain_step() {
+  for (std::size_t p = 0; p < patches_.size(); ++p) irradiance_[p] += residual_[p];
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
+  gather(residual_);
+}
+
+void Gathering::conjugate_step() {
+  watch_decrease();
+  Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
+  if (coarse_) coarse_->correct(residual_, next.step);
+  spread([&](std::size_t p, std::uint32_t) { return patches_[p].reflectance * next.step[p]; });
+  gather(next.change);
+  for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
+  const Direction plain = next;
+  make_conjugate(next);
+  const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
+  const Rgb taken = helps(length, overlap), left = Rgb{1, 1, 1} - taken;
+  advance(taken * length, next.step, next.change);
+  if (!left.is_zero()) advance(left, plain.step, plain.change);
+  remember(std::move(next), taken);
+}
+
+Rgb Gathering::helps(const Rgb& length, const Rgb& overlap) const {
+  const Rgb gain = length * overlap, least = least_gain * product(residual_, residual_);
+  return {double(gain.r > least.r), double(gain.g > least.g), double(gain.b > least.b)};
+}
+
+void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change) {
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    irradiance_[p] += length * step[p];
+    residual_[p] -= length * change[p];
+  }
+}
+
+// A band that took a plain step starts anew: what it remembers no longer counts.
+void Gathering::remember(Direction direction, const Rgb& in_bands) {
+  for (Direction& other : directions_) other.norm = in_bands * other.norm;
+  direction.norm = in_bands * direction.norm;
+  if (directions_.size() < remembered) directions_.push_back(std::move(direction));
+  else directions_[steps_ % remembered] = std::move(direction);
+  ++steps_;
+}
+
+Rgb Gathering::mean_radiosity() const {
+  Rgb power = own_power_;
+  for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
+  return area_ > 0 ? (1 / area_) * power : Rgb{};
+}
+
+std::vector<Rgb> Gathering::irradiance() const {
+  std::vector<Rgb> all(patches_.size());
+  for (std::size_t p = 0; p < patches_.size(); ++p) all[p] = upper(irradiance_[p] + residual_[p], {});
+  return all;
+}
+
+}  // namespace alvor

@@ -1,0 +1,235 @@
+#include "radiosity/exchange/irradiance_field.h"
+
+#include "meshing/tangent_frame.h"
+#include "radiosity/exchange/field_equations.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+constexpr double narrow_window = 1.5, wide_window = 3.5;  // radius, in edges of the row's patch
+constexpr double near_rows = 1.6;                         // closer than this rows count by quarters, else as a whole
+constexpr double misfit_allowed = 1.3;                    // of the noise's variance
+constexpr double residual_noise = 0.8;                    // of a sample's variance is left after a fit that knows it
+constexpr std::size_t most_rows = 64;                     // in a window
+constexpr double same_surface = 0.9;                      // cosine between normals
+
+/// What a number of rays say, and where.
+struct Sample {
+  Vec3 at;
+  Rgb irradiance;
+  double rays = 0;
+};
+
+/// The rows of a window, each once, in the order of arrival.
+class RowSet {
+ public:
+  void add(std::uint32_t row) {
+    std::size_t slot = (row * 0x9e3779b1u >> 23) % slots;
+    for (; table_[slot] != 0; slot = (slot + 1) % slots)
+      if (table_[slot] == row + 1) return;
+    if (count_ == most_rows) return;
+    table_[slot] = row + 1;
+    rows_[count_++] = row;
+  }
+  std::size_t size() const { return count_; }
+  std::uint32_t operator[](std::size_t n) const { return rows_[n]; }
+
+ private:
+  static constexpr std::size_t slots = 512;
+  std::array<std::uint32_t, slots> table_{};
+  std::array<std::uint32_t, most_rows> rows_;
+  std::size_t count_ = 0;
+};
+
+/// Samples around one row.
+struct Window {
+  std::array<Seen, 2 * most_rows + 64> samples;
+  std::size_t count = 0;
+  double noise = 0;  ///< variance of the mean over bands of one ray
+};
+
+template <int n>
+auto fit(const Window& window, double radius) {
+  FieldEquations<n> equations;
+  const double inverse = 1 / (radius * radius);
+  for (std::size_t k = 0; k < window.count; ++k) {
+    const Seen& sample = window.samples[k];
+    const double q = 1 - (sample.s * sample.s + sample.t * sample.t) * inverse;
+    if (q > 0) equations.add(sample, q * q * sample.rays);
+  }
+  return equations.solve();
+}
+
+class Fitter {
+ public:
+  Fitter(const PatchForest& forest, std::span<const NodeIndex> rows, std::span<const SmoothNeighbours> neighbours,
+         std::span<const RowSamples> samples, std::span<const Vec3> centre)
+      : forest_(forest), rows_(rows), neighbours_(neighbours), centre_(centre), place_(forest.node_count()), known_(rows.size()) {
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
+      place_[rows[n]] = static_cast<std::uint32_t>(n);
+      learn(forest.shape(rows[n]), samples[n], known_[n]);
+    });
+  }
+
+  FieldFit fit_at(std::size_t n) const {
+    FieldFit field = frame_of(n);
+    if (known_[n].is_dark) return field;
+    Window window;
+    look_around(n, field, window);
+    choose_fit(n, window, field);
+    field.squared_misfit = misfit_of(n, window, field);
+    return field;
+  }
+
+ private:
+  /// What is known of a row by itself.
+  struct Known {
+    std::array<Sample, 4> quarters;
+    Sample whole;
+    Vec3 normal;
+    double edge = 0;
+    double noise = -1;  ///< variance of one ray, by what no plane through the quarters explains; negative: not known
+    bool is_dark = true;
+  };
+
+  void learn(const PatchShape& shape, const RowSamples& samples, Known& known) const {
+    const RootPatch& root = forest_.mesh().roots()[shape.root];
+    known.normal = root.normal;
+    known.edge = std::sqrt(area_of(forest_.mesh(), shape));
+    Rgb sum;
+    for (int k = 0; k < 4; ++k) {
+      const Uv c = shape.child(k).centre();
+      known.quarters[k] = {root.at(c.u, c.v), samples[k].irradiance, samples[k].rays};
+      known.whole.rays += samples[k].rays;
+      known.whole.at += samples[k].rays * known.quarters[k].at;
+      sum += samples[k].rays * samples[k].irradiance;
+    }
+    if (known.whole.rays == 0) return;
+    known.whole.at = known.whole.at / known.whole.rays;
+    known.whole.irradiance = (1 / known.whole.rays) * sum;
+    known.is_dark = sum.is_zero();
+    if (std::ranges::all_of(samples, [](const QuarterSample& q) { return q.rays > 0; }))
+      known.noise = squared_bend(samples, shape.corner_count == 4) * known.whole.rays / 4;
+  }
+  static double squared_bend(const RowSamples& q, bool is_quad) {
+    const Rgb ends = q[0].irradiance + q[3].irradiance, others = q[1].irradiance + q[2].irradiance;
+    const double bend = is_quad ? (ends - others).mean() / 2 : (4 * q[3].irradiance - ends - others).mean() / std::sqrt(12);
+    return bend * bend;
+  }
+
+  FieldFit frame_of(std::size_t n) const {
+    const TangentFrame plane(known_[n].normal);
+    FieldFit field;
+    field.centre = centre_[rows_[n]];
+    field.s = plane.s / known_[n].edge;
+    field.t = plane.t / known_[n].edge;
+    return field;
+  }
+
+  /// Breadth first over smooth neighbours.
+  void look_around(std::size_t n, FieldFit& field, Window& window) const {
+    const Known& own = known_[n];
+    const double squared_reach = wide_window * wide_window * own.edge * own.edge;
+    RowSet rows;
+    rows.add(static_cast<std::uint32_t>(n));
+    field.low = field.high = own.whole.irradiance;
+    double noise = 0, noisy = 0;
+    for (std::size_t next = 0; next < rows.size(); ++next) {
+      const Known& row = known_[rows[next]];
+      const Vec3 d = row.whole.at - field.centre;
+      add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
+      if (row.noise >= 0) noise += row.noise, noisy += 1;
+      for (const NodeIndex other : neighbours_[rows[next]]) {
+        const Known& candidate = known_[place_[other]];
+        const Vec3 away = centre_[other] - field.centre;
+        if (dot(away, away) < squared_reach && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface)
+          rows.add(place_[other]);
+      }
+    }
+    if (noisy > 0) window.noise = noise / noisy;
+  }
+  static void add_samples(const Known& row, bool is_near, FieldFit& field, Window& window) {
+    if (!is_near) return add_sample(row.whole, field, window);
+    for (const Sample& quarter : row.quarters) {
+      if (quarter.rays == 0) continue;
+      add_sample(quarter, field, window);
+      field.low = lower(field.low, quarter.irradiance);
+      field.high = upper(field.high, quarter.irradiance);
+    }
+  }
+  static void add_sample(const Sample& sample, const FieldFit& field, Window& window) {
+    const Vec3 d = sample.at - field.centre;
+    const Rgb& value = sample.irradiance;
+    if (window.count == window.samples.size()) return;
+    window.samples[window.count++] = {dot(d, field.s), dot(d, field.t), sample.rays, value.r, value.g, value.b};
+  }
+
+  void choose_fit(std::size_t n, const Window& window, FieldFit& field) const {
+    const double own_response = 1 / known_[n].whole.rays;
+    const auto wide = alvor::fit<6>(window, wide_window);
+    if (wide && wide->response < own_response && wide->misfit <= misfit_allowed * wide->noise * window.noise)
+      return take(*wide, window, field);
+    const auto narrow = alvor::fit<3>(window, narrow_window);
+    if (narrow && narrow->response < own_response) take(*narrow, window, field);
+    else take_own_mean(n, window, field);
+  }
+
+  /// What the row's own quarters say, beyond what noise explains.
+  double misfit_of(std::size_t n, const Window& window, const FieldFit& field) const {
+    double squares = 0, count = 0;
+    for (const Sample& quarter : known_[n].quarters) {
+      if (quarter.rays == 0) continue;
+      const double difference = (quarter.irradiance - field.at(quarter.at)).mean();
+      squares += difference * difference - residual_noise * window.noise / quarter.rays;
+      count += 1;
+    }
+    return squares / count;
+  }
+
+  template <class Solution>
+  static void take(const Solution& solution, const Window& window, FieldFit& field) {
+    field.coefficient = solution.coefficient;
+    field.variance = solution.response * window.noise;
+    field.window_misfit = std::max(0.0, solution.misfit - misfit_allowed * solution.noise * window.noise);
+  }
+  void take_own_mean(std::size_t n, const Window& window, FieldFit& field) const {
+    field.coefficient = {known_[n].whole.irradiance};
+    field.variance = window.noise / known_[n].whole.rays;
+  }
+
+  const PatchForest& forest_;
+  std::span<const NodeIndex> rows_;
+  std::span<const SmoothNeighbours> neighbours_;
+  std::span<const Vec3> centre_;
+  std::vector<std::uint32_t> place_;  // by node
+  std::vector<Known> known_;          // by place
+};
+
+}  // namespace
+
+Rgb FieldFit::at(Vec3 point) const {
+  const double u = dot(point - centre, s), v = dot(point - centre, t);
+  const Rgb value = coefficient[0] + u * coefficient[1] + v * coefficient[2] + (u * u) * coefficient[3] +
+                    (u * v) * coefficient[4] + (v * v) * coefficient[5];
+  const auto within = [](double x, double l, double h) {
+    return std::max(0.0, std::min(std::max({x, l - (h - l) / 2, l / 4}), h + (h - l) / 2));
+  };
+  return {within(value.r, low.r, high.r), within(value.g, low.g, high.g), within(value.b, low.b, high.b)};
+}
+
+std::vector<FieldFit> fit_field(const PatchForest& forest, std::span<const NodeIndex> rows,
+                                std::span<const SmoothNeighbours> neighbours, std::span<const RowSamples> samples,
+                                std::span<const Vec3> centre) {
+  const Fitter fitter(forest, rows, neighbours, samples, centre);
+  std::vector<FieldFit> fits(rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) { fits[n] = fitter.fit_at(n); });
+  return fits;
+}
+
+}  // namespace alvor

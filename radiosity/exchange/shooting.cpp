@@ -1,0 +1,286 @@
+#include "radiosity/exchange/shooting.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace alvor {
+
+Rgb ambient_gain(std::span<const ShootingPatch> patches) {
+  Rgb reflected, kept;
+  double area = 0;
+  for (const ShootingPatch& patch : patches) {
+    area += patch.area;
+    reflected += patch.area * patch.reflectance;
+    if (!patch.row->is_hidden()) kept += (patch.area / patch.row->ray_count()) * patch.row->stored_weight();
+  }
+  if (area == 0) return {};
+  const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
+  return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
+}
+
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen) {
+  Rgb largest, most_seen;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    largest = upper(largest, patches[p].reflectance);
+    most_seen = upper(most_seen, reflectance_seen[p]);
+  }
+  const auto band = [](double reflected, double seen) { return 1 / (1 - std::sqrt(reflected * std::min(reflected, seen))); };
+  return {band(largest.r, most_seen.r), band(largest.g, most_seen.g), band(largest.b, most_seen.b)};
+}
+
+Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
+    : patches_(patches),
+      leaves_(std::move(leaves)),
+      hit_leaf_(std::move(hit_leaf)),
+      patch_of_leaf_(leaves_.size()),
+      first_hit_(patches.size() + 1),
+      receivers_(patches.size()),
+      gathered_(patches.size()),
+      shot_irradiance_(patches.size()),
+      leaf_power_(patches.size()) {
+  for (std::uint32_t p = 0; p < patches.size(); ++p) {
+    const ShootingPatch& patch = patches[p];
+    first_hit_[p + 1] = first_hit_[p] + patch.row->hits.size();
+    receivers_[p].weight = patch.row->is_hidden() ? 0 : 1.0 / patch.row->ray_count();
+    for (std::uint32_t k = 0; k < patch.leaf_count; ++k) patch_of_leaf_[patch.first_leaf + k] = p;
+  }
+  transpose();
+  ambient_gain_ = ambient_gain(patches_);
+  amplification_ = alvor::amplification(patches_, reflectance_seen());
+}
+
+std::vector<Rgb> Shooting::reflectance_seen() const {
+  std::vector<Rgb> seen(patches_.size());
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1],
+                                             [this](std::uint32_t leaf) { return patches_[patch_of_leaf_[leaf]].reflectance; });
+  });
+  return seen;
+}
+
+// Counting sort of all hits by the patch that was hit.
+void Shooting::transpose() {
+  first_entry_.assign(patches_.size() + 1, 0);
+  for (const std::uint32_t leaf : hit_leaf_) ++first_entry_[patch_of_leaf_[leaf] + 1];
+  for (std::size_t p = 0; p < patches_.size(); ++p) first_entry_[p + 1] += first_entry_[p];
+  entries_.resize(hit_leaf_.size());
+  std::vector<std::uint64_t> next(first_entry_.begin(), first_entry_.end() - 1);
+  for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
+    for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
+      entries_[next[patch_of_leaf_[hit_leaf_[h]]]++] = {receiver, hit_leaf_[h]};
+  transpose_weights();
+}
+
+// In the same order as the entries.
+void Shooting::transpose_weights() {
+  if (std::ranges::all_of(patches_, [](const ShootingPatch& patch) { return patch.row->hit_weight.empty(); })) return;
+  entry_weight_.resize(hit_leaf_.size());
+  std::vector<std::uint64_t> next(first_entry_.begin(), first_entry_.end() - 1);
+  for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
+    for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
+      entry_weight_[next[patch_of_leaf_[hit_leaf_[h]]]++] = patches_[receiver].row->hit_weight[h - first_hit_[receiver]];
+}
+
+template <class Radiosity>
+Rgb Shooting::row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const {
+  Rgb sum;
+  const auto& weight = patches_[patch].row->hit_weight;
+  if (weight.empty()) {
+    for (std::uint64_t h = first; h < last; ++h) sum += radiosity(hit_leaf_[h]);
+  } else {
+    for (std::uint64_t h = first; h < last; ++h) sum += widen(weight[h - first_hit_[patch]]) * radiosity(hit_leaf_[h]);
+  }
+  return sum;
+}
+
+void Shooting::find_unshot() {
+  for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf)
+    leaves_[leaf].shot += patches_[patch_of_leaf_[leaf]].reflectance * shot_irradiance_[patch_of_leaf_[leaf]];
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
+    const Rgb sum = row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return leaves_[leaf].shot; });
+    const Rgb before = gathered_[p] + shot_irradiance_[p];
+    gathered_[p] = receivers_[p].weight * sum;
+    shot_irradiance_[p] = receivers_[p].unshot = {};
+    leaf_power_[p] = 0;
+    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
+      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
+      leaf.unshot += patches_[p].reflectance * (gathered_[p] - before);
+      leaf_power_[p] += leaf.area * absolute(leaf.unshot).sum();
+    }
+  });
+  if (account_) account_->power = signed_unshot_power();
+}
+
+void Shooting::adopt_unshot() {
+  account_.reset();
+  for (std::uint32_t p = 0; p < patches_.size(); ++p) {
+    const Rgb newly = shot_irradiance_[p] + receivers_[p].unshot;
+    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
+      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
+      leaf.shot += leaf.unshot + patches_[p].reflectance * newly;
+      leaf.unshot = {};
+    }
+    gathered_[p] += newly;
+    shot_irradiance_[p] = receivers_[p].unshot = {};
+    leaf_power_[p] = 0;
+  }
+}
+
+// The whole of what comes from elsewhere is divided by m_ii = 1 - rho F_ii.
+void Shooting::gather(std::uint32_t receiver) {
+  const ShootingPatch& patch = patches_[receiver];
+  const double weight = receivers_[receiver].weight;
+  const std::uint64_t first = first_hit_[receiver], last = first_hit_[receiver + 1];
+  const auto is_own = [&](std::uint32_t leaf) { return leaf - patch.first_leaf < patch.leaf_count; };
+  bool sees_itself = false;
+  const Rgb sum = row_sum(receiver, first, last, [&](std::uint32_t leaf) {
+    if (!is_own(leaf)) return leaves_[leaf].shot;
+    sees_itself = true;
+    return emission_of(leaf, receiver);
+  });
+  Rgb own;
+  if (sees_itself)
+    own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) { return is_own(leaf) ? Rgb{1, 1, 1} : Rgb{}; });
+  const Rgb& rho = patch.reflectance;
+  const Rgb irradiance = weight * Rgb{sum.r / (1 - rho.r * own.r), sum.g / (1 - rho.g * own.g), sum.b / (1 - rho.b * own.b)};
+  for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf) {
+    leaves_[leaf].shot = emission_of(leaf, receiver) + rho * irradiance;
+    leaves_[leaf].unshot = {};
+  }
+  gathered_[receiver] = irradiance;
+  receivers_[receiver].unshot = {};
+  leaf_power_[receiver] = 0;
+}
+
+double Shooting::unshot_power() const {
+  double power = 0;
+  for (std::uint32_t p = 0; p < patches_.size(); ++p) power += unshot_power_of(p);
+  return power;
+}
+
+template <class Body>
+void Shooting::for_each_leaf(Body&& body) const {
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Rgb& rho = patches_[p].reflectance;
+    const Rgb unshot = rho * receivers_[p].unshot, shot = rho * shot_irradiance_[p];
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      body(leaves_[k].area, leaves_[k].shot + shot, leaves_[k].unshot + unshot);
+  }
+}
+
+Rgb Shooting::unshot_rms() const {
+  Rgb squares;
+  double area = 0;
+  for_each_leaf([&](double leaf_area, const Rgb&, const Rgb& unshot) {
+    squares += leaf_area * (unshot * unshot);
+    area += leaf_area;
+  });
+  return {std::sqrt(squares.r / area), std::sqrt(squares.g / area), std::sqrt(squares.b / area)};
+}
+
+Rgb Shooting::mean_radiosity() const {
+  Rgb power;
+  double area = 0;
+  for_each_leaf([&](double leaf_area, const Rgb& shot, const Rgb& unshot) {
+    power += leaf_area * absolute(shot + unshot);
+    area += leaf_area;
+  });
+  return (1 / area) * power;
+}
+
+// The two loops differ in what they read: weights that are not there cost nothing.
+template <class Leaving>
+void Shooting::send(std::uint32_t shooter, Leaving&& leaving) {
+  const std::uint64_t first = first_entry_[shooter], last = first_entry_[shooter + 1];
+  const bool is_even = entry_weight_.empty();
+  for (std::uint64_t e = first; is_even && e < last; ++e) {
+    Receiver& receiver = receivers_[entries_[e].receiver];
+    receiver.unshot += receiver.weight * leaving(entries_[e].leaf);
+  }
+  for (std::uint64_t e = first; !is_even && e < last; ++e) {
+    Receiver& receiver = receivers_[entries_[e].receiver];
+    receiver.unshot += receiver.weight * (widen(entry_weight_[e]) * leaving(entries_[e].leaf));
+  }
+}
+
+void Shooting::shoot(std::uint32_t shooter, const Rgb& advance) {
+  const ShootingPatch& patch = patches_[shooter];
+  const Rgb irradiance = receivers_[shooter].unshot + advance;
+  const Rgb reflected = patch.reflectance * irradiance;
+  shot_irradiance_[shooter] += irradiance;
+  receivers_[shooter].unshot = Rgb{} - advance;
+  if (account_) book(shooter, reflected);
+  const bool leaves_differ = leaf_power_[shooter] != 0;
+  if (leaves_differ) send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + reflected; });
+  else send(shooter, [&](std::uint32_t) { return reflected; });
+  if (!leaves_differ) return;
+  leaf_power_[shooter] = 0;
+  for (std::uint32_t k = 0; k < patch.leaf_count; ++k) {
+    ShootingLeaf& leaf = leaves_[patch.first_leaf + k];
+    leaf.shot += leaf.unshot;
+    leaf.unshot = {};
+  }
+}
+
+Rgb Shooting::signed_unshot_power() const {
+  Rgb power;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const ShootingPatch& patch = patches_[p];
+    power += (patch.area * patch.reflectance) * receivers_[p].unshot;
+    for (std::uint32_t k = 0; k < patch.leaf_count; ++k)
+      power += leaves_[patch.first_leaf + k].area * leaves_[patch.first_leaf + k].unshot;
+  }
+  return power;
+}
+
+void Shooting::keep_ambient_account() {
+  account_ = Account{std::vector<Rgb>(leaves_.size()), signed_unshot_power()};
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Rgb reflecting = (patches_[p].area * receivers_[p].weight) * patches_[p].reflectance;
+    const auto& weight = patches_[p].row->hit_weight;
+    for (std::uint64_t h = first_hit_[p]; h < first_hit_[p + 1]; ++h)
+      account_->gain[hit_leaf_[h]] += weight.empty() ? reflecting : widen(weight[h - first_hit_[p]]) * reflecting;
+  }
+}
+
+// Before the shot: what leaves the shooter is no longer unshot, what is reflected of it elsewhere is.
+void Shooting::book(std::uint32_t shooter, const Rgb& reflected) {
+  for (std::uint32_t k = 0; k < patches_[shooter].leaf_count; ++k) {
+    const std::uint32_t at = patches_[shooter].first_leaf + k;
+    const ShootingLeaf& leaf = leaves_[at];
+    account_->power += (leaf.unshot + reflected) * (account_->gain[at] - Rgb{leaf.area, leaf.area, leaf.area});
+  }
+}
+
+Rgb Shooting::ambient_irradiance() const { return ambient_gain_ * (account_ ? account_->power : signed_unshot_power()); }
+
+std::vector<Rgb> Shooting::irradiance() const {
+  std::vector<Rgb> all;
+  all.reserve(patches_.size());
+  for (std::size_t p = 0; p < patches_.size(); ++p) all.push_back(gathered_[p] + shot_irradiance_[p] + receivers_[p].unshot);
+  return all;
+}
+
+std::vector<Rgb> Shooting::shot() const {
+  std::vector<Rgb> all;
+  all.reserve(leaves_.size());
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const std::uint32_t p = patch_of_leaf_[leaf];
+    all.push_back(leaves_[leaf].shot + patches_[p].reflectance * shot_irradiance_[p]);
+  }
+  return all;
+}
+
+std::vector<Rgb> Shooting::unshot_by_leaf() const {
+  std::vector<Rgb> all;
+  all.reserve(leaves_.size());
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const std::uint32_t p = patch_of_leaf_[leaf];
+    all.push_back(leaves_[leaf].unshot + patches_[p].reflectance * receivers_[p].unshot);
+  }
+  return all;
+}
+
+}  // namespace alvor

@@ -1,0 +1,46 @@
+#include "radiosity/form_factors/convex_polygon.h"
+
+namespace alvor {
+
+Vec3 area_vector(std::span<const Vec3> polygon) {
+  Vec3 sum;
+  for (std::size_t c = 2; c < polygon.size(); ++c) sum += cross(polygon[c - 1] - polygon[0], polygon[c] - polygon[0]);
+  return sum * 0.5;
+}
+
+Plane plane_of(std::span<const Vec3> polygon) {
+  const Vec3 normal = normalized(area_vector(polygon));
+  Vec3 sum;
+  for (const Vec3& corner : polygon) sum += corner - polygon[0];
+  return {normal, dot(normal, polygon[0] + sum / static_cast<double>(polygon.size()))};
+}
+
+bool is_convex(std::span<const Vec3> polygon) {
+  const Vec3 area = area_vector(polygon);
+  const double slack = -1e-9 * dot(area, area);
+  const std::size_t n = polygon.size();
+  for (std::size_t c = 0; c < n; ++c) {
+    const Vec3 here = polygon[(c + 1) % n] - polygon[c], next = polygon[(c + 2) % n] - polygon[(c + 1) % n];
+    if (dot(cross(here, next), area) < slack) return false;
+  }
+  return true;
+}
+
+ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane) {
+  ConvexPolygon kept;
+  const auto corners = polygon.corners();
+  if (corners.empty()) return kept;
+  Vec3 before = corners.back();
+  double height_before = plane.height(before);
+  for (const Vec3& here : corners) {
+    const double height = plane.height(here);
+    if ((height > 0 && height_before < 0) || (height < 0 && height_before > 0))
+      kept.add(lerp(before, here, height_before / (height_before - height)));
+    if (height >= 0) kept.add(here);
+    before = here;
+    height_before = height;
+  }
+  return kept;
+}
+
+}  // namespace alvor

@@ -1,0 +1,35 @@
+#pragma once
+// What a caller may say about how a scene is solved.
+
+#include "radiosity/exchange/strategies.h"
+#include "solution/feature.h"
+
+#include <cstdint>
+#include <limits>
+
+namespace alvor {
+
+/// How transport rows are found. From emitters form factors are exact in any case.
+enum class FormFactorMethod {
+  automatic,  ///< the better one: nusselt
+  nusselt,    ///< cosine-distributed rays
+  hemicube,   ///< rays through the cells of hemicubes, weighted by delta form factors
+  analytic,   ///< no rays: exact form factors between all patches, again in each pass. O(n2): for small scenes
+};
+
+/// Everything that decides a solve. The same mesh, options and seed give the same bytes.
+struct SolveOptions {
+  double tolerance = 0.02;  ///< stop when the estimated nRMSE is at or below this; > 0
+  int max_depth = 10;       ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
+  std::uint64_t max_leaves = 200'000;
+  double min_edge_m = 0;  ///< no split makes an edge shorter than this
+  double time_limit_s = std::numeric_limits<double>::infinity();
+  int threads = 0;  ///< 0: as many as the machine has
+  std::uint64_t seed = 1;
+  Strategy strategy = Strategy::automatic;
+  FormFactorMethod form_factors = FormFactorMethod::automatic;
+  double step_pause_s = 0;  ///< waits this long after each published step, for people who watch; not counted as solving time
+  FeatureSet forced_on;     ///< kept on though the plan would switch them off: for tests and measurements
+};
+
+}  // namespace alvor

@@ -1,0 +1,123 @@
+#include "radiosity/rays/sampling.h"
+
+#include "radiosity/rays/hemicube.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+  x = (x >> 16) | (x << 16);
+  x = ((x & 0xff00ff00u) >> 8) | ((x & 0x00ff00ffu) << 8);
+  x = ((x & 0xf0f0f0f0u) >> 4) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x & 0xccccccccu) >> 2) | ((x & 0x33333333u) << 2);
+  return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
+}
+
+/// Second dimension of the Sobol sequence (Kollig & Keller 2002).
+std::uint32_t sobol_second(std::uint32_t n) {
+  std::uint32_t result = 0;
+  for (std::uint32_t v = 1u << 31; n != 0; n >>= 1, v ^= v >> 1)
+    if (n & 1) result ^= v;
+  return result;
+}
+
+/// The middles of the strata of a patch that is its whole root, and how far, with which sign, they may be moved.
+struct Strata {
+  std::array<float, origins_per_patch> u, v, sway;
+  explicit Strata(int corner_count) {
+    const PatchShape whole{0, corner_count, {0, 0}, grid_size};
+    for (int o = 0; o < origins_per_patch; ++o) {
+      const PatchShape stratum = whole.child(o >> 2).child(o & 3);
+      const Uv middle = stratum.centre();
+      u[o] = static_cast<float>(middle.u);
+      v[o] = static_cast<float>(middle.v);
+      sway[o] = static_cast<float>((is_white(o) ? 1.0 : -1.0) * stratum.size / grid_size);
+    }
+  }
+};
+
+struct Disk {
+  double x, y;
+};
+/// Area-preserving and of low distortion (Shirley & Chiu 1997).
+Disk concentric_disk(Uv p) {
+  const double a = 2 * p.u - 1, b = 2 * p.v - 1;
+  if (a == 0 && b == 0) return {0, 0};
+  const double quarter = std::numbers::pi / 4;
+  const bool wide = std::abs(a) > std::abs(b);
+  const double r = wide ? a : b, phi = wide ? quarter * b / a : quarter * (2 - a / b);
+  return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+void set_direction(DirectionSets::Set& set, std::size_t n, Vec3 direction, double weight) {
+  set.x[n] = static_cast<float>(direction.x);
+  set.y[n] = static_cast<float>(direction.y);
+  set.z[n] = static_cast<float>(direction.z);
+  set.weight[n] = static_cast<float>(weight);
+}
+
+void place_on_disk(DirectionSets::Set& set, std::uint64_t scramble) {
+  for (std::uint32_t n = 0; n < rays_per_row; ++n) {
+    const Disk d =
+        concentric_disk(sobol_point(n, static_cast<std::uint32_t>(scramble), static_cast<std::uint32_t>(scramble >> 32)));
+    set_direction(set, n, {d.x, d.y, std::sqrt(std::max(1e-12, 1 - d.x * d.x - d.y * d.y))}, 1);
+  }
+}
+
+/// A point of the cell, as likely as the form factor density there: by rejection. So the cell's exact delta form factor is the
+/// right weight of its ray.
+Vec3 point_in(const Hemicube::Cell& cell, RandomStream& random) {
+  const auto density = [](Vec3 p) { return p.z / (dot(p, p) * dot(p, p)); };
+  constexpr double most_on_sides = 0.33;  // of z / r4, where z2 = 1 / 3; on the top it is 1
+  const double most = cell.side_s.z == 0 && cell.side_t.z == 0 ? 1 : most_on_sides;
+  for (;;) {
+    const Vec3 p = cell.corner + random.next() * cell.side_s + random.next() * cell.side_t;
+    if (random.next() * most <= density(p)) return p;
+  }
+}
+
+void place_on_hemicubes(DirectionSets::Set& set, std::uint64_t scramble) {
+  constexpr HemicubeGrid grid{4, 2, 2, 1};
+  const Hemicube cube(grid);
+  RandomStream random(scramble, PatchId::root(0));
+  for (std::size_t n = 0; n < rays_per_row; ++n) {
+    const Hemicube::Cell& cell = cube.cells()[n % rays_per_origin];
+    set_direction(set, n, normalized(point_in(cell, random)), rays_per_origin * cell.delta);
+  }
+}
+
+}  // namespace
+
+Uv sobol_point(std::uint32_t n, std::uint32_t scramble_u, std::uint32_t scramble_v) {
+  return {(reverse_bits(n) ^ scramble_u) * 0x1p-32, (sobol_second(n) ^ scramble_v) * 0x1p-32};
+}
+
+DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(placing), sets_(set_count) {
+  for (int s = 0; s < set_count; ++s) {
+    const std::uint64_t scramble = mix_bits(seed + 0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(s + 1));
+    if (placing == RayPlacing::nusselt) place_on_disk(sets_[s], scramble);
+    else place_on_hemicubes(sets_[s], scramble);
+  }
+}
+
+OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
+  static const Strata triangle(3), quad(4);
+  const Strata& strata = patch.corner_count == 3 ? triangle : quad;
+  const double room = patch.corner_count == 3 ? 0.3 : 1;  // a triangle's middle is near its edges
+  const auto size = static_cast<float>(double(patch.size) / grid_size);
+  const auto first_u = static_cast<float>(double(patch.first.i) / grid_size);
+  const auto first_v = static_cast<float>(double(patch.first.j) / grid_size);
+  const auto move_u = static_cast<float>(room * jitter.u), move_v = static_cast<float>(room * jitter.v);
+  OriginPlaces places;
+  for (int o = 0; o < origins_per_patch; ++o) {
+    places.u[o] = first_u + size * (strata.u[o] + move_u * strata.sway[o]);
+    places.v[o] = first_v + size * (strata.v[o] + move_v * strata.sway[o]);
+  }
+  return places;
+}
+
+}  // namespace alvor

@@ -1,0 +1,274 @@
+#include "radiosity/rays/transport_rows.h"
+
+#include "radiosity/rays/medium.h"
+#include "radiosity/rays/ray_source.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t patches_per_batch = 8;
+constexpr float nudge = 1e-4f;  // turns a ray that slipped through a seam
+
+/// Tangent frame of the patch turned by a random angle: rotates the whole direction set at no cost per ray.
+struct TurnedFrame {
+  Float3 s, t, n;
+  TurnedFrame(const LocalRoot& root, double angle) : n(root.normal) {
+    const float c = static_cast<float>(std::cos(angle)), d = static_cast<float>(std::sin(angle));
+    const Float3 &a = root.tangent, &b = root.bitangent;
+    s = {c * a.x + d * b.x, c * a.y + d * b.y, c * a.z + d * b.z};
+    t = {c * b.x - d * a.x, c * b.y - d * a.y, c * b.z - d * a.z};
+  }
+};
+
+void aim(RayPacket& packet, const DirectionSets::Set& set, int origin, const TurnedFrame& frame) {
+  const float *x = &set.x[origin * rays_per_origin], *y = &set.y[origin * rays_per_origin], *z = &set.z[origin * rays_per_origin];
+  for (int r = 0; r < rays_per_origin; ++r) {
+    packet.direction_x[r] = x[r] * frame.s.x + y[r] * frame.t.x + z[r] * frame.n.x;
+    packet.direction_y[r] = x[r] * frame.s.y + y[r] * frame.t.y + z[r] * frame.n.y;
+    packet.direction_z[r] = x[r] * frame.s.z + y[r] * frame.t.z + z[r] * frame.n.z;
+  }
+}
+
+void start_at(RayPacket& packet, float x, float y, float z) {
+  for (int r = 0; r < RayPacket::width; ++r) {
+    packet.origin_x[r] = x;
+    packet.origin_y[r] = y;
+    packet.origin_z[r] = z;
+    packet.t_min[r] = 0;
+    packet.t_max[r] = std::numeric_limits<float>::infinity();
+  }
+}
+
+enum class Outcome { stored, escaped, black_back };
+
+/// Traces one row after the other.
+template <bool back_sides, bool places>
+class RowTracer {
+ public:
+  RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget)
+      : scene_(scene), medium_{scene.mesh().absorption()}, directions_(directions), seed_(seed), budget_(budget) {}
+
+  void trace(const PatchShape& shape, PatchId patch, RowSize size, TransportRow& row) {
+    RandomStream random(seed_, patch);
+    const PatchPoints points = sample_points(scene_, shape, random);
+    set_ = &directions_[random.next_below(DirectionSets::set_count)];
+    const TurnedFrame frame(scene_.root(shape.root), 2 * std::numbers::pi * random.next());
+    choose_origins(size, random);
+    if (size == RowSize::hidden_only && !any_back(points, frame)) {
+      row.rays = rays_per_row;
+      return;
+    }
+    for (int n = 0; n < count_; ++n) {
+      const int o = origin_[n];
+      start_at(packets_[n], points.x[o], points.y[o], points.z[o]);
+      aim(packets_[n], *set_, n, frame);
+    }
+    budget_.spend(static_cast<std::uint64_t>(count_) * rays_per_origin,
+                  [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size())); });
+    if (size == RowSize::hidden_only) return store_hidden(row);
+    retrace_slipped_rays(scene_.root(shape.root).normal);
+    store(row);
+  }
+
+ private:
+  std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
+
+  /// Whether one ray of each origin, each in another direction of the hemisphere, meets a back.
+  bool any_back(const PatchPoints& points, const TurnedFrame& frame) {
+    RayPacket& some = packets_[0];
+    for (int o = 0; o < origins_per_patch; ++o) {
+      start_at(packets_[1], points.x[o], points.y[o], points.z[o]);
+      aim(packets_[1], *set_, o, frame);
+      copy_ray(packets_[1], some, o);
+    }
+    budget_.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&some, 1}, {hits_.data(), 1}); });
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcome(some, hits_[0], lane) == Outcome::black_back) return true;
+    return false;
+  }
+  static void copy_ray(const RayPacket& from, RayPacket& to, int lane) {
+    to.origin_x[lane] = from.origin_x[lane], to.direction_x[lane] = from.direction_x[lane];
+    to.origin_y[lane] = from.origin_y[lane], to.direction_y[lane] = from.direction_y[lane];
+    to.origin_z[lane] = from.origin_z[lane], to.direction_z[lane] = from.direction_z[lane];
+    to.t_min[lane] = from.t_min[lane], to.t_max[lane] = from.t_max[lane];
+  }
+
+  void store_hidden(TransportRow& row) const {
+    for (std::size_t o = 0; o < origins_per_patch; ++o) {
+      if (is_hidden(outcomes_of(o))) row.hidden_origins |= static_cast<std::uint16_t>(1u << o);
+      else row.rays += rays_per_origin;
+    }
+  }
+  using Outcomes = std::array<Outcome, RayPacket::width>;
+  Outcomes outcomes_of(std::size_t p) const {
+    Outcomes outcomes;
+    for (int lane = 0; lane < RayPacket::width; ++lane) outcomes[lane] = outcome(packets_[p], hits_[p], lane);
+    return outcomes;
+  }
+  static bool is_hidden(const Outcomes& outcomes) {
+    return 2 * std::ranges::count(outcomes, Outcome::black_back) > RayPacket::width;
+  }
+
+  /// All, or one a quarter so that their mean is the middle.
+  void choose_origins(RowSize size, RandomStream& random) {
+    count_ = size == RowSize::small ? 4 : origins_per_patch;
+    const int turn = static_cast<int>(random.next_below(4));
+    for (int n = 0; n < count_; ++n) origin_[n] = size == RowSize::small ? 4 * n + ((3 - n) ^ turn) : n;
+  }
+
+  Outcome outcome(const RayPacket& packet, const HitPacket& hit, int lane) const {
+    if (hit.root[lane] == HitPacket::nothing) return Outcome::escaped;
+    if (meets_front(packet, hit, lane)) return Outcome::stored;
+    if constexpr (back_sides)
+      if (scene_.root(hit.root[lane]).twin != RootPatch::no_twin) return Outcome::stored;
+    return Outcome::black_back;
+  }
+  bool meets_front(const RayPacket& packet, const HitPacket& hit, int lane) const {
+    const Float3& n = scene_.root(hit.root[lane]).normal;
+    return packet.direction_x[lane] * n.x + packet.direction_y[lane] * n.y + packet.direction_z[lane] * n.z < 0;
+  }
+
+  /// Where nearly no ray escapes, the few that do went through seams between faces: float32 traversal is not watertight.
+  void retrace_slipped_rays(const Float3& normal) {
+    std::size_t escaped = 0;
+    for (const HitPacket& hit : std::span(hits_).first(packets().size()))
+      for (const std::uint32_t root : hit.root) escaped += root == HitPacket::nothing;
+    if (escaped == 0 || escaped * 64 > packets().size() * RayPacket::width) return;
+    for (std::size_t p = 0; p < packets().size(); ++p)
+      for (int lane = 0; lane < RayPacket::width; ++lane)
+        if (hits_[p].root[lane] == HitPacket::nothing) retrace(p, lane, normal);
+  }
+  void retrace(std::size_t p, int lane, const Float3& n) {
+    RayPacket again = packets_[p];
+    for (int r = 0; r < RayPacket::width; ++r) {
+      again.direction_x[r] = packets_[p].direction_x[lane] + nudge * static_cast<float>(r + 1) * n.x;
+      again.direction_y[r] = packets_[p].direction_y[lane] + nudge * static_cast<float>(r + 1) * n.y;
+      again.direction_z[r] = packets_[p].direction_z[lane] + nudge * static_cast<float>(r + 1) * n.z;
+    }
+    HitPacket hit;
+    budget_.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&again, 1}, {&hit, 1}); });
+    for (int r = 0; r < RayPacket::width; ++r) {
+      if (outcome(again, hit, r) != Outcome::stored) continue;
+      hits_[p].root[lane] = hit.root[r];
+      hits_[p].u[lane] = hit.u[r];
+      hits_[p].v[lane] = hit.v[r];
+      hits_[p].t[lane] = hit.t[r];
+      return;
+    }
+  }
+
+  void store(TransportRow& row) const {
+    row.hits.reserve(packets().size() * RayPacket::width);
+    row.origin_hits.assign(origins_per_patch, TransportRow::not_sampled);
+    for (int n = 0; n < count_; ++n) {
+      const std::size_t before = row.hits.size();
+      if (store_origin(static_cast<std::size_t>(n), row)) {
+        row.rays += rays_per_origin;
+        row.origin_hits[static_cast<std::size_t>(origin_[n])] = static_cast<std::uint8_t>(row.hits.size() - before);
+      } else {
+        row.hidden_origins |= static_cast<std::uint16_t>(count_ == 4 ? 0xfu << 4 * n : 1u << n);
+      }
+    }
+    row.hits.shrink_to_fit();
+  }
+
+  /// False, and nothing is stored, if the origin is hidden.
+  bool store_origin(std::size_t p, TransportRow& row) const {
+    const Outcomes outcomes = outcomes_of(p);
+    if (is_hidden(outcomes)) return false;
+    if constexpr (back_sides) store_hits(turned_to_front(p), outcomes, row);
+    else store_hits(hits_[p], outcomes, row);
+    if (medium_.is_clear() && !directions_.has_weights()) return true;
+    const float* weight = &set_->weight[p * rays_per_origin];
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcomes[lane] == Outcome::stored)
+        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hits_[p].t[lane] * scene_.frame().metres_per_unit)));
+    return true;
+  }
+
+  void store_hits(const HitPacket& hit, const Outcomes& outcomes, TransportRow& row) const {
+    alignas(64) std::uint32_t path[RayPacket::width];
+    if constexpr (places) scene_.places_of_hits(hit, path);
+    for (int lane = 0; lane < RayPacket::width; ++lane)
+      if (outcomes[lane] == Outcome::stored)
+        row.hits.push_back(places ? PatchId::finest(hit.root[lane], path[lane]) : PatchId::root(hit.root[lane]));
+  }
+
+  /// Hits from behind as hits of the twin, where there is one.
+  HitPacket turned_to_front(std::size_t p) const {
+    HitPacket hit = hits_[p];
+    for (int lane = 0; lane < RayPacket::width; ++lane) {
+      if (hit.root[lane] == HitPacket::nothing || meets_front(packets_[p], hits_[p], lane)) continue;
+      const std::uint32_t twin = scene_.root(hit.root[lane]).twin;
+      if (twin == RootPatch::no_twin) continue;
+      hit.root[lane] = twin;
+      std::swap(hit.u[lane], hit.v[lane]);
+    }
+    return hit;
+  }
+
+  const LocalScene& scene_;
+  Medium medium_;
+  const DirectionSets& directions_;
+  std::uint64_t seed_;
+  RayBudget& budget_;
+  // Of the row that is being traced.
+  const DirectionSets::Set* set_ = nullptr;
+  int count_ = 0;
+  std::array<int, origins_per_patch> origin_{};
+  std::array<RayPacket, origins_per_patch> packets_;
+  std::array<HitPacket, origins_per_patch> hits_;
+};
+
+}  // namespace
+
+Rgb TransportRow::stored_weight() const {
+  if (hit_weight.empty()) return static_cast<double>(hits.size()) * Rgb{1, 1, 1};
+  Rgb sum;
+  for (const RgbF& weight : hit_weight) sum += widen(weight);
+  return sum;
+}
+
+void TransportRow::append(const TransportRow& more) {
+  std::size_t hit = 0;
+  for (std::size_t o = 0; o < more.origin_hits.size(); ++o) {
+    const std::uint8_t count = more.origin_hits[o];
+    const bool counts = count != not_sampled && !(hidden_origins >> (o % origins_per_patch) & 1);
+    origin_hits.push_back(counts ? count : not_sampled);
+    if (counts) {
+      hits.insert(hits.end(), more.hits.begin() + hit, more.hits.begin() + hit + count);
+      if (!more.hit_weight.empty())
+        hit_weight.insert(hit_weight.end(), more.hit_weight.begin() + hit, more.hit_weight.begin() + hit + count);
+      rays += rays_per_origin;
+    }
+    if (count != not_sampled) hit += count;
+  }
+}
+
+std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
+                                     std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
+                                     RayBudget& budget, RowNeeds needs) {
+  const auto trace = [&]<bool back_sides, bool places>() {
+    std::vector<TransportRow> rows(patches.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
+      RowTracer<back_sides, places> tracer(scene, directions, seed, budget);
+      for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
+        tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
+    });
+    return rows;
+  };
+  if (needs.back_sides) return needs.places ? trace.template operator()<true, true>() : trace.template operator()<true, false>();
+  return needs.places ? trace.template operator()<false, true>() : trace.template operator()<false, false>();
+}
+
+}  // namespace alvor

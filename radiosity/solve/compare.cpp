@@ -1,0 +1,195 @@
+#include "radiosity/solve/compare.h"
+
+#include "radiosity/solve/solve_state.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include <ctime>
+
+namespace alvor {
+
+namespace {
+
+constexpr double pass_unshot = 0.1;         // of the tolerance: as the solver's passes
+constexpr double converged_unshot = 1e-12;  // of the emitted power
+constexpr double last_error = 1e-6;
+constexpr std::uint64_t most_sweeps = 1000;  // steps per patch that no strategy needs unless rho is above 0.99
+
+constexpr Strategy compared[]{Strategy::gather, Strategy::shoot, Strategy::sorted, Strategy::sorted_ambient, Strategy::overshoot};
+
+/// CPU time of this thread; only what strategies do counts.
+class StopWatch {
+ public:
+  template <class Work>
+  void time(Work&& work) {
+    const double begin = now_s();
+    work();
+    cpu_s_ += now_s() - begin;
+  }
+  double cpu_s() const { return cpu_s_; }
+
+ private:
+  static double now_s() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double cpu_s_ = 0;
+};
+
+/// The solution of a system, as a measure for others.
+class Reference {
+ public:
+  Reference() = default;
+  /// The irradiance that solves a system of which nothing is shot.
+  Reference(const Shooting& unshot_system, std::vector<Rgb> irradiance) : irradiance_(std::move(irradiance)) {
+    const auto own = unshot_system.unshot_by_leaf();
+    for (std::size_t p = 0; p < irradiance_.size(); ++p) {
+      const ShootingPatch& patch = unshot_system.patches()[p];
+      for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf)
+        norm_ += unshot_system.leaf_area(leaf) * square(own[leaf] + patch.reflectance * irradiance_[p]);
+    }
+  }
+
+  double error_of(const Shooting& system, const Rgb& ambient) const {
+    const auto irradiance = system.irradiance();
+    double sum = 0;
+    for (std::size_t p = 0; p < irradiance.size(); ++p) {
+      const ShootingPatch& patch = system.patches()[p];
+      const Rgb shown = patch.row->is_hidden() ? irradiance[p] : irradiance[p] + ambient;
+      sum += patch.area * square(patch.reflectance * (shown - irradiance_[p]));
+    }
+    return norm_ > 0 ? std::sqrt(sum / norm_) : 0;
+  }
+
+ private:
+  static double square(const Rgb& a) { return (a * a).sum(); }
+  std::vector<Rgb> irradiance_;  // by patch
+  double norm_ = 0;
+};
+
+class Comparer {
+ public:
+  Comparer(const BaseMesh& mesh, const CompareOptions& options, std::stop_token stop)
+      : options_(options),
+        stop_(std::move(stop)),
+        budget_([this] { return stop_.stop_requested(); }),
+        state_(mesh, {.tolerance = options.tolerance, .seed = options.seed, .forced_on = {Feature::indirect_rows}}, budget_) {}
+
+  Comparison run() {
+    if (state_.emitted_power() <= 0) return {};
+    adapt();
+    Comparison comparison;
+    if (!stop_.stop_requested()) comparison.converged = converge();
+    comparison.leaves = comparison.converged.size();
+    if (!stop_.stop_requested()) comparison.patches = patch_count_;
+    for (const Strategy strategy : compared)
+      if (!stop_.stop_requested()) comparison.courses.push_back(follow(strategy));
+    return comparison;
+  }
+
+ private:
+  /// The mesh and rows that a solve ends with.
+  void adapt() {
+    do {
+      state_.trace_new_rows();
+      state_.add_new_direct_light([] {});
+      if (stop_.stop_requested()) return;
+      state_.begin_exchange();
+      exchange_down_to(pass_unshot * options_.tolerance);
+    } while (state_.estimate().total() > options_.tolerance && state_.refine() && !stop_.stop_requested());
+  }
+
+  std::vector<LeafValue> converge() {
+    state_.begin_exchange();
+    exchange_down_to(converged_unshot);
+    const auto irradiance = state_.exchange().irradiance();
+    patch_count_ = irradiance.size();
+    reference_ = Reference(state_.unshot_system(), irradiance);
+    state_.show_smoothly();
+    return sorted_leaves();
+  }
+
+  /// In the order of ids.
+  std::vector<LeafValue> sorted_leaves() const {
+    auto leaves = state_.leaf_values();
+    std::ranges::sort(leaves, {}, &LeafValue::patch);
+    return leaves;
+  }
+
+  void exchange_down_to(double fraction) {
+    while (state_.unshot_fraction() > fraction && !stop_.stop_requested()) state_.exchange().sweep();
+  }
+
+  StrategyCourse follow(Strategy strategy) {
+    Shooting system = state_.unshot_system();
+    StrategyCourse course{strategy, {}, 0, {}, {}};
+    StopWatch watch;
+    std::unique_ptr<Stepper> stepper;
+    watch.time([&] { stepper = make_stepper(strategy, system); });
+    std::uint64_t steps = 0;
+    for (bool is_done = false; !is_done;) {
+      look(system, steps, watch.cpu_s(), course);
+      const std::uint64_t target = next_look(steps);
+      watch.time([&] {
+        while (steps < target && stepper->step()) ++steps;
+      });
+      const bool is_exhausted = steps < target;
+      if (is_exhausted) look(system, steps, watch.cpu_s(), course);
+      is_done = is_exhausted || stop_.stop_requested() || is_enough(steps, course);
+    }
+    if (course.leaves.empty()) keep_picture(system, course);
+    return course;
+  }
+
+  void look(const Shooting& system, std::uint64_t steps, double cpu_s, StrategyCourse& course) {
+    const Rgb ambient = shows_ambient(course.strategy) ? system.ambient_irradiance() : Rgb{};
+    course.curve.push_back({steps, cpu_s, reference_.error_of(system, ambient)});
+    if (steps == options_.steps) keep_picture(system, course);
+  }
+
+  void keep_picture(const Shooting& system, StrategyCourse& course) {
+    course.error = course.curve.back().error;
+    state_.show(system.irradiance());
+    course.leaves = sorted_leaves();
+    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.emission_unit() * system.ambient_irradiance();
+  }
+
+  std::uint64_t next_look(std::uint64_t steps) const {
+    const std::uint64_t next = steps + 1 + steps / 50;
+    return steps < options_.steps ? std::min(next, options_.steps) : next;
+  }
+
+  bool is_enough(std::uint64_t steps, const StrategyCourse& course) const {
+    const bool has_arrived = course.curve.back().error <= last_error && !course.leaves.empty();
+    return has_arrived || steps > std::max(options_.steps, most_sweeps * patch_count_);
+  }
+
+  CompareOptions options_;
+  std::stop_token stop_;
+  RayBudget budget_;
+  SolveState state_;
+  Reference reference_;
+  std::size_t patch_count_ = 0;
+};
+
+}  // namespace
+
+Comparison compare_strategies(const BaseMesh& mesh, const CompareOptions& options, std::stop_token stop) {
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  tbb::task_arena arena(threads);
+  return arena.execute([&] { return Comparer(mesh, options, std::move(stop)).run(); });
+}
+
+std::optional<std::uint64_t> steps_to(double error, const StrategyCourse& course) {
+  std::optional<std::uint64_t> steps;
+  for (auto sample = course.curve.rbegin(); sample != course.curve.rend() && sample->error <= error; ++sample)
+    steps = sample->steps;
+  return steps;
+}
+
+}  // namespace alvor

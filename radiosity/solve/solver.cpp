@@ -1,0 +1,324 @@
+#include "radiosity/solve/solver.h"
+
+#include "radiosity/solve/cpu_clock.h"
+#include "radiosity/solve/solve_state.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+namespace alvor {
+
+namespace {
+
+constexpr double pass_remaining = 0.1;    // of the tolerance: a pass goes on until what is still to come is less
+constexpr double final_remaining = 1e-6;  // the same, of a pass that may be the last
+constexpr double near_the_end = 1.5;      // times the tolerance: the next pass is likely the last
+constexpr double displayed_error = 0.5;   // of the estimated error: how far a display may lag behind
+constexpr double worth_going_on = 0.98;   // of the lowest error so far
+constexpr int most_idle_passes = 4;
+constexpr double publish_when = 0.75;     // of the unshot power at the last publication
+constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
+constexpr std::uint64_t always_published = 12;
+
+constexpr std::uint32_t checkpoint_version = 2;
+
+/// What a run knows besides its state.
+struct Progress {
+  double elapsed_s = 0, cpu_s = 0, traversal_s = 0;
+  std::uint64_t rays = 0, shots = 0;
+  std::uint64_t passes = 0;  ///< that came to their end
+  ErrorEstimate error{.unshot = 1};
+  PowerBalance balance;
+  double lowest_error = 0;
+  std::uint64_t leaves_before = 0;  ///< the last pass that gained something
+  std::uint64_t idle_passes = 0;    ///< since
+};
+
+/// The pauses of a paced solve are not part of its time.
+class SolveClock {
+ public:
+  double elapsed_s() const { return seconds(Clock::now() - start_ - paused_); }
+  /// Returns early once `must_stop` says so.
+  void pause(double duration_s, const std::function<bool()>& must_stop) {
+    const auto before = Clock::now(), end = before + of(duration_s);
+    while (!must_stop() && Clock::now() < end)
+      std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), most_nap));
+    paused_ += Clock::now() - before;
+  }
+  /// What was elapsed before this clock was made.
+  void add_elapsed(double elapsed_s) { start_ -= of(elapsed_s); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds most_nap{20};
+  static Clock::duration of(double s) { return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s)); }
+  static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+  Clock::time_point start_ = Clock::now();
+  Clock::duration paused_{};
+};
+
+/// One step: every face, and no light on any.
+SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
+  std::vector<LeafValue> values;
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) values.push_back({PatchId::root(root), {}});
+  Step step;
+  step.leaves = values.size();
+  step.unshot_fraction = step.estimated_error = 0;
+  log.publish(values, step);
+  return {.reason = StopReason::dark, .cpu_s = cpu.seconds()};
+}
+
+/// Of a scene with light.
+class Run {
+ public:
+  Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
+      const SolveControl& control)
+      : plan_(plan),
+        options_(options),
+        log_(log),
+        control_(control),
+        cpu_(cpu),
+        budget_([this] { return must_stop(); }),
+        state_(mesh, plan, options, budget_) {}
+
+  SolveOutcome run() {
+    if (control_.checkpoint.empty()) publish();
+    else load();
+    const StopReason reason = pass_until_done();
+    if (reason == StopReason::parked) save();
+    const double cpu = cpu_s();
+    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
+  }
+
+ private:
+  StopReason pass_until_done() {
+    for (;;) {
+      save_if_due();
+      if (!pass()) return stop_reason();
+      if (is_.error.total() <= options_.tolerance) return converge(StopReason::tolerance);
+      if (is_stuck()) return StopReason::stalled;
+      const bool is_better = gains() && state_.refine();
+      if (must_stop()) return stop_reason();
+      if (!is_better) {
+        state_.begin_exchange();
+        return converge(limit_reached());
+      }
+    }
+  }
+
+  /// False where passes that split nothing, but only add rays, do not bring the error down any more.
+  bool gains() {
+    const bool has_split = state_.leaf_count() > is_.leaves_before;
+    if (has_split || is_.error.total() < worth_going_on * is_.lowest_error) {
+      is_.idle_passes = 0;
+      is_.leaves_before = state_.leaf_count();
+      is_.lowest_error = is_.error.total();
+    }
+    return ++is_.idle_passes <= most_idle_passes;
+  }
+
+  /// False if it was stopped: then the last published step stands.
+  bool pass() {
+    if (!light()) return false;
+    state_.begin_exchange();
+    if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
+    is_.error = state_.estimate();
+    account();
+    publish();
+    ++is_.passes;
+    return true;
+  }
+
+  /// Traces rows and adds direct light: in the first pass part by part, so that all of the scene soon has some. False if it was
+  /// stopped.
+  bool light() {
+    bool is_more = true;
+    while (is_more && !must_stop()) {
+      is_more =
+          state_.trace_new_rows([this] { save_if_due(); }, is_.passes == 0 ? SolveState::Rows::a_part : SolveState::Rows::all);
+      if (must_stop()) return false;
+      state_.add_new_direct_light([this] {
+        ++is_.shots;
+        if (is_.passes == 0 && !must_stop()) publish_if_due();
+        save_if_due();
+      });
+    }
+    return !must_stop();
+  }
+
+  /// The last pass goes on to where rounding begins, if it gets there: gathering is cheap.
+  StopReason converge(StopReason reason) {
+    if (!exchange_down_to(final_remaining)) return stop_reason();
+    state_.show_what_came_since();
+    is_.error.unshot = state_.exchange().remaining_error();
+    account();
+    publish();
+    return is_stuck() ? StopReason::stalled : reason;
+  }
+
+  /// Noise of rows that all of the scene has in common shows in what they lose of the power or add to it: where nearly all is
+  /// reflected, a thousandth of each row is a large part of the solution.
+  void account() {
+    is_.balance = state_.balance();
+    is_.error.balance = std::abs(is_.balance.gap());
+  }
+
+  /// False if it was stopped.
+  bool exchange_down_to(double remaining_error) {
+    Exchange& exchange = state_.exchange();
+    double published = exchange.unshot_power();
+    const Settling end = settle(exchange, remaining_error, [&](std::size_t steps) {
+      is_.shots += steps;
+      if (must_break_off()) return false;
+      if (exchange.unshot_power() >= publish_when * published) return true;
+      published = exchange.unshot_power();
+      state_.show_what_came_since();
+      publish_if_due();
+      return true;
+    });
+    has_stalled_ = end == Settling::stalled;
+    return end != Settling::stopped;
+  }
+
+  /// Steps that only show progress may cost a small share of the time; the first ones always appear.
+  void publish_if_due() {
+    const bool is_early = log_.head() < always_published;
+    if (is_early || clock_.elapsed_s() - published_at_ > publishing_s_ / publishing_share) publish();
+  }
+
+  void publish() {
+    const double before = clock_.elapsed_s();
+    Step step;
+    step.elapsed_s = before;
+    step.shots = is_.shots;
+    step.rays = budget_.rays();
+    step.leaves = state_.leaf_count();
+    step.unshot_fraction = state_.unshot_fraction();
+    step.estimated_error = is_.error.total();
+    step.unlit_fraction = state_.unlit_fraction();
+    step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
+    if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = state_.ambient_irradiance();
+    log_.publish(state_.leaf_values(), step);
+    published_at_ = clock_.elapsed_s();
+    publishing_s_ = published_at_ - before;
+    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return must_stop(); });
+  }
+
+  void save_if_due() {
+    if (control_.is_checkpoint_due && control_.is_checkpoint_due()) save();
+  }
+
+  void save() {
+    if (!control_.save) return;
+    Progress now = is_;
+    now.elapsed_s = clock_.elapsed_s();
+    now.cpu_s = cpu_s();
+    now.traversal_s = budget_.traversal_s();
+    now.rays = budget_.rays();
+    control_.save([&](PlainWriter& out) {
+      out.put(checkpoint_version);
+      out.put(now);
+      state_.save(out);
+    });
+  }
+
+  void load() {
+    PlainReader in(control_.checkpoint);
+    if (in.get<std::uint32_t>() != checkpoint_version) throw BadBytes("is of another version");
+    is_ = in.get<Progress>();
+    const double numbers[] = {is_.elapsed_s, is_.cpu_s, is_.traversal_s, is_.error.total(), is_.lowest_error, is_.balance.gap()};
+    if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || is_.elapsed_s < 0)
+      throw BadBytes("progress: cannot be");
+    state_.load(in);
+    in.expect_end();
+    clock_.add_elapsed(is_.elapsed_s);
+    budget_.add_spent(is_.rays, is_.traversal_s);
+  }
+
+  double cpu_s() const { return is_.cpu_s + cpu_.seconds(); }
+
+  bool is_stuck() const { return has_stalled_ && is_.error.unshot > pass_remaining * options_.tolerance; }
+  /// A pass that may be the last goes on to the end where that is cheap: what it shows is then smoothed as a whole.
+  bool may_be_last() const {
+    return options_.strategy == Strategy::automatic && (is_.passes == 0 || is_.error.total() < near_the_end * options_.tolerance);
+  }
+  /// Whatever is under way is given up: from the middle of an exchange a solve would go on otherwise.
+  bool must_break_off() const {
+    return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() ||
+           clock_.elapsed_s() > options_.time_limit_s;
+  }
+  bool must_stop() const { return control_.park.stop_requested() || must_break_off(); }
+  StopReason stop_reason() const {
+    if (control_.stop.stop_requested()) return StopReason::cancelled;
+    if (control_.short_of_memory.stop_requested()) return StopReason::memory;
+    return clock_.elapsed_s() > options_.time_limit_s ? StopReason::time_limit : StopReason::parked;
+  }
+  StopReason limit_reached() const {
+    return state_.leaf_count() + 3 > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
+  }
+
+  const Plan& plan_;
+  SolveOptions options_;
+  SolutionLog& log_;
+  const SolveControl& control_;
+  SolveClock clock_;
+  const CpuClock& cpu_;
+  RayBudget budget_;
+  SolveState state_;
+  Progress is_;
+  bool has_stalled_ = false;  // light was still going round when the last exchange ended
+  double published_at_ = 0, publishing_s_ = 0;
+};
+
+tbb::task_arena::priority priority_of(SolvePriority priority) {
+  switch (priority) {
+    case SolvePriority::low: return tbb::task_arena::priority::low;
+    case SolvePriority::high: return tbb::task_arena::priority::high;
+    default: return tbb::task_arena::priority::normal;
+  }
+}
+
+}  // namespace
+
+std::string_view text(StopReason reason) {
+  switch (reason) {
+    case StopReason::tolerance: return "tolerance reached";
+    case StopReason::max_leaves: return "leaf limit reached";
+    case StopReason::max_depth: return "depth limit reached";
+    case StopReason::time_limit: return "time limit reached";
+    case StopReason::memory: return "memory limit reached";
+    case StopReason::cancelled: return "cancelled";
+    case StopReason::dark: return "no light";
+    case StopReason::stalled: return "light goes round too slowly";
+    case StopReason::parked: return "parked";
+  }
+  return "unknown";
+}
+
+SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                              const SolveControl& control) {
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  tbb::task_arena arena(threads, 1, priority_of(control.priority));
+  const CpuClock cpu(arena);
+  return arena.execute([&] {
+    if (!plan.has_light()) return show_darkness(mesh, cpu, log);
+    return Run(mesh, plan, options, cpu, log, control).run();
+  });
+}
+
+SolveOutcome solve(const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log, std::stop_token stop) {
+  const struct CloseAtEnd {
+    SolutionLog& log;
+    ~CloseAtEnd() { log.close(); }
+  } close{log};
+  SolveControl control;
+  control.stop = std::move(stop);
+  return solve_as_planned(mesh, Plan(mesh, options), options, log, control);
+}
+
+}  // namespace alvor

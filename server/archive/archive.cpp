@@ -1,0 +1,258 @@
+#include "server/archive/archive.h"
+
+#include "proto/codec.h"
+#include "server/archive/pieces.h"
+#include "server/archive/rows.h"
+#include "server/base/random_id.h"
+#include "server/base/sha256.h"
+#include "solution/plain_bytes.h"
+
+#include <utility>
+
+namespace alvor {
+
+namespace {
+
+constexpr Archive::Rows scene_rows{"scene", "scenes", "scenes_of", "tenant, request_id, sha256, facts"};
+
+/// chunk(bytes) for each chunk of the scene.
+template <class Body>
+void for_each_chunk(const Scene& scene, Body&& body) {
+  SceneSlicer slicer(scene);
+  for (v1::GeometryChunk chunk; slicer.next(chunk);) body(chunk.SerializeAsString());
+}
+
+/// Chunks are told apart: what is stored must be found by the same sum that it was stored under.
+void add_chunk(std::string_view chunk, Sha256& sum) {
+  sum.add(std::to_string(chunk.size()) + ":");
+  sum.add(chunk);
+}
+
+void put_content(SQLite::Database& database, const std::string& sha256, const Scene& content) {
+  SQLite::Statement clear(database, "DELETE FROM content_pieces WHERE sha256 = ?");  // leftovers
+  clear.bind(1, sha256);
+  clear.exec();
+  SQLite::Statement put(database, "INSERT INTO content_pieces VALUES(?, ?, ?)");
+  int n = 0;
+  for_each_chunk(content, [&](const std::string& chunk) {
+    PieceWriter writer;
+    writer.add(std::as_bytes(std::span(chunk)));
+    for (const std::string& piece : writer.finish()) {
+      put.bind(1, sha256);
+      put.bind(2, n++);
+      bind_bytes(put, 3, piece);
+      put.exec();
+      put.reset();
+    }
+  });
+}
+
+Archive::SceneRow scene_row(SQLite::Statement& get, std::int64_t number) {
+  Archive::SceneRow row{static_cast<std::uint64_t>(number), get.getColumn(0).getString(), get.getColumn(1).getString(),
+                        parsed<v1::Scene>(get.getColumn(3))};
+  const bool is_sound = row.facts.name().starts_with("scenes/") && row.facts.content_sha256() == get.getColumn(2).getString();
+  if (!is_sound) throw data_loss("it is damaged");
+  return row;
+}
+
+bool has_solves(SQLite::Database& database, std::int64_t scene) {
+  SQLite::Statement any(database, "SELECT 1 FROM solves WHERE scene = ?");
+  any.bind(1, scene);
+  return any.executeStep();
+}
+
+/// Returns the key of its content where no other scene has the same; else "".
+std::string remove_scene_row(SQLite::Database& database, std::int64_t number) {
+  SQLite::Statement get(database, "SELECT sha256 FROM scenes WHERE number = ?");
+  get.bind(1, number);
+  if (!get.executeStep()) return "";
+  const std::string sha256 = get.getColumn(0).getString();
+  get.reset();
+  SQLite::Statement remove(database, "DELETE FROM scenes WHERE number = ?");
+  remove.bind(1, number);
+  remove.exec();
+  SQLite::Statement remove_content(database,
+                                   "DELETE FROM contents WHERE sha256 = ? AND sha256 NOT IN (SELECT sha256 FROM scenes)");
+  remove_content.bind(1, sha256);
+  return remove_content.exec() > 0 ? sha256 : "";
+}
+
+}  // namespace
+
+StatusError data_loss(const std::string& what) { return {grpc::DATA_LOSS, data_directory + what}; }
+
+SceneBytes measure(const Scene& scene) {
+  Sha256 sum;
+  std::uint64_t bytes = 0;
+  for_each_chunk(scene, [&](const std::string& chunk) {
+    add_chunk(chunk, sum);
+    bytes += chunk.size();
+  });
+  return {sum.digits(), bytes};
+}
+
+Archive::Archive(const std::filesystem::path& directory, RunClock clock)
+    : database_(directory),
+      alive_(directory / "alive"),
+      last_alive_(alive_.read()),
+      clock_(std::move(clock)),
+      begun_(clock_()),
+      run_(random_id('r')) {
+  if (!database_.fault().empty()) note_fault(data_directory + database_.fault());
+  note_alive();
+  remove_leftovers();
+}
+
+Archive::~Archive() = default;
+
+void Archive::note_alive() {
+  alive_.write(now());
+  database_.restore_ballast();
+}
+
+void Archive::note_fault(std::string fault) {
+  std::scoped_lock hold(lock_);
+  faults_.push_back(std::move(fault));
+}
+
+std::vector<std::string> Archive::take_faults() {
+  std::scoped_lock hold(lock_);
+  return std::exchange(faults_, {});
+}
+
+/// A row that cannot be read is left out, and told of.
+void Archive::for_each_row(const Rows& rows, const RowBody& body) {
+  database_.read([&](SQLite::Database& database) {
+    SQLite::Statement get(database, std::string("SELECT ") + rows.columns + " FROM " + rows.table + " WHERE number = ?");
+    for (const std::int64_t number : numbers_of(database, rows.table, rows.index)) {
+      try {
+        get.bind(1, number);
+        if (!get.executeStep()) throw data_loss("it cannot be found");
+        body(database, get, number);
+      } catch (const std::runtime_error& fault) {
+        note_fault(rows.what + std::string(" number ") + std::to_string(number) + " is not served: " + fault.what());
+      }
+      get.tryReset();
+    }
+  });
+}
+
+std::uint64_t Archive::last_number(const Rows& rows) {
+  std::int64_t last = 0;
+  database_.read([&](SQLite::Database& database) {
+    if (const auto numbers = numbers_of(database, rows.table, rows.index); !numbers.empty()) last = numbers.back();
+  });
+  return static_cast<std::uint64_t>(last);
+}
+
+std::vector<Archive::SceneRow> Archive::scenes() {
+  std::vector<SceneRow> rows;
+  for_each_row(scene_rows,
+               [&](SQLite::Database&, SQLite::Statement& get, std::int64_t number) { rows.push_back(scene_row(get, number)); });
+  return rows;
+}
+
+std::uint64_t Archive::last_scene() { return last_number(scene_rows); }
+
+void Archive::add(const SceneRow& row, const Scene& content) {
+  const std::string& sha256 = row.facts.content_sha256();
+  const std::string facts = row.facts.SerializeAsString();
+  const auto put_scene = [&](SQLite::Database& database) {
+    SQLite::Statement known(database, "INSERT OR IGNORE INTO contents VALUES(?)");
+    known.bind(1, sha256);
+    if (known.exec() > 0) put_content(database, sha256, content);
+    SQLite::Statement put(database, "INSERT INTO scenes VALUES(?, ?, ?, ?, ?)");
+    put.bind(1, key(row.number));
+    put.bind(2, row.tenant);
+    put.bind(3, row.request_id);
+    put.bind(4, sha256);
+    bind_bytes(put, 5, facts);
+    put.exec();
+  };
+  database_.change(put_scene, "scene");
+}
+
+Scene Archive::content(const std::string& sha256) {
+  SceneAssembler assembler;
+  const auto refuse = [](const std::string& why) { throw data_loss("a scene's content: " + why); };
+  database_.read([&](SQLite::Database& database) {
+    SQLite::Statement each(database, "SELECT bytes FROM content_pieces WHERE sha256 = ? ORDER BY n");
+    each.bind(1, sha256);
+    Sha256 sum;
+    try {
+      while (each.executeStep()) {
+        std::vector<std::byte> bytes;
+        append_piece(bytes_of(each.getColumn(0)), bytes);
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        add_chunk(text, sum);
+        v1::GeometryChunk chunk;
+        if (!chunk.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) refuse("is damaged");
+        if (const auto fault = assembler.add(chunk)) refuse(fault->text());
+      }
+    } catch (const BadBytes& fault) {
+      refuse(fault.what());
+    }
+    if (sum.digits() != sha256) refuse("is not what was stored");
+  });
+  return assembler.take();
+}
+
+void Archive::remove_scene(std::uint64_t number) {
+  std::string unused;
+  database_.remove([&](SQLite::Database& database) {
+    if (has_solves(database, key(number))) throw data_loss("the scene has a solve that is damaged, and stays for its sake");
+    unused = remove_scene_row(database, key(number));
+  });
+  if (!unused.empty()) remove_pieces_of_content(unused);
+  remove_leftovers();
+}
+
+/// The row is gone, and with it all that others see; pieces that stay are removed later. `batch` removes some.
+void Archive::remove_pieces(const char* batch, const std::function<void(SQLite::Statement&)>& bind) {
+  try {
+    for (int removed = Database::rows_at_a_time; removed == Database::rows_at_a_time;)
+      database_.remove([&](SQLite::Database& database) {
+        SQLite::Statement remove(database, batch);
+        bind(remove);
+        remove.bind(2, Database::rows_at_a_time);
+        removed = remove.exec();
+      });
+  } catch (const StatusError&) {
+    has_leftovers_ = true;
+  }
+}
+
+/// Another scene may have brought the same content meanwhile.
+void Archive::remove_pieces_of_content(const std::string& sha256) {
+  remove_pieces(
+      "DELETE FROM content_pieces WHERE rowid IN (SELECT rowid FROM content_pieces WHERE sha256 = ?1 AND sha256 NOT IN contents "
+      "LIMIT ?2)",
+      [&](SQLite::Statement& batch) { batch.bind(1, sha256); });
+}
+
+void Archive::remove_pieces_of_solve(std::int64_t number) {
+  remove_pieces("DELETE FROM checkpoint_pieces WHERE rowid IN (SELECT rowid FROM checkpoint_pieces WHERE solve = ?1 LIMIT ?2)",
+                [&](SQLite::Statement& batch) { batch.bind(1, number); });
+}
+
+/// Removes pieces whose scene or solve is gone: a crash or a fault can leave them behind. Does not throw.
+void Archive::remove_leftovers() {
+  if (!has_leftovers_.exchange(false)) return;
+  std::vector<std::string> contents;
+  std::vector<std::int64_t> solves;
+  try {
+    database_.read([&](SQLite::Database& database) {
+      SQLite::Statement content(database, "SELECT DISTINCT sha256 FROM content_pieces WHERE sha256 NOT IN contents");
+      while (content.executeStep()) contents.push_back(content.getColumn(0).getString());
+      SQLite::Statement solve(database,
+                              "SELECT DISTINCT solve FROM checkpoint_pieces WHERE solve NOT IN (SELECT number FROM solves)");
+      while (solve.executeStep()) solves.push_back(solve.getColumn(0).getInt64());
+    });
+  } catch (const StatusError&) {
+    return;  // a damaged page, of which those are told who read it
+  }
+  for (const std::string& sha256 : contents) remove_pieces_of_content(sha256);
+  for (const std::int64_t solve : solves) remove_pieces_of_solve(solve);
+}
+
+}  // namespace alvor

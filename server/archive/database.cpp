@@ -1,0 +1,275 @@
+#include "server/archive/database.h"
+
+#include "server/base/failpoint.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
+#include <cerrno>
+#include <stdexcept>
+
+namespace alvor {
+
+namespace {
+
+constexpr int version = 2;
+// The journal of a call of remove() holds the pages that it replaces: of each row at most one of the table, one of each of two
+// indexes, and two lists of free pages (a row of 4 MB frees 1 025 pages, a list holds 1 022): 64 * 5 * 4 KB = 1.3 MB.
+constexpr std::int64_t bytes_of_ballast = 4 << 20;
+
+constexpr const char* schema = R"(
+  CREATE TABLE contents(sha256 TEXT PRIMARY KEY);
+  CREATE TABLE content_pieces(sha256 TEXT NOT NULL REFERENCES contents ON DELETE CASCADE, n INTEGER NOT NULL, bytes BLOB NOT NULL);
+  CREATE INDEX content_pieces_of ON content_pieces(sha256, n);
+  CREATE TABLE scenes(number INTEGER PRIMARY KEY, tenant TEXT NOT NULL, request_id TEXT NOT NULL,
+    sha256 TEXT NOT NULL REFERENCES contents, facts BLOB NOT NULL);
+  CREATE INDEX scenes_of ON scenes(sha256);
+  CREATE TABLE solves(number INTEGER PRIMARY KEY, scene INTEGER NOT NULL REFERENCES scenes, tenant TEXT NOT NULL,
+    request_id TEXT NOT NULL, facts BLOB NOT NULL);
+  CREATE INDEX solves_of ON solves(scene);
+  CREATE TABLE lineage(solve INTEGER NOT NULL REFERENCES solves ON DELETE CASCADE, epoch TEXT NOT NULL, revision INTEGER NOT NULL,
+    PRIMARY KEY(solve, epoch));
+  CREATE TABLE checkpoint_pieces(solve INTEGER NOT NULL REFERENCES solves ON DELETE CASCADE, kind INTEGER NOT NULL,
+    n INTEGER NOT NULL, bytes BLOB NOT NULL);
+  CREATE INDEX checkpoint_pieces_of ON checkpoint_pieces(solve, kind, n);
+)";
+
+// Tables that were added to version 2 of the schema; older servers of that version ignore them. `unkept` has the moment of a run,
+// in microseconds, since which the work of a running solve is in no checkpoint.
+constexpr const char* additions = R"(
+  CREATE TABLE IF NOT EXISTS unkept(solve INTEGER PRIMARY KEY REFERENCES solves ON DELETE CASCADE, run TEXT NOT NULL,
+    age INTEGER NOT NULL);
+)";
+
+// A lock for as long as the database is open: two servers must not resume the same solves. What is deleted is not written over:
+// that would take as much room as it had. Nothing of a change is in files elsewhere, whose disk may be full too.
+constexpr const char* settings = R"(
+  PRAGMA locking_mode = EXCLUSIVE;
+  PRAGMA synchronous = FULL;
+  PRAGMA foreign_keys = ON;
+  PRAGMA secure_delete = FAST;
+  PRAGMA temp_store = MEMORY;
+)";
+
+std::unique_ptr<SQLite::Database> connect(const std::filesystem::path& file) {
+  auto connection = std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  connection->exec(settings);
+  // Else closing moves a part of an older server's write-ahead log where there is no room for all.
+  sqlite3_db_config(connection->getHandle(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+  return connection;
+}
+
+/// Returns 0 where there is no database yet. Reading it goes back from a change that a crash cut off.
+int version_of(SQLite::Database& connection) {
+  const int found = connection.execAndGet("PRAGMA user_version").getInt();
+  if (found > version) throw std::invalid_argument("was written by a newer version of alvord");
+  if (found == 1)
+    throw std::invalid_argument("was written by an older alvord, whose solutions this one cannot read: use another directory");
+  return found;
+}
+
+bool has_write_ahead_log(SQLite::Database& connection) {
+  return connection.execAndGet("PRAGMA journal_mode").getString() == "wal";
+}
+
+/// Moves into the database what is in the write-ahead log that older servers used. Does not begin where the disk has no room for
+/// it: a part would fill the room and be of no use. It must be moved before the log is left: SQLite closes the log even where
+/// that fails.
+void leave_write_ahead_log(SQLite::Database& connection) {
+  if (has_write_ahead_log(connection)) {
+    const std::filesystem::path file = connection.getFilename();
+    const auto bytes = static_cast<std::uintmax_t>(connection.execAndGet("PRAGMA page_count").getInt64() *
+                                                   connection.execAndGet("PRAGMA page_size").getInt64());
+    if (bytes > std::filesystem::file_size(file) + std::filesystem::space(file).available)
+      throw SQLite::Exception("no room for the write-ahead log", SQLITE_FULL);
+    connection.exec("PRAGMA wal_checkpoint(TRUNCATE)");
+  }
+  connection.exec("PRAGMA journal_mode = TRUNCATE");
+}
+
+/// Writes the version also where it is there, to find out whether anything can be written.
+void prepare(SQLite::Database& connection) {
+  const int found = version_of(connection);
+  leave_write_ahead_log(connection);
+  SQLite::Transaction change(connection, SQLite::TransactionBehavior::EXCLUSIVE);
+  if (found == 0) connection.exec(schema);
+  connection.exec(additions);
+  connection.exec("PRAGMA user_version = " + std::to_string(version));
+  change.commit();
+}
+
+/// Quotas and limits on files' sizes are full disks too. Requires: `fault` is the connection's last.
+bool is_disk_full(SQLite::Database& connection, const SQLite::Exception& fault) {
+  const int reason = sqlite3_system_errno(connection.getHandle());
+  return fault.getErrorCode() == SQLITE_FULL ||
+         (fault.getErrorCode() == SQLITE_IOERR && (reason == ENOSPC || reason == EDQUOT || reason == EFBIG));
+}
+
+std::string reason_of(const SQLite::Exception& fault) {
+  switch (fault.getErrorCode()) {
+    case SQLITE_READONLY: return "it cannot be written";
+    case SQLITE_CANTOPEN: return "it cannot be opened";
+    case SQLITE_BUSY: return "another server uses it";
+    case SQLITE_NOTADB: return "alvor.db in it is no database";
+    case SQLITE_CORRUPT: return "alvor.db in it is damaged";
+    default: return fault.what();
+  }
+}
+
+StatusError disk_full() { return {grpc::RESOURCE_EXHAUSTED, data_directory + "the disk is full"}; }
+
+StatusError error_of(SQLite::Database& connection, const SQLite::Exception& fault) {
+  if (is_disk_full(connection, fault)) return disk_full();
+  const int code = fault.getErrorCode();
+  const bool is_damaged = code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
+  return {is_damaged ? grpc::DATA_LOSS : grpc::UNAVAILABLE, data_directory + reason_of(fault)};
+}
+
+}  // namespace
+
+Database::Database(const std::filesystem::path& directory) : ballast_(directory / "ballast", bytes_of_ballast) {
+  const std::string at = "--data: '" + directory.string() + "': ";
+  std::error_code failed;
+  std::filesystem::create_directories(directory, failed);
+  if (failed) throw std::invalid_argument(at + failed.message());
+  try {
+    open_somehow(directory / "alvor.db");
+  } catch (const SQLite::Exception& fault) {
+    throw std::invalid_argument(at + reason_of(fault));
+  } catch (const std::invalid_argument& fault) {
+    throw std::invalid_argument(at + fault.what());
+  }
+  is_complete_ = fault_.empty();
+  ballast_.take_up();
+}
+
+Database::~Database() = default;
+
+void Database::open_somehow(const std::filesystem::path& file) {
+  bool is_full = false;
+  fault_ = open_for_writing(file, is_full);
+  if (is_full) {
+    ballast_.drop();
+    fault_ = open_for_writing(file, is_full);
+  }
+  if (!fault_.empty()) open_for_reading(file, is_full);
+}
+
+/// Returns why nothing can be written; empty where something can. Throws SQLite::Exception where it cannot be read either.
+std::string Database::open_for_writing(const std::filesystem::path& file, bool& is_full) {
+  connection_.reset();
+  connection_ = connect(file);
+  try {
+    prepare(*connection_);
+    return "";
+  } catch (const SQLite::Exception& fault) {
+    is_full = is_disk_full(*connection_, fault);
+    if (is_full) return "the disk is full";
+    if (fault.getErrorCode() == SQLITE_READONLY || fault.getErrorCode() == SQLITE_CANTOPEN) return reason_of(fault);
+    throw;
+  }
+}
+
+/// As the last server left it. Its write-ahead log, if there is one, is then only used to remove rows, and stays.
+void Database::open_for_reading(const std::filesystem::path& file, bool is_full) {
+  connection_.reset();
+  connection_ = connect(file);
+  if (version_of(*connection_) == 0) throw std::invalid_argument(fault_);
+  connection_->tryExec("PRAGMA wal_autocheckpoint = 0; BEGIN EXCLUSIVE; COMMIT");
+  keeps_log_ = is_full && has_write_ahead_log(*connection_);
+  fault_ += !is_full ? ": scenes and solves can be read; all else is refused until the server is started where it can write"
+            : keeps_log_
+                ? ": scenes and solves can be read and deleted; all else is refused until the server is started with more room"
+                : ": scenes and solves can be read and deleted; all else is refused until there is room";
+}
+
+/// Requires: the lock.
+void Database::attempt(const Body& body) {
+  try {
+    body(*connection_);
+  } catch (const SQLite::Exception& fault) {
+    throw error_of(*connection_, fault);
+  }
+}
+
+/// Requires: the lock.
+void Database::in_one(const Body& body) {
+  attempt([&](SQLite::Database& connection) {
+    SQLite::Transaction change(connection, SQLite::TransactionBehavior::IMMEDIATE);
+    body(connection);
+    change.commit();
+  });
+}
+
+void Database::read(const Body& body) {
+  std::scoped_lock hold(lock_);
+  attempt(body);
+}
+
+/// Makes the tables of `additions` if opening the database could not, for want of room. Requires: the lock.
+void Database::complete_schema() {
+  if (is_complete_) return;
+  attempt([](SQLite::Database& connection) { connection.exec(additions); });
+  is_complete_ = true;
+}
+
+/// Does not let the file grow, so that the ballast finds its room again. Requires: the lock.
+void Database::in_free_pages(const Body& body) {
+  const struct WithoutBallast {
+    explicit WithoutBallast(const Ballast& held) : ballast(held) { ballast.drop(); }
+    ~WithoutBallast() { ballast.take_up(); }
+    const Ballast& ballast;
+  } without_ballast(ballast_);
+  complete_schema();
+  const struct FixedSize {
+    explicit FixedSize(SQLite::Database& open)
+        : connection(open), most(connection.execAndGet("PRAGMA max_page_count").getInt64()) {
+      limit(connection.execAndGet("PRAGMA page_count").getInt64());
+    }
+    ~FixedSize() { limit(most); }
+    void limit(std::int64_t pages) const { connection.tryExec("PRAGMA max_page_count = " + std::to_string(pages)); }
+    SQLite::Database& connection;
+    const std::int64_t most;
+  } fixed_size(*connection_);
+  in_one(body);
+}
+
+/// Requires: the lock.
+void Database::write(const Body& body) {
+  try {
+    if (ballast_.take_up()) {
+      complete_schema();
+      return in_one(body);
+    }
+  } catch (const StatusError& refusal) {
+    if (refusal.code != grpc::RESOURCE_EXHAUSTED) throw;
+  }
+  in_free_pages(body);
+}
+
+void Database::change(const Body& body, const std::string& step) {
+  std::scoped_lock hold(lock_);
+  if (keeps_log_) throw disk_full();
+  write([&](SQLite::Database& connection) {
+    body(connection);
+    failpoint(step + ".before");
+  });
+  failpoint(step + ".after");
+}
+
+void Database::remove(const Body& body) {
+  std::scoped_lock hold(lock_);
+  const struct WithoutKeys {
+    explicit WithoutKeys(SQLite::Database& open) : connection(open) { connection.tryExec("PRAGMA foreign_keys = OFF"); }
+    ~WithoutKeys() { connection.tryExec("PRAGMA foreign_keys = ON"); }
+    SQLite::Database& connection;
+  } without_keys(*connection_);
+  write(body);
+}
+
+void Database::restore_ballast() {
+  const std::unique_lock hold(lock_, std::try_to_lock);
+  if (hold) ballast_.take_up();
+}
+
+}  // namespace alvor

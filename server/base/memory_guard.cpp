@@ -1,0 +1,148 @@
+#include "server/base/memory_guard.h"
+
+#include "server/base/status_error.h"
+#include "server/base/task_queue.h"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <sstream>
+
+namespace alvor {
+
+namespace {
+
+constexpr auto unlimited = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t page_size() { return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)); }
+
+/// A limit is a number; "max" and what cannot be read are none.
+std::uint64_t limit_in(const std::string& file) {
+  std::uint64_t bytes = 0;
+  return std::ifstream(file) >> bytes && bytes > 0 ? bytes : unlimited;
+}
+
+/// Inside a container its own group is the root of what it sees.
+std::uint64_t limit_of_group() {
+  std::uint64_t least = unlimited;
+  std::ifstream groups("/proc/self/cgroup");  // lines ID:CONTROLLERS:PATH
+  for (std::string line; std::getline(groups, line);) {
+    std::istringstream fields(line);
+    std::string id, controllers, path;
+    std::getline(std::getline(std::getline(fields, id, ':'), controllers, ':'), path);
+    const bool is_v2 = controllers.empty();
+    if (!is_v2 && controllers.find("memory") == std::string::npos) continue;
+    const std::string root = is_v2 ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
+    const std::string file = is_v2 ? "/memory.max" : "/memory.limit_in_bytes";
+    least = std::min({least, limit_in(root + file), limit_in(root + path + file)});
+  }
+  return least;
+}
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
+/// Trims at most twice a second: it takes a tenth of a second for a heap of gigabytes.
+class HeapTrimmer {
+ public:
+  void ask() {
+    if (is_asked_.exchange(true)) return;
+    tasks_.post_at(TaskQueue::Clock::now() + std::chrono::milliseconds(500), [this] {
+      is_asked_ = false;
+      malloc_trim(0);
+    });
+  }
+
+ private:
+  std::atomic<bool> is_asked_ = false;
+  TaskQueue tasks_;
+};
+
+}  // namespace
+
+void trim_heap_soon() {
+  static HeapTrimmer trimmer;
+  trimmer.ask();
+}
+
+ResidentMemory resident_memory() {
+  std::uint64_t address_space = 0, all = 0, of_files = 0;
+  std::ifstream("/proc/self/statm") >> address_space >> all >> of_files;
+  return {all * page_size(), of_files * page_size()};
+}
+
+std::uint64_t held_bytes() {
+  const ResidentMemory resident = resident_memory();
+  return resident.all - std::min(resident.all, resident.of_files);
+}
+
+std::uint64_t allowed_memory() {
+  const std::uint64_t machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_size();
+  return std::min(machine, limit_of_group());
+}
+
+struct MemoryGuard::Relief {
+  using Clock = std::chrono::steady_clock;
+  // Trimming a heap of gigabytes takes a tenth of a second.
+  static constexpr std::chrono::seconds pause{1};
+
+  std::shared_ptr<void> add(std::function<void()> way) {
+    std::scoped_lock hold(lock);
+    const std::uint64_t number = next++;
+    ways.emplace(number, std::move(way));
+    return {this, [this, number](void*) {
+              std::scoped_lock hold_again(lock);
+              ways.erase(number);
+            }};
+  }
+  void give_back() {
+    const std::unique_lock hold(lock, std::try_to_lock);  // somebody else is at it
+    if (!hold || Clock::now() < last + pause) return;
+    for (const auto& [number, way] : ways) way();
+    malloc_trim(0);  // a limit counts what the allocator keeps for later
+    last = Clock::now();
+  }
+
+  std::mutex lock;
+  std::map<std::uint64_t, std::function<void()>> ways;
+  std::uint64_t next = 0;
+  Clock::time_point last;
+};
+
+MemoryGuard::MemoryGuard(std::uint64_t limit, std::uint64_t (*used)())
+    : limit_(limit), used_(used), relief_(std::make_shared<Relief>()) {}
+
+bool MemoryGuard::has_room(std::uint64_t bytes) const {
+  if (limit_ == 0) return true;
+  const std::uint64_t used = used_(), most = limit_ / 4 * 3;
+  return used <= most && bytes <= most - used;
+}
+
+void MemoryGuard::admit(const std::string& what, std::uint64_t bytes) const {
+  make_room(bytes);
+  refuse_without_room(what, bytes);
+}
+
+void MemoryGuard::refuse_without_room(const std::string& what, std::uint64_t bytes) const {
+  if (has_room(bytes)) return;
+  throw StatusError(grpc::RESOURCE_EXHAUSTED, what + ": needs about " + megabytes(bytes) + " of memory; " + megabytes(used_()) +
+                                                  " of " + megabytes(limit_) + " are in use");
+}
+
+void MemoryGuard::make_room(std::uint64_t bytes) const {
+  if (!has_room(bytes)) relief_->give_back();
+}
+
+std::shared_ptr<void> MemoryGuard::relieve_by(std::function<void()> give_back) const {
+  return relief_->add(std::move(give_back));
+}
+
+bool MemoryGuard::is_short() const { return limit_ > 0 && used_() > limit_ / 8 * 7; }
+
+}  // namespace alvor

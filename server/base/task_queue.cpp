@@ -1,0 +1,49 @@
+#include "server/base/task_queue.h"
+
+namespace alvor {
+
+TaskQueue::TaskQueue() : thread_([this] { run(); }) {}
+
+TaskQueue::~TaskQueue() {
+  {
+    std::scoped_lock hold(lock_);
+    stopping_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void TaskQueue::post_at(Clock::time_point due, std::function<void()> task) {
+  {
+    std::scoped_lock hold(lock_);
+    tasks_.emplace(due, std::move(task));
+  }
+  changed_.notify_one();
+}
+
+void TaskQueue::run() {
+  std::unique_lock hold(lock_);
+  while (auto task = take_due(hold)) {
+    hold.unlock();
+    task();
+    task = nullptr;  // what it holds may be large: not freed under the lock
+    hold.lock();
+  }
+}
+
+// Waits for the next task; empty when the queue is stopping and none is due.
+std::function<void()> TaskQueue::take_due(std::unique_lock<std::mutex>& hold) {
+  for (;;) {
+    const auto first = tasks_.begin();
+    if (first != tasks_.end() && first->first <= Clock::now()) return std::move(tasks_.extract(first).mapped());
+    if (stopping_) return {};
+    if (first == tasks_.end()) {
+      changed_.wait(hold);
+    } else {
+      const auto due = first->first;  // the entry may be gone when the wait ends
+      changed_.wait_until(hold, due);
+    }
+  }
+}
+
+}  // namespace alvor

@@ -1,0 +1,42 @@
+#pragma once
+// A gRPC server whose connections come through a FrontDoor.
+
+#include "server/access/front_door.h"
+
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace alvor {
+
+class RpcServer {
+ public:
+  using Configure = std::function<void(grpc::ServerBuilder&)>;
+
+  /// Serves from now on. `configure` adds services and options to the builder. `died` is called, from a thread, where connections
+  /// can no longer be accepted. Throws std::runtime_error where gRPC refuses.
+  RpcServer(std::shared_ptr<FrontDoor> door, std::shared_ptr<grpc::ServerCredentials> credentials, const Configure& configure,
+            std::function<void()> died);
+  /// Ends what is under way, at once.
+  ~RpcServer();
+  RpcServer(const RpcServer&) = delete;
+  RpcServer& operator=(const RpcServer&) = delete;
+
+  /// Accepts nothing more, and waits for the calls under way until `grace` is over.
+  void shut_down(std::chrono::milliseconds grace);
+
+  grpc::Server& server() { return *server_; }
+  FrontDoor& door() { return *door_; }
+  /// With the port that was taken.
+  const std::string& address() const { return door_->address(); }
+
+ private:
+  const std::shared_ptr<FrontDoor> door_;
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+}  // namespace alvor

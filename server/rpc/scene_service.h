@@ -1,0 +1,50 @@
+#pragma once
+// The RPCs of alvor.v1.SceneService: thin, over SceneStore.
+
+#include "alvor/v1/scene_service.grpc.pb.h"
+#include "server/access/tenants.h"
+#include "server/rpc/call_pools.h"
+#include "server/scenes/scene_upload.h"
+#include "server/scenes/uploads.h"
+
+namespace spdlog {
+class logger;
+}
+
+namespace alvor {
+
+/// Everything it is given must outlive the server's calls.
+class SceneService final : public v1::SceneService::CallbackService {
+ public:
+  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools, spdlog::logger& logger)
+      : scenes_(scenes), tenants_(tenants), limits_(limits), pools_(pools), logger_(logger) {}
+
+ private:
+  using Context = grpc::CallbackServerContext;
+  using Reactor = grpc::ServerUnaryReactor;
+
+  grpc::ServerReadReactor<v1::CreateSceneRequest>* CreateScene(Context*, v1::Scene* scene) override;
+  Reactor* GetUpload(Context*, const v1::GetUploadRequest* request, v1::Upload* upload) override;
+  Reactor* GetScene(Context*, const v1::GetSceneRequest* request, v1::Scene* scene) override;
+  Reactor* ListScenes(Context*, const v1::ListScenesRequest* request, v1::ListScenesResponse* response) override;
+  Reactor* DeleteScene(Context*, const v1::DeleteSceneRequest* request, google::protobuf::Empty*) override;
+  grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
+  grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
+
+  /// Answers from the pool, see answer_from.
+  template <class Body>
+  Reactor* keep(Context* context, const char* call, Body body);
+  /// Streams a part of the scene's content, cut by a Slicer.
+  template <class Message, class Slicer, class Part>
+  grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& scene, Part part);
+
+  SceneStore& scenes_;
+  const Tenants& tenants_;
+  const UploadLimits limits_;
+  Uploads uploads_;
+  CallPools& pools_;
+  spdlog::logger& logger_;
+  PageTokens tokens_;
+};
+
+}  // namespace alvor

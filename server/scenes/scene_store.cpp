@@ -1,0 +1,210 @@
+#include "server/scenes/scene_store.h"
+
+#include "server/base/random_id.h"
+#include "server/base/status_error.h"
+
+#include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t longest_display_name = 256;
+constexpr std::uint64_t bytes_a_corner = 250;  // of a scene with its mesh, while it is built
+
+bool emits(const BaseMesh& mesh) {
+  return std::ranges::any_of(mesh.roots(),
+                             [&](const RootPatch& root) { return !mesh.materials()[root.material].emission.is_zero(); });
+}
+
+void describe_mesh(const BaseMesh& mesh, v1::Scene& facts) {
+  for (std::string& warning : warnings_of(mesh.weld_report())) facts.add_warnings(std::move(warning));
+  if (!emits(mesh)) facts.add_warnings("No face emits light: the solution will be dark.");
+}
+
+/// Replaces each reflectance of exactly 1. Returns a sentence that says so; empty where there is none.
+std::string clamp_reflectance_of_one(Scene& scene) {
+  std::size_t count = 0;
+  std::string first;
+  for (Material& material : scene.materials) {
+    Rgb& rho = material.reflectance;
+    if (rho.r != 1 && rho.g != 1 && rho.b != 1) continue;
+    for (double* band : {&rho.r, &rho.g, &rho.b})
+      if (*band == 1) *band = clamped_reflectance;
+    if (count++ == 0) first = material.name;
+  }
+  if (count == 0) return {};
+  return std::to_string(count) + " materials have a reflectance of 1, which is taken for 0.95: the first is '" + first + "'.";
+}
+
+v1::Scene facts_of(const Scene& scene, const BaseMesh& mesh, const std::string& display_name) {
+  v1::Scene facts;
+  facts.set_name("scenes/" + random_id('s'));
+  facts.set_display_name(display_name);
+  *facts.mutable_create_time() = google::protobuf::util::TimeUtil::GetCurrentTime();
+  facts.set_vertex_count(scene.vertices.size());
+  facts.set_face_count(scene.faces.size());
+  facts.set_material_count(scene.materials.size());
+  describe_mesh(mesh, facts);
+  const SceneBytes content = measure(scene);
+  facts.set_content_sha256(content.sha256);
+  facts.set_content_bytes(content.bytes);
+  return facts;
+}
+
+/// Throws StatusError where `stop` ends it.
+BaseMesh build(const Scene& scene, const CallStop& stop) {
+  try {
+    return BaseMesh(scene, {.stop = stop.token()});
+  } catch (const BuildStopped&) {
+    stop.refuse_stopped();
+    throw;
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const SceneContent> SceneContents::add(const std::string& sha256, Scene scene, BaseMesh mesh) {
+  std::scoped_lock hold(lock_);
+  std::weak_ptr<const SceneContent>& known = known_[sha256];
+  auto content = known.lock();
+  if (!content) known = content = std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
+  return content;
+}
+
+std::shared_ptr<const SceneContent> SceneContents::known(const std::string& sha256) {
+  std::scoped_lock hold(lock_);
+  std::erase_if(known_, [](const auto& entry) { return entry.second.expired(); });
+  const auto found = known_.find(sha256);
+  return found == known_.end() ? nullptr : found->second.lock();
+}
+
+std::shared_ptr<std::mutex> SceneContents::loading(const std::string& sha256) {
+  std::scoped_lock hold(lock_);
+  std::erase_if(loading_, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<std::mutex>& entry = loading_[sha256];
+  auto turn = entry.lock();
+  if (!turn) entry = turn = std::make_shared<std::mutex>();
+  return turn;
+}
+
+std::shared_ptr<const SceneContent> SceneContents::find(const std::string& sha256, const CallStop& stop) {
+  if (auto content = known(sha256)) return content;
+  const auto turn = loading(sha256);
+  std::scoped_lock alone(*turn);
+  if (auto content = known(sha256)) return content;
+  stop.refuse_stopped();
+  Scene scene = archive_->content(sha256);
+  BaseMesh mesh = build(scene, stop);
+  return add(sha256, std::move(scene), std::move(mesh));
+}
+
+SceneStore::SceneStore(Archive* archive, const Quota& quota, MemoryGuard memory)
+    : archive_(archive), quota_(quota), memory_(memory), contents_(archive) {
+  if (!archive) return;
+  for (const Archive::SceneRow& row : archive->scenes())
+    insert(std::make_shared<StoredScene>(row.number, Caller{row.tenant, row.request_id}, row.facts, contents_, nullptr));
+  next_number_ = archive->last_scene() + 1;
+}
+
+std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::string& display_name, const Caller& caller,
+                                                   const CallStop& stop) {
+  if (display_name.size() > longest_display_name)
+    throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
+  const std::string clamped = clamp_reflectance_of_one(scene);
+  if (const auto fault = find_fault(scene)) throw invalid_argument(fault->text());
+  memory_.admit("scene", bytes_a_corner * scene.corners.size());
+  stop.refuse_stopped();
+  BaseMesh mesh = build(scene, stop);
+  if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");
+  v1::Scene facts = facts_of(scene, mesh, display_name);
+  if (!clamped.empty()) facts.add_warnings(clamped);
+
+  std::scoped_lock one(adding_);
+  if (auto known = repeated(caller, facts)) return known;
+  check_quota(caller.tenant, facts.content_bytes());
+  if (archive_) archive_->add({next_number_, caller.tenant, caller.request_id, facts}, scene);
+  auto content = contents_.add(facts.content_sha256(), std::move(scene), std::move(mesh));
+  auto stored = std::make_shared<const StoredScene>(next_number_++, caller, std::move(facts), contents_,
+                                                    archive_ ? nullptr : std::move(content));
+  insert(stored);
+  return stored;
+}
+
+std::shared_ptr<const StoredScene> SceneStore::repeated(const Caller& caller, const v1::Scene& facts) const {
+  std::scoped_lock hold(lock_);
+  const std::string name = requests_.find(caller);
+  if (name.empty()) return nullptr;
+  auto known = entry(name, caller.tenant).scene;
+  if (known->facts.content_sha256() != facts.content_sha256() || known->facts.display_name() != facts.display_name())
+    throw other_request(caller.request_id);
+  return known;
+}
+
+void SceneStore::check_quota(const std::string& tenant, std::uint64_t bytes) const {
+  std::scoped_lock hold(lock_);
+  std::uint64_t count = 1;
+  for (const auto& [name, use] : scenes_) {
+    if (use.scene->creator.tenant != tenant) continue;
+    ++count;
+    bytes += use.scene->facts.content_bytes();
+  }
+  if (count > quota_.scenes)
+    throw StatusError(grpc::RESOURCE_EXHAUSTED, "scenes: " + std::to_string(quota_.scenes) + " exist, as many as are allowed");
+  if (bytes > quota_.scene_bytes)
+    throw StatusError(grpc::RESOURCE_EXHAUSTED, "scenes: would take " + std::to_string(bytes) + " bytes, " +
+                                                    std::to_string(quota_.scene_bytes) + " are allowed");
+}
+
+void SceneStore::insert(std::shared_ptr<const StoredScene> scene) {
+  std::scoped_lock hold(lock_);
+  requests_.add(scene->creator, scene->facts.name());
+  const std::string name = scene->facts.name();
+  scenes_[name] = {std::move(scene), std::make_shared<const int>(0)};
+}
+
+const SceneUse& SceneStore::entry(const std::string& name, const std::string& tenant) const {
+  const auto found = scenes_.find(name);
+  if (found == scenes_.end() || found->second.scene->creator.tenant != tenant) throw not_found(name);
+  return found->second;
+}
+
+std::shared_ptr<const StoredScene> SceneStore::find(const std::string& name, const std::string& tenant) const {
+  std::scoped_lock hold(lock_);
+  return entry(name, tenant).scene;
+}
+
+SceneUse SceneStore::use(const std::string& name, const std::string& tenant) const {
+  std::scoped_lock hold(lock_);
+  return entry(name, tenant);
+}
+
+Page<const StoredScene> SceneStore::list(const PageRequest& request, const std::string& tenant) const {
+  std::vector<std::shared_ptr<const StoredScene>> all;
+  {
+    std::scoped_lock hold(lock_);
+    for (const auto& [name, use] : scenes_)
+      if (use.scene->creator.tenant == tenant) all.push_back(use.scene);
+  }
+  return cut_page(std::move(all), request);
+}
+
+void SceneStore::remove(const std::string& name, const std::string& tenant) {
+  SceneUse removed;  // freed after the lock is
+  std::scoped_lock hold(lock_);
+  // First uses are only handed out under this lock, so a count of one cannot grow meanwhile.
+  const SceneUse& use = entry(name, tenant);
+  if (use.token.use_count() > 1) throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves: delete them first");
+  if (archive_) archive_->remove_scene(use.scene->number);
+  requests_.remove(use.scene->creator);
+  removed = std::move(scenes_.extract(name).mapped());
+}
+
+std::size_t SceneStore::count() const {
+  std::scoped_lock hold(lock_);
+  return scenes_.size();
+}
+
+}  // namespace alvor

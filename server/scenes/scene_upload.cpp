@@ -1,0 +1,49 @@
+#include "server/scenes/scene_upload.h"
+
+#include "server/base/status_error.h"
+
+namespace alvor {
+
+namespace {
+
+void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
+  if (count <= limit) return;
+  const std::string most = std::to_string(limit) + " " + unit;
+  throw StatusError(grpc::RESOURCE_EXHAUSTED, "scene: more than " + most + ", the limit of this server");
+}
+
+}  // namespace
+
+void SceneUpload::add(const v1::CreateSceneRequest& message) {
+  constexpr std::uint64_t bytes_of_material = 100;  // in memory; on the wire an empty one is two
+  bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size());
+  check_limit(bytes_, limits_.bytes, "bytes");
+  limits_.memory.refuse_without_room("scene", message.ByteSizeLong());
+  if (message.has_scene() == begun_)
+    throw invalid_argument(begun_ ? "scene: only the first message may set it" : "scene: the first message must set it");
+  if (!begun_) {
+    begun_ = true;
+    display_name_ = message.scene().display_name();
+    return;
+  }
+  check_limits(message.chunk());
+  if (const auto fault = assembler_.add(message.chunk())) throw invalid_argument(fault->text());
+  ++chunks_;
+}
+
+void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
+  const Scene& scene = assembler_.scene();
+  check_limit(scene.corners.size() + static_cast<std::uint64_t>(chunk.corner_vertices_size()), limits_.corners, "corners");
+  check_limit(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
+  for (const std::uint32_t corners : chunk.face_corner_counts())
+    check_limit(corners, limits_.corners_of_face, "corners in a face");
+  for (const v1::Material& material : chunk.materials())
+    check_limit(material.name().size(), limits_.bytes_of_name, "bytes in a material's name");
+}
+
+std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller, const CallStop& stop) {
+  if (!begun_) throw invalid_argument("scene: the first message must set it");
+  return store.add(assembler_.take(), display_name_, caller, stop);
+}
+
+}  // namespace alvor

@@ -1,0 +1,18 @@
+#pragma once
+// What a client asks of a solve, checked field by field.
+
+#include "alvor/v1/solve_service.pb.h"
+#include "radiosity/solve/solver.h"
+
+namespace alvor {
+
+/// What this server grants a single solve.
+struct SolveLimits {
+  std::uint64_t leaves = 4'000'000;  ///< a leaf with its row takes one or two kilobytes
+  int threads = 0;                   ///< 0: as many as the machine has
+};
+
+/// Fields left at 0 get the defaults of SolveOptions. Throws StatusError INVALID_ARGUMENT that names the field.
+SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits);
+
+}  // namespace alvor

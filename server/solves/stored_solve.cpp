@@ -1,0 +1,370 @@
+#include "server/solves/stored_solve.h"
+
+#include "proto/codec.h"
+#include "server/archive/pieces.h"
+#include "server/base/random_id.h"
+#include "server/base/status_error.h"
+
+#include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace alvor {
+
+using google::protobuf::util::TimeUtil;
+
+namespace {
+
+constexpr int least_share = 20;                    // of the time between checkpoints goes into them
+constexpr std::uint64_t bytes_a_logged_leaf = 80;  // while it is loaded: 32 that stay, and the pieces it is read from
+
+bool is_final(v1::Solve::State state) {
+  return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
+}
+
+v1::Priority priority_of(const v1::SolveSpec& spec) {
+  return spec.priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : spec.priority();
+}
+
+v1::PowerBalance encode(const PowerBalance& balance) {
+  v1::PowerBalance message;
+  message.set_emitted_watts(balance.emitted);
+  message.set_absorbed_watts(balance.absorbed);
+  message.set_lost_watts(balance.lost);
+  message.set_unshot_watts(balance.unshot);
+  return message;
+}
+
+void cancel(v1::Solve& facts) {
+  facts.set_state(v1::Solve::CANCELLED);
+  facts.set_end_reason(std::string(text(StopReason::cancelled)));
+  *facts.mutable_end_time() = TimeUtil::GetCurrentTime();
+}
+
+std::vector<std::string> pieces_of(const SolveControl::Write& write) {
+  PieceWriter pieces;
+  PlainWriter out([&](std::span<const std::byte> bytes) { pieces.add(bytes); });
+  write(out);
+  return pieces.finish();
+}
+
+}  // namespace
+
+StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller,
+                         const v1::SolveSpec& spec, const SolveOptions& solve_options, Keeping keeping)
+    : number(solve_number),
+      name(scene->facts.name() + "/solves/" + random_id('s')),
+      creator(std::move(caller)),
+      options(solve_options),
+      priority(priority_of(spec)),
+      scene_(std::move(scene)),
+      keeping_(std::move(keeping)),
+      log_(std::make_shared<SolutionLog>()) {
+  facts_.set_name(name);
+  *facts_.mutable_spec() = spec;
+  facts_.set_state(v1::Solve::QUEUED);
+  *facts_.mutable_create_time() = TimeUtil::GetCurrentTime();
+}
+
+StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& solve_options,
+                         Keeping keeping)
+    : number(row.number),
+      name(row.facts.name()),
+      creator{std::move(row.tenant), std::move(row.request_id)},
+      options(solve_options),
+      priority(priority_of(row.facts.spec())),
+      scene_(std::move(scene)),
+      keeping_(std::move(keeping)),
+      facts_(std::move(row.facts)),
+      lineage_(std::move(row.lineage)) {
+  const bool has_checkpoint = facts_.has_checkpoint_time();
+  if (!has_checkpoint) log_ = std::make_shared<SolutionLog>();
+  is_log_kept_ = has_checkpoint && is_final(facts_.state());
+  if (is_final(facts_.state())) return;
+  facts_.set_restarts(facts_.restarts() + 1);
+  facts_.clear_work_lost();
+  facts_.set_resumed_from_revision(facts_.last_step().revision());
+  if (facts_.state() != v1::Solve::RUNNING) return;
+  if (row.work_lost) *facts_.mutable_work_lost() = encode_seconds(1e-6 * static_cast<double>(row.work_lost->count()));
+  facts_.set_state(v1::Solve::QUEUED);
+}
+
+void StoredSolve::keep() {
+  if (keeping_.archive) keeping_.archive->add(row(), scene_->number);
+}
+
+Archive::SolveRow StoredSolve::row() const {
+  std::scoped_lock hold(lock_);
+  Archive::SolveRow row{number, creator.tenant, creator.request_id, facts_, lineage_};
+  if (facts_.state() != v1::Solve::RUNNING) return row;
+  if (wish_ == v1::Solve::CANCELLED) cancel(row.facts);
+  else row.facts.set_state(wish_);
+  return row;
+}
+
+/// The guard may ask other solves to drop their logs, and this one: it must be called without log_lock_.
+void StoredSolve::admit_log() const {
+  {
+    std::scoped_lock hold(log_lock_);
+    if (log_) return;
+  }
+  std::uint64_t leaves = 0;
+  {
+    std::scoped_lock hold(lock_);
+    leaves = facts_.last_step().leaves();
+  }
+  keeping_.memory.admit("solution", bytes_a_logged_leaf * leaves);
+}
+
+std::shared_ptr<SolutionLog> StoredSolve::log() const {
+  admit_log();
+  std::scoped_lock hold(log_lock_);
+  if (log_) return log_;
+  const auto bytes = keeping_.archive->log(number);
+  try {
+    PlainReader in(bytes);
+    const auto loaded = std::make_shared<SolutionLog>(in);
+    in.expect_end();
+    if (ended()) loaded->close();
+    log_ = loaded;
+  } catch (const BadBytes& fault) {
+    throw data_loss("the solution of " + name + ": " + fault.what());
+  }
+  return log_;
+}
+
+void StoredSolve::drop_log() {
+  std::shared_ptr<SolutionLog> dropped;                      // freed after the lock is
+  const std::unique_lock hold(log_lock_, std::try_to_lock);  // else somebody is loading it
+  if (!hold || !is_log_kept_ || !ended() || log_.use_count() != 1) return;
+  dropped = std::move(log_);
+  trim_heap_soon();
+}
+
+std::vector<std::byte> StoredSolve::take_checkpoint() {
+  {
+    std::scoped_lock hold(lock_);
+    if (!state_in_memory_.empty()) return std::exchange(state_in_memory_, {});
+    if (!facts_.has_checkpoint_time()) return {};
+  }
+  return keeping_.archive->state(number);
+}
+
+void StoredSolve::run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
+                      const std::function<void(const std::string&)>& complain) {
+  v1::Solve::State state = v1::Solve::FAILED;
+  std::string reason;
+  SolveOutcome outcome;
+  try {
+    outcome = solve(solver, control, complain);
+    reason = text(outcome.reason);
+    const bool is_cancelled = outcome.reason == StopReason::cancelled;
+    const bool goes_on = outcome.reason == StopReason::parked || (is_cancelled && control.abandon.stop_requested());
+    state = !goes_on      ? is_cancelled ? v1::Solve::CANCELLED : v1::Solve::SUCCEEDED
+            : is_paused() ? v1::Solve::PAUSED
+                          : v1::Solve::QUEUED;
+  } catch (const std::bad_alloc&) {
+    reason = "out of memory";
+  } catch (const std::exception& fault) {
+    reason = as_utf8(fault.what());
+  }
+  try {
+    if (is_final(state)) end(state, reason, outcome);
+    else set_waiting_state(state);
+  } catch (const std::exception& fault) {
+    complain(fault.what());
+    std::scoped_lock hold(lock_);
+    facts_.set_state(state);  // there is no thread any more; after a restart it is QUEUED in any case
+  }
+  if (is_final(state)) close_log();
+}
+
+/// One that is not loaded has no listeners, and is closed when it is.
+void StoredSolve::close_log() {
+  std::scoped_lock hold(log_lock_);
+  if (log_) log_->close();
+}
+
+/// Null where it was cancelled meanwhile.
+std::shared_ptr<const SceneContent> StoredSolve::load_content(const std::stop_token& cancel) const {
+  CallStop stop;
+  const std::stop_callback cancelled(cancel, [&] { stop.stop({grpc::CANCELLED, "cancelled"}); });
+  try {
+    return scene_->content(stop);
+  } catch (const StatusError& refusal) {
+    if (refusal.code == grpc::CANCELLED) return nullptr;
+    throw;
+  }
+}
+
+SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
+                                const std::function<void(const std::string&)>& complain) {
+  const auto content = load_content(run.cancel);
+  if (!content) return {.reason = StopReason::cancelled};
+  const std::vector<std::byte> from = take_checkpoint();
+  const Plan plan(content->mesh, options);
+  show(plan);
+  try {
+    keep_row();
+  } catch (const std::exception& fault) {
+    complain(fault.what());
+  }
+  auto next_checkpoint = Clock::now() + keeping_.interval;
+  SolveControl control;
+  control.stop = run.cancel;
+  control.short_of_memory = run.short_of_memory;
+  control.park = run.park;
+  control.checkpoint = from;
+  control.priority = priority == v1::PRIORITY_LOW    ? SolvePriority::low
+                     : priority == v1::PRIORITY_HIGH ? SolvePriority::high
+                                                     : SolvePriority::normal;
+  if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
+  control.save = [&](const SolveControl::Write& write) {
+    const auto begun = Clock::now();
+    try {
+      save(write);
+    } catch (const std::exception& fault) {
+      ++keeping_.counts->failures;
+      complain(fault.what());
+      if (run.park.stop_requested()) save_in_memory(write);
+    }
+    const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begun);
+    keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
+    next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
+  };
+  return solver(content->mesh, plan, options, *log(), control);
+}
+
+void StoredSolve::save(const SolveControl::Write& write) {
+  if (keeping_.archive) keep_checkpoint(pieces_of(write));
+  else save_in_memory(write);
+}
+
+void StoredSolve::save_in_memory(const SolveControl::Write& write) {
+  std::vector<std::byte> bytes = plain_bytes(write);
+  std::scoped_lock hold(lock_);
+  state_in_memory_ = std::move(bytes);
+}
+
+/// `state` is empty once the solve has ended, as `change` then says.
+void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change) {
+  const auto solution = log();
+  const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution->save(out); }), std::move(state)};
+  std::scoped_lock keep(keeping_lock_);
+  Archive::SolveRow next = row();
+  if (change) change(next.facts);
+  next.lineage[keeping_.epoch] = solution->head();
+  *next.facts.mutable_last_step() = alvor::encode(solution->last_step());
+  *next.facts.mutable_checkpoint_time() = TimeUtil::GetCurrentTime();
+  keeping_.archive->update(next, checkpoint);
+  ++keeping_.counts->checkpoints;
+  for (const auto* pieces : {&checkpoint.log, &checkpoint.state})
+    for (const std::string& piece : *pieces) keeping_.counts->bytes += piece.size();
+  std::scoped_lock hold(lock_);
+  lineage_ = std::move(next.lineage);
+  *facts_.mutable_last_step() = next.facts.last_step();
+  *facts_.mutable_checkpoint_time() = next.facts.checkpoint_time();
+  if (change) change(facts_);  // before another can keep what was true until now
+}
+
+void StoredSolve::show(const Plan& plan) {
+  std::scoped_lock hold(lock_);
+  *facts_.mutable_plan() = alvor::encode(plan.features());
+}
+
+/// Others see the end once it is kept, or could not be.
+void StoredSolve::end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome) {
+  const auto end_time = TimeUtil::GetCurrentTime();
+  const auto say_end = [&](v1::Solve& facts) {
+    facts.set_state(state);
+    facts.set_end_reason(reason);
+    *facts.mutable_end_time() = end_time;
+    *facts.mutable_cpu_time() = encode_seconds(outcome.cpu_s);
+    facts.set_traversal_share(outcome.traversal_share);
+    *facts.mutable_balance() = encode(outcome.balance);
+  };
+  const auto show_end = [&] {
+    std::scoped_lock hold(lock_);
+    say_end(facts_);
+  };
+  if (!keeping_.archive) return show_end();
+  try {
+    keep_checkpoint({}, say_end);
+    std::scoped_lock hold(log_lock_);
+    is_log_kept_ = true;
+  } catch (...) {
+    show_end();
+    throw;
+  }
+}
+
+void StoredSolve::note_running() {
+  std::scoped_lock hold(lock_);
+  facts_.set_state(v1::Solve::RUNNING);
+  wish_ = v1::Solve::RUNNING;
+}
+
+void StoredSolve::keep_wish(v1::Solve::State state) {
+  {
+    std::scoped_lock hold(lock_);
+    if (std::exchange(wish_, state) == state || facts_.state() != v1::Solve::RUNNING) return;
+  }
+  keep_row();
+}
+
+void StoredSolve::keep_row() {
+  std::scoped_lock keep(keeping_lock_);
+  if (keeping_.archive) keeping_.archive->update(row());
+}
+
+void StoredSolve::set_waiting_state(v1::Solve::State state) {
+  std::scoped_lock keep(keeping_lock_);
+  Archive::SolveRow next = row();
+  if (is_final(state)) {
+    cancel(next.facts);
+  } else {
+    next.facts.set_state(state);
+    next.facts.clear_end_reason();  // a wish to cancel had it
+    next.facts.clear_end_time();
+  }
+  if (keeping_.archive) keeping_.archive->update(next);
+  {
+    std::scoped_lock hold(lock_);
+    facts_ = next.facts;
+    if (is_final(state)) state_in_memory_.clear();
+  }
+  if (!is_final(state)) return;
+  close_log();
+  std::scoped_lock hold(log_lock_);
+  is_log_kept_ = log_ && next.lineage.contains(keeping_.epoch) && next.lineage.at(keeping_.epoch) == log_->head();
+}
+
+v1::Solve::State StoredSolve::state() const {
+  std::scoped_lock hold(lock_);
+  return facts_.state();
+}
+
+bool StoredSolve::ended() const { return is_final(state()); }
+
+v1::Solve StoredSolve::describe() const {
+  v1::Solve facts;
+  {
+    std::scoped_lock hold(lock_);
+    facts = facts_;
+  }
+  // Asked after the state: a final state is never told with an older step than the last.
+  std::scoped_lock hold(log_lock_);
+  if (!log_) return facts;
+  if (const Step step = log_->last_step(); step.revision > 0) *facts.mutable_last_step() = alvor::encode(step);
+  return facts;
+}
+
+bool StoredSolve::knows(const std::string& epoch, std::uint64_t revision) const {
+  if (epoch == keeping_.epoch) return revision <= log()->head();
+  std::scoped_lock hold(lock_);
+  const auto line = lineage_.find(epoch);
+  return line != lineage_.end() && revision <= line->second;
+}
+
+}  // namespace alvor

@@ -1,0 +1,119 @@
+#pragma once
+// One solve: what was asked, the log it fills, how it ended, and what is kept of it.
+
+#include "alvor/v1/solve_service.pb.h"
+#include "radiosity/solve/solver.h"
+#include "server/archive/archive.h"
+#include "server/base/memory_guard.h"
+#include "server/scenes/scene_store.h"
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+namespace alvor {
+
+/// solve_as_planned, or what stands in for it.
+using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, const SolveControl&)>;
+
+/// Of all solves.
+struct KeepingCounts {
+  std::atomic<std::uint64_t> checkpoints = 0, microseconds = 0, bytes = 0, failures = 0;
+};
+
+/// Where and how often what a solve found is kept.
+struct Keeping {
+  Archive* archive = nullptr;  ///< null: in memory, and only what a paused solve needs
+  std::string epoch;           ///< of this run of the server
+  MemoryGuard memory = {};     ///< admits solutions that are loaded again
+  std::shared_ptr<KeepingCounts> counts = std::make_shared<KeepingCounts>();
+  std::chrono::steady_clock::duration interval =
+      std::chrono::seconds(10);  ///< between checkpoints, if they take a twentieth of it or less
+};
+
+/// How a run is steered.
+struct RunControl {
+  std::stop_token cancel;
+  std::stop_token short_of_memory;
+  std::stop_token park;
+  std::stop_token abandon;  ///< with `cancel`: the solve shall go on from its last checkpoint when the server is started again
+};
+
+/// Thread-safe.
+class StoredSolve {
+ public:
+  /// QUEUED. Nothing is kept of it before keep() is called.
+  StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller, const v1::SolveSpec& spec,
+              const SolveOptions& options, Keeping keeping);
+  /// As the archive has it. One that was running is QUEUED again.
+  StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& options, Keeping keeping);
+
+  const std::uint64_t number;
+  const std::string name;
+  const Caller creator;
+  const SolveOptions options;
+  const v1::Priority priority;
+
+  /// Makes it known to the archive. Throws StatusError.
+  void keep();
+
+  /// Loaded at the first call where it was kept. Throws StatusError: DATA_LOSS, UNAVAILABLE, or RESOURCE_EXHAUSTED when there is
+  /// no memory for it. Takes the locks of the ways of relief of the memory guard.
+  std::shared_ptr<SolutionLog> log() const;
+
+  /// Solves on the calling thread; an exception of the solver makes the solve FAILED. When it returns the solve has ended and the
+  /// log is closed, or it is PAUSED or QUEUED, as `is_paused` then says. One run at a time. `complain` is told what could not be
+  /// kept.
+  void run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
+           const std::function<void(const std::string&)>& complain);
+  /// Of one that is not running: from QUEUED to PAUSED and back, or to CANCELLED. Throws StatusError, and changes nothing, where
+  /// that cannot be kept.
+  void set_waiting_state(v1::Solve::State state);
+  void note_running();
+  /// Of one that runs: what it shall be when the server is started again before the run has ended: PAUSED, CANCELLED or RUNNING.
+  /// Throws StatusError where that cannot be kept; it holds all the same once something else is.
+  void keep_wish(v1::Solve::State state);
+
+  v1::Solve::State state() const;
+  /// The state will not change and the log will not grow. Listeners of the log are woken after this became true.
+  bool ended() const;
+  /// Gives back the memory of the log where the solve has ended, the log is kept and nobody else holds it; log() loads it again.
+  void drop_log();
+  /// As the API tells it.
+  v1::Solve describe() const;
+  /// Whether a mirror that is complete up to `revision` of `epoch` can go on.
+  bool knows(const std::string& epoch, std::uint64_t revision) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show(const Plan& plan);
+  void admit_log() const;
+  void close_log();
+  void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
+  SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
+  std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
+  void save(const SolveControl::Write& write);
+  void save_in_memory(const SolveControl::Write& write);
+  void keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change = {});
+  std::vector<std::byte> take_checkpoint();
+  void keep_row();
+  Archive::SolveRow row() const;
+
+  const std::shared_ptr<const StoredScene> scene_;
+  const Keeping keeping_;
+  mutable std::mutex log_lock_;
+  mutable std::shared_ptr<SolutionLog> log_;  ///< null: kept, and not loaded
+  bool is_log_kept_ = false;                  ///< all of it
+  std::mutex keeping_lock_;                   ///< what is kept is what was true last; before lock_
+  mutable std::mutex lock_;
+  v1::Solve facts_;  ///< its last step is that of the checkpoint
+  v1::Solve::State wish_ = v1::Solve::RUNNING;
+  std::map<std::string, std::uint64_t> lineage_;
+  std::vector<std::byte> state_in_memory_;  ///< of a paused solve where it is not in the archive
+};
+
+}  // namespace alvor

@@ -1,0 +1,56 @@
+#include "server/watch/frame_source.h"
+
+#include "proto/codec.h"
+#include "proto/leaf_codec.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+FrameSource::FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves)
+    : solve_(std::move(solve)), log_(solve_->log()), epoch_(std::move(epoch)), max_leaves_(max_leaves) {}
+
+bool FrameSource::has_news(const Cursor& cursor) const {
+  return cursor.is_inside_round() || log_->head() > cursor.base || solve_->ended();
+}
+
+std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Detail detail) {
+  // Asked before the log is: once the solve has ended, what the log then gives is all there will be.
+  const bool ended = solve_->ended();
+  std::scoped_lock hold(lock_);
+  const std::uint64_t head = log_->head();
+  for (const auto& weak : recent_) {
+    const auto frame = weak.lock();
+    if (!frame || frame->from != cursor || frame->detail != detail || frame->head != head) continue;
+    const bool is_whole = frame->to_revision == frame->head;
+    if (frame->last == (ended && is_whole)) return frame;
+  }
+  auto frame = encode_frame(cursor, detail, ended);
+  recent_[oldest_++ % recent_.size()] = frame;
+  return frame;
+}
+
+std::shared_ptr<const Frame> FrameSource::encode_frame(const Cursor& cursor, Detail detail, bool ended) const {
+  const Delta delta = log_->since(cursor, detail, std::min(max_leaves_, leaves_per_frame(detail)));
+  v1::WatchSolveResponse message;
+  message.set_epoch(epoch_);
+  encode(delta, message);
+  const bool last = ended && delta.whole();
+  message.set_ended(last);
+  if (last) *message.mutable_solve() = solve_->describe();
+  return std::make_shared<const Frame>(
+      Frame{grpc::Slice(message.SerializeAsString()), detail, cursor, delta.next, delta.to_revision, delta.head, last});
+}
+
+std::shared_ptr<const Frame> FrameSource::closing_frame(const Cursor& cursor, const v1::Closing& closing) const {
+  v1::WatchSolveResponse message;
+  message.set_epoch(epoch_);
+  message.set_from_revision(cursor.base);
+  message.set_to_revision(cursor.base);
+  message.set_head_revision(log_->head());
+  *message.mutable_closing() = closing;
+  return std::make_shared<const Frame>(
+      Frame{.bytes = grpc::Slice(message.SerializeAsString()), .from = cursor, .next = cursor, .to_revision = cursor.base});
+}
+
+}  // namespace alvor
