@@ -3,7 +3,7 @@
 #include "bench/error_vs_time/stopwatch.h"
 #include "bench/stability/dense_solve.h"
 #include "bench/stability/solved_scene.h"
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/pass.h"
 
 #include <tbb/task_arena.h>
 
@@ -31,17 +31,15 @@ struct RowSystem::Parts {
   BaseMesh mesh;
   RayBudget budget{[] { return false; }};
   SolveState state;
+  Pass pass{state};
   tbb::task_arena one_thread{1};
 };
 
 RowSystem::RowSystem(const Scene& scene, int max_depth, Strategy strategy)
     : parts_(std::make_unique<Parts>(scene, SolveOptions{.max_depth = max_depth, .strategy = strategy})) {
-  SolveState& state = parts_->state;
   parts_->one_thread.execute([&] {
-    state.trace_new_rows();
-    state.add_new_direct_light([] {});
-    state.begin_exchange();
-    const Shooting system = state.unshot_system();
+    parts_->pass.prepare();
+    const Shooting system = parts_->pass.unshot_system();
     dense_ = dense_irradiance(system);
     read(system);
   });
@@ -70,7 +68,7 @@ RowSystem::~RowSystem() = default;
 void RowSystem::settle(double enough) {
   const Stopwatch watch;
   parts_->one_thread.execute([&] {
-    end_ = text(alvor::settle(parts_->state.exchange(), enough, [&](std::size_t steps) {
+    end_ = text(alvor::settle(parts_->pass.exchange(), enough, [&](std::size_t steps) {
       steps_ += steps;
       return watch.wall_s() < most_seconds;
     }));
@@ -83,21 +81,21 @@ double RowSystem::steps_down_to(double error) {
   const auto per_patch = [&] { return 1 + emitting_share_ + static_cast<double>(steps_) / static_cast<double>(size()); };
   const Stopwatch watch;
   parts_->one_thread.execute([&] {
-    while (this->error() > error && per_patch() < most) steps_ += parts_->state.exchange().sweep();
+    while (this->error() > error && per_patch() < most) steps_ += parts_->pass.exchange().sweep();
   });
   seconds_ += watch.wall_s();
   return per_patch();
 }
 
 double RowSystem::error() const {
-  const auto swept = parts_->state.exchange().irradiance();
+  const auto swept = parts_->pass.exchange().irradiance();
   double squares = 0;
   for (std::size_t p = 0; p < dense_.size(); ++p) squares += area_[p] * std::pow(reflectance_[p] * (swept[p].g - dense_[p]), 2);
   return std::sqrt(squares / area()) / mean_radiosity_;
 }
 
 double RowSystem::worst_relative_error() const {
-  const auto swept = parts_->state.exchange().irradiance();
+  const auto swept = parts_->pass.exchange().irradiance();
   double worst = 0;
   for (std::size_t p = 0; p < dense_.size(); ++p)
     if (dense_[p] > 0) worst = std::max(worst, std::abs(swept[p].g - dense_[p]) / dense_[p]);
@@ -105,7 +103,7 @@ double RowSystem::worst_relative_error() const {
 }
 
 Measured RowSystem::measured(std::string obtained, double error) const {
-  return {std::move(obtained), error, parts_->state.exchange().remaining_error(), static_cast<double>(steps_), seconds_, end_};
+  return {std::move(obtained), error, parts_->pass.exchange().remaining_error(), static_cast<double>(steps_), seconds_, end_};
 }
 
 }  // namespace alvor::bench

@@ -30,6 +30,9 @@ class Exchange {
   /// reflection weakened by what escapes from an open scene.
   virtual Rgb ambient_irradiance() const = 0;
   virtual std::size_t patch_count() const = 0;
+  /// Returns the radiosity that each leaf has shot, patch after patch, where light is exchanged by shots; empty where it is
+  /// gathered.
+  virtual std::vector<Rgb> shot() const { return {}; }
 
   /// Bound on what is still to come: RMS over the mean radiosity, in the band where it is worst. Where nearly all is reflected it
   /// is far more than what is unshot: a small residual is no small error. It holds as far as rows are reciprocal, so up to their

@@ -58,7 +58,7 @@ class ShotExchange : public Exchange {
   std::vector<Rgb> irradiance() const override { return system_.irradiance(); }
   Rgb ambient_irradiance() const override { return system_.ambient_irradiance(); }
   std::size_t patch_count() const override { return system_.patch_count(); }
-  const Shooting& system() const { return system_; }
+  std::vector<Rgb> shot() const override { return system_.shot(); }
 
  private:
   Shooting system_;

@@ -180,6 +180,7 @@ class RowTracer {
       }
     }
     row.hits.shrink_to_fit();
+    row.is_closed = row.rays > 0 && row.hits.size() == row.rays;
   }
 
   /// False, and nothing is stored, if the origin is hidden.
@@ -253,6 +254,7 @@ void TransportRow::append(const TransportRow& more) {
     }
     if (count != not_sampled) hit += count;
   }
+  is_closed = is_closed && hits.size() == rays;
 }
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,

@@ -24,6 +24,7 @@ struct TransportRow {
   std::vector<std::uint8_t> origin_hits;
   std::uint32_t rays = 0;
   std::uint16_t hidden_origins = 0;  ///< bit o: origin o is hidden, see trace_rows
+  bool is_closed = false;            ///< every ray met a front: none left the scene or was absorbed by a back
 
   static constexpr std::uint8_t not_sampled = 255;
   std::uint32_t ray_count() const { return rays; }

@@ -1,6 +1,6 @@
 #include "radiosity/solve/compare.h"
 
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/pass.h"
 
 #include <tbb/task_arena.h>
 
@@ -81,7 +81,7 @@ class Comparer {
         state_(mesh, {.tolerance = options.tolerance, .seed = options.seed, .forced_on = {Feature::indirect_rows}}, budget_) {}
 
   Comparison run() {
-    if (state_.emitted_power() <= 0) return {};
+    if (state_.direct.emitted_power() <= 0) return {};
     adapt();
     Comparison comparison;
     if (!stop_.stop_requested()) comparison.converged = converge();
@@ -96,21 +96,18 @@ class Comparer {
   /// The mesh and rows that a solve ends with.
   void adapt() {
     do {
-      state_.trace_new_rows();
-      state_.add_new_direct_light([] {});
-      if (stop_.stop_requested()) return;
-      state_.begin_exchange();
+      pass_.emplace(state_).prepare();
       exchange_down_to(pass_unshot * options_.tolerance);
-    } while (state_.estimate().total() > options_.tolerance && state_.refine() && !stop_.stop_requested());
+    } while (!stop_.stop_requested() && pass_->estimate().total() > options_.tolerance && pass_->refine());
   }
 
   std::vector<LeafValue> converge() {
-    state_.begin_exchange();
+    pass_.emplace(state_).begin_exchange();
     exchange_down_to(converged_unshot);
-    const auto irradiance = state_.exchange().irradiance();
+    const auto irradiance = pass_->exchange().irradiance();
     patch_count_ = irradiance.size();
-    reference_ = Reference(state_.unshot_system(), irradiance);
-    state_.show_smoothly();
+    reference_ = Reference(pass_->unshot_system(), irradiance);
+    pass_->show_smoothly();
     return sorted_leaves();
   }
 
@@ -122,11 +119,11 @@ class Comparer {
   }
 
   void exchange_down_to(double fraction) {
-    while (state_.unshot_fraction() > fraction && !stop_.stop_requested()) state_.exchange().sweep();
+    while (pass_->unshot_fraction() > fraction && !stop_.stop_requested()) pass_->exchange().sweep();
   }
 
   StrategyCourse follow(Strategy strategy) {
-    Shooting system = state_.unshot_system();
+    Shooting system = pass_->unshot_system();
     StrategyCourse course{strategy, {}, 0, {}, {}};
     StopWatch watch;
     std::unique_ptr<Stepper> stepper;
@@ -154,9 +151,10 @@ class Comparer {
 
   void keep_picture(const Shooting& system, StrategyCourse& course) {
     course.error = course.curve.back().error;
-    state_.show(system.irradiance());
+    pass_->show(system.irradiance());
     course.leaves = sorted_leaves();
-    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.emission_unit() * system.ambient_irradiance();
+    if (shows_ambient(course.strategy))
+      course.ambient_irradiance = state_.direct.unit().to_watts_per_m2(system.ambient_irradiance());
   }
 
   std::uint64_t next_look(std::uint64_t steps) const {
@@ -173,6 +171,7 @@ class Comparer {
   std::stop_token stop_;
   RayBudget budget_;
   SolveState state_;
+  std::optional<Pass> pass_;
   Reference reference_;
   std::size_t patch_count_ = 0;
 };

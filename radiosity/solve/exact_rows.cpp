@@ -2,7 +2,7 @@
 
 #include "radiosity/form_factors/form_factor_matrix.h"
 #include "radiosity/rays/medium.h"
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/traced_rows.h"
 
 #include <tbb/parallel_for.h>
 
@@ -36,32 +36,33 @@ double scale_to_closure(std::span<const MatrixEntry> entries, double visible_sha
 
 // Rays were sent all the same, to tell what is hidden. A patch's form factor is spread over its leaves by area. The row is known
 // exactly, so it has no origins and no noise.
-void SolveState::make_rows_exact() {
-  const std::vector<NodeIndex> rows = row_forest_.leaves();
+void TracedRows::make_exact() {
+  const BaseMesh& mesh = forests_.mesh();
+  const std::vector<NodeIndex> rows = forests_.rows().leaves();
   std::vector<std::vector<Vec3>> polygons;
   std::vector<std::vector<NodeIndex>> leaves(rows.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    polygons.push_back(polygon_of(mesh_, row_forest_.shape(rows[n])));
-    leaf_forest_.append_leaves_of(leaf_node_of_row(rows[n]), leaves[n]);
+    polygons.push_back(polygon_of(mesh, forests_.rows().shape(rows[n])));
+    forests_.append_leaves_of_row(rows[n], leaves[n]);
   }
   const FacePolygons patches(std::move(polygons));
-  const Blockers blockers(mesh_);
+  const Blockers blockers(mesh);
   const FormFactorRows form_factors(patches, blockers, accuracy, rows.size() <= most_rows_followed ? most_shadows_followed : 0);
-  const Medium medium{mesh_.absorption()};
+  const Medium medium{mesh.absorption()};
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     TransportRow& row = rows_[rows[n]];
     if (row.is_hidden() || budget_.is_out()) return;
     const auto entries = form_factors.row(static_cast<std::uint32_t>(n));
-    const double scale = scale_to_closure(entries, row.visible_share(), row.hits.size() == row.rays);
+    const double scale = scale_to_closure(entries, row.visible_share(), row.is_closed);
     row.hits.clear();
     row.hit_weight.clear();
     row.origin_hits.clear();
     row.rays = 1;
     for (const MatrixEntry& entry : entries)
       for (const NodeIndex leaf : leaves[entry.to]) {
-        const double share = scale * leaf_area_[leaf] / patches.area(entry.to);
-        const Rgb dimmed = medium.transmittance(length(leaf_centre_[leaf] - row_centre_[rows[n]]));
-        row.hits.push_back(leaf_forest_.id(leaf));
+        const double share = scale * forests_.leaf_area(leaf) / patches.area(entry.to);
+        const Rgb dimmed = medium.transmittance(length(forests_.leaf_centres()[leaf] - forests_.row_centres()[rows[n]]));
+        row.hits.push_back(forests_.leaves().id(leaf));
         row.hit_weight.push_back(narrow(entry.value * share * dimmed));
       }
     hit_leaves_[rows[n]].clear();

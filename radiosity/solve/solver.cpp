@@ -1,7 +1,7 @@
 #include "radiosity/solve/solver.h"
 
 #include "radiosity/solve/cpu_clock.h"
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/pass.h"
 
 #include <tbb/task_arena.h>
 
@@ -9,6 +9,8 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <string>
 #include <thread>
 
 namespace alvor {
@@ -24,8 +26,6 @@ constexpr int most_idle_passes = 4;
 constexpr double publish_when = 0.75;     // of the unshot power at the last publication
 constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
 constexpr std::uint64_t always_published = 12;
-
-constexpr std::uint32_t checkpoint_version = 2;
 
 /// What a run knows besides its state.
 struct Progress {
@@ -99,13 +99,15 @@ class Run {
   StopReason pass_until_done() {
     for (;;) {
       save_if_due();
+      pass_.emplace(state_);
       if (!pass()) return stop_reason();
       if (is_.error.total() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
-      const bool is_better = gains() && state_.refine();
+      const bool is_better = gains() && pass_->refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
-        state_.begin_exchange();
+        pass_.emplace(state_);
+        pass_->begin_exchange();
         return converge(limit_reached());
       }
     }
@@ -125,9 +127,9 @@ class Run {
   /// False if it was stopped: then the last published step stands.
   bool pass() {
     if (!light()) return false;
-    state_.begin_exchange();
+    pass_->begin_exchange();
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
-    is_.error = state_.estimate();
+    is_.error = pass_->estimate();
     account();
     publish();
     ++is_.passes;
@@ -139,10 +141,9 @@ class Run {
   bool light() {
     bool is_more = true;
     while (is_more && !must_stop()) {
-      is_more =
-          state_.trace_new_rows([this] { save_if_due(); }, is_.passes == 0 ? SolveState::Rows::a_part : SolveState::Rows::all);
+      is_more = pass_->trace_rows([this] { save_if_due(); }, is_.passes == 0 ? RowsToTrace::a_part : RowsToTrace::all);
       if (must_stop()) return false;
-      state_.add_new_direct_light([this] {
+      pass_->add_direct_light([this] {
         ++is_.shots;
         if (is_.passes == 0 && !must_stop()) publish_if_due();
         save_if_due();
@@ -154,8 +155,8 @@ class Run {
   /// The last pass goes on to where rounding begins, if it gets there: gathering is cheap.
   StopReason converge(StopReason reason) {
     if (!exchange_down_to(final_remaining)) return stop_reason();
-    state_.show_what_came_since();
-    is_.error.unshot = state_.exchange().remaining_error();
+    pass_->show_what_came_since();
+    is_.error.unshot = pass_->exchange().remaining_error();
     account();
     publish();
     return is_stuck() ? StopReason::stalled : reason;
@@ -164,20 +165,20 @@ class Run {
   /// Noise of rows that all of the scene has in common shows in what they lose of the power or add to it: where nearly all is
   /// reflected, a thousandth of each row is a large part of the solution.
   void account() {
-    is_.balance = state_.balance();
+    is_.balance = pass_->balance();
     is_.error.balance = std::abs(is_.balance.gap());
   }
 
   /// False if it was stopped.
   bool exchange_down_to(double remaining_error) {
-    Exchange& exchange = state_.exchange();
+    Exchange& exchange = pass_->exchange();
     double published = exchange.unshot_power();
     const Settling end = settle(exchange, remaining_error, [&](std::size_t steps) {
       is_.shots += steps;
       if (must_break_off()) return false;
       if (exchange.unshot_power() >= publish_when * published) return true;
       published = exchange.unshot_power();
-      state_.show_what_came_since();
+      pass_->show_what_came_since();
       publish_if_due();
       return true;
     });
@@ -198,11 +199,11 @@ class Run {
     step.shots = is_.shots;
     step.rays = budget_.rays();
     step.leaves = state_.leaf_count();
-    step.unshot_fraction = state_.unshot_fraction();
+    step.unshot_fraction = pass_->unshot_fraction();
     step.estimated_error = is_.error.total();
-    step.unlit_fraction = state_.unlit_fraction();
+    step.unlit_fraction = state_.direct.unlit_fraction();
     step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
-    if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = state_.ambient_irradiance();
+    if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
     log_.publish(state_.leaf_values(), step);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
@@ -221,7 +222,7 @@ class Run {
     now.traversal_s = budget_.traversal_s();
     now.rays = budget_.rays();
     control_.save([&](PlainWriter& out) {
-      out.put(checkpoint_version);
+      out.put(SolveState::saved_version);
       out.put(now);
       state_.save(out);
     });
@@ -229,12 +230,15 @@ class Run {
 
   void load() {
     PlainReader in(control_.checkpoint);
-    if (in.get<std::uint32_t>() != checkpoint_version) throw BadBytes("is of another version");
+    const auto version = in.get<std::uint32_t>();
+    if (version < 2 || version > SolveState::saved_version)
+      throw BadBytes("is of version " + std::to_string(version) + "; 2 to " + std::to_string(SolveState::saved_version) +
+                     " are known");
     is_ = in.get<Progress>();
     const double numbers[] = {is_.elapsed_s, is_.cpu_s, is_.traversal_s, is_.error.total(), is_.lowest_error, is_.balance.gap()};
     if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || is_.elapsed_s < 0)
       throw BadBytes("progress: cannot be");
-    state_.load(in);
+    state_.load(in, version);
     in.expect_end();
     clock_.add_elapsed(is_.elapsed_s);
     budget_.add_spent(is_.rays, is_.traversal_s);
@@ -270,6 +274,7 @@ class Run {
   const CpuClock& cpu_;
   RayBudget budget_;
   SolveState state_;
+  std::optional<Pass> pass_{state_};
   Progress is_;
   bool has_stalled_ = false;  // light was still going round when the last exchange ended
   double published_at_ = 0, publishing_s_ = 0;

@@ -3,6 +3,7 @@
 
 #include "meshing/base_mesh.h"
 #include "radiosity/plan/plan.h"
+#include "radiosity/solve/power_balance.h"
 #include "radiosity/solve/solve_control.h"
 #include "solution/solution_log.h"
 
@@ -16,17 +17,6 @@ namespace alvor {
 enum class StopReason { tolerance, max_leaves, max_depth, time_limit, memory, cancelled, dark, stalled, parked };
 /// "tolerance", "leaf limit", ... for people.
 std::string_view text(StopReason reason);
-
-/// Where the emitted power went, W, bands together. Rows are samples, each receiver's its own: what arrives is not exactly what
-/// was sent, and the difference tells how good they are, whatever the estimate of the error says.
-struct PowerBalance {
-  double emitted = 0;
-  double absorbed = 0;  ///< by fronts
-  double lost = 0;      ///< left the scene, met black backs, or faded in the medium; where no rows tell: the rest
-  double unshot = 0;    ///< not distributed yet
-  /// What is not accounted for, of the emitted power; negative: more came than was sent. 0 in the dark.
-  double gap() const { return emitted > 0 ? (emitted - absorbed - lost - unshot) / emitted : 0; }
-};
 
 struct SolveOutcome {
   StopReason reason = StopReason::tolerance;

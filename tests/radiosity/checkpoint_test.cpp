@@ -71,7 +71,7 @@ Scene hazy_room() {
 }
 
 struct Case {
-  const char* name;
+  std::string name;
   Scene (*scene)();
   SolveOptions options;
 };
@@ -87,6 +87,24 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"HemicubesInHaze", hazy_room, {.tolerance = 0.05, .form_factors = FormFactorMethod::hemicube}},
                     Case{"Furnace", [] { return test::furnace(1, 0.9); }, {}}),
     [](const auto& one) { return one.param.name; });
+
+/// Each strategy with each way to find rows, in a closed room that takes several passes.
+std::vector<Case> every_strategy_and_method() {
+  const std::pair<const char*, Strategy> strategies[]{
+      {"Automatic", Strategy::automatic}, {"Gather", Strategy::gather},          {"Shoot", Strategy::shoot},
+      {"Sorted", Strategy::sorted},       {"Ambient", Strategy::sorted_ambient}, {"Overshoot", Strategy::overshoot}};
+  const std::pair<const char*, FormFactorMethod> methods[]{
+      {"Nusselt", FormFactorMethod::nusselt}, {"Hemicube", FormFactorMethod::hemicube}, {"Analytic", FormFactorMethod::analytic}};
+  std::vector<Case> cases;
+  for (const auto& [strategy_name, strategy] : strategies)
+    for (const auto& [method_name, method] : methods)
+      cases.push_back({strategy_name + std::string(method_name),
+                       test::coloured_room,
+                       {.tolerance = 0.05, .max_depth = 3, .max_leaves = 400, .strategy = strategy, .form_factors = method}});
+  return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Every, Checkpoint, testing::ValuesIn(every_strategy_and_method()),
+                         [](const auto& one) { return one.param.name; });
 
 TEST_P(Checkpoint, ASolveGoesOnFromItAsIfItHadNotBeenInterrupted) {
   const BaseMesh mesh(GetParam().scene());

@@ -1,5 +1,6 @@
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/pass.h"
 
+#include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -22,12 +23,13 @@ void expect_tiling(const BaseMesh& mesh, std::vector<LeafValue> leaves) {
   EXPECT_NEAR(covered, roots, 1e-9 * roots);
 }
 
-void pass_before_refining(SolveState& state) {
-  state.trace_new_rows();
-  state.add_new_direct_light([] {});
-  state.begin_exchange();
-  while (state.unshot_fraction() > 1e-3) state.exchange().sweep();
-  state.estimate();
+/// Takes the state through a pass. Returns whether it was refined.
+bool run_pass(SolveState& state) {
+  Pass pass(state);
+  pass.prepare();
+  while (pass.unshot_fraction() > 1e-3) pass.exchange().sweep();
+  pass.estimate();
+  return pass.refine();
 }
 
 TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
@@ -37,8 +39,7 @@ TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
     SolveState state(mesh, {.max_leaves = 20'000, .strategy = strategy}, budget);
     for (int pass = 0; pass < 4; ++pass) {
       const std::size_t before = state.leaf_count();
-      pass_before_refining(state);
-      ASSERT_TRUE(state.refine());
+      ASSERT_TRUE(run_pass(state));
       EXPECT_GT(state.leaf_count(), before);
       EXPECT_EQ(state.leaf_values().size(), state.leaf_count());
       expect_tiling(mesh, state.leaf_values());
@@ -52,8 +53,7 @@ TEST(SolveState, LimitsDoNotBreakTheTiling) {
     RayBudget budget([] { return false; });
     SolveState state(mesh, {.max_leaves = most}, budget);
     for (int pass = 0; pass < 3; ++pass) {
-      pass_before_refining(state);
-      if (!state.refine()) break;
+      if (!run_pass(state)) break;
       EXPECT_LE(state.leaf_count(), most);
       EXPECT_EQ(state.leaf_values().size(), state.leaf_count());
       expect_tiling(mesh, state.leaf_values());
@@ -83,18 +83,19 @@ TEST(SolveState, TheFirstLightOfAllStoreysGrowsTogether) {
   const BaseMesh mesh(storeys(count, side));
   RayBudget budget([] { return false; });
   SolveState state(mesh, {.max_leaves = 20'000}, budget);
-  EXPECT_EQ(state.unlit_fraction(), 1);
-  state.trace_new_rows();
+  EXPECT_EQ(state.direct.unlit_fraction(), 1);
+  Pass pass(state);
+  pass.trace_rows();
   double before = 1;
   int batches = 0;
-  state.add_new_direct_light([&] {
+  pass.add_direct_light([&] {
     std::array<double, count> lit{};
     for (const LeafValue& leaf : state.leaf_values()) {
       const RootPatch& root = mesh.roots()[leaf.patch.root_face()];
       lit[static_cast<std::size_t>(root.corners[0].y / 3)] += leaf.irradiance.is_zero() ? 0 : 1;
     }
-    EXPECT_LT(state.unlit_fraction(), before);
-    before = state.unlit_fraction();
+    EXPECT_LT(state.direct.unlit_fraction(), before);
+    before = state.direct.unlit_fraction();
     if (++batches == 1) {
       EXPECT_GT(before, 0);
     }
@@ -102,7 +103,7 @@ TEST(SolveState, TheFirstLightOfAllStoreysGrowsTogether) {
     EXPECT_GT(least, 0.5 * most) << before;
   });
   EXPECT_GT(batches, 1);
-  EXPECT_EQ(state.unlit_fraction(), 0);
+  EXPECT_EQ(state.direct.unlit_fraction(), 0);
 }
 
 TEST(SolveState, PublishedLeavesTileTheRoots) {

@@ -1,6 +1,6 @@
 #include "radiosity/exchange/strategies.h"
 
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/pass.h"
 #include "tests/radiosity/systems.h"
 #include "tests/scenes.h"
 
@@ -57,19 +57,18 @@ TEST(Strategies, AgreeOnARoom) {
   const BaseMesh mesh(test::coloured_room());
   RayBudget budget([] { return false; });
   SolveState state(mesh, {.max_depth = 4}, budget);
-  state.trace_new_rows();
-  state.add_new_direct_light([] {});
-  state.begin_exchange();
+  Pass pass(state);
+  pass.prepare();
   std::vector<Rgb> expected;
   for (const Strategy strategy : all) {
     SCOPED_TRACE(text(strategy));
-    Shooting shooting = state.unshot_system();
+    Shooting shooting = pass.unshot_system();
     step_until(strategy, shooting, 1e-9 * shooting.unshot_power());
     const auto shot = shooting.shot();
     if (expected.empty()) expected = shot;
     double largest = 0;
     for (const Rgb& x : expected) largest = std::max(largest, x.max());
-    EXPECT_GT(state.emission_unit() * largest, 0.1);
+    EXPECT_GT(state.direct.unit().to_watts_per_m2({largest, largest, largest}).max(), 0.1);
     expect_close(shot, expected, 1e-6 * largest);
   }
 }

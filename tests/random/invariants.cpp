@@ -1,6 +1,6 @@
 #include "tests/random/invariants.h"
 
-#include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/pass.h"
 #include "tests/random/dice.h"
 #include "tests/random/text.h"
 #include "tests/scene_changes.h"
@@ -91,10 +91,9 @@ Finding row_sums_are_at_most_one(const Subject& s) {
   SolveOptions options = s.trial.options;
   options.forced_on.add(Feature::indirect_rows);
   SolveState state(s.mesh, options, budget);
-  state.trace_new_rows();
-  state.add_new_direct_light([] {});
-  state.begin_exchange();
-  const Shooting system = state.unshot_system();
+  Pass pass(state);
+  pass.prepare();
+  const Shooting system = pass.unshot_system();
   for (std::size_t p = 0; p < system.patches().size(); ++p) {
     const TransportRow& row = *system.patches()[p].row;
     if (row.is_hidden()) continue;

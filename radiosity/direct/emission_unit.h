@@ -1,0 +1,33 @@
+#pragma once
+// The unit in which the solver counts light.
+
+#include "meshing/base_mesh.h"
+#include "solution/rgb.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+/// One emission unit is the brightest emission of the scene, W/m2 (1 in the dark). Between these two functions the solver's light
+/// and power are multiples of it, so that squares stay within the range of numbers however bright or dim a scene is.
+class EmissionUnit {
+ public:
+  explicit EmissionUnit(const BaseMesh& mesh) {
+    double brightest = 0;
+    for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
+      brightest = std::max(brightest, mesh.material_of(root).emission.max());
+    if (brightest > 0) watts_per_m2_ = brightest;
+  }
+
+  /// Returns W/m2 as emission units.
+  Rgb from_watts_per_m2(const Rgb& light) const { return (1 / watts_per_m2_) * light; }
+  /// Returns emission units as W/m2.
+  Rgb to_watts_per_m2(const Rgb& light) const { return watts_per_m2_ * light; }
+  /// Returns power, in emission units times m2, as W.
+  double to_watts(double power) const { return watts_per_m2_ * power; }
+
+ private:
+  double watts_per_m2_ = 1;
+};
+
+}  // namespace alvor

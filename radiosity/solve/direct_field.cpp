@@ -1,0 +1,170 @@
+#include "radiosity/solve/direct_field.h"
+
+#include "radiosity/solve/saved_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t most_one_by_one = 12;  // emitters
+constexpr std::size_t parts_shown = 8;       // of a scene with more
+
+bool is_sound(const DirectLight& light) {
+  const auto is_finite = [](float x) { return std::isfinite(x); };
+  return light.irradiance.is_finite() && std::ranges::all_of(light.at_origin, is_finite) && std::isfinite(light.variance) &&
+         std::isfinite(light.origin_variance);
+}
+
+}  // namespace
+
+DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene,
+                         RayBudget& budget)
+    : forests_(forests), plan_(plan), options_(options), scene_(scene), budget_(budget) {
+  choose_emitters();
+  fit_to_nodes();
+}
+
+// Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
+void DirectField::choose_emitters() {
+  const BaseMesh& mesh = forests_.mesh();
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
+    const Rgb emission = emission_of(root);
+    if (emission.is_zero()) continue;
+    emitters_.push_back({root, emission, emission.sum() * mesh.roots()[root].area});
+    emitted_power_ += emitters_.back().power;
+  }
+  if (plan_.emission_by_rows()) emitters_.clear();
+  std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
+  waiting_power_ = emitted_power_;
+  if (emitters_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(scene_, emitters_);
+}
+
+void DirectField::fit_to_nodes() {
+  const std::size_t count = forests_.leaves().node_count();
+  light_.resize(count);
+  is_known_.resize(count);
+  is_lit_.resize(count);
+}
+
+void DirectField::hand_down(NodeIndex split_leaf) {
+  for (int k = 0; k < 4; ++k) {
+    const NodeIndex child = forests_.leaves().child(split_leaf, k);
+    light_[child] = light_[split_leaf];
+    is_lit_[child] = is_lit_[split_leaf];
+  }
+}
+
+std::vector<NodeIndex> DirectField::unlit_leaves() const {
+  std::vector<NodeIndex> leaves = forests_.leaves().leaves();
+  std::erase_if(leaves,
+                [&](NodeIndex leaf) { return is_known_[leaf] || !plan_.may_be_lit(forests_.leaves().id(leaf).root_face()); });
+  return leaves;
+}
+
+std::vector<Receiver> DirectField::receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const {
+  std::vector<Receiver> receivers;
+  for (const NodeIndex leaf : leaves) {
+    const NodeIndex row = forests_.row_of(leaf);
+    const PatchId id = forests_.leaves().id(leaf);
+    const auto none = static_cast<std::uint16_t>(rows[row].is_hidden() ? 0xffff : 0);
+    receivers.push_back({id, forests_.leaves().shape(leaf), forests_.rows().id(row) == id ? rows[row].hidden_origins : none});
+  }
+  return receivers;
+}
+
+void DirectField::add_new(const TracedRows& rows, const std::function<void()>& after_each) {
+  std::vector<NodeIndex> leaves = unlit_leaves();
+  const std::size_t unlit = leaves.size();
+  std::erase_if(leaves, [&](NodeIndex leaf) {
+    const NodeIndex row = forests_.row_of(leaf);
+    return !rows.is_traced(row) && rows.may_be_lit(row);
+  });
+  spread_out(forests_.leaves(), leaves);
+  const std::vector<Receiver> receivers = receivers_of(leaves, rows);
+  std::vector<DirectLight> light(leaves.size());
+  const ShadowNeeds needs{plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)};
+  const auto show_part = [&](std::size_t first, std::size_t count, double power, bool is_of_all) {
+    show(std::span(leaves).subspan(first, count), std::span(light).subspan(first, count), is_of_all);
+    const double share = unlit > 0 ? static_cast<double>(count) / static_cast<double>(unlit) : 1;
+    waiting_power_ = std::max(0.0, waiting_power_ - share * power);
+    after_each();
+  };
+  const double waiting = waiting_power_;
+  if (light_tree_) {
+    const std::size_t step = unlit / parts_shown + 1;
+    for (std::size_t first = 0; first < receivers.size(); first += step) {
+      const std::size_t count = std::min(step, receivers.size() - first);
+      add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
+                       std::span(light).subspan(first, count), needs);
+      if (budget_.is_out()) return;
+      show_part(first, count, waiting, true);
+    }
+  } else {
+    for (const Emitter& emitter : emitters_) {
+      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light, needs);
+      if (budget_.is_out()) return;
+      show_part(0, leaves.size(), waiting * emitter.power / emitted_power_, &emitter == &emitters_.back());
+    }
+    if (emitters_.empty()) show_part(0, leaves.size(), 0, true);
+  }
+  if (leaves.size() == unlit) waiting_power_ = 0;
+}
+
+void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    light_[leaves[n]] = light[n];
+    is_known_[leaves[n]] = is_of_all;
+    if (is_of_all && !is_lit_[leaves[n]]) show_on_whole_face(leaves[n]);
+  }
+}
+
+/// Until the other leaves of the face have their own light they show that of this one.
+void DirectField::show_on_whole_face(NodeIndex leaf) {
+  std::vector<NodeIndex> leaves;
+  forests_.leaves().append_leaves_of(forests_.leaves().id(leaf).root_face(), leaves);
+  for (const NodeIndex other : leaves) {
+    if (is_lit_[other]) continue;
+    light_[other] = light_[leaf];
+    is_lit_[other] = true;
+  }
+}
+
+double DirectField::unlit_fraction() const {
+  double all = 0, unlit = 0;
+  for (const NodeIndex leaf : forests_.leaves().leaves()) {
+    if (!plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) continue;
+    all += forests_.leaf_area(leaf);
+    if (!is_lit_[leaf]) unlit += forests_.leaf_area(leaf);
+  }
+  return all > 0 ? unlit / all : 0;
+}
+
+void DirectField::save_light(PlainWriter& out) const {
+  const auto leaves = forests_.leaves().leaves();
+  save_at(leaves, light_, out);
+  save_at(leaves, is_known_, out);
+  save_at(leaves, is_lit_, out);
+}
+
+void DirectField::load_light(PlainReader& in) {
+  fit_to_nodes();
+  const auto leaves = forests_.leaves().leaves();
+  load_at(leaves, light_, in, "direct light", [](const DirectLight& light) { return is_sound(light); });
+  load_flags(leaves, is_known_, in);
+  load_flags(leaves, is_lit_, in);
+}
+
+void DirectField::save_waiting(PlainWriter& out) const { out.put(waiting_power_); }
+
+void DirectField::load_waiting(PlainReader& in) {
+  waiting_power_ = in.get<double>();
+  if (!std::isfinite(waiting_power_)) throw BadBytes("waiting power: not a finite number");
+  // The first emitter is the next again.
+  if (std::ranges::none_of(forests_.leaves().leaves(), [this](NodeIndex leaf) { return is_known_[leaf]; }))
+    waiting_power_ = emitted_power_;
+}
+
+}  // namespace alvor

@@ -1,0 +1,136 @@
+#include "radiosity/solve/forests.h"
+
+#include "solution/leaf_value.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace alvor {
+
+namespace {
+
+constexpr double start_edge = 1.0 / 6;  // of the extent: no patch of the first mesh is longer
+constexpr double start_area = 1e-3;     // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+
+double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
+  const auto corners = corners_of(mesh, shape);
+  double longest = 0;
+  for (int e = 0; e < shape.corner_count; ++e)
+    longest = std::max(longest, length(corners[(e + 1) % shape.corner_count] - corners[e]));
+  return longest;
+}
+
+void save_leaves(const PatchForest& forest, PlainWriter& out) {
+  std::vector<PatchId> ids;
+  for (const NodeIndex leaf : forest.leaves()) ids.push_back(forest.id(leaf));
+  out.put_all(ids);
+}
+
+/// Splits `forest` until its leaves are those that were saved.
+void load_leaves(PatchForest& forest, PlainReader& in) {
+  const auto ids = in.get_all<PatchId>();
+  std::vector<LeafValue> patches;
+  for (const PatchId id : ids) {
+    if (!id.is_valid() || id.root_face() >= forest.mesh().roots().size()) throw BadBytes("leaves: not of this scene");
+    patches.push_back({id, {}});
+  }
+  forest.split_down_to(patches);
+  const auto leaves = forest.leaves();
+  if (!std::ranges::equal(leaves, ids, {}, [&](NodeIndex leaf) { return forest.id(leaf); }))
+    throw BadBytes("leaves: do not tile the scene");
+}
+
+}  // namespace
+
+Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits)
+    : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh) {
+  for (const RootPatch& root : mesh.roots()) area_ += root.area;
+  split_to_start(plan);
+  fit_to_nodes();
+}
+
+void Forests::split_to_start(const Plan& plan) {
+  const auto is_coarse = [&](NodeIndex node) {
+    const PatchId id = rows_.id(node);
+    if (!plan.may_be_lit(id.root_face())) return false;
+    const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area_;
+    return shows_no_curvature || longest_edge(mesh_, rows_.shape(node)) > start_edge * mesh_.extent();
+  };
+  std::vector<NodeIndex> split;
+  for (NodeIndex node = 0; node < rows_.node_count(); ++node)
+    if (rows_.is_leaf(node) && is_coarse(node)) rows_.split(node, limits_, split);
+  std::vector<NodeIndex> copies;
+  for (const NodeIndex row : split) leaves_.split(leaf_node_of(row), limits_, copies);
+}
+
+void Forests::fit_to_nodes() {
+  for (auto row = static_cast<NodeIndex>(row_centre_.size()); row < rows_.node_count(); ++row)
+    row_centre_.push_back(centre_of(mesh_, rows_.shape(row)));
+  for (auto leaf = static_cast<NodeIndex>(leaf_centre_.size()); leaf < leaves_.node_count(); ++leaf) {
+    const PatchShape shape = leaves_.shape(leaf);
+    leaf_centre_.push_back(centre_of(mesh_, shape));
+    leaf_area_.push_back(area_of(mesh_, shape));
+  }
+}
+
+NodeIndex Forests::leaf_node_of(NodeIndex row) const {
+  const PatchId id = rows_.id(row);
+  NodeIndex node = id.root_face();
+  for (int level = 1; level <= id.level(); ++level) {
+    if (leaves_.is_leaf(node)) return node;
+    node = leaves_.child(node, id.child_index(level));
+  }
+  return node;
+}
+
+void Forests::append_leaves_of_row(NodeIndex row, std::vector<NodeIndex>& leaves) const {
+  leaves_.append_leaves_of(leaf_node_of(row), leaves);
+}
+
+bool Forests::may_split_row(NodeIndex row) const {
+  const NodeIndex leaf = leaf_node_of(row);
+  return rows_.may_split(row, limits_) && (!leaves_.is_leaf(leaf) || leaves_.may_split(leaf, limits_));
+}
+
+bool Forests::split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split) {
+  const bool is_done = leaves_.split(leaf, limits_, split);
+  fit_to_nodes();
+  return is_done;
+}
+
+bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
+  const bool is_done = rows_.split(row, limits_, split);
+  fit_to_nodes();
+  return is_done;
+}
+
+void Forests::save(PlainWriter& out) const {
+  save_leaves(rows_, out);
+  save_leaves(leaves_, out);
+}
+
+void Forests::load(PlainReader& in) {
+  load_leaves(rows_, in);
+  load_leaves(leaves_, in);
+  fit_to_nodes();
+  for (const NodeIndex row : rows_.leaves())
+    if (leaves_.id(leaf_node_of(row)) != rows_.id(row)) throw BadBytes("rows: finer than leaves");
+}
+
+void spread_out(const PatchForest& forest, std::vector<NodeIndex>& patches) {
+  std::vector<std::tuple<bool, double, NodeIndex>> order;
+  order.reserve(patches.size());
+  std::uint32_t face_before = ~0u;
+  for (const NodeIndex patch : patches) {
+    const PatchId id = forest.id(patch);
+    const bool is_later = id.root_face() == face_before;
+    face_before = id.root_face();
+    const double chance = (static_cast<double>(mix_bits(id.bits()) >> 11) + 0.5) * 0x1p-53;
+    order.emplace_back(is_later, -std::log(chance) / area_of(forest.mesh(), forest.shape(patch)), patch);
+  }
+  std::ranges::sort(order);
+  std::ranges::transform(order, patches.begin(), [](const auto& each) { return std::get<NodeIndex>(each); });
+}
+
+}  // namespace alvor

@@ -1,0 +1,71 @@
+#pragma once
+// The two quadtree forests of a solve, with their neighbours.
+
+#include "meshing/leaf_gradient.h"
+#include "meshing/patch_forest.h"
+#include "radiosity/plan/plan.h"
+#include "solution/plain_bytes.h"
+
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// Direct light is sharp and indirect light smooth, so they do not share a depth: transport rows hang on the leaves of the row
+/// forest, direct light on the leaves of the leaf forest, which contains the row forest. A row node and a leaf node are of the
+/// same place where their ids are equal. Used by one thread at a time.
+class Forests {
+ public:
+  /// Splits the roots as far as a solve needs before its first pass, but none that no light can reach.
+  Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits);
+
+  const BaseMesh& mesh() const { return mesh_; }
+  const PatchForest& rows() const { return rows_; }
+  const PatchForest& leaves() const { return leaves_; }
+  double area() const { return area_; }  ///< of all roots, m2
+
+  /// Returns the row whose place contains the leaf node's.
+  NodeIndex row_of(NodeIndex leaf) const { return rows_.leaf_at(leaves_.id(leaf)); }
+  /// Returns the leaf node of the row's place; where the leaf forest is coarser there, the leaf that contains it.
+  NodeIndex leaf_node_of(NodeIndex row) const;
+  /// Appends the leaves within the row's place.
+  void append_leaves_of_row(NodeIndex row, std::vector<NodeIndex>& leaves) const;
+
+  std::span<const Vec3> row_centres() const { return row_centre_; }    ///< by row node
+  std::span<const Vec3> leaf_centres() const { return leaf_centre_; }  ///< by leaf node
+  double leaf_area(NodeIndex leaf) const { return leaf_area_[leaf]; }  ///< m2
+
+  /// Requires: leaves of the forest, each once.
+  std::vector<SmoothNeighbours> row_neighbours(std::span<const NodeIndex> rows) { return row_neighbours_.of(rows); }
+  std::vector<SmoothNeighbours> leaf_neighbours(std::span<const NodeIndex> leaves) { return leaf_neighbours_.of(leaves); }
+
+  bool may_split_leaf(NodeIndex leaf) const { return leaves_.may_split(leaf, limits_); }
+  bool may_split_row(NodeIndex row) const;
+  /// Split a leaf of one forest, and others where neighbours require it; what was split is appended to `split`. Return false
+  /// where the limits forbid it.
+  bool split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split);
+  bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
+
+  void save(PlainWriter& out) const;
+  /// Requires: just made. Throws BadBytes where the leaves are not those of this scene.
+  void load(PlainReader& in);
+
+ private:
+  void split_to_start(const Plan& plan);
+  void fit_to_nodes();
+
+  const BaseMesh& mesh_;
+  const RefinementLimits limits_;
+  double area_ = 0;
+  PatchForest rows_, leaves_;
+  NeighbourTable row_neighbours_{rows_}, leaf_neighbours_{leaves_};
+  std::vector<Vec3> row_centre_, leaf_centre_;
+  std::vector<double> leaf_area_;
+};
+
+/// Sorts patches so that any first part of them is spread over the scene and holds much of its area: one patch of each face
+/// first, and these by chance, large ones sooner (weighted sampling without replacement, Efraimidis and Spirakis 2006). The order
+/// of the faces in a file is that of storeys and rooms.
+void spread_out(const PatchForest& forest, std::vector<NodeIndex>& patches);
+
+}  // namespace alvor

@@ -1,0 +1,111 @@
+#include "radiosity/solve/pass.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace alvor {
+
+namespace {
+
+constexpr double marked_share = 0.9;  // of the squared error, per pass
+constexpr std::size_t parts_of_first_light = 16;
+
+}  // namespace
+
+bool Pass::trace_rows(const std::function<void()>& after_each, RowsToTrace which) {
+  assert(stage_ == Stage::tracing);
+  TracedRows& rows = state_.rows;
+  while (rows.want_any()) {
+    if (!rows.add_wanted_rays()) return false;
+    after_each();
+  }
+  constexpr std::size_t batch = TracedRows::rows_per_batch;
+  std::size_t left_over = which == RowsToTrace::all ? std::numeric_limits<std::size_t>::max()
+                                                    : std::max(batch, state_.forests.rows().leaf_count() / parts_of_first_light);
+  for (auto untraced = rows.untraced(); !untraced.empty(); untraced = rows.untraced()) {
+    if (left_over == 0) return true;
+    if (untraced.size() > left_over) spread_out(state_.forests.rows(), untraced);
+    for (std::span<const NodeIndex> left = std::span(untraced).first(std::min(left_over, untraced.size())); !left.empty();) {
+      const std::size_t count = std::min(batch, left.size());
+      if (!trace(left.first(count))) return false;
+      left = left.subspan(count);
+      left_over -= count;
+      after_each();
+    }
+  }
+  if (rows.carry_light() && state_.options.form_factors == FormFactorMethod::analytic) rows.make_exact();
+  return false;
+}
+
+/// Returns false, and changes nothing, where the budget ran out.
+bool Pass::trace(std::span<const NodeIndex> batch) {
+  std::vector<NodeIndex> rows(batch.begin(), batch.end());
+  std::erase_if(rows, [this](NodeIndex row) { return !state_.forests.rows().is_leaf(row); });  // one before it followed a contact
+  if (!state_.rows.trace(rows)) return false;
+  for (const NodeIndex row : rows) state_.heed_hidden_origins(row);
+  return true;
+}
+
+void Pass::add_direct_light(const std::function<void()>& after_each) {
+  assert(stage_ == Stage::tracing);
+  state_.direct.add_new(state_.rows, after_each);
+}
+
+Exchange& Pass::begin_exchange() {
+  assert(stage_ == Stage::tracing);
+  stage_ = Stage::exchanging;
+  system_.emplace(state_);
+  exchange_ = system_->begin_exchange();
+  return *exchange_;
+}
+
+Exchange& Pass::prepare() {
+  trace_rows();
+  add_direct_light();
+  return begin_exchange();
+}
+
+bool Pass::refine() {
+  assert(stage_ == Stage::estimated);
+  stage_ = Stage::refined;
+  const Forests& forests = state_.forests;
+  const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
+  const auto shot = exchange_->shot();
+  for (std::size_t n = 0; n < shot.size(); ++n) state_.shot[system_->leaves()[n]] = shot[n];
+  exchange_.reset();
+  system_.reset();
+  std::vector<NodeIndex> wanting;
+  for (const Candidate& candidate : mark(std::move(candidates_), marked_share)) {
+    if (candidate.kind == Candidate::Kind::add_rays) wanting.push_back(candidate.patch);
+    if (candidate.kind == Candidate::Kind::split_row) state_.split_row(candidate.patch);
+    if (candidate.kind == Candidate::Kind::split_leaf) state_.split_leaf(candidate.patch);
+  }
+  state_.rows.want_rays(wanting);
+  const bool has_split = forests.leaves().leaf_count() != leaves_before || forests.rows().leaf_count() != rows_before;
+  return state_.rows.want_any() || has_split;
+}
+
+Shooting Pass::unshot_system() {
+  assert(stage_ == Stage::exchanging || stage_ == Stage::estimated);
+  std::ranges::fill(state_.shot, Rgb{});
+  return system_->shooting();
+}
+
+void Pass::show(std::span<const Rgb> irradiance) { state_.field.set(system_->rows(), irradiance); }
+
+void Pass::show_what_came_since() {
+  if (state_.rows.carry_light()) state_.field.move_to(system_->rows(), exchange_->irradiance());
+}
+
+double Pass::unshot_fraction() const {
+  const double emitted = state_.direct.emitted_power();
+  if (emitted <= 0) return 0;
+  return (exchange_ ? exchange_->unshot_power() : state_.unshot_power()) / emitted;
+}
+
+Rgb Pass::ambient_irradiance() const {
+  return exchange_ ? state_.direct.unit().to_watts_per_m2(exchange_->ambient_irradiance()) : Rgb{};
+}
+
+}  // namespace alvor

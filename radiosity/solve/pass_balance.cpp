@@ -1,0 +1,46 @@
+// Where the emitted power went in a pass.
+
+#include "radiosity/solve/pass.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+// Not where rows were switched off: for all faces, or for emitters that no light reaches.
+bool Pass::rows_tell_what_is_lost() const {
+  if (!state_.rows.carry_light()) return false;
+  for (std::uint32_t root = 0; root < state_.mesh.roots().size(); ++root)
+    if (!state_.plan.may_be_lit(root) && !state_.mesh.material_of(root).emission.is_zero()) return false;
+  return true;
+}
+
+// What leaves a patch is lost as far as its row does not find a front. Where a solid stands on it nothing arrives, and what it
+// emits there is lost too. Where there are no rows nothing tells: what did not arrive must have been lost.
+PowerBalance Pass::balance() const {
+  const DirectField& direct = state_.direct;
+  PowerBalance balance{.emitted = direct.unit().to_watts(direct.emitted_power())};
+  if (!exchange_) return balance;
+  const auto patches = system_->patches();
+  const auto irradiance = state_.rows.carry_light() ? exchange_->irradiance() : std::vector<Rgb>(patches.size());
+  Rgb absorbed, lost;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const ShootingPatch& patch = patches[p];
+    const TransportRow& row = *patch.row;
+    const std::uint32_t root = state_.forests.rows().id(system_->rows()[p]).root_face();
+    const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * row.stored_weight();
+    const double open = row.visible_share();
+    for (const NodeIndex leaf : system_->leaves_of(p)) {
+      const double area = state_.forests.leaf_area(leaf), seen = open * area;
+      const Rgb arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
+      absorbed += seen * ((white - patch.reflectance) * arriving);
+      lost += seen * ((white - found) * (emission + patch.reflectance * arriving)) + (area - seen) * emission;
+    }
+  }
+  balance.absorbed = direct.unit().to_watts(absorbed.sum());
+  balance.unshot = direct.unit().to_watts(exchange_->unshot_power());
+  const double not_seen_again = std::max(0.0, balance.emitted - balance.absorbed - balance.unshot);
+  balance.lost = rows_tell_what_is_lost() ? direct.unit().to_watts(lost.sum()) : not_seen_again;
+  return balance;
+}
+
+}  // namespace alvor

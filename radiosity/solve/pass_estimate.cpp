@@ -1,0 +1,196 @@
+// How far a pass is from the truth, and where refining would pay.
+
+#include "radiosity/solve/pass.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
+constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
+constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
+constexpr double unseen_detail = 2.5;  // of the squared error: shadows smaller than what sixteen origins tell, from many scenes
+constexpr double noise_in_display = 0.16;      // of the variance of direct light: vertices average over the leaves around them
+constexpr double noise_in_differences = 0.25;  // of that variance: what noise adds to a squared interpolation error
+constexpr double noise_of_origins = 1.7;       // of their variance, and what it may be above that by chance
+constexpr double misfit_at_centre = 0.25;      // of the squared misfit in a window, that its fit has in the middle
+constexpr double contact_error = 0.1;          // of a patch's irradiance: how much it varies where a solid's outline crosses it
+
+bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
+
+double squared(double x) { return x * x; }
+
+/// Some leaves of a forest, each with its neighbours, and what they hold, by node.
+struct Field {
+  const PatchForest& forest;
+  std::span<const NodeIndex> leaves;
+  std::span<const SmoothNeighbours> neighbours;
+  std::span<const Vec3> centre;
+  std::span<const Rgb> value;
+};
+
+template <class Body>
+void for_each_leaf(const Field& field, Body&& body) {
+  tbb::parallel_for(std::size_t{0}, field.leaves.size(), std::forward<Body>(body));
+}
+
+void find_slopes(const Field& f, std::span<LeafSlope> by_node) {
+  for_each_leaf(
+      f, [&](std::size_t n) { by_node[f.leaves[n]] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); });
+}
+
+std::vector<double> interpolation_errors(const Field& f, std::span<const LeafSlope> slope) {
+  std::vector<double> errors(f.leaves.size());
+  for_each_leaf(f,
+                [&](std::size_t n) { errors[n] = interpolation_error(f.leaves[n], f.neighbours[n], f.centre, f.value, slope); });
+  return errors;
+}
+
+}  // namespace
+
+RowSamples Pass::samples_of(NodeIndex node, const LightByLeaf& radiosity) const {
+  const TransportRow& row = state_.rows[node];
+  RowSamples quarters;
+  if (row.origin_hits.empty()) {
+    quarters.fill({state_.field.irradiance(node), double(row.rays)});
+    return quarters;
+  }
+  std::size_t hit = 0;
+  for (std::size_t o = 0; o < row.origin_hits.size(); ++o) {
+    if (row.origin_hits[o] == TransportRow::not_sampled) continue;
+    QuarterSample& quarter = quarters[o % origins_per_patch / 4];
+    quarter.rays += rays_per_origin;
+    const std::span found = state_.rows.leaves_hit(node).subspan(hit, row.origin_hits[o]);
+    quarter.irradiance +=
+        row.hit_weight.empty() ? radiosity.sum(found) : radiosity.weighted_sum(found, std::span(row.hit_weight).subspan(hit));
+    hit += found.size();
+  }
+  for (QuarterSample& quarter : quarters)
+    if (quarter.rays > 0) quarter.irradiance *= 1 / quarter.rays;
+  return quarters;
+}
+
+void Pass::show_smoothly() {
+  if (!state_.rows.carry_light()) return;
+  const auto rows = system_->rows();
+  show(exchange_->irradiance());
+  const auto neighbours = state_.forests.row_neighbours(rows);
+  const auto leaving = system_->radiosity();
+  std::vector<RowSamples> samples(rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t p) { samples[p] = samples_of(rows[p], leaving); });
+  state_.field.set_fits(rows, fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres()));
+}
+
+bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
+  return kind == Candidate::Kind::split_leaf ? state_.forests.may_split_leaf(patch) : state_.forests.may_split_row(patch);
+}
+
+void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays) {
+  if (!state_.plan.needs(Feature::refinement)) return;
+  for (std::size_t n = 0; n < patches.size(); ++n)
+    if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
+}
+
+/// Adds the errors of rows, squared and integrated over the area, in emission units squared times m2.
+void Pass::estimate_rows(ErrorEstimate& error) {
+  const auto patches = system_->patches();
+  std::vector<double> errors(patches.size());
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const NodeIndex node = system_->rows()[p];
+    const TransportRow& row = state_.rows[node];
+    const FieldFit& fit = state_.field.fit(node);
+    const double area = patches[p].area, noise = area * fit.variance;
+    error.misfit += area * fit.squared_misfit;
+    errors[p] = area * misfit_at_centre * fit.window_misfit;
+    if (row.crosses_contact()) {
+      const Rgb direct = state_.direct[system_->leaves_of(p).front()].irradiance;
+      const double by_contact = area * squared(contact_error * (state_.field.irradiance(node) + direct).mean());
+      errors[p] += by_contact;
+      error.misfit += by_contact;
+    }
+    error.sampling += noise;
+    const double rays = row.ray_count();
+    if (noise > 0 && rays < most_rays_per_row)
+      candidates_.push_back({Candidate::Kind::add_rays, node, noise * rays_per_row / (rays + rays_per_row), rays_per_row});
+  }
+  add_candidates(Candidate::Kind::split_row, system_->rows(), errors, rays_per_row_split);
+}
+
+/// Returns the mean square of what arrives at the origins of a leaf beyond its slope and the noise of their shadow rays.
+double Pass::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
+  const Forests& forests = state_.forests;
+  const DirectLight& direct = state_.direct[leaf];
+  const NodeIndex row = forests.row_of(leaf);
+  const PatchShape shape = forests.leaves().shape(leaf);
+  const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
+  double squares = 0;
+  for (int k = 0; k < 4; ++k) {
+    const PatchShape quarter = shape.child(k);
+    const double by_rows = state_.field.at(row, centre_of(state_.mesh, quarter)).mean();
+    for (int o = 0; o < 4; ++o) {
+      const Vec3 offset = centre_of(state_.mesh, quarter.child(o)) - forests.leaf_centres()[leaf];
+      squares += squared(direct.at_origin[4 * k + o] + by_rows - irradiance.mean() - dot(steepest, offset));
+    }
+  }
+  return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct.origin_variance);
+}
+
+/// Adds the errors of leaves, as estimate_rows() does. Returns the power that arrives, in emission units times m2.
+double Pass::estimate_leaves(ErrorEstimate& error) {
+  Forests& forests = state_.forests;
+  const auto leaves = system_->leaves();
+  std::vector<Rgb> irradiance(forests.leaves().node_count());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    irradiance[leaves[n]] = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
+  });
+  double power = 0;
+  for (const NodeIndex leaf : leaves) power += forests.leaf_area(leaf) * irradiance[leaf].mean();
+  const auto neighbours = forests.leaf_neighbours(leaves);
+  const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
+  std::vector<LeafSlope> slope(forests.leaves().node_count());
+  find_slopes(field, slope);
+  auto errors = interpolation_errors(field, slope);
+  for_each_leaf(field, [&](std::size_t n) {
+    const NodeIndex leaf = leaves[n];
+    const double smooth = squared(errors[n]) - noise_in_differences * state_.direct[leaf].variance;
+    const double contrast = squared_contrast(leaf, irradiance[leaf], slope[leaf]);
+    errors[n] = forests.leaf_area(leaf) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
+  });
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    const double noise = noise_in_display * forests.leaf_area(leaves[n]) * state_.direct[leaves[n]].variance;
+    error.interpolation += unseen_detail * errors[n];
+    error.sampling += noise;
+    errors[n] = std::max(0.0, errors[n]) + noise;
+  }
+  add_candidates(Candidate::Kind::split_leaf, leaves, errors, rays_per_leaf_split);
+  return power;
+}
+
+ErrorEstimate Pass::estimate() {
+  assert(stage_ == Stage::exchanging);
+  stage_ = Stage::estimated;
+  show_smoothly();
+  candidates_.clear();
+  ErrorEstimate error;
+  estimate_rows(error);
+  const double power = estimate_leaves(error);
+  if (power <= 0) return {};
+  double area = 0;
+  const auto patches = system_->patches();
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    if (!patches[p].row->is_hidden() || !state_.may_be_lit(system_->rows()[p])) area += patches[p].area;
+  const double mean = power / area;
+  for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
+    *part = std::sqrt(std::max(0.0, *part) / area) / mean;
+  error.unshot = exchange_->remaining_error();
+  if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
+  return error;
+}
+
+}  // namespace alvor

@@ -1,0 +1,76 @@
+#include "radiosity/solve/pass_system.h"
+
+#include "radiosity/exchange/gathering.h"
+#include "radiosity/exchange/strategies.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace alvor {
+
+PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.rows().leaves()) {
+  const Forests& forests = state.forests;
+  for (const NodeIndex row : rows_) {
+    const auto first = static_cast<std::uint32_t>(leaves_.size());
+    forests.append_leaves_of_row(row, leaves_);
+    ShootingPatch patch{&state.rows[row], first, static_cast<std::uint32_t>(leaves_.size()) - first,
+                        state.mesh.material_of(forests.rows().id(row).root_face()).reflectance, 0};
+    for (std::size_t n = first; n < leaves_.size(); ++n) patch.area += forests.leaf_area(leaves_[n]);
+    patches_.push_back(patch);
+  }
+  for (const NodeIndex leaf : leaves_) {
+    const std::uint32_t root = forests.leaves().id(leaf).root_face();
+    own_radiosity_.push_back(state.direct.emission_by_rows(root) +
+                             state.mesh.material_of(root).reflectance * state.direct[leaf].irradiance);
+  }
+  if (state.rows.carry_light())
+    tbb::parallel_for(std::size_t{0}, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
+}
+
+std::unique_ptr<Exchange> PassSystem::begin_exchange() const {
+  if (!state_.rows.carry_light()) return std::make_unique<Gathering>();
+  if (state_.options.strategy == Strategy::automatic) return begin_gathering();
+  return std::make_unique<ShotExchange>(shooting(), state_.options.strategy);
+}
+
+std::unique_ptr<Exchange> PassSystem::begin_gathering() const {
+  std::vector<const NodeIndex*> hit_leaf;
+  std::vector<Rgb> irradiance;
+  std::vector<PatchId> ids;
+  for (const NodeIndex row : rows_) {
+    ids.push_back(state_.forests.rows().id(row));
+    hit_leaf.push_back(state_.rows.leaves_hit(row).data());
+    irradiance.push_back(state_.field.irradiance(row));
+  }
+  return std::make_unique<Gathering>(
+      patches_, leaves_, state_.forests.leaves().node_count(), own_radiosity_, std::move(hit_leaf), std::move(irradiance),
+      std::move(ids), GatheringNeeds{state_.plan.needs(Feature::three_bands), state_.plan.needs(Feature::acceleration)});
+}
+
+Shooting PassSystem::shooting() const {
+  std::vector<std::uint32_t> place_of(state_.forests.leaves().node_count()), hit_leaf;
+  std::vector<ShootingLeaf> leaves;
+  leaves.reserve(leaves_.size());
+  for (std::uint32_t n = 0; n < leaves_.size(); ++n) {
+    const NodeIndex leaf = leaves_[n];
+    place_of[leaf] = n;
+    leaves.push_back({state_.forests.leaf_area(leaf), own_radiosity_[n] - state_.shot[leaf], state_.shot[leaf]});
+  }
+  if (state_.rows.carry_light())
+    for (const NodeIndex row : rows_)
+      for (const NodeIndex leaf : state_.rows.leaves_hit(row)) hit_leaf.push_back(place_of[leaf]);
+  Shooting shooting(patches_, std::move(leaves), std::move(hit_leaf));
+  shooting.find_unshot();
+  return shooting;
+}
+
+LightByLeaf PassSystem::radiosity() const {
+  LightByLeaf radiosity(state_.forests.leaves().node_count(), state_.plan.needs(Feature::three_bands));
+  for (std::size_t p = 0; p < patches_.size(); ++p)
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
+      radiosity.set(leaves_[k], own_radiosity_[k] + patches_[p].reflectance * state_.field.irradiance(rows_[p]));
+  return radiosity;
+}
+
+}  // namespace alvor

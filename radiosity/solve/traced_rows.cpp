@@ -1,0 +1,163 @@
+#include "radiosity/solve/traced_rows.h"
+
+#include "radiosity/solve/saved_nodes.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+constexpr double small_area = 2e-5;  // of the scene's: roots below begin with small rows
+
+void save(const TransportRow& row, PlainWriter& out) {
+  out.put(row.rays);
+  out.put(row.hidden_origins);
+  out.put(static_cast<std::uint8_t>(row.is_closed));
+  out.put_all(row.hits);
+  out.put_all(row.hit_weight);
+  out.put_all(row.origin_hits);
+}
+
+TransportRow load_row(std::size_t roots, PlainReader& in, std::uint32_t version) {
+  TransportRow row;
+  row.rays = in.get<std::uint32_t>();
+  row.hidden_origins = in.get<std::uint16_t>();
+  if (version >= 3) row.is_closed = in.get<std::uint8_t>() != 0;
+  row.hits = in.get_all<PatchId>();
+  row.hit_weight = in.get_all<RgbF>();
+  row.origin_hits = in.get_all<std::uint8_t>();
+  if (version < 3) row.is_closed = row.rays > 1 && row.hits.size() == row.rays;
+  std::size_t by_origin = 0;
+  for (const std::uint8_t hits : row.origin_hits) by_origin += hits == TransportRow::not_sampled ? 0 : hits;
+  const bool is_known = std::ranges::all_of(row.hits, [&](PatchId hit) { return hit.is_valid() && hit.root_face() < roots; });
+  const bool fits = (row.origin_hits.empty() || by_origin == row.hits.size()) &&
+                    row.origin_hits.size() % origins_per_patch == 0 &&
+                    (row.hit_weight.empty() || row.hit_weight.size() == row.hits.size()) && (row.rays > 0 || row.hits.empty());
+  const bool is_finite = std::ranges::all_of(row.hit_weight, [](const RgbF& w) { return w.is_finite() && w.min() >= 0; });
+  if (!is_known || !fits || !is_finite) throw BadBytes("rows: cannot be");
+  return row;
+}
+
+}  // namespace
+
+TracedRows::TracedRows(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene,
+                       RayBudget& budget)
+    : forests_(forests),
+      plan_(plan),
+      options_(options),
+      scene_(scene),
+      budget_(budget),
+      directions_(options.seed, options.form_factors == FormFactorMethod::hemicube ? RayPlacing::hemicube : RayPlacing::nusselt) {
+  fit_to_nodes();
+}
+
+void TracedRows::fit_to_nodes() {
+  const std::size_t count = forests_.rows().node_count();
+  rows_.resize(count);
+  is_traced_.resize(count);
+  if (carry_light()) hit_leaves_.resize(count);
+}
+
+void TracedRows::forget(NodeIndex row) {
+  rows_[row] = {};
+  if (carry_light()) hit_leaves_[row] = {};
+}
+
+std::vector<NodeIndex> TracedRows::untraced() const {
+  std::vector<NodeIndex> rows = forests_.rows().leaves();
+  std::erase_if(rows, [this](NodeIndex row) { return is_traced_[row] || !may_be_lit(row); });
+  return rows;
+}
+
+bool TracedRows::trace(std::span<const NodeIndex> rows) {
+  std::vector<RowSize> sizes;
+  for (const NodeIndex row : rows) sizes.push_back(size_of(forests_.rows().id(row)));
+  const bool nothing_to_find = !carry_light() && !plan_.backs_are_seen();
+  auto found =
+      nothing_to_find ? std::vector(rows.size(), TransportRow{.rays = rays_per_row}) : traced(rows, sizes, options_.seed);
+  if (budget_.is_out()) return false;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    rows_[rows[n]] = std::move(found[n]);
+    is_traced_[rows[n]] = true;
+  }
+  return true;
+}
+
+std::vector<TransportRow> TracedRows::traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
+                                             std::uint64_t seed) {
+  std::vector<PatchShape> shapes;
+  std::vector<PatchId> patches;
+  for (const NodeIndex row : rows) {
+    shapes.push_back(forests_.rows().shape(row));
+    patches.push_back(forests_.rows().id(row));
+  }
+  const RowNeeds needs{plan_.needs(Feature::back_sides), plan_.needs(Feature::refinement)};
+  return trace_rows(scene_, directions_, shapes, patches, sizes, seed, budget_, needs);
+}
+
+RowSize TracedRows::size_of(PatchId patch) const {
+  if (!carry_light()) return RowSize::hidden_only;
+  const double area = forests_.mesh().roots()[patch.root_face()].area;
+  return patch.level() == 0 && area < small_area * forests_.area() ? RowSize::small : RowSize::whole;
+}
+
+void TracedRows::want_rays(std::span<const NodeIndex> rows) {
+  wanting_.insert(wanting_.end(), rows.begin(), rows.end());
+  std::erase_if(wanting_, [this](NodeIndex row) { return !forests_.rows().is_leaf(row); });
+  if (!wanting_.empty()) ++rounds_of_rays_;
+}
+
+bool TracedRows::add_wanted_rays() {
+  const std::size_t count = std::min(rows_per_batch, wanting_.size());
+  const std::vector<NodeIndex> rows(wanting_.end() - static_cast<std::ptrdiff_t>(count), wanting_.end());
+  const auto more = traced(rows, std::vector(count, RowSize::whole), options_.seed + rounds_of_rays_);
+  if (budget_.is_out()) return false;
+  for (std::size_t n = 0; n < count; ++n) rows_[rows[n]].append(more[n]);
+  wanting_.resize(wanting_.size() - count);
+  return true;
+}
+
+// Leaves only ever get finer, so each look-up starts where the last one ended.
+void TracedRows::find_hit_leaves(NodeIndex row) {
+  const auto& hits = rows_[row].hits;
+  auto& found = hit_leaves_[row];
+  if (found.size() != hits.size()) {
+    found.clear();
+    for (const PatchId hit : hits) found.push_back(hit.root_face());
+  }
+  if (!plan_.needs(Feature::refinement)) return;
+  for (std::size_t h = 0; h < hits.size(); ++h) found[h] = forests_.leaves().leaf_at(hits[h], found[h]);
+}
+
+void TracedRows::save_rows(PlainWriter& out) const {
+  const auto rows = forests_.rows().leaves();
+  for (const NodeIndex row : rows) save(rows_[row], out);
+  save_at(rows, is_traced_, out);
+}
+
+void TracedRows::load_rows(PlainReader& in, std::uint32_t version) {
+  fit_to_nodes();
+  const auto rows = forests_.rows().leaves();
+  for (const NodeIndex row : rows) rows_[row] = load_row(forests_.mesh().roots().size(), in, version);
+  load_flags(rows, is_traced_, in);
+}
+
+void TracedRows::save_wanted(PlainWriter& out) const {
+  std::vector<PatchId> wanting;
+  for (const NodeIndex row : wanting_) wanting.push_back(forests_.rows().id(row));
+  out.put_all(wanting);
+  out.put(rounds_of_rays_);
+}
+
+void TracedRows::load_wanted(PlainReader& in) {
+  const PatchForest& rows = forests_.rows();
+  for (const PatchId id : in.get_all<PatchId>()) {
+    if (!id.is_valid() || id.root_face() >= forests_.mesh().roots().size() || rows.id(rows.leaf_at(id)) != id)
+      throw BadBytes("rows that want rays: not of this scene");
+    wanting_.push_back(rows.leaf_at(id));
+  }
+  rounds_of_rays_ = in.get<std::uint64_t>();
+}
+
+}  // namespace alvor
