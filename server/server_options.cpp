@@ -20,7 +20,7 @@ void declare_web(CLI::App& app, ServerOptions& options) {
   app.add_option("--page", options.page, "Directory of that page")->capture_default_str();
 }
 
-/// Containers are told by variables: ALVORD_LISTEN is --listen.
+/// Lets environment variables set options, as is usual for containers: ALVORD_LISTEN sets --listen.
 void declare_variables(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     std::string name = "ALVORD_" + option->get_single_name();
