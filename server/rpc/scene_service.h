@@ -31,7 +31,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
   grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
 
-  /// Answers from the pool for quick work, see answer_from.
+  /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
   /// Streams the part of the scene's content that `part` returns, cut into messages by a Slicer.

@@ -30,7 +30,7 @@ class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchS
   grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSolve(Context*, const grpc::ByteBuffer* request) override;
   Reactor* AcknowledgeFrame(Context*, const v1::AcknowledgeFrameRequest* request, v1::AcknowledgeFrameResponse*) override;
 
-  /// Answers from the pool for quick work, see answer_from.
+  /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
 
