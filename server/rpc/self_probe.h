@@ -16,7 +16,7 @@ bool is_answered(FrontDoor& door, bool with_tls);
 /// Checks the server's own FrontDoor every few seconds.
 class SelfProbe {
  public:
-  /// Calls `tell`, on another thread, when the result changes; the first result is compared with yes. `door` must outlive this.
+  /// Calls `tell`, on another thread, when the result changes; at first it is taken as answered. `door` must outlive this.
   SelfProbe(FrontDoor& door, bool with_tls, std::function<void(bool)> tell);
   /// Calls stop() and waits for a probe that is under way.
   ~SelfProbe();
