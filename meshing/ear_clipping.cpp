@@ -129,7 +129,7 @@ class EarClipper {
   std::vector<std::array<std::uint32_t, 3>> run() {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (std::size_t left = points_.size(); left >= 3; --left) {
-      // Where the polygon touches itself, cutting a corner off may have made others into ears.
+      // If the polygon touches itself, cutting a corner off may have made others into ears.
       if (ears_.empty() && left < left_at_look_ && looks_ < most_looks) find_ears(left);
       triangles.push_back(cut(next_ear()));
     }

@@ -49,7 +49,7 @@ struct PlannedFeature {
   Feature feature = Feature::three_bands;
   bool is_on = true;
   std::string reason;  ///< one sentence, with figures of the scene
-  std::string cost;    ///< what the feature costs if on, and what is saved if off
+  std::string cost;    ///< the cost if the feature is on, and the saving if it is off
 
   friend bool operator==(const PlannedFeature&, const PlannedFeature&) = default;
 };

@@ -13,7 +13,7 @@ namespace alvor {
 
 struct GatheredIrradiance {
   Rgb irradiance;             ///< W/m2
-  double standard_error = 0;  ///< of irradiance.mean(), W/m2; only from sampling, not from the solution
+  double standard_error = 0;  ///< error of irradiance.mean(), W/m2; only from sampling, not from the solution
 };
 
 /// Gathers the light that the surfaces of a solution send to a point. Light from emitters is each triangle's exact form factor

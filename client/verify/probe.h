@@ -29,7 +29,7 @@ struct ProbeSample {
   Vec3 point, normal;          ///< as given
   RgbF irradiance, radiosity;  ///< no radiosity in air; neither if enclosed
   double distance = 0;         ///< to the nearest surface that faces the same way, metres; infinite if there is none
-  double standard_error = 0;   ///< of the mean of the bands gathered in air, W/m2; else NaN
+  double standard_error = 0;   ///< standard error of the bands' mean gathered in air, W/m2; else NaN
   ProbePlace place = ProbePlace::on_surface;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int handshake_ms = 10'000;  // time for a connection's TLS handshake and HTTP/2 preface
 constexpr int idle_ms = 5 * 60'000;   // without a call; clients reconnect when they need to
-constexpr int most_streams = 256;     // of one connection at a time
+constexpr int most_streams = 256;     // on one connection at a time
 constexpr int metadata_bytes = 16'384;
 
 /// Sets limits and keepalive, so that a peer that vanished does not keep its watches for ever. A break of 5 s is survived: TCP

@@ -48,7 +48,7 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
  private:
   using Timer = boost::asio::steady_timer;
   enum class Phase { handshake, idle, head, body, response, farewell, closed };
-  enum class Next { request_body, next_message, next_request, farewell };  // what to do after the bytes being sent
+  enum class Next { request_body, next_message, next_request, farewell };  // the step after the bytes being sent
   class CallEvents;
 
   void enter(Phase phase, std::optional<WebLimits::Time> time_left);
