@@ -4,7 +4,7 @@
 
 namespace alvor::bench {
 
-/// The same numbers from the same seed, whatever the standard library.
+/// A random number generator that gives the same numbers for the same seed with every standard library.
 class Chance {
  public:
   explicit Chance(unsigned seed) : engine_(seed) {}

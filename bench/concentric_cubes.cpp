@@ -1,4 +1,4 @@
-// concentric_cubes NU NV INNER: an OBJ of a unit cube around a cube of side INNER, every face cut into NU x NV quads.
+// concentric_cubes NU NV INNER: prints an OBJ of a unit cube around a cube of side INNER, every face cut into NU x NV quads.
 
 #include <array>
 #include <cstdio>
@@ -10,7 +10,8 @@ struct Point {
   double x, y, z;
 };
 
-/// Face `n` of a cube about (0.5, 0.5, 0.5): axis n / 2, low or high; `inwards` faces look at the middle.
+/// Prints face `n` of a cube about (0.5, 0.5, 0.5): n / 2 is the axis, n % 2 selects low or high. Faces with `inwards` face the
+/// centre.
 void print_face(int n, double side, bool inwards, int nu, int nv) {
   const int axis = n / 2;
   const bool is_high = n % 2 == 1, flip = is_high == inwards;

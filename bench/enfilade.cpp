@@ -1,6 +1,6 @@
-// enfilade DIR: writes enfilade.obj and .mtl, four rooms in a row, joined by doorways out of line with one another. The only lamp
-// shines at the ceiling of the first, from above the lintels: no other room sees it. The same bytes every time. Lengths are
-// metres, y is up.
+// enfilade DIR: writes enfilade.obj and .mtl, four rooms in a row, joined by doorways that are not in line with one another. The
+// only lamp shines at the ceiling of the first room from above the lintels, so no other room sees it. The output is always the
+// same. Lengths are metres, y is up.
 
 #include "bench/furniture.h"
 #include "bench/scene_program.h"
@@ -34,7 +34,8 @@ void add_room(ObjWriter& obj, int room) {
   if (room == room_count - 1) obj.box("wall", low, high, ~x_high, true);
 }
 
-/// Seen from the room before it, x runs along the wall from right to left. Doorways lie left and right in turn.
+/// Adds the wall between two rooms. Seen from the first one, x runs along the wall from right to left. Doorways are left and
+/// right in turn.
 void add_partition(ObjWriter& obj, int room_before) {
   const double low = room_before % 2 == 0 ? 0.2 : width - 1.4;
   const DoorwayWall wall{.to = width, .height = height, .door_low = low, .door_high = low + 1.2};
@@ -44,7 +45,7 @@ void add_partition(ObjWriter& obj, int room_before) {
   add_doorway(obj, "wall", "floor", wall, 0, wall_thick);
 }
 
-/// On the wall z = `width`; its upper face shines.
+/// Adds a lamp on the wall z = `width`, whose upper face emits.
 void add_cove_lamp(ObjWriter& obj) {
   const Vec3 low{1, 2.3, width - 0.25}, high{5, 2.4, width};
   obj.stand_at({});
@@ -60,7 +61,7 @@ void add_plinth(ObjWriter& obj, int room, double x, double z) {
   obj.box("ochre", {-0.1, 0.9, -0.1}, {0.1, 1.2, 0.1}, bottom);
 }
 
-/// On the wall z = 0.
+/// Adds a picture on the wall z = 0.
 void add_picture(ObjWriter& obj, int room, double x, const char* colour) {
   obj.stand_at({start_of(room) + x});
   obj.box("oak", {0, 1.2, 0}, {1.2, 2.0, 0.04}, z_low | z_high);

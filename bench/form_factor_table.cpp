@@ -1,5 +1,5 @@
-// form_factor_table form_factors.csv: every method against the exact value of every reference geometry, as the page
-// docs/form-factors.md.
+// form_factor_table form_factors.csv: prints docs/form-factors.md, which compares every method with the exact value for every
+// reference geometry.
 
 #include "radiosity/form_factors/closed_forms.h"
 #include "radiosity/form_factors/face_form_factor.h"

@@ -1,5 +1,5 @@
-// furnished_room DIR: writes furnished_room.obj and .mtl, a closed room with two lamps and furniture. The same bytes every time.
-// Lengths are metres, y is up.
+// furnished_room DIR: writes furnished_room.obj and .mtl, a closed room with two lamps and furniture. The output is always the
+// same. Lengths are metres, y is up.
 
 #include "bench/furniture.h"
 #include "bench/scene_program.h"
@@ -40,7 +40,7 @@ void add_books(ObjWriter& obj, std::minstd_rand& random, double from_x, double t
   }
 }
 
-/// Its back is at z = 0.
+/// Adds a bookcase with its back at z = 0.
 void add_bookcase(ObjWriter& obj, Place place) {
   constexpr double wide = 1.5, tall = 2.0, deep = 0.3, board = 0.025;
   obj.stand_at(place);
@@ -54,7 +54,7 @@ void add_bookcase(ObjWriter& obj, Place place) {
   }
 }
 
-/// Its back is at z = 0.
+/// Adds a cupboard with its back at z = 0.
 void add_cupboard(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   obj.box("white", {0, 0, 0}, {1.2, 1.0, 0.45}, bottom | top);
@@ -72,7 +72,7 @@ void add_cupboard(ObjWriter& obj, Place place) {
   obj.box("book_3", {0.80, 1.06, 0.12}, {0.97, 1.10, 0.35}, bottom);
 }
 
-/// In the wall z = 0.
+/// Adds a door in the wall z = 0.
 void add_door(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   for (const double x : {0.0, 0.90}) obj.box("oak", {x, 0, 0}, {x + 0.08, 2.08, 0.035}, bottom | top | z_low);
@@ -83,14 +83,14 @@ void add_door(ObjWriter& obj, Place place) {
   obj.box("brass", {0.72, 0.995, 0.06}, {0.86, 1.035, 0.075});
 }
 
-/// On the wall z = 0.
+/// Adds a picture on the wall z = 0.
 void add_picture(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   obj.box("walnut", {0, 1.62, 0}, {0.9, 2.22, 0.03}, z_low);
   obj.box("canvas", {0.05, 1.67, 0.03}, {0.85, 2.17, 0.034}, z_low);
 }
 
-/// Looks towards +z; its back is at z = 0.
+/// Adds a sofa that faces +z, with its back at z = 0.
 void add_sofa(ObjWriter& obj, Place place) {
   obj.stand_at(place);
   for (const double x : {0.0, 1.7}) obj.box("blue", {x, 0, 0}, {x + 0.2, 0.62, 0.9}, bottom);

@@ -62,7 +62,8 @@ int ObjWriter::vertex(const Vec3& at) {
   return ++vertex_count_;
 }
 
-// Tenths of a millimetre: enough for furniture, and files stay small. Not printf, which takes most of the time of large scenes.
+// Appends a coordinate, rounded to a tenth of a millimetre, which suits furniture and keeps files small. printf would take most
+// of the time of large scenes.
 void ObjWriter::coordinate(double metres) {
   std::array<char, 40> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), metres, std::chars_format::fixed, 4).ptr;

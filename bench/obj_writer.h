@@ -1,5 +1,5 @@
 #pragma once
-// Wavefront OBJ and MTL of generated scenes. Lengths are metres, y is up.
+// Writes generated scenes as Wavefront OBJ and MTL. Lengths are metres, y is up.
 
 #include "meshing/vec3.h"
 
@@ -9,35 +9,38 @@
 
 namespace alvor::bench {
 
-// Faces of a box, to be left out: where one thing lies flat on a larger one, the smaller face is, so that nothing is coincident.
+// The faces of a box, as bits for leaving some out. Where one object lies flat on a larger one, the smaller face is left out, so
+// that no faces coincide.
 constexpr unsigned bottom = 1, top = 2, x_low = 4, x_high = 8, z_low = 16, z_high = 32;
 
+/// The position and orientation of an object in the scene.
 struct Place {
   double x = 0, z = 0;      ///< on the floor, metres
   double turn_degrees = 0;  ///< about the vertical, counter-clockwise from above
-  double y = 0;             ///< above the floor
+  double y = 0;             ///< height above the floor, metres
 };
 
-/// Where `inner`, given from `outer`, is.
+/// Returns `inner`, given relative to `outer`, relative to the scene.
 Place placed_in(const Place& outer, const Place& inner);
 
-/// A material: its name and the lines that follow it.
+/// A material of the MTL file: its name and the lines that follow it.
 struct Paint {
   const char* name;
   const char* lines;
 };
 
+/// Collects the text of an OBJ file.
 class ObjWriter {
  public:
-  /// From here on coordinates are seen from this place.
+  /// Coordinates of later calls are relative to this place.
   void stand_at(const Place& place);
 
-  /// Solid, fronts outwards; or a room, fronts inwards.
+  /// Adds a box: a solid with its fronts outwards, or a room with its fronts inwards. `left_out` names faces to leave out.
   void box(const char* material, Vec3 low, Vec3 high, unsigned left_out = 0, bool inwards = false);
 
-  /// The index that faces name it by.
+  /// Adds a vertex and returns the index by which faces name it.
   int vertex(const Vec3& at);
-  /// Requires: three vertices or more, counter-clockwise seen from the front.
+  /// Adds a face. Requires: three vertices or more, counter-clockwise seen from the front.
   void face(const char* material, std::span<const int> ring);
 
   int face_count() const { return face_count_; }
@@ -53,7 +56,8 @@ class ObjWriter {
   int vertex_count_ = 0, face_count_ = 0;
 };
 
-/// Writes `path`, which ends in .obj, and the MTL file of the same name beside it. False, with a line on stderr, if it cannot.
+/// Writes `path`, which ends in .obj, and the MTL file of the same name beside it. Returns false, after a line on stderr, if it
+/// cannot.
 bool write_scene(const std::string& path, std::span<const Paint> paints, const ObjWriter& obj);
 
 }  // namespace alvor::bench

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double wall_thick = 0.1, slab_thick = 0.3, corridor_wide = 2;
 constexpr double bay_pitch = room_wide + wall_thick;
-constexpr double faces_of_a_room = 520;  // two workplaces, shelves with folders, a cupboard, and half of a corridor's bay
+// Faces of two workplaces, shelves with folders, a cupboard, and half of a corridor's bay.
+constexpr double faces_of_a_room = 520;
 
 constexpr std::array paints{
     Paint{"wall", "Kd 0.76 0.74 0.70"},  Paint{"ceiling", "Kd 0.85 0.85 0.85"},  Paint{"carpet", "Kd 0.28 0.30 0.34"},
@@ -23,7 +24,7 @@ constexpr std::array paints{
     Paint{"green", "Kd 0.14 0.38 0.20"}, Paint{"yellow", "Kd 0.74 0.60 0.16"},   Paint{"paper", "Kd 0.80 0.79 0.75"},
     Paint{"card", "Kd 0.52 0.40 0.27"},  Paint{"housing", "Kd 0.70 0.70 0.70"},  Paint{"lamp", "Kd 0 0 0\nKe 10 9.6 9"}};
 
-/// Faces are counted and lamps hung as rooms are added, so that every room makes up for what the ones before left over.
+/// Builds the block. It counts faces and lamps as rooms are added, so that each room makes up for the rounding of those before.
 class Builder {
  public:
   explicit Builder(const OfficeOptions& options) : options_(options), chance_(options.seed + 1) {
@@ -89,7 +90,7 @@ class Builder {
     furnish(block_.obj, place, share(options_.faces, block_.rooms, room_count_), chance_);
   }
 
-  /// Until `rooms` rooms have theirs.
+  /// Returns how many lamps are missing once there are `rooms` rooms.
   int lamps_due(int rooms) const {
     const double all = options_.faces * options_.lamps_per_1000_faces / 1000;
     return static_cast<int>(std::lround(all * rooms / room_count_)) - block_.lamps;

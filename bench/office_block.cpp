@@ -1,5 +1,5 @@
 // office_block --faces N -o FILE.obj [--seed S] [--lamps-per-1000-faces L]: writes FILE.obj and FILE.mtl, a furnished office
-// block of about N faces. The same bytes for the same arguments.
+// block of about N faces. The same arguments give the same output.
 
 #include "bench/office.h"
 
@@ -17,7 +17,7 @@ struct Arguments {
   std::string path;
 };
 
-/// False if the option is unknown.
+/// Reads one option. Returns false if it is unknown.
 bool read_option(const std::string& name, const char* value, Arguments& into) {
   if (name == "--faces") into.office.faces = std::atoi(value);
   else if (name == "--seed") into.office.seed = static_cast<unsigned>(std::strtoul(value, nullptr, 10));

@@ -11,9 +11,9 @@ namespace alvor::bench {
 
 namespace {
 
-constexpr int faces_on_a_board = 5;  // of a box without its bottom
+constexpr int faces_on_a_board = 5;  // the faces of a box without its bottom
 
-/// Where boxes may stand in a row, from its place along x; their backs are at z = 0.
+/// A row in which boxes may stand, starting at `place` along x, with their backs at z = 0.
 struct Board {
   Place place;
   double length, depth, height;
@@ -48,7 +48,7 @@ void add_workplace(Furnishing& in, double x) {
   in.boards.push_back({in.at({desk_x + 0.35, 4.5, 0, top_y}), 0.35, 0.25, 0.2});
 }
 
-/// Its back is at z = 0 of its place.
+/// Adds a shelf with its back at z = 0 of its place.
 void add_shelf(Furnishing& in, const Place& inner) {
   constexpr double wide = 0.9, tall = 2.0, deep = 0.32, thick = 0.025, step = 0.39;
   in.obj.stand_at(in.at(inner));
@@ -70,7 +70,7 @@ void add_cupboard(Furnishing& in) {
   in.obj.stand_at(place);
   in.obj.box("steel", {0, 0, 0}, {1.2, 1.0, 0.45}, bottom | top);
   in.obj.box("beech", {-0.01, 1.0, 0}, {1.21, 1.03, 0.48});
-  // Doors over the whole front: narrow joints are all that is seen of what they cover.
+  // The doors cover the whole front; of what they cover only narrow joints are visible.
   for (const double x : {0.002, 0.601}) in.obj.box("steel", {x, 0, 0.45}, {x + 0.597, 1.0, 0.468}, bottom | top | z_low);
   in.boards.push_back({placed_in(place, {0.1, 0.05, 0, 1.03}), 1.0, 0.3, 0.35});
 }
@@ -101,7 +101,7 @@ bool add_box(Furnishing& in, Board& board) {
   return true;
 }
 
-/// One box on each board in turn, so that none stays empty beside a full one.
+/// Puts one box on each board in turn, so that none stays empty beside a full one.
 void fill_boards(Furnishing& in, int face_limit) {
   for (std::size_t turn = 0; !in.boards.empty() && in.obj.face_count() + faces_on_a_board <= face_limit; ++turn) {
     const std::size_t board = turn % in.boards.size();
@@ -109,7 +109,7 @@ void fill_boards(Furnishing& in, int face_limit) {
   }
 }
 
-/// The workplace first, the rest in any order.
+/// Shuffles the pieces, all but the first, which is the workplace.
 void shuffle(std::span<Piece> pieces, Chance& chance) {
   for (int last = static_cast<int>(pieces.size()) - 1; last > 1; --last)
     std::swap(pieces[static_cast<std::size_t>(last)], pieces[static_cast<std::size_t>(1 + chance.below(last))]);
@@ -127,7 +127,7 @@ void furnish(ObjWriter& obj, const Place& room, int face_limit, Chance& chance) 
                                {110, add_meeting}}};
   shuffle(pieces, chance);
   Furnishing in{obj, room, chance, {{placed_in(room, {room_wide - 0.03, 3.45, -90}), 0.75, 0.35, 0.4}}};
-  // Rooms differ in the piece that they lack.
+  // Leaves out one piece, which differs from room to room.
   for (const Piece& piece : std::span(pieces).first(pieces.size() - 1))
     if (obj.face_count() + piece.faces <= face_limit) piece.add(in);
   fill_boards(in, face_limit);

@@ -1,5 +1,5 @@
-// slats_and_boxes DIR: writes slats_and_boxes.obj and .mtl, a room in which two hundred small things cast their shadows: hanging
-// boxes, upright slats, a slatted bench and cubes on the floor. The same bytes every time. Lengths are metres, y is up.
+// slats_and_boxes DIR: writes slats_and_boxes.obj and .mtl, a room in which two hundred small objects cast shadows: hanging
+// boxes, upright slats, a slatted bench and cubes on the floor. The output is always the same. Lengths are metres, y is up.
 
 #include "bench/chance.h"
 #include "bench/furniture.h"
@@ -31,7 +31,7 @@ void add_room(ObjWriter& obj) {
   add_lamp(obj, {2.9, height, 2.7}, 0.9, 0.25);
 }
 
-/// Five rows of eight in three layers; turned as they like, none touches another.
+/// Adds five rows of eight boxes in three layers, turned at random; none touches another.
 void add_hanging_boxes(ObjWriter& obj, Chance& chance) {
   constexpr double pitch = 0.37;
   for (int box = 0; box < 120; ++box) {
@@ -43,7 +43,7 @@ void add_hanging_boxes(ObjWriter& obj, Chance& chance) {
   }
 }
 
-/// Upright louvres under a rail, parallel to the back wall.
+/// Adds upright louvres under a rail, parallel to the back wall.
 void add_screen(ObjWriter& obj) {
   constexpr double rail_y = 2.2, z = 3.1;
   for (int slat = 0; slat < 24; ++slat) {
@@ -67,7 +67,7 @@ void add_slatted_bench(ObjWriter& obj) {
   }
 }
 
-/// In front of the screen, smaller ones upon some.
+/// Adds cubes in front of the screen, with smaller ones on top of some.
 void add_cubes(ObjWriter& obj, Chance& chance) {
   for (int cube = 0; cube < 30; ++cube) {
     const double side = chance.between(0.09, 0.15);

@@ -1,5 +1,5 @@
 // vault DIR: writes vault.obj and .mtl, a room under a luminous ceiling with a vaulted alcove, a sphere, a ring and a vase, all
-// of triangles. The same bytes every time. Lengths are metres, y is up.
+// made of triangles. The output is always the same. Lengths are metres, y is up.
 
 #include "bench/scene_program.h"
 
@@ -20,15 +20,15 @@ constexpr std::array paints{Paint{"wall", "Kd 0.76 0.73 0.67"},    Paint{"floor"
                             Paint{"glaze", "Kd 0.12 0.30 0.46"},   Paint{"ceiling", "Kd 0.2 0.2 0.2\nKe 3 3 3"}};
 
 constexpr double pi = std::numbers::pi;
-constexpr double half_wide = 3, height = 3.6, depth = 5;                  // of the room
-constexpr double arch_radius = 1.25, springing = 1.6, alcove_deep = 2.5;  // of the alcove behind its wall z = 0
+constexpr double half_wide = 3, height = 3.6, depth = 5;                  // dimensions of the room
+constexpr double arch_radius = 1.25, springing = 1.6, alcove_deep = 2.5;  // dimensions of the alcove behind the room's wall z = 0
 constexpr int arch_steps = 24, alcove_steps = 8;
 
 using Surface = std::function<Vec3(double u, double v)>;  // u and v from 0 to 1
 
 void add_triangle(ObjWriter& obj, const char* material, const std::array<int, 3>& ring) { obj.face(material, ring); }
 
-/// Fronts are where u x v points. A side that shrinks to a point keeps one triangle of each two.
+/// Adds a surface as a grid of triangles. Fronts face along u x v. A side that shrinks to a point keeps one triangle of each two.
 void add_surface(ObjWriter& obj, const char* material, int columns, int rows, const Surface& at) {
   const auto point = [&](int column, int row) { return at(double(column) / columns, double(row) / rows); };
   std::vector<int> names;
@@ -44,12 +44,12 @@ void add_surface(ObjWriter& obj, const char* material, int columns, int rows, co
     }
 }
 
-/// The parallelogram at `corner`, its front where `along` x `up` points.
+/// Adds the parallelogram at `corner`; its front faces along `along` x `up`.
 void add_plane(ObjWriter& obj, const char* material, Vec3 corner, Vec3 along, Vec3 up, int columns = 1, int rows = 1) {
   add_surface(obj, material, columns, rows, [=](double u, double v) { return corner + along * u + up * v; });
 }
 
-/// From the left springer over the crown to the right one.
+/// Returns a point on the arch, from the left springer (u = 0) over the crown to the right one (u = 1).
 Vec3 on_arch(double u, double z) { return {-arch_radius * std::cos(pi * u), springing + arch_radius * std::sin(pi * u), z}; }
 
 void add_room(ObjWriter& obj) {
@@ -62,7 +62,7 @@ void add_room(ObjWriter& obj) {
   add_plane(obj, "wall", origin + z, y, x);
 }
 
-/// Cut at the springing, so that pieces share whole edges.
+/// Adds the wall around the alcove, cut at the height of the springing so that its pieces share whole edges.
 void add_arched_wall(ObjWriter& obj) {
   const Vec3 beside{half_wide - arch_radius, 0, 0}, below{0, springing, 0}, above{0, height - springing, 0};
   for (const double x : {-half_wide, arch_radius}) {
@@ -87,8 +87,8 @@ void add_alcove(ObjWriter& obj) {
               [](double u, double v) { return lerp(on_arch(v / 2, -alcove_deep), on_arch(1 - v / 2, -alcove_deep), u); });
 }
 
-/// Turns a profile, radius and height by row, about the vertical: fronts outwards where it climbs. Each row is half a step ahead
-/// of the one below, so that no two triangles lie in a plane, which importers would join to a quad.
+/// Adds a profile (radius and height by row) turned about the vertical. Fronts face outwards where the profile climbs. Each row
+/// is half a step ahead of the one below: then no two triangles lie in one plane, which importers would join to a quad.
 void add_turned(ObjWriter& obj, const char* material, int columns, int rows,
                 const std::function<std::array<double, 2>(int)>& profile) {
   add_surface(obj, material, columns, rows, [&](double u, double v) {
@@ -99,9 +99,9 @@ void add_turned(ObjWriter& obj, const char* material, int columns, int rows,
   });
 }
 
-/// Lies on the floor.
+/// Adds a ring that lies on the floor.
 void add_ring(ObjWriter& obj, const Place& place) {
-  constexpr int rows = 18;  // turns below 25 degrees are drawn smooth
+  constexpr int rows = 18;  // smooth: it turns less than 25 degrees per row
   obj.stand_at(place);
   add_turned(obj, "copper", 28, rows, [](int row) {
     const double angle = 2 * pi * row / rows;
@@ -109,7 +109,7 @@ void add_ring(ObjWriter& obj, const Place& place) {
   });
 }
 
-/// Up the outside, over the rim and down the inside to the middle of its bottom.
+/// Adds a vase: the profile goes up the outside, over the rim and down the inside to the middle of the bottom.
 void add_vase(ObjWriter& obj, const Place& place) {
   constexpr std::array<std::array<double, 2>, 15> profile{{{0.14, 0},
                                                            {0.21, 0.08},
@@ -139,7 +139,7 @@ void add_block(ObjWriter& obj, const char* material, Vec3 low, Vec3 high) {
   add_plane(obj, material, low + z, x, y);
 }
 
-/// An icosahedron whose triangles are cut in four, twice, and blown up; rests on a vertex.
+/// A sphere made from an icosahedron whose triangles are cut in four twice and moved outwards; it rests on a vertex.
 class Sphere {
  public:
   explicit Sphere(ObjWriter& obj) : obj_(obj) {}

@@ -4,7 +4,7 @@
 
 namespace alvor::bench {
 
-// Cut at the height of the lintel all along: pieces share whole edges, so that light is interpolated across them.
+// Cuts the whole wall at the height of the lintel: then the pieces share whole edges, and light is interpolated across them.
 void add_doorway_wall(ObjWriter& obj, const char* material, const DoorwayWall& wall, double at_z, bool looks_to_high_z) {
   const std::array heights{0.0, wall.door_top, wall.height};
   const std::array widths{wall.from, wall.door_low, wall.door_high, wall.to};

@@ -26,13 +26,13 @@ Placement placement_of(const aiMatrix4x4& m) {
   return {{m.a1, m.b1, m.c1}, {m.a2, m.b2, m.c2}, {m.a3, m.b3, m.c3}, {m.a4, m.b4, m.c4}};
 }
 
-/// A texture inside the file, as it was encoded; nothing for raw texels, which only games use.
+/// Returns the mean colour of a texture embedded in encoded form. Returns nothing for raw texels, which only games use.
 std::optional<Rgb> mean_of_embedded(const aiTexture& texture) {
   if (texture.mHeight != 0) return std::nullopt;
   return mean_colour({reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth});
 }
 
-/// What a format says, or what its programs have in common, of the unit and the axes of its numbers.
+/// The up axis and unit of a format's coordinates: given by the file, or usual for programs that write the format.
 struct Convention {
   UpAxis up = UpAxis::y;
   double metres_per_unit = 1;
@@ -40,11 +40,11 @@ struct Convention {
 
 Convention convention_of(const aiScene& source, const std::string& extension) {
   Convention convention;
-  // Collada says its unit and up axis, and Assimp turns the scene y-up, in metres.
+  // Collada files state their unit and up axis, and Assimp converts the scene to y-up metres.
   if (extension == ".stl" || extension == ".3ds" || extension == ".ply") convention.up = UpAxis::z;
   if (extension == ".fbx" && source.mMetaData) {
     int up = 1;
-    float centimetres = 1;  // the type that Assimp keeps it in: Get() refuses another
+    float centimetres = 1;  // the type in which Assimp stores it; Get() refuses another
     source.mMetaData->Get("UpAxis", up);
     source.mMetaData->Get("UnitScaleFactor", centimetres);
     convention.up = up == 2 ? UpAxis::z : UpAxis::y;
@@ -73,7 +73,7 @@ class AssimpReader {
  private:
   void add_material(const aiMaterial& source) {
     const std::string given_name = source.GetName().C_Str();
-    // What Assimp makes up for files without materials has this name or none, and a colour of the importer's liking.
+    // For files without materials Assimp makes one with this name or none, in a colour of its own choice.
     const bool made_up = given_name.empty() || given_name == AI_DEFAULT_MATERIAL_NAME;
     const std::string name = made_up ? "default" : given_name;
     int two_sided = 0;
@@ -101,7 +101,7 @@ class AssimpReader {
     return mean_colour_of_file(folder_ / file);
   }
 
-  /// Depth first, without recursion: the depth is the file's choice.
+  /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
   void add_tree(const aiNode& root) {
     struct Pending {
       const aiNode* node;
@@ -175,7 +175,8 @@ class AssimpReader {
   std::optional<std::uint32_t> default_material_;
 };
 
-/// Assimp's PLY reader waits for the end of the header for ever, and makes room for as many elements as the header promises.
+/// Refuses PLY headers that Assimp's reader cannot handle: it waits for ever for a missing end, and allocates as many elements as
+/// the header promises.
 void check_ply_header(std::istream& stream, std::uintmax_t file_size) {
   std::string word, name;
   while (stream >> word && word != "end_header") {
@@ -190,12 +191,12 @@ void check_ply_header(std::istream& stream, std::uintmax_t file_size) {
 void refuse_what_assimp_cannot_survive(std::istream& stream, std::uintmax_t file_size) {
   std::string first;
   std::getline(stream, first);
-  first.resize(std::min<std::size_t>(first.size(), 3));  // Assimp looks no further, in capitals or not
+  first.resize(std::min<std::size_t>(first.size(), 3));  // Assimp looks only at these, in either case
   std::ranges::transform(first, first.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (first == "ply") check_ply_header(stream, file_size);
 }
 
-/// No post-processing: every step that joins, sorts or triangulates loses the file's faces or their order.
+/// No post-processing: every step of Assimp that joins, sorts or triangulates loses the file's faces or their order.
 constexpr unsigned as_it_is = 0;
 
 SceneFile scene_of(const Assimp::Importer& importer, const std::filesystem::path& folder, const std::string& extension) {

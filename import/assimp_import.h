@@ -4,14 +4,14 @@
 
 namespace alvor {
 
-/// Reads what Assimp reads (PLY, STL, 3DS, Collada, FBX, ...), node transforms applied, faces in the order of the nodes and of
-/// the file. Points and lines are skipped. The scene is not checked further. Throws ImportError.
+/// Reads the formats that Assimp reads (PLY, STL, 3DS, Collada, FBX, ...). Node transforms are applied; faces come in the order
+/// of the nodes and of the file. Points and lines are skipped. The scene is not checked further. Throws ImportError.
 SceneFile import_by_assimp(const std::filesystem::path& path);
 
-/// Reads the bytes of a file of which `extension`, like ".stl", tells the format; textures are in `folder`.
+/// Reads a file from its bytes. `extension`, like ".stl", tells the format; textures are read from `folder`.
 SceneFile import_by_assimp(const std::string& bytes, const std::string& extension, const std::filesystem::path& folder);
 
-/// Returns whether files with an extension like ".stl" can be read that way.
+/// Returns whether Assimp reads files with this extension, like ".stl".
 bool is_read_by_assimp(const std::string& extension);
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Little-endian values in a string of bytes, as GLB and PLY store them.
+// Reads and writes little-endian values in a string of bytes, as GLB and PLY store them.
 
 #include <bit>
 #include <cassert>
@@ -17,7 +17,7 @@ template <class T>
 requires std::is_arithmetic_v<T>
 void append_value(std::string& bytes, T value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); }
 
-/// Requires: offset + sizeof(T) <= bytes.size(). No alignment is needed.
+/// Returns the value at `offset`; no alignment is needed. Requires: offset + sizeof(T) <= bytes.size().
 template <class T>
 requires std::is_arithmetic_v<T> T value_at(std::string_view bytes, std::size_t offset) {
   assert(offset + sizeof(T) <= bytes.size());

@@ -22,7 +22,7 @@ namespace {
 constexpr rlim_t most_cpu_seconds = 600;
 constexpr std::size_t chunk_bytes = 1 << 24;
 
-/// What a child says: records of a kind, a length and bytes.
+/// The kinds of records that a child writes. A record is a kind, a length and bytes.
 enum class Kind : std::uint8_t { chunk, warning, error, end };
 
 class Pipe {
@@ -41,7 +41,7 @@ class Pipe {
     if (ends_[end] >= 0) close(ends_[end]);
     ends_[end] = -1;
   }
-  /// Returns false where nobody reads.
+  /// Returns false if nobody reads the pipe any more.
   bool write(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t count = ::write(ends_[1], bytes.data(), bytes.size());
@@ -51,7 +51,7 @@ class Pipe {
     }
     return true;
   }
-  /// Returns fewer bytes than asked for at the end of what was written.
+  /// Returns the next `size` bytes, or fewer if the writer has ended.
   std::string read(std::size_t size) {
     std::string bytes(size, '\0');
     std::size_t filled = 0;
@@ -98,7 +98,7 @@ void send(Pipe& pipe, const SceneFile& file) {
   _exit(0);
 }
 
-/// Nothing if the child ended before it said all.
+/// Returns the scene that the child wrote, or nothing if the child ended early.
 std::optional<SceneFile> receive(Pipe& pipe) {
   SceneAssembler assembler;
   SceneFile file;
@@ -129,7 +129,7 @@ std::string end_of(int status) {
   return "the library that reads this format crashed (" + std::string(strsignal(WTERMSIG(status))) + ")";
 }
 
-/// Ends with its child: one that still has something to say is not listened to any more.
+/// Kills and waits for the child when destroyed.
 class Child {
  public:
   explicit Child(pid_t process) : process_(process) {}

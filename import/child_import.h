@@ -1,5 +1,5 @@
 #pragma once
-// Importing in a process of its own.
+// Runs an importer in a child process, so that a crash of a parsing library does not end the caller.
 
 #include "import/scene_file.h"
 
@@ -8,9 +8,9 @@
 
 namespace alvor {
 
-/// Calls `import` in a child process and returns what it returned. A crash of a parsing library, or a parser that runs for more
-/// than ten minutes of processor time, thus ends the child only: ImportError says so. Throws ImportError also for what `import`
-/// threw, and where no process can be made. Requires: no other thread of this process holds a lock that `import` takes.
+/// Calls `import` in a child process and returns its result. A parser that crashes, or takes more than ten minutes of processor
+/// time, ends only the child. Throws ImportError for that, for what `import` threw, and if no process can be made. Requires: no
+/// other thread of this process holds a lock that `import` takes.
 SceneFile import_in_child(const std::function<SceneFile()>& import);
 
 /// Calls `import` with `path` in a child process.

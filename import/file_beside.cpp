@@ -23,7 +23,8 @@ std::string percent_decoded(std::string_view uri) {
   return name;
 }
 
-/// Why a name cannot be that of a file in the scene's folder or below it; empty if it can. Names from Windows are taken as such.
+/// Returns why a name cannot be a file in the scene's folder or below it; empty if it can. Backslashes count as separators, for
+/// names from Windows.
 std::string reason_against(const std::string& name) {
   if (name.empty()) return "names no file";
   if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < ' '; })) return "has control characters";

@@ -1,5 +1,5 @@
 #pragma once
-// Files that a scene file names.
+// Reads files that a scene file names, only from the scene's own folder.
 
 #include <filesystem>
 #include <string>

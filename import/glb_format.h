@@ -1,5 +1,5 @@
 #pragma once
-// Numbers of the glTF 2.0 and GLB specifications, as far as solution files use them.
+// Numbers of the glTF 2.0 and GLB specifications that solution files use.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,10 +9,11 @@ namespace alvor::glb {
 inline constexpr std::uint32_t magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 inline constexpr std::size_t file_header_size = 12, chunk_header_size = 8, vec3_size = 12;
 inline constexpr int float_component = 5126, uint_component = 5125, array_buffer = 34962, element_array_buffer = 34963;
-/// Ours has 2 kB; a parsed tree takes many times its text.
+/// Limit for the JSON of a solution file; ours has 2 kB, and a parsed tree takes many times the memory of its text.
 inline constexpr std::size_t largest_json = 1 << 20;
 
-/// glTF is y-up: the node of a z-up solution is turned by this, and its extras say so under this key.
+/// glTF is y-up. In a z-up solution this rotation (quaternion x, y, z, w) turns the node, and the node's extras mark it with
+/// `up_key`.
 inline constexpr double z_up_rotation[4] = {-0.70710678118654752, 0, 0, 0.70710678118654752};
 inline constexpr const char* up_key = "alvor_up";
 

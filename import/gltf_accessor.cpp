@@ -19,7 +19,8 @@ struct Elements {
   }
 };
 
-/// Bounds by division, as products of hostile numbers overflow.
+/// Returns whether the elements lie within their bytes. Divides instead of multiplying, because products of hostile numbers
+/// overflow.
 bool fits(const Elements& elements, std::size_t element_size) {
   if (elements.count == 0) return true;
   if (elements.bytes.size() < element_size) return false;
@@ -31,7 +32,7 @@ const tinygltf::Accessor& accessor_of(const tinygltf::Model& model, int index, c
   return model.accessors[static_cast<std::size_t>(index)];
 }
 
-/// `type` is TINYGLTF_TYPE_SCALAR or _VEC3.
+/// Returns the elements of an accessor, checked to lie in its buffer view. `type` is TINYGLTF_TYPE_SCALAR or _VEC3.
 Elements elements_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor, int type, const std::string& place) {
   if (accessor.sparse.isSparse) throw ImportError(place, "sparse accessors are not supported");
   if (accessor.type != type) throw ImportError(place, "is not of the type its use asks for");
@@ -55,7 +56,8 @@ T load(const unsigned char* bytes) {
   return value;
 }
 
-/// Integers are coordinates under KHR_mesh_quantization; a normalized one stands for a fraction of the type's largest.
+/// Returns one coordinate from bytes. KHR_mesh_quantization allows integers; a normalized one is a fraction of the type's largest
+/// value.
 template <class T>
 double load_scaled(const unsigned char* bytes, bool normalized) {
   const double value = load<T>(bytes);

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers out of glTF buffers. Nothing in the file is trusted: every range is checked before it is read.
+// Reads numbers out of glTF buffers. Checks every range before reading, as the file may be hostile.
 
 #include "meshing/vec3.h"
 
@@ -14,11 +14,13 @@ namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 
-/// The bytes of a buffer view. Throws ImportError when there is no such view or it leaves its buffer.
+/// Returns the bytes of a buffer view. Throws ImportError if there is no such view or it leaves its buffer.
 std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, int view);
 
-/// Each throws ImportError that names the accessor when it is not of the right type, leaves its buffer view, or is sparse.
+/// Returns the positions in an accessor. Throws ImportError that names the accessor if it has the wrong type, leaves its buffer
+/// view, or is sparse.
 std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor);
+/// Returns the indices in an accessor. Throws ImportError as read_positions does.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);
 
 }  // namespace alvor

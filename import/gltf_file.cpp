@@ -21,9 +21,9 @@ using nlohmann::json;
 
 constexpr int max_depth = 200;
 
-/// Extensions that change neither shape nor place, and so may be required of us.
+/// Returns whether an extension changes neither shapes nor places, so that a file may require it.
 bool is_harmless(const std::string& extension) {
-  if (extension == "KHR_materials_pbrSpecularGlossiness") return false;  // has a reflectance of its own
+  if (extension == "KHR_materials_pbrSpecularGlossiness") return false;  // it has its own reflectance
   return extension.starts_with("KHR_materials_") || extension.starts_with("KHR_texture_") ||
          extension.starts_with("EXT_texture_") || extension == "KHR_mesh_quantization" || extension == "KHR_lights_punctual";
 }
@@ -61,7 +61,8 @@ Container container_of(std::string_view content) {
   return container;
 }
 
-/// tinygltf copies values by recursion: a megabyte of brackets would overflow the stack.
+/// Refuses JSON that is nested too deeply: tinygltf copies values by recursion, and a megabyte of brackets would overflow the
+/// stack.
 void refuse_deep(std::string_view text) {
   int depth = 0;
   bool quoted = false;
@@ -83,7 +84,7 @@ json parse(std::string_view text) {
   }
 }
 
-/// Counts what is read for one scene: a few bytes of JSON can name a large file any number of times.
+/// Limits the bytes read for one scene: a few bytes of JSON can name a large file many times.
 class ByteBudget {
  public:
   void spend(std::size_t bytes, const std::string& place) {
@@ -102,10 +103,10 @@ std::string uri_of(const json& element) {
   return uri != element.end() && uri->is_string() ? uri->get<std::string>() : std::string();
 }
 
-/// The bytes of the buffers that are not written into the JSON, as tinygltf asks for them: by the buffer's number.
+/// The bytes of the buffers outside the JSON. tinygltf asks for them by the buffer's number.
 class Buffers {
  public:
-  /// Reads what the JSON's buffers name, and puts the number of each in the place of its URI.
+  /// Reads the files that the JSON's buffers name, and replaces each URI by the buffer's number.
   Buffers(json& gltf, std::optional<std::string_view> binary, const std::filesystem::path& folder, ByteBudget& budget) {
     const auto buffers = gltf.find("buffers");
     if (buffers == gltf.end() || !buffers->is_array()) return;
@@ -137,7 +138,7 @@ class Buffers {
  private:
   static Buffers& of(void* self) { return *static_cast<Buffers*>(self); }
 
-  /// A buffer may be shorter than what holds it, not longer.
+  /// Cuts the bytes to the buffer's byteLength. Throws ImportError if there are fewer.
   static void cut_to_length(std::string& bytes, const json& buffer, const std::string& place) {
     const auto length = buffer.find("byteLength");
     if (length == buffer.end() || !length->is_number_unsigned()) throw ImportError(place, "has no byteLength");
@@ -158,7 +159,7 @@ class Buffers {
   std::vector<std::string> bytes_;
 };
 
-/// Keeps an image of the JSON encoded, to be decoded when a material asks. Those of buffer views stay there: tinygltf does not
+/// Keeps an image of the JSON encoded until a material asks for it. Images in buffer views stay there, because tinygltf does not
 /// check their range.
 bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                   void*) {
@@ -166,7 +167,7 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
-/// The images that materials take a colour from. Others, of bumps or shine, may be missing.
+/// Returns the images that give materials a colour. Others (bump maps, roughness) may be missing.
 std::set<int> colour_images(const tinygltf::Model& model) {
   std::set<int> images;
   for (const tinygltf::Material& material : model.materials)

@@ -28,7 +28,7 @@ const T& element(const std::vector<T>& list, int index, const char* kind, const 
   return list[static_cast<std::size_t>(index)];
 }
 
-/// From a unit quaternion x, y, z, w; one of another length is taken for its direction.
+/// Returns the rotation of a quaternion x, y, z, w of any length but 0.
 Placement rotation_of(const std::vector<double>& q, const std::string& place) {
   const double norm = std::inner_product(q.begin(), q.end(), q.begin(), 0.0);
   if (!(norm > 0)) throw ImportError(place, "its rotation is no rotation");
@@ -39,7 +39,7 @@ Placement rotation_of(const std::vector<double>& q, const std::string& place) {
           {}};
 }
 
-Placement placement_of_matrix(const std::vector<double>& m) {  // column by column
+Placement placement_of_matrix(const std::vector<double>& m) {  // in column-major order
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
 }
 
@@ -72,7 +72,7 @@ std::vector<Triangle> plain_triangles(std::span<const std::uint32_t> indices, co
   return triangles;
 }
 
-/// Strips are stitched together by triangles that name a vertex twice; these are no faces.
+/// Returns the triangles of a strip. Strips are joined by triangles that name a vertex twice; these are left out.
 std::vector<Triangle> strip_triangles(std::span<const std::uint32_t> indices) {
   std::vector<Triangle> triangles;
   for (std::size_t i = 2; i < indices.size(); ++i) {
@@ -100,7 +100,7 @@ std::vector<Triangle> triangles_of(int mode, std::span<const std::uint32_t> indi
 
 bool draws_no_surface(int mode) { return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP; }
 
-/// Reads one model's default scene.
+/// Reads the default scene of one model.
 class GltfReader {
  public:
   explicit GltfReader(const tinygltf::Model& model) : model_(model), seen_(model.nodes.size()) {}
@@ -116,7 +116,7 @@ class GltfReader {
  private:
   std::vector<int> root_nodes() const {
     if (!model_.scenes.empty()) return element(model_.scenes, std::max(model_.defaultScene, 0), "scene", "file").nodes;
-    // A file without scenes is a library of nodes: show those that hang from no other.
+    // A file without scenes is a library of nodes; all nodes without a parent are shown.
     std::vector<bool> hangs(model_.nodes.size());
     for (const tinygltf::Node& node : model_.nodes)
       for (const int child : node.children) {
@@ -134,7 +134,7 @@ class GltfReader {
     Placement parent;
   };
 
-  /// Depth first, without recursion: the depth is the file's choice.
+  /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
   void add_tree(const std::vector<int>& roots) {
     std::vector<Pending> stack;
     const auto push = [&](const std::vector<int>& nodes, const Placement& parent) {
@@ -151,7 +151,8 @@ class GltfReader {
     }
   }
 
-  /// A node met twice would be its own ancestor, or shared: glTF allows neither, and it could go on for ever.
+  /// Returns a node with its placement. Throws ImportError if the node was met before: then it has two parents or is its own
+  /// ancestor, which glTF forbids and which might never end.
   std::pair<const tinygltf::Node*, Placement> enter(const Pending& next) {
     const tinygltf::Node& node = element(model_.nodes, next.node, "node", "scene");
     const auto index = static_cast<std::size_t>(next.node);
@@ -214,7 +215,7 @@ class GltfReader {
     return *default_material_;
   }
 
-  /// KHR_lights_punctual.
+  /// Counts a light of the extension KHR_lights_punctual.
   void count_light(const tinygltf::Node& node) {
     const auto extension = node.extensions.find("KHR_lights_punctual");
     if (extension == node.extensions.end()) return;
@@ -232,7 +233,7 @@ class GltfReader {
       if (!used[m]) continue;
       const tinygltf::Material& material = model_.materials[m];
       const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
-      // Under a texture the factor is the default, 1, for what is not metal too.
+      // With a texture, metallicFactor is usually left at its default 1, also for materials that are no metals.
       const bool is_metal = surface.metallicFactor > 0.5 && surface.metallicRoughnessTexture.index < 0;
       unsupported_.transparent_materials += !material.alphaMode.empty() && material.alphaMode != "OPAQUE";
       unsupported_.metals += is_metal;

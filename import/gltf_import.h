@@ -11,7 +11,7 @@ namespace alvor {
 /// ImportError.
 SceneFile import_gltf(const std::filesystem::path& path);
 
-/// Reads the bytes of such a file; `folder` is where the files that it names are.
+/// Reads the bytes of a glTF 2.0 file; files that it names are read from `folder`.
 SceneFile import_gltf(std::string_view bytes, const std::filesystem::path& folder);
 
 }  // namespace alvor

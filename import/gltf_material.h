@@ -12,9 +12,9 @@ namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 
-/// The model's materials, in its order: baseColorFactor becomes reflectance, emissiveFactor x KHR_materials_emissive_strength
-/// becomes emission, textures count by their mean. What is metal is taken for diffuse.
-/// Requires: `model.images` hold encoded bytes.
+/// Returns the model's materials in order. baseColorFactor becomes reflectance; emissiveFactor x KHR_materials_emissive_strength,
+/// a radiance, becomes emission. Textures count by their mean colour. Metals are treated as diffuse. Requires: `model.images`
+/// hold encoded bytes.
 std::vector<Material> read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings);
 
 }  // namespace alvor

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 2> colour_lines{"Kd", "Ke"};
 
 Rgb rgb_of(const tinyobj::real_t (&bands)[3]) { return {bands[0], bands[1], bands[2]}; }
 
-/// The materials of an MTL text that have a line of this key.
+/// Returns the names of the materials in an MTL text that have a line with this key.
 std::set<std::string> materials_with(std::string_view key, const std::string& text) {
   std::set<std::string> names;
   std::istringstream lines(text);
@@ -41,7 +41,7 @@ std::set<std::string> materials_with(std::string_view key, const std::string& te
   return names;
 }
 
-/// MTL files, checked before they are parsed.
+/// Reads MTL files; checks their lines before tinyobjloader parses them.
 class MaterialLibrary : public tinyobj::MaterialReader {
  public:
   explicit MaterialLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -78,7 +78,7 @@ class MaterialLibrary : public tinyobj::MaterialReader {
     for (std::size_t m = known; m < materials->size(); ++m) by_name_.emplace((*materials)[m].name, (*materials)[m]);
   }
 
-  /// A texture without a colour (Blender writes such) counts whole.
+  /// Sets the colour factor to 1 where a material has a texture but no colour, as Blender writes it.
   static void fill_factors(std::span<tinyobj::material_t> materials, const std::string& text) {
     const auto with_diffuse = materials_with("Kd", text), with_emission = materials_with("Ke", text);
     for (tinyobj::material_t& material : materials) {
@@ -92,7 +92,7 @@ class MaterialLibrary : public tinyobj::MaterialReader {
   std::set<std::string> missing_;
 };
 
-/// What tinyobjloader calls for each line of the file, in order.
+/// Builds the scene from tinyobjloader's callbacks, which come in the order of the file's lines.
 class ObjBuilder {
  public:
   static tinyobj::callback_t callbacks() {
@@ -119,8 +119,8 @@ class ObjBuilder {
     add_placed_face(scene, polygon_, material_index(), {});
   }
 
-  /// Indices count from 1, or back from the newest vertex: -1. Those beyond the end are not refused yet, as the vertices may
-  /// follow.
+  /// Returns the vertex of an OBJ index, which counts from 1, or backwards from the newest vertex (-1). Indices beyond the end
+  /// are accepted here, because the vertices may follow.
   std::uint32_t vertex_of(int index) const {
     const long long vertex = index > 0 ? index - 1LL : static_cast<long long>(scene.vertices.size()) + index;
     if (index == 0 || vertex < 0)
@@ -130,7 +130,7 @@ class ObjBuilder {
     return static_cast<std::uint32_t>(vertex);
   }
 
-  /// A place for the material in use, whose colours are known only when all libraries were read.
+  /// Returns the index of the material in use, adding it if new. Its colours are filled in when all libraries have been read.
   std::uint32_t material_index() {
     const auto [slot, is_new] = slots_.try_emplace(material_, static_cast<std::uint32_t>(scene.materials.size()));
     if (is_new) scene.materials.push_back({material_, {}, default_reflectance, false});

@@ -11,7 +11,7 @@ namespace alvor {
 /// skipped; materials that no face uses are left out. The scene is not checked further. Throws ImportError.
 SceneFile import_obj(const std::filesystem::path& path);
 
-/// Reads OBJ from a stream; `folder` is where its MTL files and textures are.
+/// Reads OBJ from a stream; its MTL files and textures are read from `folder`.
 SceneFile import_obj(std::istream& stream, const std::filesystem::path& folder);
 
 }  // namespace alvor

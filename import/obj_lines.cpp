@@ -35,8 +35,8 @@ void check_triple(std::string_view keyword, std::string_view rest, const std::st
   }
 }
 
-/// Lines of one material library each, with a backslash before the blanks within its name: of several in one line tinyobjloader
-/// reads only one. A name ends in .mtl: exporters do not quote.
+/// Returns one `mtllib` line for each material library, because tinyobjloader reads only one per line. Blanks within a name get a
+/// backslash. A name ends in .mtl: exporters do not quote names.
 std::string library_lines(std::string_view names) {
   std::string text = "mtllib ", lower;
   for (const char c : names) {
@@ -49,7 +49,7 @@ std::string library_lines(std::string_view names) {
   return text;
 }
 
-/// One blank after the keyword: tinyobjloader takes further ones for a part of names.
+/// Appends a line with one blank after the keyword: tinyobjloader would take further blanks for a part of names.
 void append_line(std::string& text, std::string_view keyword, std::string_view rest) {
   rest = rest.substr(0, rest.find_last_not_of(blank) + 1);
   rest.remove_prefix(std::min(rest.find_first_not_of(blank), rest.size()));
@@ -59,7 +59,7 @@ void append_line(std::string& text, std::string_view keyword, std::string_view r
   text.push_back('\n');
 }
 
-/// Joins the next lines to a line that ends in a backslash. Returns how many lines were read.
+/// Reads a line, joined with the next ones as long as it ends in a backslash. Returns the number of lines read.
 int read_joined_line(std::istream& stream, std::string& line) {
   int count = 0;
   line.clear();
@@ -81,7 +81,7 @@ std::string clean_lines(std::istream& stream, std::span<const std::string_view> 
   for (int read = 0; (read = read_joined_line(stream, line)) > 0; number += read) {
     std::string_view rest = line;
     const std::string_view keyword = take_word(rest);
-    // Names may hold a '#', numbers cannot.
+    // Names may contain a '#'; numbers cannot.
     if (keyword == "v" || keyword == "f") rest = rest.substr(0, rest.find('#'));
     if (std::ranges::find(triples, keyword) != triples.end())
       check_triple(keyword, rest, (file.empty() ? "" : file + " ") + "line " + std::to_string(number));

@@ -16,7 +16,7 @@ namespace alvor {
 
 namespace {
 
-/// Twice a face's area over the square of its outline's length, below which it is a line or a point.
+/// Upper limit of twice a face's area over the square of its outline's length, below which the face is a line or a point.
 constexpr double flat = 1e-14;
 constexpr std::size_t max_line = 400;
 
@@ -44,7 +44,7 @@ SceneFile import_content(const SceneBytes& content) {
   return import_obj(stream, content.folder);
 }
 
-/// A band brought into [0, 1). What is not a number stays: it is a fault.
+/// Returns a band of reflectance clamped to [0, 1). NaN stays as it is and is a fault.
 double clamped(double reflectance) {
   if (reflectance < 0) return 0;
   return reflectance >= 1 ? clamped_reflectance : reflectance;
@@ -86,7 +86,7 @@ void refuse_faulty(const Scene& scene) {
     throw ImportError("scene", "all " + std::to_string(scene.faces.size()) + " faces are degenerate");
 }
 
-/// Libraries report in several lines, and quote the file, which may hold anything.
+/// Returns `text` on one line of limited length: libraries report in several lines, and quote the file, which may hold anything.
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {
@@ -111,14 +111,14 @@ SceneFile checked(SceneFile file) {
   return file;
 }
 
-/// Returns what `import` returns, checked; its errors leave as SceneFileError that begin with `name`.
+/// Returns the checked result of `import`. Its errors become SceneFileError that begin with `name`.
 template <class Import>
 SceneFile naming(const std::string& name, Import import) {
   try {
     return checked(import());
   } catch (const ImportError& error) {
     throw SceneFileError(name + ": " + one_line(error.what()));
-  } catch (const std::exception& error) {  // of the libraries
+  } catch (const std::exception& error) {  // thrown by the libraries
     throw SceneFileError(name + ": file: " + one_line(error.what()));
   }
 }

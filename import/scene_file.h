@@ -1,5 +1,5 @@
 #pragma once
-// Scene files in.
+// Reads scene files of all supported formats.
 
 #include "meshing/scene.h"
 
@@ -15,29 +15,29 @@ struct SceneFile {
   std::vector<std::string> warnings;  ///< one sentence each: clamped reflectance, averaged texture, ...
 };
 
-/// A file that is not a scene. what() is one line: file, place, reason.
+/// Thrown where a file is not a valid scene. what() is one line: file, place, reason.
 struct SceneFileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads OBJ+MTL and what else Assimp reads well, and glTF 2.0 / GLB through tinygltf. Faces keep the order and
-/// the corners that they have in the file. Node transforms are applied; radiance becomes emission (E = pi L). Reflectance of 1 or
-/// more is clamped to 0.95 with a warning. The scene has no fault (find_fault). Throws SceneFileError.
+/// Reads a scene: OBJ+MTL through tinyobjloader, glTF 2.0 / GLB through tinygltf, other formats through Assimp. Faces keep the
+/// order and the corners of the file. Node transforms are applied; radiance becomes emission (E = pi L). Reflectance of 1 or more
+/// is clamped to 0.95 with a warning. The scene has no fault (find_fault). Throws SceneFileError.
 SceneFile read_scene_file(const std::filesystem::path& path);
 
-/// A scene that comes from elsewhere than a file of its own, such as a pipe.
+/// A scene that does not come from a file of its own, but for example from a pipe.
 struct SceneBytes {
-  std::string name;  ///< what errors call it
+  std::string name;  ///< the scene's name in error messages
   std::string bytes;
-  std::string extension;         ///< tells the format, in lower case: ".glb"
-  std::filesystem::path folder;  ///< where the files are that the scene names; empty: the working folder
+  std::string extension;         ///< tells the format, in lower case, like ".glb"
+  std::filesystem::path folder;  ///< the folder of the files that the scene names; empty: the working folder
 };
 
-/// Reads what read_scene_file would read from a file of these bytes. Throws SceneFileError. Requires:
+/// Reads a scene from bytes as read_scene_file does from a file. Throws SceneFileError. Requires:
 /// is_scene_extension(content.extension).
 SceneFile read_scene_content(const SceneBytes& content);
 
-/// Returns whether scenes are read from files with this extension, in lower case and with its dot.
+/// Returns whether scenes are read from files with this extension, given in lower case with its dot.
 bool is_scene_extension(const std::string& extension);
 
 }  // namespace alvor

@@ -2,7 +2,7 @@
 
 #include "import/whole_file.h"
 
-// Its functions stay in this file: libdraco, which Assimp loads, exports functions of the same names.
+// stb_image's functions are static here: libdraco, which Assimp loads, exports functions of the same names.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
@@ -23,10 +23,10 @@ namespace alvor {
 
 namespace {
 
-/// A file of some kilobytes can ask for any number of pixels; 16 384 x 16 384 is more than textures have.
+/// Limit of decoded pixels: a file of a few kilobytes can ask for any number. Textures have at most 16 384 x 16 384.
 constexpr std::size_t most_pixels = 1 << 28;
 
-/// IEC 61966-2-1.
+/// Returns the linear value of an sRGB value (IEC 61966-2-1).
 double linear_of_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 
 template <class Sample>
@@ -39,7 +39,7 @@ std::vector<double> linear_table() {
 
 using Pixels = std::unique_ptr<void, decltype(&stbi_image_free)>;
 
-/// Returns the mean of `count` pixels of four samples each; the fourth, alpha, is left out. Requires: count > 0.
+/// Returns the mean of `count` pixels of four samples each. The fourth sample, alpha, is ignored. Requires: count > 0.
 template <class Sample>
 Rgb mean_of_pixels(const Pixels& rgba, std::size_t count) {
   const std::vector<double> linear = linear_table<Sample>();

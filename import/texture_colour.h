@@ -1,5 +1,5 @@
 #pragma once
-// Textures count by their mean colour: a patch has one reflectance and one emission.
+// Replaces textures by their mean colour, because a patch has one reflectance and one emission.
 
 #include "solution/rgb.h"
 
@@ -11,12 +11,13 @@
 
 namespace alvor {
 
-/// Mean of the pixels of an encoded image (PNG, JPEG, ...), linearised from sRGB; alpha is left out. Nothing if it cannot be
-/// decoded.
+/// Returns the mean of the pixels of an encoded image (PNG, JPEG, ...), converted from sRGB to linear; alpha is ignored. Returns
+/// nothing if the image cannot be decoded.
 std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded);
 std::optional<Rgb> mean_colour_of_file(const std::filesystem::path& path);
 
-/// `factor` under a texture of this mean colour; `texture` names it in the warning. One that could not be read changes nothing.
+/// Returns `factor` times the texture's mean colour, or `factor` itself if the texture could not be read. Appends a warning that
+/// names `texture`.
 Rgb textured(const Rgb& factor, const std::optional<Rgb>& mean, const std::string& texture, std::vector<std::string>& warnings);
 
 }  // namespace alvor

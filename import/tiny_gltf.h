@@ -1,7 +1,8 @@
 #pragma once
-// tinygltf, compiled into this project (tiny_gltf.cpp) in a namespace that no library has. libdraco, which Assimp loads, exports
-// functions of another version of tinygltf: calls to a shared libtinygltf ended there, and wrote beyond their objects.
-// Images and buffers outside the JSON are read by gltf_file.cpp, images are decoded by texture_colour.cpp.
+// Includes tinygltf, compiled into this project (tiny_gltf.cpp) in a namespace that no library uses. libdraco, which Assimp
+// loads, exports functions of another version of tinygltf; calls to a shared libtinygltf reached those, which wrote beyond our
+// objects.
+// gltf_file.cpp reads images and buffers outside the JSON; texture_colour.cpp decodes images.
 
 #include <fstream>  // for tiny_gltf.h, which leaves it out under TINYGLTF_NO_FS
 #include <nlohmann/json.hpp>

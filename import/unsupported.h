@@ -1,5 +1,5 @@
 #pragma once
-// What a scene file holds that Alvor does not support yet.
+// Counts the parts of a scene file that Alvor does not support yet.
 
 #include "meshing/scene.h"
 
@@ -9,16 +9,16 @@
 
 namespace alvor {
 
-/// Counts, by kind, of what an importer left out or simplified.
+/// Counts, by kind, the things that an importer left out or simplified.
 struct Unsupported {
   std::size_t point_lights = 0, spot_lights = 0, directional_lights = 0, area_lights = 0, other_lights = 0;
   std::size_t transparent_materials = 0, metals = 0, transmissive_materials = 0;
 
-  /// Appends one sentence with the count for each kind that occurred.
+  /// Appends one sentence with the count for each kind that is not zero.
   void append_warnings(std::vector<std::string>& warnings) const;
 };
 
-/// Returns for each material whether any face has it.
+/// Returns for each material whether any face uses it.
 std::vector<bool> used_materials(const Scene& scene);
 
 }  // namespace alvor

@@ -12,7 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_file = 0xffffffff;  // what a GLB can be; a sparse file can claim far more than there is memory
+// The largest file that is read, the limit of GLB. A sparse file can claim a size far beyond memory.
+constexpr std::uintmax_t largest_file = 0xffffffff;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& place, const std::string& reason) {
   throw FileError(path.string() + ": " + place + ": " + reason);
@@ -20,7 +21,7 @@ constexpr std::uintmax_t largest_file = 0xffffffff;  // what a GLB can be; a spa
 
 std::string last_system_error() { return errno ? std::strerror(errno) : "failed"; }
 
-/// A name in the same directory that no other thread or process writes to.
+/// Returns a name in the same directory that no other thread or process writes to.
 fs::path name_beside(const fs::path& path) {
   static std::atomic<unsigned> count = 0;
   fs::path name = path;
@@ -28,7 +29,7 @@ fs::path name_beside(const fs::path& path) {
   return name;
 }
 
-/// Removes the file unless told that it was renamed.
+/// Removes the partial file on destruction, unless it was renamed.
 class PartialFile {
  public:
   explicit PartialFile(fs::path path) : path_(std::move(path)) {}
@@ -57,7 +58,7 @@ class PartialFile {
   bool renamed_ = false;
 };
 
-/// Of a regular file: a pipe or a device has no size to check counts against.
+/// Returns the size of a regular file. Others are refused: a pipe or a device has no size to check counts against.
 std::uintmax_t size_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

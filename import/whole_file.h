@@ -1,5 +1,5 @@
 #pragma once
-// Files that are read in one piece, and that appear whole or not at all.
+// Reads and writes files in one piece; a written file appears whole or not at all.
 
 #include <filesystem>
 #include <stdexcept>
@@ -8,16 +8,16 @@
 
 namespace alvor {
 
-/// A file that cannot be read or written. what() is one line: file, place, reason.
+/// Thrown where a file cannot be read or written. what() is one line: file, place, reason.
 struct FileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of a regular file below 4 GB. Throws FileError.
+/// Returns the bytes of a regular file below 4 GB. Throws FileError.
 std::string read_whole_file(const std::filesystem::path& path);
 
-/// Writes beside `path` and renames, so that a reader sees the old file or the new one. Throws FileError; `path` is then as
-/// it was.
+/// Writes a file beside `path` and renames it, so that a reader sees either the old file or the new one. Throws FileError; `path`
+/// is then unchanged.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace alvor

@@ -18,7 +18,7 @@ namespace {
 
 using HalfedgeMesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 
-constexpr double weld_tolerance = 1e-9;  // of the extent
+constexpr double weld_tolerance = 1e-9;  // fraction of the extent
 const double smooth_cosine = std::cos(25 * std::numbers::pi / 180);
 
 void refuse_stopped(const std::stop_token& stop) {
@@ -50,7 +50,7 @@ RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, con
   return root;
 }
 
-/// Gives the back the corners of the front, the other way round.
+/// Sets the corners of the back to those of the front in reverse order.
 void turn_round(const RootPatch& front, RootPatch& back) {
   back.corners = front.corners;
   back.vertex = front.vertex;
@@ -58,8 +58,9 @@ void turn_round(const RootPatch& front, RootPatch& back) {
   std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
 }
 
-/// Joins roots, but those behind others, into a half-edge mesh. A face that OpenMesh cannot attach, for an edge already has two
-/// faces or one of the other orientation, gets vertices of its own, and so no neighbours.
+/// Finds neighbours with OpenMesh's half-edge mesh. Roots that lie behind others are left out. OpenMesh cannot attach a face if
+/// an edge already has two faces, or a face of the other orientation: such a face gets its own vertices, and so has no
+/// neighbours.
 class NeighbourFinder {
  public:
   explicit NeighbourFinder(std::span<const RootPatch> roots)
@@ -117,7 +118,7 @@ class NeighbourFinder {
 
   std::span<const RootPatch> roots_;
   HalfedgeMesh mesh_;
-  std::vector<HalfedgeMesh::VertexHandle> first_corner_;  // by root, as the next
+  std::vector<HalfedgeMesh::VertexHandle> first_corner_;  // by root, as the next member
   std::vector<HalfedgeMesh::FaceHandle> face_of_root_;
   std::vector<std::uint32_t> root_of_face_;
 };
@@ -173,7 +174,8 @@ void BaseMesh::add_roots(const Scene& scene, const WeldedFace& face) {
   report_.split_faces += roots_.size() > before + 1;
 }
 
-// Two faces in one place that look away from each other: rays could meet either, so they are told apart by where rays come from.
+// Makes twins of two one-sided faces in one place that face opposite ways. A ray may hit either of them; the side that the ray
+// comes from decides which one is meant.
 void BaseMesh::pair_back_to_back() {
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> root_of;  // by sorted vertices
   for (std::uint32_t r = 0; r < roots_.size(); ++r) {
@@ -200,7 +202,8 @@ void BaseMesh::find_neighbours(const std::stop_token& stop) {
     for (int e = 0; e < roots_[root].corner_count && !roots_[root].is_behind; ++e) neighbours_[root][e] = finder.across(root, e);
 }
 
-// Backs are neighbours where their fronts are: edge e of a front is edge n - 1 - e of its back.
+// Adds the back sides of two-sided faces. Backs are neighbours where their fronts are: edge e of a front is edge n - 1 - e of its
+// back.
 void BaseMesh::add_backs() {
   const auto fronts = static_cast<std::uint32_t>(roots_.size());
   for (std::uint32_t front = 0; front < fronts; ++front) {

@@ -1,5 +1,6 @@
 #pragma once
-// The welded mesh of root patches that a scene becomes, with neighbours known across edges. OpenMesh lives behind it.
+// The mesh of root patches made from a scene: vertices welded, neighbours across edges known. Hides OpenMesh from the other
+// files.
 
 #include "meshing/scene.h"
 #include "meshing/welded_faces.h"
@@ -14,77 +15,77 @@
 
 namespace alvor {
 
-/// A triangle or a planar convex quad, one per base-mesh face: the root of a quadtree.
+/// A triangle or a planar convex quad: one face of the base mesh, and the root of a quadtree.
 struct RootPatch {
   std::array<Vec3, 4> corners;          ///< counter-clockwise; metres; corners[3] unused for a triangle
-  std::array<std::uint32_t, 4> vertex;  ///< welded vertex of each corner
+  std::array<std::uint32_t, 4> vertex;  ///< the welded vertex at each corner
   int corner_count = 3;                 ///< 3 or 4
   std::uint32_t material = 0;
-  InputFaces input;  ///< the face of the scene, or the two triangles of it, that it came from
-  Vec3 normal;       ///< unit, to the front
+  InputFaces input;  ///< the face of the scene it came from, or the two triangles
+  Vec3 normal;       ///< unit; points to the front
   double area = 0;   ///< m2
 
   static constexpr std::uint32_t no_twin = ~0u;
-  /// The other side of a two-sided face, or another face with the same corners the other way round. Its corners are ours in the
-  /// order 0, n-1, ..., 1, so (u, v) is (v, u).
+  /// The root in the same place that faces the other way: the other side of a two-sided face, or another face with the same
+  /// corners. Its corners are this root's in the order 0, n-1, ..., 1, so its (u, v) is our (v, u).
   std::uint32_t twin = no_twin;
-  bool is_back = false;    ///< the twin that looks against the face's orientation
-  bool is_behind = false;  ///< rays meet its twin in its place
+  bool is_back = false;    ///< the added back side of a two-sided face
+  bool is_behind = false;  ///< rays hit the twin's geometry, not this root's
 
-  /// Position at (u, v): bilinear for a quad with (0,0), (1,0), (1,1), (0,1) at corners 0..3; for a triangle
-  /// corner0 + u (corner1 - corner0) + v (corner2 - corner0).
+  /// Returns the position at (u, v). Quad: bilinear, with (0,0), (1,0), (1,1), (0,1) at corners 0..3. Triangle: corner0 + u
+  /// (corner1 - corner0) + v (corner2 - corner0).
   Vec3 at(double u, double v) const;
 };
 
-/// What lies across an edge of a root patch. Edge e runs from corner e to corner (e + 1) % corner_count.
+/// The root patch across an edge of a root patch. Edge e runs from corner e to corner (e + 1) % corner_count.
 struct Neighbour {
   std::uint32_t root = 0;
-  int edge = 0;         ///< runs the other way: its start is our end
-  bool smooth = false;  ///< same plane or gently curved (below 25 degrees); false is a crease
+  int edge = 0;         ///< the neighbour's edge; it runs the opposite way
+  bool smooth = false;  ///< same plane or a bend below 25 degrees; false at a crease
 };
 
-/// What welding changed, for warnings.
+/// Counts of the changes that welding made to the scene, for warnings.
 struct WeldReport {
   std::size_t welded_vertices = 0;
-  std::size_t degenerate_faces = 0;    ///< dropped: zero area or fewer than three distinct vertices
+  std::size_t degenerate_faces = 0;    ///< left out: zero area or fewer than three distinct vertices
   std::size_t split_faces = 0;         ///< polygons cut into several roots: more than four corners, concave or not planar
-  std::size_t non_manifold_faces = 0;  ///< joined without neighbours, because an edge already had two faces
-  DuplicateFaces duplicates;           ///< dropped: in the place of another
+  std::size_t non_manifold_faces = 0;  ///< kept without neighbours: an edge already had two faces
+  DuplicateFaces duplicates;           ///< left out: in the same place as another face
 };
 
-/// One sentence each about what welding found odd, faces numbered as in the scene.
+/// Returns one sentence for each kind of problem that welding found. Faces are numbered as in the scene.
 std::vector<std::string> warnings_of(const WeldReport& report);
 
-/// Building a mesh was given up because its stop token asked for it.
+/// Thrown when the stop token ended the construction of a mesh.
 struct BuildStopped : std::exception {
   const char* what() const noexcept override { return "building the mesh was given up"; }
 };
 
 struct BaseMeshOptions {
-  /// Makes one root of two triangles that an exporter cut from a quad, in scenes of triangles only.
+  /// Joins two triangles that an exporter cut from one quad. Applies only to scenes made of triangles alone.
   bool join_triangles = true;
-  /// Asked now and then; the constructor then throws BuildStopped.
+  /// Checked during construction; the constructor throws BuildStopped when it is set.
   std::stop_token stop = {};
 };
 
 /// Immutable once built; safe to read from any thread.
 class BaseMesh {
  public:
-  /// Requires: !find_fault(scene). Vertices closer than 1e-9 of the extent of all faces are welded. The mesh may have no roots,
-  /// if all faces are degenerate. Roots keep the order of the faces, a quad made of two triangles that of the first; a two-sided
-  /// face becomes two roots, the backs after all fronts.
+  /// Builds the mesh. Requires: !find_fault(scene). Vertices closer than 1e-9 of the extent of all faces are welded. Roots keep
+  /// the order of the scene's faces; a quad joined from two triangles takes the place of the first. A two-sided face gives two
+  /// roots: its back comes after all fronts. If all faces are degenerate, there are no roots.
   explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
 
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
-  const Rgb& absorption() const { return absorption_; }  ///< of the medium, see Scene
+  const Rgb& absorption() const { return absorption_; }  ///< absorption coefficient of the medium, see Scene
   UpAxis up() const { return up_; }
   const WeldReport& weld_report() const { return report_; }
 
-  Vec3 centre() const { return centre_; }    ///< of the bounding box of the roots, metres
-  double extent() const { return extent_; }  ///< longest side of that box, metres; > 0 unless there are no roots
+  Vec3 centre() const { return centre_; }    ///< centre of the bounding box of the roots, metres
+  double extent() const { return extent_; }  ///< longest side of the bounding box, metres; > 0 unless there are no roots
 
  private:
   void add_roots(const Scene& scene, const WeldedFace& face);

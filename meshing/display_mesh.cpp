@@ -12,20 +12,21 @@ namespace alvor {
 
 namespace {
 
-/// How far each side of a two-sided face is moved to its front, of the extent: enough for float32 and for depth buffers, less
-/// than a pixel of any picture.
+/// Each side of a two-sided face is drawn this fraction of the extent in front of the face: enough for float32 and for depth
+/// buffers, less than a pixel of a picture.
 constexpr double side_offset = 2e-5;
-/// Sharper folds stay open by a hair.
+/// Limit of a vertex's displacement, in units of `side_offset`. At sharper folds a gap of less than a pixel stays open.
 constexpr double longest_miter = 4;
 
-/// What the leaves around a smooth vertex say about it.
+/// The sum of extrapolated values and normals from the leaves around a smooth vertex.
 struct CornerSum {
   Rgb irradiance;
   double weight = 0;
   Vec3 normal;
 };
 
-/// A linear extrapolation may leave the neighbourhood's range by half of it, as it must at a crease, but never turns dark.
+/// Clamps a linear extrapolation to the range of the neighbourhood, widened by half the range at each end (at a crease it must go
+/// beyond) but never below a quarter of the lowest value.
 double clamp_extrapolated(double x, double low, double high) {
   const double margin = (high - low) / 2;
   return std::clamp(x, std::max(low - margin, low / 4), high + margin);
@@ -40,8 +41,8 @@ RgbF radiosity_of(const Material& material, const Rgb& irradiance) {
   return narrow(material.emission + material.reflectance * irradiance);
 }
 
-/// The displacement that moves a vertex by 1 to the front of all faces around it, by Kaczmarz' iteration: folds of a curtain stay
-/// closed.
+/// Returns the displacement that moves a vertex by 1 to the front of all faces around it (Kaczmarz' iteration). Folds of a
+/// curtain stay closed.
 Vec3 miter(std::span<const Vec3> normals) {
   Vec3 moved = normals[0];
   constexpr int rounds = 32;
@@ -79,7 +80,7 @@ class Triangulation {
   }
 
  private:
-  /// Corners of the leaf and what hangs on its edges, in order.
+  /// Returns the leaf's corners and the hanging corners on its edges, in order.
   std::vector<GridPoint> outline(const PatchShape& shape) const {
     std::vector<GridPoint> points;
     const auto corners = shape.corners();
@@ -140,7 +141,7 @@ class Triangulation {
     return found->second;
   }
 
-  /// The normal of a vertex, and the normals of the faces beyond the creases that it lies on.
+  /// Returns the vertex normal and the normals of the faces across the creases on which the vertex lies.
   std::vector<Vec3> normals_around(std::uint32_t root, GridPoint p, Vec3 normal) const {
     std::vector<Vec3> normals{normal};
     const auto add = [&](bool is_on_edge, int edge) {
@@ -162,7 +163,7 @@ class Triangulation {
 
   bool is_two_sided(std::uint32_t root) const { return mesh_.roots()[root].twin != RootPatch::no_twin; }
 
-  /// Returns where a vertex is drawn: one of a two-sided face is moved to the front of its side, others stay.
+  /// Returns the position at which a vertex is drawn. Vertices of two-sided faces are moved to the front of their side.
   Vec3 drawn_position(std::uint32_t root, GridPoint p, Vec3 normal) {
     return is_two_sided(root) ? moved(position(root, p), normals_around(root, p, normal)) : position(root, p);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What is drawn and written to files: triangles without cracks, values at vertices.
+// Builds the triangle mesh that is drawn and written to files: no cracks, values at vertices.
 
 #include "meshing/base_mesh.h"
 #include "solution/leaf_value.h"
@@ -11,11 +11,12 @@
 
 namespace alvor {
 
-/// Each triangle is (centre of a leaf, corner, next corner), counter-clockwise: the side opposite its first vertex lies on the
-/// leaf's outline. Vertices are shared only where the surface is smooth and the material the same.
+/// A triangle mesh with irradiance and radiosity per vertex. Each triangle is (centre of a leaf, corner, next corner),
+/// counter-clockwise, so the side opposite its first vertex lies on the leaf's outline. Triangles share a vertex only where the
+/// surface is smooth and has one material.
 struct DisplayMesh {
   std::vector<Vec3> positions;   ///< metres
-  std::vector<Vec3> normals;     ///< unit, of the front
+  std::vector<Vec3> normals;     ///< unit; point to the front
   std::vector<RgbF> irradiance;  ///< H, W/m2
   std::vector<RgbF> radiosity;   ///< B = E + rho H, W/m2
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -23,9 +24,9 @@ struct DisplayMesh {
 };
 
 /// Triangulates `leaves` (sorted by id, together covering every root of `mesh`), with a vertex at every hanging corner so that no
-/// crack opens. A corner's irradiance is extrapolated linearly from each smooth neighbour and averaged, clamped to the range of
-/// the neighbours' values; never across a crease, and leaves where exactly nothing arrives take no part. The two sides of a
-/// two-sided face lie 4e-5 of the extent apart, so that whatever draws the mesh can tell which is in front.
+/// crack opens. A corner's irradiance is the mean of linear extrapolations from its smooth neighbours, clamped to the range of
+/// their values. Leaves across a crease and leaves of exactly zero irradiance take no part. The two sides of a two-sided face are
+/// drawn 4e-5 of the extent apart, so that a viewer can tell which is in front.
 DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves);
 
 }  // namespace alvor

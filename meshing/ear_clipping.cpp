@@ -14,7 +14,7 @@ struct Point {
   double x = 0, y = 0;
 };
 
-/// Twice the area of the triangle, positive where it turns left.
+/// Returns twice the signed area of the triangle: positive if a, b, c turn left.
 double turn(Point a, Point b, Point c) { return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x); }
 
 std::vector<Point> projected(std::span<const Vec3> polygon, Vec3 normal) {
@@ -39,14 +39,14 @@ struct Box {
     low = {std::min(low.x, p.x), std::min(low.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
-  /// Whether all of it lies right of the line from a to b.
+  /// Returns whether the whole box lies to the right of the line from a to b.
   bool is_right_of(Point a, Point b) const {
     const Point leftmost{b.y > a.y ? low.x : high.x, b.x > a.x ? high.y : low.y};
     return turn(a, b, leftmost) < 0;
   }
 };
 
-/// The corners that are left, in a balanced tree of boxes (k-d tree; Bentley 1975). Node n has the children 2n + 1 and 2n + 2.
+/// The corners not yet cut off, in a balanced tree of boxes (k-d tree; Bentley 1975). Node n has the children 2n + 1 and 2n + 2.
 class CornerTree {
  public:
   explicit CornerTree(std::span<const Point> points) : points_(points), order_(points.size()), leaf_of_(points.size()) {
@@ -60,14 +60,14 @@ class CornerTree {
       if (node == 0) return;
     }
   }
-  /// Whether the triangle holds another corner than its own.
+  /// Returns whether the triangle contains a corner that is not its own.
   bool has_other_in(const Triangle& triangle) const { return has_other_in(triangle, 0); }
 
  private:
   struct Node {
     Box box;
-    std::size_t begin = 0, end = 0;  ///< in order_
-    std::size_t left = 0;            ///< of these, not removed
+    std::size_t begin = 0, end = 0;  ///< range in order_
+    std::size_t left = 0;            ///< corners of the range that are not removed
   };
   static constexpr std::size_t most_in_leaf = 8;
 
@@ -129,7 +129,7 @@ class EarClipper {
   std::vector<std::array<std::uint32_t, 3>> run() {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (std::size_t left = points_.size(); left >= 3; --left) {
-      // Cutting a corner off may have uncovered others where the polygon touches itself.
+      // If the polygon touches itself, cutting a corner off may have made others into ears.
       if (ears_.empty() && left < left_at_look_ && looks_ < most_looks) find_ears(left);
       triangles.push_back(cut(next_ear()));
     }
@@ -137,7 +137,8 @@ class EarClipper {
   }
 
  private:
-  static constexpr int most_looks = 50;  // beyond them the polygon crosses itself again and again, and is cut as it comes
+  static constexpr int most_looks =
+      50;  // a polygon that needs more crosses itself again and again, and is cut without a test for ears
 
   Triangle triangle_at(std::uint32_t corner) const {
     const std::uint32_t a = before_[corner], c = behind_[corner];
@@ -157,7 +158,7 @@ class EarClipper {
     if (is_ear) ears_.insert(corner);
     else ears_.erase(corner);
   }
-  /// The first corner is the last choice. Without an ear, a straight or crossing corner is cut all the same.
+  /// Returns the corner to cut next; the first corner is taken last. Without an ear, returns a straight or crossing corner.
   std::uint32_t next_ear() const {
     if (ears_.empty()) return behind_[first_];
     const auto ear = ears_.upper_bound(first_);

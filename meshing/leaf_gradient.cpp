@@ -10,7 +10,7 @@ namespace alvor {
 
 namespace {
 
-/// Accumulates sum w (d d^T) g = sum w d dv for each band.
+/// The normal equations of a least-squares gradient g: sum w (d d^T) g = sum w d dv, for each band.
 struct NormalEquations {
   double ss = 0, st = 0, tt = 0;
   Rgb s, t;
@@ -23,7 +23,7 @@ struct NormalEquations {
     s += (w * ds) * difference;
     t += (w * dt) * difference;
   }
-  /// The slope along each axis; none along a direction in which there are no neighbours.
+  /// Returns the slope along each axis; zero along a direction without neighbours.
   std::pair<Rgb, Rgb> solve() const {
     const double ridge = 1e-6 * (ss + tt);
     if (!(ridge > 0)) return {};

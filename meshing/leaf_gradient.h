@@ -1,5 +1,5 @@
 #pragma once
-// Slopes of what the leaves hold, from differences with their neighbours.
+// Gradients of leaf values, from differences between neighbouring leaves.
 
 #include "meshing/patch_forest.h"
 
@@ -10,7 +10,8 @@
 
 namespace alvor {
 
-/// Slope per band along the leaf's plane, per metre of the mesh, and the range of values in the leaf's neighbourhood.
+/// The gradient of each band in the leaf's plane, per metre, and the smallest and largest value among the leaf and its
+/// neighbours.
 struct LeafSlope {
   Vec3 r, g, b;
   Rgb low, high;
@@ -18,7 +19,7 @@ struct LeafSlope {
   Rgb along(Vec3 offset) const { return {dot(r, offset), dot(g, offset), dot(b, offset)}; }
 };
 
-/// A leaf's neighbours across its edges, at most two across each, smooth ones only.
+/// A leaf's neighbours across its edges: at most two across each edge, none across creases.
 class SmoothNeighbours {
  public:
   SmoothNeighbours() = default;
@@ -26,7 +27,7 @@ class SmoothNeighbours {
 
   const NodeIndex* begin() const { return nodes_.data(); }
   const NodeIndex* end() const { return nodes_.data() + count_; }
-  /// Some edge has no neighbour: a crease or the surface's end.
+  /// Returns whether some edge has no neighbour: a crease or the end of the surface.
   bool at_crease() const { return at_crease_; }
 
  private:
@@ -37,12 +38,13 @@ class SmoothNeighbours {
   bool at_crease_ = false;
 };
 
-/// Neighbours of leaves, kept from one time to the next: a leaf's are the same as long as all of them are leaves. Borrows the
-/// forest. One thread at a time.
+/// Caches the neighbours of leaves. An entry stays valid as long as all neighbours in it are leaves. Borrows the forest. One
+/// thread at a time.
 class NeighbourTable {
  public:
   explicit NeighbourTable(const PatchForest& forest) : forest_(forest) {}
-  /// In the order of `leaves`. Requires: leaves of the forest as it is now, each once. In parallel.
+  /// Returns the neighbours of each of `leaves`, in that order; computes in parallel. Requires: leaves of the forest as it is
+  /// now, each once.
   std::vector<SmoothNeighbours> of(std::span<const NodeIndex> leaves);
 
  private:
@@ -51,8 +53,8 @@ class NeighbourTable {
   std::vector<std::uint8_t> is_known_;
 };
 
-/// Weighted least squares over the neighbours; those where exactly nothing arrives take no part. `centre` and `value` are indexed
-/// by node. Safe from any thread.
+/// Returns the gradient at `leaf` by weighted least squares over its neighbours. Neighbours of exactly zero value take no part.
+/// `centre` and `value` are indexed by node. Safe from any thread.
 LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                      std::span<const Rgb> value);
 

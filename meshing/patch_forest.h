@@ -1,5 +1,5 @@
 #pragma once
-// One quadtree per root patch.
+// The forest of quadtrees: one quadtree per root patch.
 
 #include "meshing/base_mesh.h"
 #include "meshing/patch_place.h"
@@ -17,10 +17,11 @@ using NodeIndex = std::uint32_t;
 struct RefinementLimits {
   int max_level = 10;
   std::uint64_t max_leaves = 200'000;
-  double min_edge = 0;  ///< in the mesh's units: no split makes an edge shorter than this
+  double min_edge = 0;  ///< metres; no split makes an edge shorter than this
 };
 
-/// Keeps the levels of leaves that share an edge within one of each other, across roots too. Borrows the mesh.
+/// Keeps neighbouring leaves balanced: the levels of leaves that share an edge differ by at most one, also across roots. Borrows
+/// the mesh.
 class PatchForest {
  public:
   explicit PatchForest(const BaseMesh& mesh);
@@ -33,32 +34,33 @@ class PatchForest {
   /// Requires: !is_leaf(node), 0 <= k < 4.
   NodeIndex child(NodeIndex node, int k) const { return first_child_[node] + k; }
   PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, ids_[node]); }
-  /// In the order of their ids.
+  /// Returns all leaves in the order of their ids.
   std::vector<NodeIndex> leaves() const;
-  /// Appends those of `node`, itself if it is one, in the same order.
+  /// Appends the leaves below `node` in the order of their ids, or `node` itself if it is a leaf.
   void append_leaves_of(NodeIndex node, std::vector<NodeIndex>& leaves) const;
 
-  /// The leaf that contains `place`, or is it, or lies below it at its first corner. O(levels).
+  /// Returns the leaf that contains `place`. If `place` is split further, returns the leaf at its first corner. O(levels).
   NodeIndex leaf_at(PatchId place) const {
     NodeIndex node = place.root_face();
     for (int level = 1; first_child_[node] != 0; ++level) node = first_child_[node] + place.child_index(level);
     return node;
   }
-  /// The same, from a node that contains `place`.
+  /// Returns the leaf that contains `place`, starting at the node `from`. Requires: `from` contains `place`.
   NodeIndex leaf_at(PatchId place, NodeIndex from) const {
     if (first_child_[from] == 0) return from;
     for (int level = id(from).level() + 1; first_child_[from] != 0; ++level) from = first_child_[from] + place.child_index(level);
     return from;
   }
-  /// The leaf across `edge` at `fraction` along it; `no_node` where the surface ends.
+  /// Returns the leaf across `edge` at `fraction` along it, or `no_node` where the surface ends.
   NodeIndex leaf_across(const PatchShape& shape, int edge, double fraction) const;
   static constexpr NodeIndex no_node = ~NodeIndex{0};
 
   bool may_split(NodeIndex leaf, const RefinementLimits& limits) const;
-  /// Splits `leaf`, first its coarser neighbours as the balance demands. Appends every patch split to `split`. Does nothing where
-  /// a limit forbids the split of the leaf or of a neighbour that must go first. Requires: is_leaf(leaf).
+  /// Splits `leaf`, after splitting coarser neighbours as the balance demands. Appends every patch that was split to `split`.
+  /// Returns false if a limit forbids the split of the leaf or of such a neighbour; neighbours split before that stay split.
+  /// Requires: is_leaf(leaf).
   bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
-  /// Splits down until every one of `patches` is a node, without balancing. Requires: valid ids of this mesh.
+  /// Splits until every patch of `patches` is a node, without balancing. Requires: valid ids of this mesh.
   void split_down_to(std::span<const LeafValue> patches);
 
  private:
@@ -66,7 +68,7 @@ class PatchForest {
 
   const BaseMesh* mesh_;
   std::vector<PatchId> ids_;
-  std::vector<NodeIndex> first_child_;  // 0: a leaf. Apart from the ids, so that walks down touch little memory.
+  std::vector<NodeIndex> first_child_;  // 0: a leaf. Apart from the ids, so that walks down the tree touch little memory.
   std::size_t leaf_count_ = 0;
 };
 

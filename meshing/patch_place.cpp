@@ -6,7 +6,7 @@ namespace alvor {
 
 namespace {
 
-/// Spreads the low 16 bits to the even positions (Morton order).
+/// Returns the low 16 bits of x spread to the even bit positions (Morton order).
 constexpr std::uint32_t spread_bits(std::uint32_t x) {
   x = (x | (x << 8)) & 0x00ff00ffu;
   x = (x | (x << 4)) & 0x0f0f0f0fu;
@@ -14,7 +14,7 @@ constexpr std::uint32_t spread_bits(std::uint32_t x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-/// Within [0, most], also of what is not a number: lanes in which no ray met anything hold any bits. Unlike std::clamp.
+/// Returns x clamped to [0, most], and a number in it for NaN (unlike std::clamp): lanes whose ray hit nothing hold any bits.
 float bounded(float x, float most) { return std::max(0.0f, std::min(x, most)); }
 
 std::uint32_t quad_path(float u, float v) {
@@ -22,8 +22,9 @@ std::uint32_t quad_path(float u, float v) {
   return spread_bits(static_cast<std::uint32_t>(cell(u))) | spread_bits(static_cast<std::uint32_t>(cell(v))) << 1;
 }
 
-/// Walks down in coordinates relative to the current triangle, 30-bit fixed point with a + b < 1; entering the inner child turns
-/// both axes. Without branches, level by level for all places at once, so that the compiler makes SIMD of it.
+/// Finds the paths of `count` points at once. Walks down in coordinates relative to the current triangle, in 30-bit fixed point
+/// with a + b < 1; entering the inner child reverses both axes. Has no branches and goes level by level for all points, so that
+/// the compiler vectorises it.
 template <int count>
 void triangle_paths(const float* us, const float* vs, std::uint32_t* path) {
   constexpr std::uint32_t one = 1u << 30;
@@ -39,7 +40,7 @@ void triangle_paths(const float* us, const float* vs, std::uint32_t* path) {
   for (int level = 0; level < PatchId::max_level; ++level)
     for (int n = 0; n < count; ++n) {
       std::uint32_t a = as[n] << 1, b = bs[n] << 1;
-      const std::uint32_t at_u = a >> 30, at_v = b >> 30;  // beyond half way: children 1 and 2
+      const std::uint32_t at_u = a >> 30, at_v = b >> 30;  // past the midpoint: children 1 and 2
       a &= one - 1, b &= one - 1;
       const std::uint32_t inner = ((one - a - b) >> 31) & ~(at_u | at_v) & 1u, turn = 0u - inner;
       as[n] = (a ^ turn) - turn + (one & turn);
@@ -49,7 +50,7 @@ void triangle_paths(const float* us, const float* vs, std::uint32_t* path) {
   std::copy_n(paths, count, path);
 }
 
-/// The point at `fraction` of root edge `edge`, moved `inwards` (grid units) into the root.
+/// Returns the point at `fraction` of root edge `edge`, moved into the root by `inwards` grid units.
 Uv on_root_edge(int corner_count, int edge, double fraction, double inwards) {
   const double d = inwards / grid_size;
   if (corner_count == 4) {
@@ -76,7 +77,7 @@ bool on_edge(int corner_count, int edge, GridPoint p) {
   return on[edge];
 }
 
-/// How far along the root edge the point lies, from the edge's start.
+/// Returns how far along the root edge the point lies, from 0 at the edge's start to 1.
 double along_root_edge(int corner_count, int edge, Uv p) {
   if (corner_count == 4) return std::array<double, 4>{p.u, p.v, 1 - p.u, 1 - p.v}[edge];
   return std::array<double, 3>{p.u, p.v, 1 - p.v}[edge];
@@ -158,7 +159,7 @@ std::optional<int> root_edge_of(const PatchShape& shape, int edge) {
 }
 
 std::optional<PatchId> place_across(const BaseMesh& mesh, const PatchShape& shape, int edge, double fraction) {
-  constexpr double just = 0.25;  // of a finest cell
+  constexpr double just = 0.25;  // fraction of a finest cell
   const auto corners = shape.corners();
   const GridPoint a = corners[edge], b = corners[(edge + 1) % shape.corner_count];
   const double i = a.i + fraction * (b.i - a.i), j = a.j + fraction * (b.j - a.j);

@@ -1,5 +1,5 @@
 #pragma once
-// Where a patch lies on its root: exact integer coordinates, so that neighbours agree on shared vertices to the bit.
+// The place of a patch on its root, in exact integer coordinates: neighbours agree on shared vertices to the bit.
 
 #include "meshing/base_mesh.h"
 #include "solution/patch_id.h"
@@ -21,13 +21,13 @@ struct Uv {
   double u = 0, v = 0;
 };
 
-/// A patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1. Triangles split at their
-/// edge midpoints: children 0..2 keep corners 0..2, child 3 is the inner one, turned by half a circle (size < 0).
+/// The place of a patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1. Triangles
+/// split at their edge midpoints: children 0..2 keep corners 0..2, child 3 is the inner one, turned by 180 degrees (size < 0).
 struct PatchShape {
   std::uint32_t root = 0;
   int corner_count = 3;
-  GridPoint first;        ///< corner 0
-  std::int32_t size = 0;  ///< edge on the grid; negative for a turned triangle
+  GridPoint first;        ///< the patch's corner 0
+  std::int32_t size = 0;  ///< length of an edge in grid steps; negative for a turned triangle
 
   std::array<GridPoint, 4> corners() const;
   Uv centre() const;
@@ -35,24 +35,24 @@ struct PatchShape {
 };
 
 PatchShape shape_of(const BaseMesh& mesh, PatchId patch);
-/// Corner positions in the mesh's units; corners[3] unused for a triangle.
+/// Returns the corner positions, metres; corners[3] is unused for a triangle.
 std::array<Vec3, 4> corners_of(const BaseMesh& mesh, const PatchShape& shape);
 double area_of(const BaseMesh& mesh, const PatchShape& shape);
 Vec3 centre_of(const BaseMesh& mesh, const PatchShape& shape);
 
-/// Paths (see PatchId::finest) of the finest patches that contain each (u, v); coordinates outside the root are clamped into it.
-/// Sixteen at a time because rays come so.
+/// Sets `path` to the path (see PatchId::finest) of the finest patch that contains each (u, v). Coordinates outside the root are
+/// clamped into it. Each call converts `places_at_once` points, the number of rays in a packet.
 inline constexpr int places_at_once = 16;
 void finest_quad_paths(const float* u, const float* v, std::uint32_t* path);
 void finest_triangle_paths(const float* u, const float* v, std::uint32_t* path);
 
-/// The finest patch that contains a point; coordinates outside the root are clamped into it.
+/// Returns the finest patch that contains a point of a root. Coordinates outside the root are clamped into it.
 PatchId finest_patch(const BaseMesh& mesh, std::uint32_t root, Uv at);
 
-/// The root edge on which the patch's edge lies, if any.
+/// Returns the root edge on which the patch's edge lies, or nothing if it lies inside the root.
 std::optional<int> root_edge_of(const PatchShape& shape, int edge);
 
-/// The finest patch just across `edge` of the patch, at `fraction` of the way along it; nothing where the surface ends.
+/// Returns the finest patch just across `edge`, at `fraction` of the way along it, or nothing where the surface ends.
 std::optional<PatchId> place_across(const BaseMesh& mesh, const PatchShape& shape, int edge, double fraction);
 
 }  // namespace alvor

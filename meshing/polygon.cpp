@@ -8,9 +8,11 @@ namespace alvor {
 
 namespace {
 
-/// Planarity and convexity at the four corners: every corner turns left about the normal, and no corner leaves the plane.
+/// Returns whether the quad is planar and strictly convex: every corner turns left about the normal, and no corner leaves the
+/// plane.
 bool is_planar_convex_quad(std::span<const Vec3> p, Vec3 normal) {
-  // Rays see two triangles, points of the patch lie on the bilinear surface: these may differ by less than rays start above it.
+  // Rays hit two triangles while points of the patch lie on the bilinear surface. The two must differ by less than the offset at
+  // which rays start.
   constexpr double planar = 4e-6, strictly_convex = 1e-6;
   const double size = std::max(length(p[2] - p[0]), length(p[3] - p[1]));
   if (std::abs(dot(p[2] - p[0], normal)) > planar * size || std::abs(dot(p[3] - p[1], normal)) > planar * size) return false;

@@ -1,5 +1,5 @@
 #pragma once
-// A polygon becomes triangles and planar convex quads.
+// Cuts polygons into triangles and planar convex quads.
 
 #include "meshing/vec3.h"
 
@@ -10,14 +10,15 @@
 
 namespace alvor {
 
-/// Twice the area vector of the polygon (Newell's method): right for any planar polygon, least squares for others.
+/// Returns twice the area vector of the polygon (Newell's method). Exact for planar polygons, a least-squares fit for others.
 Vec3 double_area_vector(std::span<const Vec3> polygon);
 
-/// Corner numbers of each piece; the fourth is `no_corner` for a triangle.
+/// The corner numbers of a triangle or quad cut from a polygon; the fourth is `no_corner` for a triangle.
 using Piece = std::array<std::uint32_t, 4>;
 inline constexpr std::uint32_t no_corner = ~0u;
 
-/// A triangle, or a convex quad planar to 4e-6 of its size, stays whole; anything else is cut into triangles (clip_ears).
+/// Returns the pieces of a polygon. A triangle stays whole, and so does a convex quad that is planar to 4e-6 of its size; every
+/// other polygon is cut into triangles (clip_ears).
 std::vector<Piece> pieces_of(std::span<const Vec3> polygon);
 
 }  // namespace alvor

@@ -12,11 +12,12 @@ namespace alvor {
 
 namespace {
 
-constexpr double planar = 4e-6;               // as meshing/polygon.h keeps whole
+constexpr double planar = 4e-6;               // the tolerance up to which meshing/polygon.h keeps quads whole
 constexpr double max_corner_cosine = 0.9397;  // 20 degrees
-/// Cost of triangles that do not follow each other, in thousandths of the worst corner's cosine.
+/// Extra cost of a pair of triangles that do not follow each other in the file, in thousandths (the unit of the worst corner's
+/// cosine).
 constexpr int apart = 250;
-/// More triangles than this at one edge are not all compared, which keeps the whole linear after the sort.
+/// At most this many triangles at one edge are compared, so that the time after sorting stays linear.
 constexpr std::size_t max_compared = 4;
 
 /// Edge `side` of a triangle runs from its corner `side` to the next; `low` and `high` are its vertices.
@@ -31,7 +32,8 @@ struct Pairing {
   TrianglePair pair;
 };
 
-/// Edges of all triangles; those between the same vertices are neighbours, in the order of their triangles.
+/// Returns the edges of all triangles, sorted so that edges between the same vertices are adjacent, in the order of their
+/// triangles.
 std::vector<Edge> sorted_edges(std::span<const PairableTriangle> triangles) {
   std::vector<Edge> edges;
   edges.reserve(3 * triangles.size());
@@ -44,7 +46,7 @@ std::vector<Edge> sorted_edges(std::span<const PairableTriangle> triangles) {
   return edges;
 }
 
-/// The outline of both triangles, from the first corner of `a`'s triangle on.
+/// Returns the outline of both triangles, starting at the first corner of `a`'s triangle.
 std::array<std::uint32_t, 4> outline(std::span<const PairableTriangle> triangles, const Edge& a, const Edge& b) {
   const auto& t = triangles[a.triangle].corners;
   const std::uint32_t opposite = triangles[b.triangle].corners[(b.side + 2) % 3];
@@ -53,7 +55,8 @@ std::array<std::uint32_t, 4> outline(std::span<const PairableTriangle> triangles
   return {t[0], t[1], t[2], opposite};
 }
 
-/// The largest |cosine| of a corner: 0 for a rectangle. Nothing unless planar and strictly convex.
+/// Returns the largest |cosine| of a corner angle: 0 for a rectangle. Returns nothing unless the quad is planar and strictly
+/// convex.
 std::optional<double> worst_corner(const std::array<Vec3, 4>& p) {
   const Vec3 area = cross(p[2] - p[0], p[3] - p[1]);
   const double size = std::max(length(p[2] - p[0]), length(p[3] - p[1]));
@@ -69,7 +72,7 @@ std::optional<double> worst_corner(const std::array<Vec3, 4>& p) {
   return worst;
 }
 
-/// Joins the triangles of one mesh.
+/// Chooses which triangles of one mesh to join.
 class Pairer {
  public:
   Pairer(std::span<const PairableTriangle> triangles, std::span<const Vec3> positions)
@@ -95,7 +98,7 @@ class Pairer {
     const std::optional<double> cosine =
         worst_corner({positions_[corners[0]], positions_[corners[1]], positions_[corners[2]], positions_[corners[3]]});
     if (!cosine || *cosine > max_corner_cosine || is_cut_again(corners)) return std::nullopt;
-    // In whole thousandths, so that rounding does not decide between equal squares.
+    // Rounded to thousandths, so that rounding errors do not decide between equal squares.
     const int cost = static_cast<int>(std::lround(*cosine * 1000)) + (second.face - first.face == 1 ? 0 : apart);
     return Pairing{cost, {a.triangle, b.triangle, corners}};
   }

@@ -8,7 +8,7 @@ namespace alvor {
 namespace {
 
 constexpr double max_coordinate = 1e9;
-constexpr double max_emission = 1e30;  // W/m2: what comes of it after a million reflections is still a float
+constexpr double max_emission = 1e30;  // W/m2: after a million reflections the result still fits in a float
 
 std::string number(double value) {
   char text[32];

@@ -6,7 +6,7 @@
 
 namespace alvor {
 
-/// Unit axes of the plane across a unit normal; s, t and the normal are right-handed.
+/// Two unit axes s and t perpendicular to a unit normal; s, t and the normal are right-handed.
 struct TangentFrame {
   Vec3 s, t;
   explicit TangentFrame(Vec3 normal) {

@@ -6,7 +6,7 @@ namespace alvor {
 
 namespace {
 
-/// Sets of root corners (4 root + corner) that are the same vertex.
+/// A union-find structure over root corners (numbered 4 root + corner): corners in one set are the same vertex.
 class CornerSets {
  public:
   explicit CornerSets(std::size_t roots) : parent_(4 * roots) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -20,7 +20,7 @@ class CornerSets {
   std::vector<std::uint32_t> parent_;
 };
 
-// The upper two bits tell the kinds of keys apart.
+// The upper two bits distinguish keys of corners, edges and interior points.
 VertexKey corner_key(std::uint32_t owner) { return owner; }
 VertexKey edge_key(std::uint32_t root, int edge, std::int32_t along) {
   return VertexKey{1} << 62 | VertexKey{root} << 20 | VertexKey(edge) << 16 | VertexKey(along);

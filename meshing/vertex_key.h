@@ -1,5 +1,5 @@
 #pragma once
-// Names for mesh vertices that all leaves around them agree on, exactly, across roots.
+// Keys of mesh vertices: all leaves around a vertex compute exactly the same key, also across roots.
 
 #include "meshing/base_mesh.h"
 #include "meshing/patch_place.h"
@@ -12,8 +12,8 @@ namespace alvor {
 
 using VertexKey = std::uint64_t;
 
-/// Two families of keys: position keys are equal for the same place of the surface; smooth keys only where no crease lies
-/// between.
+/// Computes two kinds of keys. Position keys are equal for points in the same place of the surface. Smooth keys are equal only if
+/// no crease lies between the points.
 class VertexKeys {
  public:
   explicit VertexKeys(const BaseMesh& mesh);
@@ -21,7 +21,7 @@ class VertexKeys {
   VertexKey smooth(std::uint32_t root, GridPoint p) const { return key(smooth_, root, p); }
 
  private:
-  /// Who names the points of an edge, and the points at a corner.
+  /// The root whose numbering the points on each edge and at each corner use for their key.
   struct Owners {
     struct Edge {
       std::uint32_t root;

@@ -11,7 +11,8 @@ namespace alvor {
 
 namespace {
 
-// Vertices are filed under a cell eight tolerances wide; a lookup visits the one cell, or the few, that its tolerance touches.
+// A hash grid with cells eight tolerances wide. A lookup visits the cells that the tolerance box around a vertex touches: usually
+// one.
 class VertexGrid {
  public:
   VertexGrid(std::span<const Vec3> vertices, double tolerance) : vertices_(vertices), tolerance_(tolerance) {}
@@ -31,7 +32,8 @@ class VertexGrid {
   using Cell = std::array<std::int64_t, 3>;
   static constexpr std::uint32_t none = ~0u;
 
-  /// Counted from the first vertex, and within what an integer holds: a vertex that no face uses may be any distance away.
+  /// Returns the cell of a point, counted from the first vertex and clamped so that it fits an integer. A vertex that no face
+  /// uses may be at any distance.
   Cell cell(Vec3 p) const {
     constexpr double most = 0x1p62;
     const Vec3 from = p - vertices_[0];

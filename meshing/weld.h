@@ -8,7 +8,8 @@
 
 namespace alvor {
 
-/// Which earlier vertex each vertex coincides with, within `tolerance` in each coordinate; itself if none. Expected linear time.
+/// Returns for each vertex the earlier vertex that coincides with it, within `tolerance` in each coordinate, or the vertex
+/// itself. Expected linear time.
 std::vector<std::uint32_t> weld(std::span<const Vec3> vertices, double tolerance);
 
 }  // namespace alvor

@@ -11,9 +11,9 @@ namespace alvor {
 
 namespace {
 
-constexpr double degenerate_area = 1e-14;  // of the longest diagonal squared
+constexpr double degenerate_area = 1e-14;  // fraction of the longest diagonal squared
 
-/// The face's corners after welding, without repetitions.
+/// Returns the face's corners after welding, without repetitions.
 std::vector<std::uint32_t> welded_ring(const Scene& scene, const Face& face, std::span<const std::uint32_t> welded) {
   std::vector<std::uint32_t> ring;
   for (const std::uint32_t vertex : scene.corners_of(face))
@@ -22,7 +22,7 @@ std::vector<std::uint32_t> welded_ring(const Scene& scene, const Face& face, std
   return ring;
 }
 
-/// The ring from its lowest vertex on: equal for equal faces, whichever corner they begin with.
+/// Returns the ring rotated to start at its lowest vertex, so that equal faces have equal rings whichever corner they begin with.
 std::vector<std::uint32_t> from_lowest(std::vector<std::uint32_t> ring) {
   std::rotate(ring.begin(), std::ranges::min_element(ring), ring.end());
   return ring;
@@ -41,12 +41,12 @@ struct RingHash {
   }
 };
 
-/// Which kept face has these corners, by canonical ring.
+/// The kept faces by their corners in canonical order.
 class KnownFaces {
  public:
   explicit KnownFaces(const Scene& scene) : scene_(scene) {}
 
-  /// Returns the earlier face in whose place this one lies; where there is none, remembers it and returns itself.
+  /// Returns the earlier face in the same place. If there is none, remembers this face and returns it.
   const WeldedFace& find_or_add(const WeldedFace& face) {
     const auto ring = from_lowest(face.ring);
     const auto [found, is_new] = by_ring_.try_emplace(ring, &face);

@@ -14,7 +14,7 @@ namespace {
 // The longest google.protobuf.Duration: 10 000 years.
 constexpr double longest_duration_s = 315'576'000'000;
 
-// Length of the UTF-8 sequence at the start of `text`, 0 if there is none. Overlong forms and surrogates are none.
+// Returns the length of the UTF-8 sequence at the start of `text`, or 0 if it is malformed, overlong or a surrogate.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   const auto follows = [&](std::size_t i) { return (byte(i) & 0xc0) == 0x80; };
@@ -51,7 +51,7 @@ google::protobuf::Duration encode_seconds(double seconds) {
   seconds = std::clamp(seconds, -longest_duration_s, longest_duration_s);
   auto whole = static_cast<std::int64_t>(seconds);
   auto nanos = static_cast<std::int32_t>(std::lround((seconds - static_cast<double>(whole)) * 1e9));
-  if (std::abs(nanos) == 1'000'000'000) {  // rounded up to a whole second
+  if (std::abs(nanos) == 1'000'000'000) {  // rounding reached a whole second
     whole += nanos > 0 ? 1 : -1;
     nanos = 0;
   }
@@ -204,7 +204,7 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
     return Fault{place_in_chunk("vertex_coordinates"), "has " + count_of(coordinates, "numbers, needs three per vertex")};
   if (materials != faces)
     return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
-  std::uint64_t promised = 0;  // 2^31 counts of 32 bits cannot overflow it
+  std::uint64_t promised = 0;  // a sum of 2^31 counts of 32 bits does not overflow
   for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
     const std::uint32_t count = chunk.face_corner_counts(i);
     if (count < 3)
@@ -228,7 +228,8 @@ SceneSlicer::SceneSlicer(const Scene& scene, std::size_t max_bytes)
 
 bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   chunk.Clear();
-  std::int64_t budget = max_bytes_ - 96;  // the absorption, the tags and lengths of the fields, and of the message around them
+  // 96 bytes are kept for the absorption, the tags and lengths of the fields, and the enclosing message.
+  std::int64_t budget = max_bytes_ - 96;
   const bool is_first = material_ == 0 && vertex_ == 0;
   if (is_first && !scene_.absorption.is_zero()) *chunk.mutable_absorption_per_meter() = encode(scene_.absorption);
   if (is_first && scene_.up == UpAxis::z) chunk.set_up_axis(v1::UP_AXIS_Z);
@@ -238,7 +239,7 @@ bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   return chunk.materials_size() > 0 || chunk.vertex_coordinates_size() > 0 || chunk.face_corner_counts_size() > 0;
 }
 
-// An item that does not fit waits for the next chunk, unless this one is still empty: the budget is then whole.
+// An item that does not fit is left for the next chunk. In an empty chunk the first item is always taken.
 
 void SceneSlicer::take_materials(v1::GeometryChunk& chunk, std::int64_t& budget) {
   for (; material_ < scene_.materials.size(); ++material_) {
@@ -262,7 +263,7 @@ void SceneSlicer::take_faces(v1::GeometryChunk& chunk, std::int64_t& budget) {
   if (vertex_ < scene_.vertices.size()) return;
   for (; face_ < scene_.faces.size(); ++face_) {
     const Face& face = scene_.faces[face_];
-    const std::int64_t bytes = 5 * (std::int64_t{face.corner_count} + 2);  // varints of 32 bits at their longest
+    const std::int64_t bytes = 5 * (std::int64_t{face.corner_count} + 2);  // each varint has at most 5 bytes
     const bool is_empty = chunk.materials_size() + chunk.vertex_coordinates_size() + chunk.face_corner_counts_size() == 0;
     if (bytes > budget && !is_empty) break;
     chunk.add_face_corner_counts(face.corner_count);

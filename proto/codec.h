@@ -1,5 +1,5 @@
 #pragma once
-// Between the messages of the API and the domain types. The only place that knows both.
+// Converts between the messages of the API and the domain types; no other file knows both.
 
 #include "alvor/v1/scene_service.pb.h"
 #include "alvor/v1/solve_service.pb.h"
@@ -18,10 +18,10 @@
 
 namespace alvor {
 
-/// Bytes that are not UTF-8 become '?': protobuf refuses to parse a string field with any.
+/// Returns `text` with bytes that are not UTF-8 replaced by '?': protobuf refuses to parse string fields that contain such bytes.
 std::string as_utf8(std::string_view text);
 
-google::protobuf::Duration encode_seconds(double seconds);  ///< NaN becomes 0, infinities the longest that Duration holds
+google::protobuf::Duration encode_seconds(double seconds);  ///< NaN becomes 0, infinities the longest Duration
 double decode_seconds(const google::protobuf::Duration& duration);
 
 v1::Rgb encode(const Rgb& value);
@@ -31,21 +31,23 @@ v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
 
 v1::Plan encode(std::span<const PlannedFeature> plan);
-/// Features that this build does not know are left out.
+/// Returns the features, without those that this build does not know.
 std::vector<PlannedFeature> decode(const v1::Plan& message);
 
-/// Fills in revisions, patches, irradiance and steps; leaves the other fields alone.
+/// Fills in revisions, patches, irradiance and steps of `message`; leaves its other fields alone.
 void encode(const Delta& delta, v1::WatchSolveResponse& message);
-/// Sets `delta`, all but its `next`, which does not travel. A fault says what contradicts itself; `delta` is then unspecified.
+/// Sets all fields of `delta` but `next`, which is not sent. Returns a fault if the message contradicts itself; `delta` is then
+/// unspecified.
 std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta);
 
-/// Puts a scene together from chunks in order of arrival, trusting nothing they say.
+/// Assembles a scene from chunks in order of arrival; checks everything the chunks say.
 class SceneAssembler {
  public:
-  /// Appends the chunk whole, or not at all: the fault names the chunk (from 0) and the field, or the face.
+  /// Appends a chunk. If it is faulty, appends nothing and returns a fault that names the chunk (from 0) and the field, or the
+  /// face.
   std::optional<Fault> add(const v1::GeometryChunk& chunk);
   const Scene& scene() const { return scene_; }
-  /// What was put together; indices are not yet checked, see find_fault.
+  /// Returns the assembled scene. Its indices are not checked yet, see find_fault.
   Scene take() { return std::move(scene_); }
 
  private:
@@ -59,9 +61,9 @@ class SceneAssembler {
 /// Cuts a scene into chunks: materials, then vertices, then faces. The scene must outlive it.
 class SceneSlicer {
  public:
-  /// Chunks stay below `max_bytes` (256 or more), but hold at least one item each and never cut a face.
+  /// Each chunk stays below `max_bytes` (256 or more), but holds at least one item and never cuts a face.
   explicit SceneSlicer(const Scene& scene, std::size_t max_bytes = 1 << 20);
-  /// False when nothing is left.
+  /// Fills in the next chunk. Returns false if nothing is left.
   bool next(v1::GeometryChunk& chunk);
 
  private:

@@ -15,13 +15,13 @@ namespace alvor {
 namespace {
 
 constexpr int compression_level = 1;
-constexpr int escape = 7;               // of a level's code: the level follows as a byte
-constexpr std::size_t longest_id = 11;  // bytes
+constexpr int escape = 7;               // code of a level that follows as a byte
+constexpr std::size_t longest_id = 11;  // bytes of a number and a level
 constexpr std::size_t exact_words = 3;
 
 std::size_t words_of(Detail detail) { return detail == Detail::display ? 1 : exact_words; }
 
-// Positions on the curve that visits the finest patches of all roots in the order of their ids.
+// Positions of patches on the curve that visits the finest patches of all roots in the order of their ids.
 constexpr int finest_bits = 2 * PatchId::max_level;
 std::uint64_t first_of(PatchId patch) {
   return std::uint64_t{patch.root_face()} << finest_bits | (patch.range_min().bits() & 0xffffffffu) >> 1;
@@ -32,7 +32,7 @@ std::uint64_t rounded_up(std::uint64_t at, std::uint64_t size) { return (at + si
 int zigzag(int x) { return x >= 0 ? 2 * x : -2 * x - 1; }
 int unzigzag(int x) { return x & 1 ? -(x + 1) / 2 : x / 2; }
 
-/// Ids as differences: for each how many patches of its size were passed over, and how its level differs from the one before it.
+/// Writes ids as differences: how many patches of its size lie between each patch and the one before, and how its level differs.
 class IdWriter {
  public:
   explicit IdWriter(std::string& out) : out_(out) {}
@@ -58,7 +58,7 @@ class IdWriter {
 class IdReader {
  public:
   explicit IdReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-  /// False if there is no further id, or a bad one.
+  /// Reads the next id. Returns false if there is none, or if it is malformed.
   bool read(PatchId& patch) {
     std::uint64_t number = 0;
     if (!read_number(number)) return false;
@@ -98,8 +98,8 @@ class IdReader {
   std::uint64_t end_ = 0;
 };
 
-/// Mantissas as differences from those of the leaf before, at the same exponent, and those of red and blue as differences from
-/// that of green: neighbours are alike, and so are their bands.
+/// Replaces mantissas by differences from the leaf before at the same exponent, and those of red and blue by differences from
+/// green's: neighbours are alike, and so are their bands.
 class DisplayPredictor {
  public:
   std::uint32_t difference(std::uint32_t word) {
@@ -121,7 +121,7 @@ class DisplayPredictor {
     const int finer = static_cast<int>(before_ >> 27) - static_cast<int>(word >> 27);
     return static_cast<std::uint32_t>(finer >= 0 ? std::min<std::uint64_t>(band << finer, 511) : band >> -finer);
   }
-  // Differences modulo 512, small ones of either sign as small numbers.
+  // Maps differences modulo 512 so that small ones of either sign become small numbers.
   static std::uint32_t folded(std::uint32_t x) {
     x &= 511;
     return x < 256 ? 2 * x : 2 * (511 - x) + 1;
@@ -130,7 +130,7 @@ class DisplayPredictor {
   std::uint32_t before_ = 0;
 };
 
-/// Low bytes of the three differences, and one of the exponent with their ninth bits.
+/// Returns the differences rearranged: three bytes with their low bits, and one with the exponent and their ninth bits.
 std::uint32_t by_bytes(std::uint32_t d) {
   const std::uint32_t r = d & 511, g = d >> 9 & 511, b = d >> 18 & 511;
   return (r & 255) | (g & 255) << 8 | (b & 255) << 16 | (d >> 27 << 3 | r >> 8 << 2 | g >> 8 << 1 | b >> 8) << 24;
@@ -142,7 +142,7 @@ std::uint32_t from_bytes(std::uint32_t x) {
   return r | g << 9 | b << 18 | top >> 3 << 27;
 }
 
-/// Writes and reads word k of leaf n as four bytes, each in a plane of its own.
+/// Writes and reads word k of leaf n as four bytes, each in a separate plane.
 class Planes {
  public:
   Planes(std::uint8_t* bytes, std::size_t leaves) : bytes_(bytes), leaves_(leaves) {}

@@ -8,7 +8,8 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t most_bytes = 1 << 20;  // of materials; 10 000 roots take as much
+// Limit for the materials in a message; 10 000 roots have about the same size.
+constexpr std::size_t most_bytes = 1 << 20;
 
 std::uint64_t encode(const std::optional<Neighbour>& neighbour) {
   if (!neighbour) return 0;
@@ -33,7 +34,7 @@ bool MeshSlicer::next(v1::ReadMeshResponse& message) {
   message.Clear();
   if (next_ == 0 && next_material_ == 0 && mesh_.up() == UpAxis::z) message.set_up_axis(v1::UP_AXIS_Z);
   const std::span<const Material> materials = mesh_.materials();
-  std::size_t bytes = 0;  // names may be long
+  std::size_t bytes = 0;  // counted because names may be long
   for (; next_material_ < materials.size(); ++next_material_) {
     if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_ || bytes > most_bytes) return true;
     v1::Material& material = *message.add_scene_materials();

@@ -1,17 +1,17 @@
 #pragma once
-// The root patches of a mesh as the API tells them.
+// Encodes the root patches of a mesh as messages of the API.
 
 #include "alvor/v1/scene_service.pb.h"
 #include "meshing/base_mesh.h"
 
 namespace alvor {
 
-/// Cuts the materials, then the root patches of a mesh into messages well below gRPC's limit of 4 MB. The mesh must outlive it.
+/// Cuts the materials, then the root patches of a mesh, into messages well below gRPC's limit of 4 MB. The mesh must outlive it.
 class MeshSlicer {
  public:
   explicit MeshSlicer(const BaseMesh& mesh, std::size_t items_at_a_time = 10'000)
       : mesh_(mesh), items_at_a_time_(items_at_a_time) {}
-  /// False, leaving `message` empty, after the last.
+  /// Fills in the next message. After the last one returns false and leaves `message` empty.
   bool next(v1::ReadMeshResponse& message);
 
  private:

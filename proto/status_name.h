@@ -4,7 +4,7 @@
 
 namespace alvor {
 
-/// As gRPC writes it: "INVALID_ARGUMENT".
+/// Returns the name of a status code as gRPC writes it: "INVALID_ARGUMENT".
 const char* name_of(grpc::StatusCode code);
 
 }  // namespace alvor

@@ -34,10 +34,10 @@
 
 namespace {
 
-// Bytes received over one connection within seconds. When memory is short, a connection with more is ended as a flood; new scenes
-// are refused long before memory is that short.
+// When memory is short, a connection that received more than this within seconds is ended as a flood. New scenes are refused long
+// before memory is that short.
 constexpr std::uint64_t much_received = 8 << 20;
-constexpr std::uint64_t least_rpc_memory = 64 << 20;  // of gRPC's connections; a message may have as much
+constexpr std::uint64_t least_rpc_memory = 64 << 20;  // for gRPC's connections; one message may take as much
 
 std::atomic<bool> listener_died = false;
 
@@ -48,7 +48,7 @@ std::shared_ptr<spdlog::logger> make_logger(const std::string& level) {
   return logger;
 }
 
-// The libraries' own messages are for those who debug it; what a user needs to know is said here.
+// Redirects messages of gRPC and protobuf to the debug log; the server reports by itself what a user needs to know.
 void quieten_grpc() {
   gpr_set_log_function([](gpr_log_func_args* line) {
     if (const auto logger = spdlog::get("alvord")) logger->debug("grpc: {}", line->message);
@@ -58,14 +58,15 @@ void quieten_grpc() {
   });
 }
 
-// Must be called before any thread is started: threads inherit the mask, and only wait_for_stop sees the signals.
+// Blocks SIGINT and SIGTERM. Must be called before any thread is started: threads inherit the mask, so that only wait_for_stop
+// receives the signals.
 sigset_t block_stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // writing to a connection that is gone is an error like others
+  std::signal(SIGPIPE, SIG_IGN);  // a write to a lost connection then returns an error
   return signals;
 }
 
@@ -83,7 +84,7 @@ std::unique_ptr<alvor::RpcServer> start(alvor::Service& service, const alvor::Se
       builder.SetResourceQuota(grpc::ResourceQuota("alvord").Resize(std::max(options.memory_limit / 8, least_rpc_memory)));
     service.register_with(builder);
   };
-  // A server that cannot accept connections ends, so that its supervisor starts it again.
+  // A server that cannot accept connections ends, so that its supervisor restarts it.
   const auto died = [&logger] {
     logger.critical("no connection can be accepted any more");
     listener_died = true;
@@ -97,7 +98,7 @@ void tell_health(bool is_serving, alvor::RpcServer& rpc, alvor::HealthPort* heal
   if (health) alvor::set_serving(health->server(), is_serving);
 }
 
-// Those who ask about health are told first; what is under way then ends.
+// Reports NOT_SERVING first, so that load balancers send no new calls; then ends the calls under way.
 void stop(alvor::Service& service, alvor::RpcServer& rpc, alvor::HealthPort* health) {
   tell_health(false, rpc, health);
   service.shut_down();
@@ -108,7 +109,7 @@ std::chrono::steady_clock::duration seconds(double s) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(s));
 }
 
-/// Notes every second that the server is alive, so that the next one can tell how much work was lost.
+/// Records every second that the server is alive, so that the next start can tell how much work was lost.
 class Heartbeat {
  public:
   explicit Heartbeat(alvor::Archive* archive) : archive_(archive) {
@@ -124,7 +125,7 @@ class Heartbeat {
   alvor::TaskQueue tasks_;
 };
 
-// Null without an address.
+// Returns the server of metrics, or null without an address.
 std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const alvor::Service& service,
                                             const std::shared_ptr<prometheus::Collectable>& door) {
   if (address.empty()) return nullptr;
@@ -138,7 +139,7 @@ std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const al
   }
 }
 
-// Null without an address.
+// Returns the server of the web page, or null without an address.
 std::unique_ptr<alvor::WebFront> serve_web(const alvor::ServerOptions& options, std::size_t descriptors, grpc::Server& server,
                                            spdlog::logger& logger) {
   if (options.web.empty()) return nullptr;
@@ -149,7 +150,7 @@ std::unique_ptr<alvor::WebFront> serve_web(const alvor::ServerOptions& options, 
   return front;
 }
 
-// Null without an address.
+// Returns the server of health checks, or null without an address.
 std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, std::size_t descriptors, spdlog::logger& logger) {
   if (address.empty()) return nullptr;
   auto health = std::make_unique<alvor::HealthPort>(address, alvor::bounded_connections(50, 0.05, descriptors));
@@ -187,7 +188,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
   alvor::Service service(service_options(options, logger, archive.get(), door));
   const auto health = serve_health(options.health, descriptors, *logger);
   const auto rpc = start(service, options, door, *logger);
-  const auto door_metrics = std::make_shared<alvor::DoorMetrics>(*door);  // the exposer does not keep it
+  const auto door_metrics = std::make_shared<alvor::DoorMetrics>(*door);  // kept here, because the exposer does not keep it
   const auto exposer = expose(options.metrics, service, door_metrics);
   const auto web = serve_web(options, descriptors, rpc->server(), *logger);
   tell_health(true, *rpc, health.get());

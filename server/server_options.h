@@ -1,5 +1,5 @@
 #pragma once
-// What alvord can be told on its command line and by variables.
+// The options of alvord, from its command line and from environment variables.
 
 #include "server/access/front_door.h"
 #include "server/access/listening.h"
@@ -33,10 +33,11 @@ struct ServerOptions {
   std::string log_level = "info";
 };
 
-/// Refuses options that do not go together or name files that cannot be read. Opens nothing. Throws std::invalid_argument.
+/// Throws std::invalid_argument for options that contradict each other or name files that cannot be read. Opens no socket or
+/// database.
 void check(const ServerOptions& options);
 
-/// Makes `app` set `options`. Each option has a variable: --max-solves is ALVORD_MAX_SOLVES.
+/// Makes `app` set `options`. Each option can also be set by an environment variable: --max-solves by ALVORD_MAX_SOLVES.
 void declare(CLI::App& app, ServerOptions& options);
 
 }  // namespace alvor

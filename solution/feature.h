@@ -1,5 +1,5 @@
 #pragma once
-// What a solve may need, and why a scene can do without some of it.
+// The optional parts of a solve, and the decision per scene which of them are switched on.
 
 #include <array>
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace alvor {
 
-/// Parts of a solve that cost something. What a scene does not need is switched off.
+/// An optional part of a solve that costs time or memory. The plan switches it off where the scene does not need it.
 enum class Feature : std::uint8_t {
-  three_bands,      ///< a value per band; off: one for all
+  three_bands,      ///< one value per band; off: one value for all bands
   occlusion,        ///< rays between receivers and emitters
   indirect_rows,    ///< transport rows and the exchange of light along them
-  dark_faces,       ///< rows and direct light of faces that no light can reach
-  back_sides,       ///< hits from behind that belong to the back of a two-sided face
-  medium,           ///< what a ray loses on its way
+  dark_faces,       ///< rows and direct light for faces that no light can reach
+  back_sides,       ///< hits from behind count for the back of a two-sided face
+  medium,           ///< the medium dims each ray
   refinement,       ///< splitting patches
   acceleration,     ///< conjugate residuals over the last steps of gathering
   ambient_display,  ///< the ambient term that clients add
@@ -26,7 +26,7 @@ inline constexpr std::array all_features{Feature::three_bands, Feature::occlusio
                                          Feature::dark_faces,  Feature::back_sides,   Feature::medium,
                                          Feature::refinement,  Feature::acceleration, Feature::ambient_display};
 
-/// "three bands", "occlusion", ... for people.
+/// Returns the feature's name for people: "three bands", "occlusion", ...
 std::string_view text(Feature feature);
 
 class FeatureSet {
@@ -44,12 +44,12 @@ class FeatureSet {
   std::uint32_t bits_ = 0;
 };
 
-/// What was decided about a feature.
+/// The decision about one feature of one scene, with its reason.
 struct PlannedFeature {
   Feature feature = Feature::three_bands;
   bool is_on = true;
   std::string reason;  ///< one sentence, with figures of the scene
-  std::string cost;    ///< what it takes if on, and saves if off
+  std::string cost;    ///< the cost if the feature is on, and the saving if it is off
 
   friend bool operator==(const PlannedFeature&, const PlannedFeature&) = default;
 };

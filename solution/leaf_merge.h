@@ -1,5 +1,5 @@
 #pragma once
-// Sorted leaves, and newer values laid over them.
+// Merging newer leaf values into a sorted list of leaves.
 
 #include "solution/leaf_value.h"
 
@@ -12,7 +12,8 @@ namespace alvor {
 
 inline constexpr std::size_t no_leaf = ~std::size_t{0};
 
-/// Where each of `changed` is in `held`; false if one is not there. Both ascend.
+/// Sets `places` to the index in `held` of each patch of `changed`. Returns false if `held` lacks one of them. Requires: both
+/// ascend.
 inline bool find_places(std::span<const PatchId> held, std::span<const LeafValue> changed, std::vector<std::size_t>& places) {
   places.clear();
   places.reserve(changed.size());
@@ -33,10 +34,10 @@ inline bool find_places(std::span<const PatchId> held, std::span<const LeafValue
   return true;
 }
 
-/// Calls, in ascending order, keep(i) for held leaves with nothing below them, set(holder, j) for changed[j], and
-/// inherit(holder, patch) for the siblings that changed leaves imply; `holder` is the place in `held` of the leaf that was split
-/// or replaced, or `no_leaf` where nothing was known of the root. Requires: both ascend, none overlaps another of its own list,
-/// and no changed patch contains a smaller held one.
+/// Merges `changed` into the leaves `held`. In ascending order of patches, run() calls keep(i) for each held leaf that stays
+/// whole, set(holder, j) for changed[j], and inherit(holder, patch) for each sibling that a changed leaf implies. `holder` is the
+/// index of the held leaf that was split or replaced, or `no_leaf` where no leaf of that root was held. Requires: both lists
+/// ascend, no patch overlaps another of its own list, and no changed patch contains a smaller held one.
 template <class Keep, class Set, class Inherit>
 class LeafMerge {
  public:

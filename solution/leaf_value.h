@@ -1,5 +1,5 @@
 #pragma once
-// What is published about a leaf, and about a step of the solve.
+// The records of the published solution: the value of a leaf, and the progress at a step.
 
 #include "solution/patch_id.h"
 #include "solution/rgb.h"
@@ -8,27 +8,28 @@
 
 namespace alvor {
 
-/// Irradiance H of a leaf, W/m2 per band, averaged over the part of it that can be seen. Radiosity is E + rho H of its
-/// material. Exactly zero means that nothing arrives there, as under a box standing on a floor.
+/// The irradiance H of a leaf, W/m2 per band, averaged over the visible part of the leaf. Radiosity is E + rho H of the leaf's
+/// material. Exactly zero means that no light arrives, as under a box that stands on a floor.
 struct LeafValue {
   PatchId patch;
   RgbF irradiance;
   friend bool operator==(const LeafValue&, const LeafValue&) = default;
 };
 
-/// Progress at one published revision. One line of the report.
+/// Progress of the solve at one published revision; one line of the report.
 struct Step {
   std::uint64_t revision = 0;  ///< the revision this step made; 1 is the first
-  double elapsed_s = 0;        ///< since the solve began
+  double elapsed_s = 0;        ///< since the solve began, s
   std::uint64_t step = 0;      ///< counts published steps from 0
   std::uint64_t shots = 0;     ///< shots so far
   std::uint64_t rays = 0;      ///< rays so far, shadow rays included
   std::uint64_t leaves = 0;    ///< leaves now
   double unshot_fraction = 1;  ///< sum |unshot power| / emitted power
   double estimated_error = 1;  ///< estimate of nRMSE of the irradiance against truth
-  /// What is displayed may differ from the solution by this share of itself, or of an eighth of the mean where that is more.
+  /// The displayed irradiance of a leaf may differ from the solution by this fraction of the leaf's irradiance, or of an eighth
+  /// of the mean irradiance where that is larger.
   double displayed_error = 0;
-  double unlit_fraction = 0;  ///< share of the area that light may reach whose irradiance is not known yet: published as 0
+  double unlit_fraction = 0;  ///< fraction of the area that light may reach whose irradiance is still unknown, published as 0
   Rgb ambient_irradiance;     ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
   friend bool operator==(const Step&, const Step&) = default;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// The name of a quadtree patch, after the cell ids of google/s2geometry: the id is the topology.
+// The id of a quadtree patch, after the cell ids of google/s2geometry: the bits of the id are the path from the root to the
+// patch.
 
 #include <bit>
 #include <cassert>
@@ -9,9 +10,9 @@
 
 namespace alvor {
 
-/// 64 bits: the root patch in the upper 32, then a path of 2 bits per level, first level first, then a single 1 bit, then
-/// zeros. Ids sort in depth-first order and a patch's descendants are the contiguous range [range_min, range_max].
-/// Level 0 is the root patch; level `max_level` is the finest.
+/// A patch id of 64 bits: the root patch in the upper 32 bits, then 2 bits per level, first level first, then a single 1 bit,
+/// then zeros. Ids sort in depth-first order, and a patch's descendants are the contiguous range [range_min, range_max]. Level 0
+/// is the root patch; level `max_level` is the finest.
 class PatchId {
  public:
   static constexpr int max_level = 15;
@@ -19,9 +20,9 @@ class PatchId {
   constexpr PatchId() = default;  ///< Not a patch: is_valid() is false.
 
   static constexpr PatchId root(std::uint32_t face) { return PatchId((std::uint64_t{face} << 32) | lsb_at(0)); }
-  /// The bits as sent over the wire. Check is_valid() before any other use.
+  /// Makes an id from the bits that came over the wire. Check is_valid() before any other use.
   static constexpr PatchId from_bits(std::uint64_t bits) { return PatchId(bits); }
-  /// The finest patch whose path is the low 30 bits of `path`, first level in the highest two.
+  /// Returns the finest patch whose path is the low 30 bits of `path`, first level in the highest two.
   static constexpr PatchId finest(std::uint32_t face, std::uint32_t path) {
     return PatchId((std::uint64_t{face} << 32) | (std::uint64_t{path} << 1) | 1u);
   }
@@ -53,7 +54,7 @@ class PatchId {
     const std::uint64_t lsb = lsb_() >> 2;
     return PatchId(bits_ - lsb_() + static_cast<std::uint64_t>(2 * k + 1) * lsb);
   }
-  /// Which child of its ancestor at `level` - 1 contains this patch. Requires: 1 <= level <= this->level().
+  /// Returns which child (0 to 3) of its ancestor at `level` - 1 contains this patch. Requires: 1 <= level <= this->level().
   constexpr int child_index(int level) const { return static_cast<int>(bits_ >> (2 * (max_level - level) + 1)) & 3; }
 
   constexpr PatchId range_min() const { return PatchId(bits_ - (lsb_() - 1)); }
@@ -70,7 +71,7 @@ class PatchId {
   std::uint64_t bits_ = 0;
 };
 
-/// Mixes all bits: neighbouring ids must not share hash buckets (finaliser of splitmix64, Steele et al. 2014).
+/// Mixes all bits, so that neighbouring ids fall into different hash buckets (finaliser of splitmix64, Steele et al. 2014).
 constexpr std::uint64_t mix_bits(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;

@@ -1,5 +1,6 @@
 #pragma once
-// Plain values as bytes and back, for what is kept between runs of one and the same version: no names, no types, host byte order.
+// Writes plain values as bytes and reads them back, between runs of the same version of the program: no names, no types, host
+// byte order.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace alvor {
 
-/// The bytes are not what they should be: cut off, of another version, or against a rule of what they stand for.
+/// Thrown where bytes cannot be read back: they are cut off, come from another version, or break a rule of the values they hold.
 struct BadBytes : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -32,7 +33,7 @@ class PlainWriter {
   void put(const T& value) {
     sink_(std::as_bytes(std::span(&value, 1)));
   }
-  /// Their number, then the values.
+  /// Writes the number of values, then the values.
   template <Plain T>
   void put_all(std::span<const T> values) {
     put(std::uint64_t{values.size()});
@@ -47,7 +48,7 @@ class PlainWriter {
   Sink sink_;
 };
 
-/// All that `write` puts.
+/// Returns all bytes that `write` puts.
 inline std::vector<std::byte> plain_bytes(const std::function<void(PlainWriter&)>& write) {
   std::vector<std::byte> bytes;
   PlainWriter out([&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
@@ -55,7 +56,8 @@ inline std::vector<std::byte> plain_bytes(const std::function<void(PlainWriter&)
   return bytes;
 }
 
-/// Throws BadBytes. What it allocates is never more than what is left to read.
+/// Reads values in the order in which PlainWriter put them. Throws BadBytes. Never allocates more than the bytes that are left to
+/// read.
 class PlainReader {
  public:
   explicit PlainReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -74,7 +76,7 @@ class PlainReader {
     if (count > 0) std::memcpy(values.data(), take(count * sizeof(T)).data(), count * sizeof(T));
     return values;
   }
-  /// The same, of which there must be `count`.
+  /// Reads values written by put_all. Throws BadBytes, which names `what`, unless there are exactly `count` of them.
   template <Plain T>
   std::vector<T> get_all(std::size_t count, const char* what) {
     auto values = get_all<T>();

@@ -1,5 +1,5 @@
 #pragma once
-// A value per band. Bands are three independent channels (linear RGB); nothing here is a colour space.
+// One value per band. Bands are three independent channels (linear RGB); no colour space is implied.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ struct RgbOf {
   friend constexpr RgbOf operator-(RgbOf a, const RgbOf& c) { return a -= c; }
   friend constexpr RgbOf operator*(RgbOf a, T s) { return a *= s; }
   friend constexpr RgbOf operator*(T s, RgbOf a) { return a *= s; }
-  /// Band by band, as reflectance times irradiance.
+  /// Multiplies band by band, as reflectance times irradiance.
   friend constexpr RgbOf operator*(const RgbOf& a, const RgbOf& c) { return {a.r * c.r, a.g * c.g, a.b * c.b}; }
 
   constexpr T sum() const { return r + g + b; }
@@ -44,7 +44,7 @@ struct RgbOf {
   constexpr T max() const { return std::max({r, g, b}); }
   constexpr T min() const { return std::min({r, g, b}); }
   constexpr bool is_zero() const { return r == 0 && g == 0 && b == 0; }
-  /// Whether the bands are equal to a millionth: files round colours that were grey.
+  /// Returns whether the bands are equal to within a millionth. Files round colours that were grey.
   constexpr bool is_grey() const { return max() - min() <= T(1e-6) * max(); }
   bool is_finite() const { return std::isfinite(r) && std::isfinite(g) && std::isfinite(b); }
 };
@@ -55,9 +55,9 @@ using RgbF = RgbOf<float>;  ///< for storage and the wire
 constexpr RgbF narrow(const Rgb& a) { return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b)}; }
 constexpr Rgb widen(const RgbF& a) { return {a.r, a.g, a.b}; }
 
-/// The smaller of each band.
+/// Returns the smaller value of each band.
 constexpr Rgb lower(const Rgb& a, const Rgb& b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
-/// The larger.
+/// Returns the larger value of each band.
 constexpr Rgb upper(const Rgb& a, const Rgb& b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
 
 template <class T>

@@ -1,4 +1,4 @@
-// A log as bytes, and back.
+// Saves a solution log as bytes and restores it.
 
 #include "solution/solution_log.h"
 

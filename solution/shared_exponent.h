@@ -1,6 +1,6 @@
 #pragma once
-// Three bands in 32 bits: nine bits of mantissa each and an exponent for all (RGB9E5, as OpenGL's EXT_texture_shared_exponent),
-// with a scale beside it so that no scene is too dark or too bright.
+// Three bands in 32 bits: nine bits of mantissa each and one exponent for all (RGB9E5, as in OpenGL's
+// EXT_texture_shared_exponent). A scale beside it fits the range of exponents to the scene's brightness.
 
 #include "solution/rgb.h"
 
@@ -12,22 +12,22 @@
 
 namespace alvor {
 
-/// Bits 0 to 8, 9 to 17 and 18 to 26 are the mantissas of r, g and b, bits 27 to 31 the exponent e: a band is
-/// mantissa * 2^(e + scale), rounded to nearest: off by at most 1/511 of the largest band (2^dropped times that) where that is
-/// not below 2^(8 + scale).
+/// Packs three bands into a word. Bits 0 to 8, 9 to 17 and 18 to 26 are the mantissas of r, g and b; bits 27 to 31 are the
+/// exponent e. A band is mantissa * 2^(e + scale), rounded to nearest. If the largest band is at least 2^(8 + scale), the error
+/// is at most 1/511 of it, or 2^dropped times that.
 class SharedExponent {
  public:
   explicit SharedExponent(int scale) : scale_(scale) {
     for (int e = 0; e < exponents; ++e) step_[e] = std::ldexp(1.0, e + scale), per_step_[e] = std::ldexp(1.0, -e - scale);
   }
   int scale() const { return scale_; }
-  /// With room for values eight times as large as `largest`, and 2^-36 of it as the smallest step. Requires: largest > 0.
+  /// Returns a coding that holds values up to eight times `largest`, in steps of at most 2^-35 of it. Requires: largest > 0.
   static SharedExponent for_values_up_to(float largest) { return SharedExponent(std::ilogb(largest) - 8 - (exponents - 5)); }
 
-  /// The largest band that it can hold.
+  /// Returns the largest band value that the coding can hold.
   double largest() const { return 256 * step_.back(); }
-  /// The mantissas' lowest `dropped` bits (0 to 7) are 0: what noise would fill costs on the wire. Requires: every band in [0,
-  /// largest()].
+  /// Returns the word for `value`. The lowest `dropped` bits (0 to 7) of the mantissas are set to 0: bits that hold only noise do
+  /// not compress. Requires: every band in [0, largest()].
   std::uint32_t pack(const RgbF& value, int dropped = 0) const {
     const float top = value.max();
     if (!(top > 0)) return 0;

@@ -11,10 +11,13 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t leaves_per_block = 512;
-constexpr double mean_may_fall_to = 0.9;  // of itself, before all that is displayed is looked at again
-constexpr double darkest = 0.125;         // of the mean: what is darker may be off by as much as if it were this bright
+// All displayed values are checked again when the mean falls below this fraction of its value at the last check.
+constexpr double mean_may_fall_to = 0.9;
+// Darker leaves may be off by as much as if their irradiance were this fraction of the mean.
+constexpr double darkest = 0.125;
 
-/// Of nine: as many as stay below the displayed error, since a mantissa is 256 or more.
+/// Returns how many of a mantissa's nine bits to drop (0 to 4): as many as keep the rounding error below `displayed_error`. Holds
+/// because the largest mantissa is at least 256.
 int dropped_bits(double displayed_error) { return displayed_error > 0 ? std::clamp(std::ilogb(512 * displayed_error), 0, 4) : 0; }
 
 std::size_t blocks_of(std::size_t leaves) { return (leaves + leaves_per_block - 1) / leaves_per_block; }
@@ -49,8 +52,8 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step) {
   wake_listeners();
 }
 
-/// Leaves that are new belong to the revision being made, whatever their values are; those implied are as old as what they
-/// inherit.
+/// Splits leaves so that each patch of `changed` is a leaf. New leaves count as changed in this revision, whatever their values;
+/// implied siblings keep the revision of the leaf they inherit from.
 void SolutionLog::split_for(std::span<const LeafValue> changed) {
   Leaves next;
   const auto append = [&](PatchId patch, std::size_t from, bool is_new) {
@@ -87,7 +90,7 @@ void SolutionLog::sum_up() {
   }
 }
 
-/// The scale follows the brightest value; when it has to change, all that is shown does.
+/// Adapts the coding to the brightest value. When the scale changes, every displayed value changes.
 void SolutionLog::make_room_for(std::span<const LeafValue> changed) {
   float largest = 0;
   for (const LeafValue& value : changed) largest = std::max(largest, value.irradiance.max());
@@ -154,7 +157,7 @@ Delta SolutionLog::since(const Cursor& cursor, Detail detail, std::size_t max_va
   return delta;
 }
 
-/// True if nothing is left.
+/// Appends changed leaves to `delta`. Returns whether none is left.
 bool SolutionLog::collect(Delta& delta, std::uint64_t base, std::uint64_t told, std::size_t max_values) const {
   const Tier& all = tier(delta.detail);
   const auto first = std::ranges::upper_bound(leaves_.patch, PatchId::from_bits(told)) - leaves_.patch.begin();

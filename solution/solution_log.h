@@ -1,5 +1,5 @@
 #pragma once
-// The state of a growing solution: newest value per leaf and the revision at which it last changed.
+// The log of a growing solution: the newest value of each leaf, and the revision at which it last changed.
 
 #include "solution/leaf_value.h"
 #include "solution/plain_bytes.h"
@@ -18,66 +18,66 @@
 
 namespace alvor {
 
-/// How closely a watcher follows.
+/// How exactly a watcher wants the leaf values.
 enum class Detail : std::uint8_t {
-  display,  ///< a leaf is told again when it differs from what was told by more than the displayed error; shared exponents
+  display,  ///< rounded values; a leaf is sent again once it differs by more than the displayed error
   exact,    ///< every change, as float32
 };
 
-/// A place in the stream. Leaves are told in rounds, in the order of their ids: a round tells all that changed after `base`, and
-/// leaves the mirror complete up to `goal`, which is the head when the round began.
+/// A reader's position in the stream. Changed leaves are sent in rounds, each in the order of patch ids. A round sends all leaves
+/// that changed after `base`; then the mirror is complete up to `goal`, which was the head when the round began.
 struct Cursor {
   std::uint64_t base = 0;  ///< the mirror is complete up to this revision
-  std::uint64_t goal = 0;  ///< of the round that is under way; 0 between rounds
-  std::uint64_t told = 0;  ///< bits of the last id that the round has passed; 0 between rounds
+  std::uint64_t goal = 0;  ///< the goal of the current round; 0 between rounds
+  std::uint64_t told = 0;  ///< bits of the last id that the current round has sent; 0 between rounds
   bool is_inside_round() const { return told != 0; }
   friend bool operator==(const Cursor&, const Cursor&) = default;
 };
 
-/// What changed after a cursor. `whole()` says that nothing newer is left: a mirror that applied it equals `to_revision`. After a
-/// page that does not end its round the mirror is between revisions.
+/// The changes after a cursor, or one page of them. If whole(), nothing newer is left, and a mirror that applied the delta equals
+/// `to_revision`. After a page that does not end its round, the mirror lies between two revisions.
 struct Delta {
   Detail detail = Detail::exact;
-  SharedExponent coding{0};                 ///< in which every value of the display detail is exact
+  SharedExponent coding{0};                 ///< represents every value of the display detail exactly
   std::uint64_t from_revision = 0;          ///< the mirror must be at this revision
   std::uint64_t to_revision = 0;            ///< the mirror is then complete up to this revision
   std::uint64_t head = 0;                   ///< newest revision when the delta was made
-  std::optional<std::uint64_t> state_hash;  ///< of all leaves as they are told; set if whole()
-  Cursor next;                              ///< where the next page starts
+  std::optional<std::uint64_t> state_hash;  ///< StateHash of all leaves at this detail; set if whole()
+  Cursor next;                              ///< the position at which the next page starts
   std::vector<LeafValue> values;            ///< ascending, disjoint
   std::vector<Step> steps;                  ///< every step with from_revision < revision <= to_revision
   bool whole() const { return to_revision == head; }
 };
 
-/// Thread-safe. One writer publishes, any number of readers ask. Values are state, not a queue: a slow reader gets the newest
-/// value of each leaf once, and the memory held (32 bytes a leaf) does not grow with the number or the slowness of readers.
-/// Blocks of leaves know their newest revision: what did not change is not looked at.
+/// Thread-safe: one writer publishes, any number of readers ask. The log keeps the newest value of each leaf and no queue: a slow
+/// reader gets each leaf once, and memory (32 bytes a leaf) depends neither on the number of readers nor on their speed. Each
+/// block of leaves knows its newest revision, so that readers skip unchanged blocks.
 class SolutionLog {
  public:
   static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
   SolutionLog() = default;
-  /// As it was saved; it goes on from there. Throws BadBytes.
+  /// Restores a log that save() wrote; publishing continues from there. Throws BadBytes.
   explicit SolutionLog(PlainReader& saved);
-  /// All there is, whether it is closed or not excepted. Not while publishing: the writer's thread may call it.
+  /// Writes everything except whether the log is closed. Other calls wait until it has returned.
   void save(PlainWriter& out) const;
 
-  /// Makes the next revision. A value for a patch deeper than the log holds splits its ancestor; leaves implied by that and not
-  /// given inherit. `step.revision` and `step.step` are filled in here. Requires: `changed` ascends, no patch of it contains
-  /// another or a leaf that is held and smaller; irradiance is finite and not negative.
+  /// Makes the next revision. A value for a patch deeper than the log holds splits the ancestor; siblings that this implies, and
+  /// that are not in `changed`, inherit the ancestor's value. Fills in `step.revision` and `step.step`. Requires: `changed`
+  /// ascends; no patch of it contains another, or a smaller leaf that the log holds; irradiance is finite and not negative.
   void publish(std::span<const LeafValue> changed, Step step);
-  /// No revision will follow. Wakes the listeners.
+  /// Says that no revision will follow. Wakes the listeners.
   void close();
 
-  /// At most `max_values` (1 or more) values of the round at `cursor`, or of the next.
-  /// Requires: cursor.base <= head().
+  /// Returns at most `max_values` (1 or more) values of the round at `cursor`, or of the next round. Requires: cursor.base <=
+  /// head().
   Delta since(const Cursor& cursor, Detail detail = Detail::exact, std::size_t max_values = unlimited) const;
 
   std::uint64_t head() const;
   bool closed() const;
   Step last_step() const;
   std::vector<Step> steps() const;
-  /// All leaves in the order of their ids.
+  /// Returns all leaves in the order of their ids.
   std::vector<LeafValue> leaves(Detail detail = Detail::exact) const;
 
   /// Waits until head() > revision or closed().
@@ -91,21 +91,21 @@ class SolutionLog {
 
  private:
   using Revision = std::uint32_t;
-  /// What of a leaf is told at one detail.
+  /// The change records of all leaves at one detail.
   struct Tier {
-    std::vector<Revision> changed_at;  ///< by leaf
-    std::vector<Revision> newest;      ///< by block
+    std::vector<Revision> changed_at;  ///< newest revision that changed the leaf, by leaf
+    std::vector<Revision> newest;      ///< newest revision that changed a leaf of the block, by block
     StateHash hash;
   };
   struct Leaves {
     std::vector<PatchId> patch;  ///< ascending
     std::vector<RgbF> irradiance;
-    std::vector<std::uint32_t> shown;  ///< by coding_
+    std::vector<std::uint32_t> shown;  ///< displayed values, packed by coding_
     Tier display, exact;
   };
   void split_for(std::span<const LeafValue> changed);
   void make_room_for(std::span<const LeafValue> changed);
-  /// Or is new.
+  /// Returns whether `irradiance` differs from the held value, or the leaf is new in this revision.
   bool has_changed(std::size_t leaf, const RgbF& irradiance) const {
     return leaves_.irradiance[leaf] != irradiance || leaves_.display.changed_at[leaf] == head_;
   }
@@ -125,9 +125,9 @@ class SolutionLog {
   Leaves leaves_;
   SharedExponent coding_{0};
   bool has_coding_ = false;
-  double sum_ = 0;  ///< of the means of all leaves
-  /// What is displayed of all leaves was within this error when they were looked at last, as long as the mean is not below that
-  /// one.
+  double sum_ = 0;  ///< sum over all leaves of the mean of the bands
+  /// At the last look at all leaves, every displayed value was within this error. That still holds while the mean is at least
+  /// `checked_mean_`.
   double checked_error_ = std::numeric_limits<double>::infinity(), checked_mean_ = 0;
   std::vector<Step> steps_;
   std::uint64_t head_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The other end of the stream: a copy of the log's leaves, built from deltas.
+// The client's copy of the log's leaves, built from deltas.
 
 #include "solution/solution_log.h"
 
@@ -9,22 +9,23 @@
 
 namespace alvor {
 
-/// Not thread-safe. A root patch that nothing was said about is a leaf of zero irradiance.
+/// A copy of a SolutionLog. Not thread-safe. A root patch that no delta has named is no leaf yet; it counts as zero irradiance.
 class SolutionMirror {
  public:
-  /// Applies `delta` whole, or not at all: a fault says why it does not fit (a gap, a bad id, a patch coarser than held), or that
-  /// the state it leads to would not have the hash it says. After the latter only a mirror that begins anew can be right.
+  /// Applies `delta`, and returns a fault if it cannot be right. If the delta does not fit (a gap, a bad id, a patch coarser than
+  /// held), nothing is changed. If the state after it has another hash than the delta says, the mirror is wrong and must start
+  /// again from nothing.
   std::optional<std::string> apply(const Delta& delta);
 
-  /// Complete up to this revision.
+  /// Returns the revision up to which the mirror is complete.
   std::uint64_t revision() const { return revision_; }
   std::uint64_t head() const { return head_; }
   bool whole() const { return revision_ == head_; }
 
-  /// All leaves in the order of their ids, those implied by splits included.
+  /// Returns all leaves in the order of their ids, with those that splits imply.
   std::vector<LeafValue> leaves() const;
   std::size_t leaf_count() const { return patches_.size(); }
-  /// Every step so far, oldest first.
+  /// Returns every step so far, oldest first.
   const std::vector<Step>& steps() const { return steps_; }
 
  private:

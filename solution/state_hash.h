@@ -1,5 +1,5 @@
 #pragma once
-// A hash of a set of leaves that does not depend on their order, and is kept up to date leaf by leaf.
+// A hash of a set of leaves that does not depend on their order and is updated leaf by leaf.
 
 #include "solution/leaf_value.h"
 
@@ -8,7 +8,8 @@
 
 namespace alvor {
 
-/// Two sums modulo 2^32 of a hash of each leaf, in the upper and the lower half. 32-bit arithmetic alone, for browsers.
+/// Two sums modulo 2^32 of hashes of the leaves: one in the upper half, one in the lower. It needs only 32-bit arithmetic, which
+/// browsers have.
 class StateHash {
  public:
   constexpr void add(const LeafValue& leaf) {
@@ -37,7 +38,7 @@ class StateHash {
     }
     return {finished(a), finished(b)};
   }
-  /// Finaliser of MurmurHash3 (Appleby).
+  /// Returns the bits mixed by the finaliser of MurmurHash3 (Appleby).
   static constexpr std::uint32_t finished(std::uint32_t x) {
     x = (x ^ x >> 16) * 0x85ebca6bu;
     x = (x ^ x >> 13) * 0xc2b2ae35u;

@@ -1,5 +1,5 @@
 #pragma once
-// The built commands as their users meet them: exit statuses, streams and files.
+// Runs the built commands as users do, for tests of exit statuses, streams and files.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ struct Ran {
   std::string out, err;
 };
 
-/// A folder of its own for each test, and the command run in it.
+/// Makes a folder for each test and runs the command in it.
 class CommandLine : public testing::Test {
  protected:
   CommandLine() : folder_(fs::temp_directory_path() / ("alvor_test_" + std::to_string(getpid()))) {

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes that must have the same solution, or a known multiple of it.
+// Changes a scene so that its solution stays the same, or becomes a known multiple.
 
 #include "meshing/scene.h"
 
@@ -15,7 +15,7 @@ inline Scene with_emission_times(Scene scene, double factor) {
   return scene;
 }
 
-/// As if its unit of length were another: the medium absorbs as much from wall to wall.
+/// Returns the scene in another unit of length. The medium absorbs as much from wall to wall as before.
 inline Scene with_lengths_times(Scene scene, double factor) {
   for (Vec3& vertex : scene.vertices) vertex = factor * vertex;
   scene.absorption = (1 / factor) * scene.absorption;
@@ -36,7 +36,7 @@ inline Scene with_red_and_green_swapped(Scene scene) {
   return scene;
 }
 
-/// Face n is face order[n] of `scene`.
+/// Returns the scene with its faces reordered: face n is face order[n] of `scene`.
 inline Scene with_faces_in_order(const Scene& scene, std::span<const std::uint32_t> order) {
   Scene changed = scene;
   changed.corners.clear(), changed.faces.clear();
@@ -44,7 +44,7 @@ inline Scene with_faces_in_order(const Scene& scene, std::span<const std::uint32
   return changed;
 }
 
-/// Each two-sided face as two one-sided ones with the same corners, the backs after all fronts.
+/// Returns the scene with each two-sided face as two one-sided ones with the same corners, the backs after all fronts.
 inline Scene with_backs_as_faces(const Scene& scene) {
   Scene changed = scene;
   for (Material& material : changed.materials) material.two_sided = false;
@@ -57,7 +57,8 @@ inline Scene with_backs_as_faces(const Scene& scene) {
   return changed;
 }
 
-/// A triangle or quad cut by a line from its first corner to the middle of its second edge, the cut-off triangle last.
+/// Returns the scene with a triangle or quad cut from its first corner to the middle of its second edge; the cut-off triangle is
+/// the last face.
 inline Scene with_face_cut(const Scene& scene, std::uint32_t face) {
   Scene changed = scene;
   changed.corners.clear(), changed.faces.clear();

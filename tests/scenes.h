@@ -12,8 +12,8 @@ inline void add_polygon(Scene& scene, std::initializer_list<Vec3> corners, std::
   scene.add_polygon({corners.begin(), corners.size()}, material);
 }
 
-/// Six quads; normals point inwards for a room, outwards for a solid. Faces: floor (y low), ceiling, x low, x high, z low, z
-/// high.
+/// Adds six quads with normals pointing inwards (a room) or outwards (a solid). Faces: floor (y low), ceiling, x low, x high, z
+/// low, z high.
 inline void add_box(Scene& scene, Vec3 low, Vec3 high, bool inwards, std::array<std::uint32_t, 6> materials = {}) {
   const auto [x, y, z] = low;
   const auto [X, Y, Z] = high;
@@ -34,7 +34,7 @@ inline Material grey(double emission, double reflectance) {
   return {"grey", {emission, emission, emission}, {reflectance, reflectance, reflectance}, false};
 }
 
-/// A closed room in which every surface emits and reflects the same.
+/// Returns a closed room in which every surface has the same emission and reflectance.
 inline Scene furnace(double emission, double reflectance) {
   Scene scene;
   scene.materials.push_back(grey(emission, reflectance));
@@ -42,7 +42,7 @@ inline Scene furnace(double emission, double reflectance) {
   return scene;
 }
 
-/// A closed room with a lamp in the ceiling, a block on the floor and one red wall.
+/// Returns a closed room with a lamp at the ceiling, a block on the floor and one red wall.
 inline Scene coloured_room() {
   Scene scene;
   scene.materials = {grey(0, 0.7), grey(50, 0), {"red", {}, {0.6, 0.1, 0.05}, false}};
@@ -52,7 +52,7 @@ inline Scene coloured_room() {
   return scene;
 }
 
-/// The same with a second block, turned so that its outline crosses patches of all levels.
+/// Returns coloured_room() with a second block, turned so that its outline crosses patches of all levels.
 inline Scene room_with_contacts() {
   Scene scene = coloured_room();
   const std::size_t first = scene.vertices.size();
@@ -65,7 +65,7 @@ inline Scene room_with_contacts() {
   return scene;
 }
 
-/// The same, where nothing reflects.
+/// Returns the scene with all reflectances 0.
 inline Scene black(Scene scene) {
   for (Material& material : scene.materials) material.reflectance = {};
   return scene;

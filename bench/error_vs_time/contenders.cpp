@@ -52,7 +52,7 @@ MeasuredRun shoot_with(const Arena& arena, int cells) {
 }
 
 MeasuredRun trace_with(const Arena& arena, std::uint64_t paths) {
-  constexpr std::uint64_t seed = 1;  // not the truth's
+  constexpr std::uint64_t seed = 1;  // another seed than the truth's
   const Stopwatch watch;
   const PathTracer tracer(arena.scene);
   std::vector<SurfacePoint> points;

@@ -1,5 +1,5 @@
 #pragma once
-// Each runs once, its time is taken, and its error found afterwards.
+// Runs each program once on a scene, measures its time, and finds its error afterwards.
 
 #include "bench/error_vs_time/measured_run.h"
 #include "bench/error_vs_time/truth.h"
@@ -7,7 +7,7 @@
 
 namespace alvor::bench {
 
-/// What all runs on one scene share. Borrows it.
+/// The inputs that all runs on one scene share. Borrows them.
 struct Arena {
   const SceneSettings& settings;
   const Scene& scene;
@@ -16,12 +16,13 @@ struct Arena {
   double time_limit_s, fixed_mesh_limit_s;
 };
 
-/// Requires: contender is auto or a strategy.
+/// Solves the scene with Alvor. Requires: contender is auto or a strategy.
 MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance, int threads, std::uint64_t seed);
 
+/// Solves the scene by textbook shooting, `cells` elements on the longest side.
 MeasuredRun shoot_with(const Arena& arena, int cells);
 
-/// At all points of the truth, by other paths.
+/// Traces `paths` paths from each point of the truth, with other random numbers than the truth.
 MeasuredRun trace_with(const Arena& arena, std::uint64_t paths);
 
 }  // namespace alvor::bench

@@ -60,7 +60,7 @@ class Rounds {
       if (!repeat(contender, tolerance, threads)) return;
   }
 
-  /// False if time ran out.
+  /// Repeats a solve with several seeds. Returns false if the time limit ended one.
   bool repeat(Contender contender, double tolerance, int threads) {
     for (int seed = 1; seed <= settings_.seeds; ++seed) {
       const MeasuredRun& run = keep(solve_with(arena_, contender, tolerance, threads, static_cast<std::uint64_t>(seed)));

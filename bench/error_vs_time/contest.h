@@ -1,5 +1,5 @@
 #pragma once
-// All programs on one scene.
+// Runs all programs on one scene.
 
 #include "bench/error_vs_time/measured_run.h"
 #include "bench/error_vs_time/settings.h"
@@ -11,13 +11,13 @@ namespace alvor::bench {
 
 struct TruthSummary {
   std::size_t drawn = 0;    ///< points
-  std::size_t counted = 0;  ///< of them: neither hidden nor dark
+  std::size_t counted = 0;  ///< number of drawn points that are neither hidden nor dark
   std::size_t hidden = 0;
   std::uint64_t paths = 0;
   double cpu_s = 0;
   bool was_kept = false;
   double mean = 0;            ///< W/m2
-  double error = 0;           ///< its standard error: RMS over points / mean
+  double error = 0;           ///< standard error of the truth: RMS over points / mean
   double relative_error = 0;  ///< RMS over points of standard error / truth
 };
 
@@ -26,23 +26,23 @@ struct SceneContest {
   std::size_t faces = 0;
   TruthSummary truth;
   std::vector<MeasuredRun> runs;
-  std::vector<RunGroup> groups;  ///< of the runs
+  std::vector<RunGroup> groups;  ///< `runs` by setting
 };
 
-/// Called with a line about each thing that is done.
+/// Called with a line about each step of the measurement.
 using Announce = std::function<void(const std::string&)>;
 
-/// Solves longer than settings.long_run_s are not repeated, and no tighter tolerance is tried after one that ran out of time.
-/// Throws SceneFileError, FileError.
+/// Measures all programs on one scene. Solves longer than settings.long_run_s are not repeated, and after one that ran out of
+/// time no smaller tolerance is tried. Throws SceneFileError, FileError.
 SceneContest contest(const SceneSettings& scene, const Settings& settings, const Announce& announce);
 
-/// Path tracing 300 points of the Cornell box by 2000 paths.
+/// The unit of time that makes machines comparable: path tracing 300 points of the Cornell box with 2000 paths each.
 struct Yardstick {
   double cpu_s = 0;               ///< on one thread
-  double two_threads_faster = 0;  ///< wall time of one over that of two: near 2 on a machine that has two cores to spare
+  double two_threads_faster = 0;  ///< wall time of one thread over that of two; near 2 if two cores are free
 };
 
-/// Throws SceneFileError.
+/// Measures the yardstick. Throws SceneFileError.
 Yardstick time_yardstick(const Settings& settings);
 
 }  // namespace alvor::bench

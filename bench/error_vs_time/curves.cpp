@@ -8,7 +8,7 @@ namespace alvor::bench {
 
 namespace {
 
-/// A block that gnuplot finds by its number, empty or not.
+/// Returns a block of data, possibly empty; gnuplot finds blocks by their number.
 std::string block(const std::string& name, std::size_t columns, const std::string& lines) {
   std::string nothing;
   for (std::size_t n = 0; n < columns; ++n) nothing += "NaN ";
@@ -33,7 +33,7 @@ std::string curve_of(const SceneContest& held, Contender contender) {
   return block(std::string(text(contender)) + ": cpu low high rays nrmse low high estimated", 8, lines);
 }
 
-/// Path tracing is drawn for as many points as it is compared at, and on to the error that it is compared at.
+/// Scales path tracing's times to the number of points at which it is compared.
 void scale_path_tracing(SceneContest& held) {
   for (RunGroup& group : held.groups)
     for (MeasuredRun& run : group.runs)

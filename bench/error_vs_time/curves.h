@@ -1,5 +1,5 @@
 #pragma once
-// What gnuplot draws.
+// Writes the data that gnuplot draws.
 
 #include "bench/error_vs_time/contest.h"
 
@@ -7,8 +7,8 @@
 
 namespace alvor::bench {
 
-/// SCENE.dat for each scene, with a block for each contender in the order of the enumeration, and estimates.dat with a block for
-/// each scene. Throws FileError.
+/// Writes SCENE.dat for each scene, with one block for each contender in the order of the enumeration, and estimates.dat with one
+/// block for each scene. Throws FileError.
 void write_curves(const std::filesystem::path& folder, std::span<const SceneContest> contests);
 
 }  // namespace alvor::bench

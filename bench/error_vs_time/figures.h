@@ -1,5 +1,5 @@
 #pragma once
-// Numbers as the page and its files show them.
+// Formats numbers for the page and its files.
 
 #include "bench/error_vs_time/statistics.h"
 
@@ -7,22 +7,23 @@
 
 namespace alvor::bench {
 
-/// Any number: at most `digits` significant ones.
+/// Returns a number with at most `digits` significant digits.
 std::string figure(double number, int digits = 6);
-/// Three significant digits, never as a power of ten: 0.00314, 12.3, 4570.
+/// Returns a number with three significant digits, never as a power of ten: 0.00314, 12.3, 4570.
 std::string plain(double number);
-/// "2.31 %".
+/// Returns a percentage: "2.31 %".
 std::string percent(double fraction);
-/// "12 %": of a tolerance, no digit more than it has.
+/// Returns a tolerance as a percentage with no more digits than needed: "12 %".
 std::string tolerance_percent(double fraction);
-/// "812", "65.2 k", "1.65 M".
+/// Returns a count: "812", "65.2 k", "1.65 M".
 std::string compact(double count);
-/// The median, and both ends where they differ: "2.31 % (2.1 to 2.5)".
+/// Returns the median, with both ends if they differ: "2.31 % (2.1 to 2.5)".
 std::string percent(const Spread& spread);
 std::string plain(const Spread& spread);
-/// "| a | b |\n".
+/// Returns a row of a Markdown table: "| a | b |
+/// ".
 std::string table_row(std::initializer_list<std::string> cells);
-/// Heads and the line below.
+/// Returns the head of a Markdown table and the line below it.
 std::string table_head(std::initializer_list<std::string> cells);
 
 }  // namespace alvor::bench

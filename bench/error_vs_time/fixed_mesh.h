@@ -1,5 +1,5 @@
 #pragma once
-// Elements and the patches that they belong to.
+// Cuts a scene into a fixed mesh of elements and patches.
 
 #include "meshing/base_mesh.h"
 #include "radiosity/rays/visibility.h"
@@ -10,7 +10,7 @@
 
 namespace alvor::bench {
 
-/// Receives. Local coordinates, see LocalFrame.
+/// A piece of surface that receives light. Local coordinates, see LocalFrame.
 struct Element {
   PatchId id;
   Vec3 centre, normal;
@@ -19,7 +19,7 @@ struct Element {
   std::uint32_t patch = 0;
 };
 
-/// Shoots from four places.
+/// A patch that shoots, from four places.
 struct ShootingSource {
   std::array<Vec3, 4> places;
   Vec3 normal;
@@ -32,7 +32,7 @@ struct FixedMesh {
   std::vector<ShootingSource> patches;
 };
 
-/// Each root is cut evenly until no edge is longer than `longest_edge`, metres; a patch is the parent of four elements, or a root
+/// Cuts each root evenly until no edge is longer than `longest_edge`, metres. A patch is the parent of four elements, or a root
 /// that was not cut.
 FixedMesh cut_evenly(const BaseMesh& mesh, double longest_edge, const LocalFrame& frame);
 

@@ -11,10 +11,11 @@ namespace alvor::bench {
 
 namespace {
 
-constexpr double off_surface = 1e-5;  // of the longest side: rays start and end so far in front of their surfaces
+// Distance from their surfaces at which rays start and end, as a fraction of the longest side.
+constexpr double off_surface = 1e-5;
 constexpr int places = 4;
 
-/// Shadow rays, sixteen at a time: sums what the visible ones bring.
+/// Traces shadow rays, sixteen at a time, and sums the weights of those that are not blocked.
 class ShadowRays {
  public:
   ShadowRays(const Visibility& visibility, std::vector<double>& form_factor)
@@ -32,7 +33,7 @@ class ShadowRays {
 
   void trace() {
     if (used_ == 0) return;
-    // What fills up the packet goes nowhere.
+    // Unused rays of the packet get no length.
     for (int ray = used_; ray < RayPacket::width; ++ray) packet_.t_min[ray] = 0, packet_.t_max[ray] = 0;
     std::uint16_t blocked = 0;
     visibility_.occlusions({&packet_, 1}, {&blocked, 1});
@@ -105,8 +106,8 @@ class FixedMeshShooting {
     }
   }
 
-  // As if all were received, the patch's area; more where the centre of a large element is near a small patch. Unless such a shot
-  // is dimmed, light grows without bounds.
+  // Returns the area of all elements weighted by their form factors to the patch. It should equal the patch's area, but is larger
+  // if the centre of a large element is near a small patch. Such a shot must be dimmed, or light grows without bounds.
   double received_area() const {
     double sum = 0;
     for (std::size_t n = 0; n < cut_.elements.size(); ++n) sum += cut_.elements[n].area * form_factor_[n];
@@ -120,7 +121,8 @@ class FixedMeshShooting {
     rays_.trace();
   }
 
-  // Each place stands for a disk of a quarter of the patch (Wallace et al. 1989, equation 5).
+  // Adds a shadow ray from an element to one place, which represents a disk of a quarter of the patch (Wallace et al. 1989,
+  // equation 5).
   void aim(std::size_t n, const ShootingSource& source, Vec3 place) {
     const Element& element = cut_.elements[n];
     const Vec3 along = place - element.centre;

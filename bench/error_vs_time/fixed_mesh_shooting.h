@@ -1,5 +1,5 @@
 #pragma once
-// Progressive shooting as textbooks have it, on a mesh that stays as it is.
+// Progressive shooting on a fixed mesh, as textbooks describe it.
 
 #include "meshing/base_mesh.h"
 #include "solution/leaf_value.h"
@@ -10,8 +10,8 @@
 namespace alvor::bench {
 
 struct FixedMeshOptions {
-  int cells = 16;                 ///< no edge of an element is longer than the longest side of the scene over this
-  double unshot_fraction = 1e-3;  ///< shoots until no more of the emitted power is unshot
+  int cells = 16;                 ///< limit of an element's edges: the scene's longest side over this
+  double unshot_fraction = 1e-3;  ///< shoots until this fraction of the emitted power is unshot
   double time_limit_s = 30;
 };
 
@@ -22,10 +22,10 @@ struct FixedMeshSolution {
   bool is_done = false;  ///< false: the time limit ended it
 };
 
-/// Cohen, Chen, Wallace & Greenberg 1988, with the ray traced form factors of Wallace, Elmquist & Haines 1989: faces are cut into
-/// elements, which receive, and patches of four elements, which shoot, the largest unshot power first. A shot sends a shadow ray
-/// from the centre of each element to four places of the patch, weighted as small disks; nothing is stored. Solves on the
-/// calling thread, sixteen rays at a time.
+/// Solves by progressive refinement (Cohen, Chen, Wallace & Greenberg 1988) with ray-traced form factors (Wallace, Elmquist &
+/// Haines 1989). Faces are cut into elements, which receive; patches of four elements shoot, largest unshot power first. A shot
+/// sends a shadow ray from the centre of each element to four places of the patch, weighted as small disks; nothing is stored.
+/// Runs on the calling thread, sixteen rays at a time.
 FixedMeshSolution shoot_on_fixed_mesh(const BaseMesh& mesh, const FixedMeshOptions& options);
 
 }  // namespace alvor::bench

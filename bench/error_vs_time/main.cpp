@@ -1,4 +1,4 @@
-// error_vs_time [--help]: measures error against run time and writes docs/error-vs-time.md, all but its pictures.
+// error_vs_time [--help]: measures error against run time and writes docs/error-vs-time.md, except its pictures.
 
 #include "bench/error_vs_time/curves.h"
 #include "bench/error_vs_time/page.h"
@@ -12,7 +12,7 @@ namespace {
 using namespace alvor;
 using namespace alvor::bench;
 
-// Between scenes, so that a machine that slows down in the meantime is found out.
+// Measures all scenes. The yardstick is measured before each, to detect a machine that slows down meanwhile.
 Measurements measure(const Settings& settings) {
   const Announce announce = [](const std::string& line) { std::cerr << line << std::endl; };
   Measurements measured;

@@ -1,5 +1,5 @@
 #pragma once
-// One run of one program on one scene, and runs that differ in their seed only.
+// One run of one program on one scene, and groups of runs that differ only in their seed.
 
 #include "bench/error_vs_time/statistics.h"
 #include "client/verify/error_statistics.h"
@@ -23,20 +23,20 @@ struct MeasuredRun {
 
   std::string scene;
   Contender contender = Contender::alvor;
-  double setting = 0;  ///< tolerance; fixed mesh: cells on the longest side; path tracing: paths of a point
+  double setting = 0;  ///< tolerance; fixed mesh: cells on the longest side; path tracing: paths per point
   int threads = 1;
   std::uint64_t seed = 1;
   double cpu_s = 0, wall_s = 0;
-  std::uint64_t rays = 0, leaves = 0;  ///< 0 where they are not counted
-  double estimated = unknown;          ///< nRMSE, as the program itself says
+  std::uint64_t rays = 0, leaves = 0;  ///< 0 if not counted
+  double estimated = unknown;          ///< nRMSE as estimated by the program itself
   Confidence nrmse;                    ///< against the truth
   bool is_done = true;                 ///< false: the time limit ended it
 };
 
-/// A header and a line for each.
+/// Returns a CSV text with a header and a line for each run.
 std::string runs_csv(std::span<const MeasuredRun> runs);
 
-/// Runs of one setting.
+/// The runs of one contender, setting and number of threads.
 struct RunGroup {
   Contender contender = Contender::alvor;
   double setting = 0;
@@ -52,12 +52,13 @@ struct RunGroup {
   bool is_done() const;
 };
 
-/// In the order in which settings first appear.
+/// Returns the runs in groups, in the order in which settings first appear.
 std::vector<RunGroup> grouped(std::span<const MeasuredRun> runs);
 
+/// Returns the groups of one contender and number of threads.
 std::vector<RunGroup> of(std::span<const RunGroup> groups, Contender contender, int threads = 1);
 
-/// Medians, one point a group.
+/// Returns the medians of CPU time and error, one point per group.
 std::vector<CurvePoint> error_by_cpu(std::span<const RunGroup> groups);
 
 }  // namespace alvor::bench

@@ -1,5 +1,5 @@
 #pragma once
-// docs/error-vs-time.md, written from what was measured.
+// Writes docs/error-vs-time.md from the measurements.
 
 #include "bench/error_vs_time/contest.h"
 
@@ -9,15 +9,16 @@ namespace alvor::bench {
 
 struct Measurements {
   std::vector<SceneContest> contests;
-  std::vector<Yardstick> yardsticks;  ///< each time that it was taken; not empty
+  std::vector<Yardstick> yardsticks;  ///< all measurements of it; not empty
 
   Spread yardstick_spread_s() const;
   double yardstick_s() const { return yardstick_spread_s().median; }
-  /// What work that is all parallel gains.
+  /// Returns the speedup that fully parallel work has with two threads.
   Spread two_threads_faster() const;
 };
 
-/// `tried` is taken as it is. Pictures are expected in the folder error-vs-time beside the page.
+/// Returns the text of the page. `tried` is inserted unchanged. The page refers to pictures in the folder error-vs-time beside
+/// it.
 std::string page(const Measurements& measured, const Settings& settings, const std::string& tried);
 
 }  // namespace alvor::bench

@@ -1,4 +1,4 @@
-// The section about one scene.
+// Writes the section about one scene.
 
 #include "bench/error_vs_time/figures.h"
 #include "bench/error_vs_time/page_sections.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The sections of the page that are mostly tables.
+// The sections of the page that consist mostly of tables.
 
 #include "bench/error_vs_time/page.h"
 

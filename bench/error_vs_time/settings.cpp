@@ -9,8 +9,8 @@ namespace alvor::bench {
 
 namespace {
 
-// Noise of a truth is taken out of errors, the chance of a few very wrong points is not: where there is much small furniture,
-// many points are worth more than many paths. Light through doorways is hard to sample and needs both.
+// Noise of the truth is removed from the errors, but a few very wrong points are a matter of chance: with much small furniture,
+// more points are better than more paths. Light through doorways is hard to sample and needs both.
 std::vector<SceneSettings> all_scenes() {
   const std::vector<double> others{0.05, 0.02}, few{0.1, 0.05, 0.03, 0.02}, more{0.1, 0.05, 0.03, 0.02, 0.015, 0.01};
   const std::vector<std::uint64_t> paths{16, 64, 256}, more_paths{16, 64, 256, 1024};

@@ -1,5 +1,5 @@
 #pragma once
-// What is measured, and how thoroughly.
+// Settings of the measurements.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,13 +9,13 @@
 namespace alvor::bench {
 
 struct SceneSettings {
-  std::string name;                         ///< of its file, without .obj
-  std::vector<double> tolerances;           ///< of the default strategy, from loose to tight
-  std::vector<double> strategy_tolerances;  ///< of the others
+  std::string name;                         ///< name of the scene's file, without .obj
+  std::vector<double> tolerances;           ///< tolerances for the default strategy, from large to small
+  std::vector<double> strategy_tolerances;  ///< tolerances for the other strategies
   std::vector<int> fixed_mesh_cells;        ///< see FixedMeshOptions::cells
-  std::vector<std::uint64_t> traced_paths;  ///< of each point, by the path tracer as a contender
+  std::vector<std::uint64_t> traced_paths;  ///< paths per point, for path tracing as a contender
   std::size_t truth_points = 10'000;
-  std::uint64_t truth_paths = 3200;  ///< of each point
+  std::uint64_t truth_paths = 3200;  ///< paths per point
 };
 
 struct Settings {
@@ -23,13 +23,13 @@ struct Settings {
   std::filesystem::path scene_folder = "scenes", truth_folder = "out/error_vs_time/truth", curve_folder = "out/error_vs_time";
   std::filesystem::path page = "docs/error-vs-time.md", figure_folder = "docs/error-vs-time";
   int seeds = 3;
-  double time_limit_s = 20;        ///< of one solve
-  double fixed_mesh_limit_s = 90;  ///< of one run of textbook shooting, which is not repeated
+  double time_limit_s = 20;        ///< limit for one solve
+  double fixed_mesh_limit_s = 90;  ///< limit for one run of textbook shooting, which is not repeated
   double long_run_s = 6;           ///< runs that take longer are not repeated with other seeds
   std::uint64_t truth_seed = 20'000;
 };
 
-/// What the command line asks for; ends the program where it asks for help or cannot be read.
+/// Returns the settings that the command line asks for. Ends the program after --help and on errors.
 Settings read_settings(int count, char** arguments);
 
 }  // namespace alvor::bench

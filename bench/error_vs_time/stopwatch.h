@@ -5,7 +5,8 @@
 
 namespace alvor::bench {
 
-/// Time since it was made, of the thread that asks. What runs in an arena of one thread runs on the calling one.
+/// Measures wall time and the calling thread's CPU time since construction. Work in an arena of one thread runs on the calling
+/// thread, so it is counted.
 class Stopwatch {
  public:
   double wall_s() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double faster_than_path_tracing = 100, faster_than_fixed_mesh = 30;
 constexpr double tolerance_kept = 0.02;
-constexpr double halved = 1.8;  // times faster with two threads: what counts as half the time
+constexpr double halved = 1.8;  // speedup with two threads that counts as half the time
 
 struct TimeTarget {
   double error, yardsticks;
@@ -68,7 +68,7 @@ Judgement judge_fixed_mesh(const SceneContest* cornell) {
   return judgement;
 }
 
-/// By the seed in the middle.
+/// Returns the error of the run with the median error.
 Confidence middle_error(const RunGroup& group) {
   std::vector<MeasuredRun> runs = group.runs;
   std::ranges::sort(runs, {}, [](const MeasuredRun& run) { return run.nrmse.value; });

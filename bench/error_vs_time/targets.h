@@ -1,5 +1,5 @@
 #pragma once
-// What was aimed at, and whether it was met.
+// The targets for Alvor's speed and accuracy, and whether they are met.
 
 #include "bench/error_vs_time/contest.h"
 
@@ -14,22 +14,21 @@ std::string_view text(Verdict verdict);
 struct Judgement {
   std::string aim, measured;
   Verdict verdict = Verdict::not_measured;
-  std::string note;  ///< what makes the verdict less than certain; may be empty
+  std::string note;  ///< reason why the verdict is uncertain; may be empty
 };
 
-/// Nothing reached misses any limit; an upper bound above the limit does too.
+/// Returns whether the cost is at most `limit`. A cost that is never reached is a miss, and so is an upper bound above the limit.
 Verdict at_most(const std::optional<Reached>& cost, double limit);
-/// Whether a measured error keeps `limit`, and a note where its 95 % interval does not tell.
+/// Returns whether a measured error is at most `limit`, with a note if its 95 % interval contains the limit.
 Judgement keeps(const Confidence& error, double limit);
 
-/// Whether the default strategy's runs at `tolerance` are that good. One that was not tried after a looser one had run out of
-/// time is a miss.
+/// Returns whether the default strategy's runs at `tolerance` have at most that error. A tolerance that was not tried because a
+/// larger one ran out of time is a miss.
 Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance);
 
-/// All targets, in order.
-/// `machine_gain`: see Measurements::two_threads_faster, the median.
+/// Returns the judgements of all targets, in order. `machine_gain` is the median of Measurements::two_threads_faster.
 std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain);
-/// Two threads against one, of solves. Where even work that is all parallel gained too little, a miss is the machine's.
+/// Compares solves with two threads and with one. If even fully parallel work gained too little, a miss is blamed on the machine.
 Judgement judge_thread_gain(double one_s, double two_s, double machine_gain);
 
 }  // namespace alvor::bench

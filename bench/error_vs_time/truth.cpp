@@ -14,7 +14,7 @@ namespace alvor::bench {
 
 namespace {
 
-constexpr std::uint64_t look_around_stream = ~1ull;  // no path has it
+constexpr std::uint64_t look_around_stream = ~1ull;  // no path uses this stream
 constexpr std::uint32_t look_around_rays = 256;
 
 TruePoint true_point(const PathTracer& tracer, const SurfacePoint& at, const IrradianceEstimate& found, PathRandom random) {
@@ -50,7 +50,7 @@ Truth find_truth(const Scene& scene, const SceneSettings& scene_settings, const 
 }
 
 ErrorStatistics errors_of(std::span<const double> estimates, const Truth& truth) {
-  // Statistics of what is no number would read as no error.
+  // NaN would otherwise look like no error in the statistics.
   if (!std::ranges::all_of(estimates, [](double estimate) { return std::isfinite(estimate); }))
     throw std::runtime_error("a solution has irradiance that is not finite");
   std::vector<ComparedPoint> compared;

@@ -11,7 +11,7 @@ namespace alvor::bench {
 
 namespace {
 
-/// One number of all that decides the light of a scene.
+/// Hashes all numbers that determine the light of a scene.
 class Mixer {
  public:
   void add(std::uint64_t bits) { state_ = mix_bits(state_ + bits + 1); }

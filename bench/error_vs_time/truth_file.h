@@ -1,5 +1,5 @@
 #pragma once
-// Truths are kept from one run to the next.
+// Stores truths in files from one run to the next.
 
 #include "bench/error_vs_time/truth.h"
 
@@ -9,13 +9,13 @@
 
 namespace alvor::bench {
 
-/// What a truth is the answer to, as one line: the scene's numbers mixed to one, points, paths, seed.
+/// Returns one line that identifies a truth: a hash of the scene, and points, paths and seed.
 std::string truth_question(const Scene& scene, const SceneSettings& settings, std::uint64_t seed);
 
-/// Nothing if there is no such file, or it answers another question, or is broken.
+/// Reads a truth. Returns nothing if there is no such file, it has another `question`, or it is malformed.
 std::optional<Truth> read_truth(const std::filesystem::path& path, const std::string& question);
 
-/// Makes the folder too. Throws FileError.
+/// Writes a truth; makes the folder if needed. Throws FileError.
 void write_truth(const std::filesystem::path& path, const std::string& question, const Truth& truth);
 
 }  // namespace alvor::bench

@@ -8,7 +8,7 @@ namespace {
 
 enum Paint : std::uint32_t { white, lamp, red, screen };
 
-/// A room of 4 x 3 x 5 m; its ceiling is nine tiles, the one in the middle a lamp of 1 m2.
+/// Returns a room of 4 x 3 x 5 m. Its ceiling has nine tiles; the middle one is a lamp of 1 m2.
 Scene empty_room() {
   Scene scene;
   scene.materials = {{"white", {}, {0.7, 0.69, 0.65}, false},
@@ -30,7 +30,7 @@ void furnish(Scene& scene) {
   test::add_box(scene, {2.4, 0, 2.6}, {3.4, 0.6, 3.8}, false, {red, red, red, red, red, red});
 }
 
-/// Everything at once: colours, solids, a two-sided screen.
+/// Returns a room with every feature: colours, solids, a two-sided screen.
 Scene general_room() {
   Scene scene = empty_room();
   furnish(scene);
@@ -44,7 +44,7 @@ Scene one_sided_room() {
   return scene;
 }
 
-/// Bands become their mean.
+/// Returns the scene with each material's bands replaced by their mean.
 Scene grey(Scene scene) {
   for (Material& material : scene.materials) {
     material.emission = material.emission.mean() * Rgb{1, 1, 1};
@@ -58,7 +58,7 @@ Scene scaled_reflectance(Scene scene, double scale) {
   return scene;
 }
 
-/// Two walls, a floor and a luminous panel, under the open sky.
+/// Returns two walls, a floor and a luminous panel under the open sky.
 Scene open_corner() {
   Scene scene = empty_room();
   scene.faces.clear();
@@ -69,7 +69,7 @@ Scene open_corner() {
   return scene;
 }
 
-/// The furnished room, its outer walls, and a room like it without light.
+/// Returns the furnished room with outer walls and a similar room without light.
 Scene house() {
   Scene scene = general_room();
   test::add_box(scene, {4.3, 0, 0}, {8.3, 3, 5}, true);

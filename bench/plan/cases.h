@@ -1,5 +1,5 @@
 #pragma once
-// Scenes that can do without a feature.
+// Test scenes that do not need some feature.
 
 #include "meshing/scene.h"
 #include "radiosity/solve/solver.h"
@@ -11,10 +11,11 @@ namespace alvor::bench {
 
 struct PlanCase {
   std::string name;  ///< one word
-  std::string what;  ///< for people
+  std::string what;  ///< description for people
   Scene scene;
   SolveOptions options;
-  FeatureSet features;  ///< that the plan switches off and that are forced on together, for comparison; empty: the general scene
+  /// The features that the plan switches off, and that are forced on together for comparison; empty for the general scene.
+  FeatureSet features;
 };
 
 std::vector<PlanCase> plan_cases();

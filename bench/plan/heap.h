@@ -1,13 +1,13 @@
 #pragma once
-// How much memory the program asked for by new.
+// Counts the memory that the program allocates by new.
 
 #include <cstddef>
 
 namespace alvor::bench {
 
-/// From now on; returns what is in use.
+/// Starts a new measurement of the peak. Returns the bytes in use now.
 std::size_t begin_heap_peak();
-/// The most that was in use since, bytes.
+/// Returns the most bytes in use since begin_heap_peak().
 std::size_t heap_peak();
 
 }  // namespace alvor::bench

@@ -1,4 +1,4 @@
-// Prints docs/plan.md: what scenes cost that can do without a feature, with it and without. See scripts/plan.sh.
+// Prints docs/plan.md: the cost of scenes that do not need a feature, with it and without. See scripts/plan.sh.
 
 #include "bench/error_vs_time/figures.h"
 #include "bench/plan/measured.h"
@@ -13,7 +13,7 @@ namespace alvor::bench {
 
 namespace {
 
-/// By name of the case, then forced or not: what callgrind counted.
+/// Instructions counted by callgrind, by the case's name and whether its features were forced on.
 using Instructions = std::map<std::pair<std::string, bool>, double>;
 
 Instructions read_instructions(const std::string& path) {
@@ -28,7 +28,7 @@ Instructions read_instructions(const std::string& path) {
 
 struct Measured {
   PlanCase planned;
-  PlanRun off, on;  ///< as planned; with what is off forced on
+  PlanRun off, on;  ///< as planned, and with its switched-off features forced on
 };
 
 std::string count_of(const Instructions& counts, const std::string& name, bool forced) {

@@ -1,6 +1,6 @@
-// service_bench SECONDS: what many watchers, and one that is stopped for so long, cost a server, and what publishing costs.
-// Prints the tables of docs/service.md. It starts itself again as the server (--serve SECONDS), and as the watcher that is
-// stopped, which tells each frame in a line (--watch ADDRESS SOLVE).
+// service_bench SECONDS: measures the cost for a server of many watchers, of one watcher that is stopped for SECONDS, and of
+// publishing. Prints the tables of docs/service.md. It starts itself as the server (--serve SECONDS), and as the stopped watcher,
+// which prints each frame as a line (--watch ADDRESS SOLVE).
 
 #include "bench/service/publishing.h"
 #include "bench/service/serving.h"
@@ -35,12 +35,12 @@ std::uint64_t resident_bytes(pid_t process) {
 struct Round {
   double cpu_us_per_shot = 0;
   double delay_p99_s = 0;
-  double growth_mb = 0;  ///< of the server, while the one was stopped or would have been
+  double growth_mb = 0;  ///< growth of the server while one watcher is stopped, or for as long without one
   std::vector<Arrival> stopped;
   double woken_at_s = 0;
 };
 
-/// Of frames that told a step at once: how much longer than the fastest each took.
+/// Returns the 99th percentile of the frames' delays. A frame's delay is how much longer it took than the fastest frame.
 double delay_p99(const std::vector<std::vector<Arrival>>& all) {
   double least = INFINITY;
   std::vector<double> late;
@@ -57,7 +57,7 @@ double delay_p99(const std::vector<std::vector<Arrival>>& all) {
 Round measure(const std::string& program, int count, bool with_stopped, double stopped_s) {
   ChildProcess server({program, "--serve", std::to_string(stopped_s + 10)}, STDOUT_FILENO);
   std::string address = server.line();
-  address.pop_back();  // the line's end
+  address.pop_back();  // the newline
   Client client(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
   const std::string solve = client.create_solve(client.create_scene(squares(1), "").name(), {}).name();
   Round round;

@@ -21,7 +21,7 @@ double seconds_of(const std::function<void()>& body) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 
-/// Smooth along the ids, as solutions are, with a little noise.
+/// Returns leaf values that are smooth along the ids, as solutions are, with a little noise.
 std::vector<LeafValue> solution(double brightness, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> noise(1, 0.01f);
@@ -38,7 +38,7 @@ struct Costs {
   std::size_t changed = 0, raw = 0, compressed = 0;
 };
 
-/// Of one step: a display viewer is at the step before it.
+/// Returns the costs of one step for a display viewer that is at the step before.
 Costs costs_of(SolutionLog& log, const std::vector<LeafValue>& values) {
   Costs costs;
   Step step;

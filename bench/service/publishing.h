@@ -4,7 +4,7 @@
 
 namespace alvor::bench {
 
-/// What it costs to publish, encode and decode, per leaf, and per second at 10 Hz with a million leaves.
+/// Prints the cost of publishing, encoding and decoding per leaf, and per second at 10 Hz with a million leaves.
 void print_publishing(std::ostream& out);
 
 }  // namespace alvor::bench

@@ -23,7 +23,7 @@ double cpu_of_thread_s() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// About half a millisecond of arithmetic.
+/// Does about half a millisecond of arithmetic.
 double shoot() {
   double sum = 0;
   for (int n = 1; n < 250'000; ++n) sum += 1.0 / n;

@@ -19,7 +19,7 @@ Scene furnace() {
   return scene;
 }
 
-// A furnace one of whose corners is moved, with the three faces that meet there.
+// Returns a furnace with one corner moved, and with it the three faces that meet there.
 Scene bent(double by) {
   Scene scene = furnace();
   for (Vec3& vertex : scene.vertices)
@@ -29,7 +29,7 @@ Scene bent(double by) {
 
 }  // namespace
 
-// A room whose ceiling has a lamp, with a block on the floor.
+// Returns a room with a lamp in its ceiling and a block on its floor.
 Scene lit_room() {
   Scene scene;
   scene.materials = {grey(0, 0.6), grey(50, 0)};
@@ -55,7 +55,7 @@ Scene small_lamp_in_large_room() {
   return scene;
 }
 
-// The floor of a furnace in strips that are each a millionth as wide as long, and the same as triangles.
+// Returns a furnace whose floor contains strips a millionth as wide as long, as quads and as triangles.
 Scene slivers() {
   Scene scene = furnace();
   scene.faces.erase(scene.faces.begin());
@@ -81,7 +81,7 @@ Scene every_face_twice() {
   return scene;
 }
 
-// Walls that are one face from inside and another one from outside, in one place.
+// Returns a furnace whose walls are two faces in one place, one seen from inside and one from outside.
 Scene back_to_back() {
   Scene scene = furnace();
   add_block(scene, {0, 0, 0}, {3, 2, 4});
@@ -126,7 +126,7 @@ Scene fan_on_one_edge() {
   return scene;
 }
 
-// Two cones of 10 000 triangles each, base to base, seen from inside: closed and convex.
+// Returns two cones of 10 000 triangles each, base to base, seen from inside: closed and convex.
 Scene cones() {
   constexpr std::uint32_t sides = 10'000;
   Scene scene;

@@ -1,16 +1,16 @@
 #pragma once
-// Scenes as no architect would draw them, but files hold.
+// Awkward scenes that real files contain though no architect would draw them.
 
 #include "meshing/scene.h"
 
 namespace alvor::bench {
 
-/// A room whose ceiling has a lamp, with a block on the floor.
+/// Returns a room with a lamp in its ceiling and a block on its floor.
 Scene lit_room();
-/// A lamp of a square micrometre in a room of a square metre a wall.
+/// Returns a room with a lamp of a square micrometre and walls of a square metre.
 Scene small_lamp_in_large_room();
 
-// A closed room in which all emits 1 and reflects half, with something more:
+// Closed rooms in which every surface emits 1 and reflects half, with one awkward addition each:
 Scene slivers();
 Scene every_face_twice();
 Scene back_to_back();
@@ -25,11 +25,11 @@ Scene hardly_bent();
 Scene clearly_bent();
 Scene with_degenerate_faces();
 
-// Nothing is lit.
+// Scenes in which nothing is lit:
 Scene inside_out();
 Scene one_face();
 
-// To be refused.
+// Scenes that must be refused:
 Scene all_degenerate();
 Scene beyond_the_world();
 Scene not_a_number();

@@ -10,15 +10,16 @@ namespace alvor::bench {
 namespace {
 
 constexpr double high_reflectances[]{0.9, 0.99, 0.999, 0.999999};
-constexpr double exact = 1e-6;  // where rows that sum to 1 are the whole truth: float32 of what is published
+// Rounding of the published float32, where rows that sum to 1 give the exact result.
+constexpr double exact = 1e-6;
 constexpr double exact_when_stiffest = 1e-4;
-constexpr double tolerance = 0.02;  // of a solve, by default
+constexpr double tolerance = 0.02;  // default tolerance of a solve
 
 double furnace_limit(double reflectance) { return reflectance > 0.999 ? exact_when_stiffest : exact; }
 
 std::string rho(double reflectance) { return "rho " + figure(reflectance, 9); }
 
-/// A room with a block in it, in which each surface emits 1 - rho times what it would in a furnace of radiosity `level`.
+/// Returns a room and a block in it, each of one material. It is a furnace if every surface has the same E / (1 - rho).
 Scene furnished_furnace(const Material& room, const Material& block) {
   Scene scene;
   scene.materials = {room, block};
@@ -41,7 +42,8 @@ Case furnace(double reflectance) {
           }};
 }
 
-/// Weights of hits are floats: a row sums to 1 but for 1e-7, which the furnace amplifies.
+/// Returns a furnace with rows by `method`. Its limit is the rounding of hit weights, which are floats: a row sums to 1 within
+/// 1e-7, and the furnace amplifies that.
 Case furnace_by(FormFactorMethod method, const std::string& name, double reflectance) {
   constexpr double rounding = 2e-7;
   const double radiosity = 1 / (1 - reflectance), limit = rounding * radiosity;
@@ -65,7 +67,8 @@ Case dark_face_isothermal(double reflectance) {
           }};
 }
 
-/// What the others emit ends on the black face, but for what they absorb themselves: 5 E - (1 - rho) 5 H.
+/// Compares powers: the light of the five emitting faces ends on the black face, except what they absorb themselves, 5 E - (1 -
+/// rho) 5 H.
 Case dark_face_balance(double reflectance) {
   return {"one black face in a box that emits 1", rho(reflectance) + " and 0", "power absorbed = power emitted", tolerance, [=] {
             const SolvedScene solved(unit_cube(grey(0, 0), grey(1, reflectance)));
@@ -108,7 +111,8 @@ Case contrast_with_lamp() {
           }};
 }
 
-/// Light gets out at the edges only; the plates are infinite to it as long as it moves less than their size before it is gone.
+/// Compares with infinite plates. Light escapes only at the edges, so the plates act as infinite if light is absorbed before it
+/// has moved by their size.
 Case plates(double distance, double reflectance, double leak) {
   const double below = 1 / (1 - reflectance * reflectance);
   return {"facing plates, the lower one emits 1", "distance/size " + figure(distance, 3) + ", " + rho(reflectance),

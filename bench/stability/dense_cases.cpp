@@ -27,7 +27,7 @@ Case plates(double distance, double reflectance) {
           "within 1 % of the dense solution", one_percent, [=] { return settled(facing_plates(distance, reflectance), 4); }};
 }
 
-/// One that cannot do it must say so.
+/// Returns a case for one strategy. A strategy that cannot solve it must say so by its estimate.
 Case by_strategy(Strategy strategy, double reflectance) {
   constexpr int rooms = 10;
   Case strategy_case{"chain of " + std::to_string(rooms) + " rooms, `" + std::string(text(strategy)) + "`", rho(reflectance),

@@ -4,7 +4,7 @@
 
 namespace alvor::bench {
 
-// Of y = F (e + rho y).
+// Solves y = F (e + rho y) for the irradiance y.
 std::vector<double> dense_irradiance(const Shooting& system) {
   using Number = long double;
   const auto own = system.unshot_by_leaf();

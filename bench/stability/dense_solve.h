@@ -1,5 +1,5 @@
 #pragma once
-// The system of transport rows as a dense matrix: the slow and sure way.
+// Solves the system of transport rows as a dense matrix, slowly but reliably.
 
 #include "radiosity/exchange/shooting.h"
 
@@ -7,8 +7,8 @@
 
 namespace alvor::bench {
 
-/// Irradiance by patch in the second band, by Gaussian elimination with partial pivoting in long double. Cubic in the number of
-/// patches. Requires: nothing of the system is shot, hits weigh the same.
+/// Returns the irradiance of each patch in the second band, by Gaussian elimination with partial pivoting in long double. Cubic
+/// in the number of patches. Requires: nothing of the system has been shot; all hits have the same weight.
 std::vector<double> dense_irradiance(const Shooting& unshot_system);
 
 }  // namespace alvor::bench

@@ -4,7 +4,7 @@ namespace alvor::bench {
 
 namespace {
 
-/// Between two rooms, seen from both: beside the door, on both sides, and above it.
+/// Adds the wall between two rooms, seen from both: beside the door on both sides, and above it.
 void add_wall_with_door(Scene& scene, double x, std::uint32_t material) {
   constexpr double left = 0.4, right = 0.6, top = 0.4;
   add_quad(scene, {x, 0, 0}, {x, 1, 0}, {x, 1, left}, {x, 0, left}, material);

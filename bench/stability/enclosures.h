@@ -11,22 +11,23 @@ using test::grey;
 
 void add_quad(Scene& scene, Vec3 a, Vec3 b, Vec3 c, Vec3 d, std::uint32_t material = 0);
 
-/// Six quads that look inwards: y low, y high, x low, x high, z low, z high.
+/// The materials of a box's six quads: y low, y high, x low, x high, z low, z high.
 using BoxMaterials = std::array<std::uint32_t, 6>;
+/// Adds a box whose quads face inwards.
 void add_room(Scene& scene, Vec3 low, Vec3 high, const BoxMaterials& materials = {});
-/// The same, looking outwards.
+/// Adds a box whose quads face outwards.
 void add_block(Scene& scene, Vec3 low, Vec3 high, const BoxMaterials& materials = {});
 
-/// A closed room of unit size whose floor has the first material and all else the second.
+/// Returns a closed room of unit size. Its floor has the material `floor`, all else `rest`.
 Scene unit_cube(const Material& floor, const Material& rest);
 
-/// Unit squares that look at each other; the first, below, emits.
+/// Returns two unit squares that face each other; the first, below, emits.
 Scene facing_plates(double distance, double reflectance);
 
-/// Unit cubes in a row along x, joined by doors of 0.2 x 0.4 m. The ceiling of the first one emits 1 W/m2.
+/// Returns unit cubes in a row along x, joined by doors of 0.2 x 0.4 m. The ceiling of the first one emits 1 W/m2.
 Scene chain_of_rooms(int count, double reflectance);
 
-/// Moves and scales all vertices: p becomes scale p + offset.
+/// Returns the scene with each vertex p replaced by scale p + offset.
 Scene placed(Scene scene, double scale, Vec3 offset = {});
 
 }  // namespace alvor::bench

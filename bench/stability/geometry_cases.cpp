@@ -12,13 +12,14 @@ namespace alvor::bench {
 
 namespace {
 
-constexpr double exact = 1e-6;            // where rows that sum to 1 are the whole truth
-constexpr double tolerance = 0.02;        // of a solve, by default
+// Rounding of the published float32, where rows that sum to 1 give the exact result.
+constexpr double exact = 1e-6;
+constexpr double tolerance = 0.02;        // default tolerance of a solve
 constexpr double furnace_irradiance = 2;  // E = 1, rho = 0.5
 
 constexpr double far_off = std::numeric_limits<double>::infinity();
 
-/// A furnace stays one, whatever is put into it; what is hidden is exactly dark.
+/// Returns a case with `scene` a furnace and an addition: irradiance must stay the same, and hidden places must be exactly dark.
 Case in_furnace(const std::string& name, const std::string& condition, Scene (*scene)(), double lit = 0.9) {
   return {name, condition, "H = 2 on every leaf but " + tolerance_percent(1 - lit) + " that may be hidden", exact, [=] {
             const SolvedScene solved(scene());
@@ -28,7 +29,8 @@ Case in_furnace(const std::string& name, const std::string& condition, Scene (*s
           }};
 }
 
-/// Where blocks touch, the inside of one sees the face of the other: leaves at the seam, half of them inside, are not told apart.
+/// Returns the case of two touching blocks. The inside of one sees the face of the other, and leaves at the seam, half of them
+/// inside, are not recognised as hidden.
 Case touching() {
   return {"two blocks side by side", "touching, of unequal height", "H = 2; RMS over the leaves outside", tolerance, [] {
             const SolvedScene solved(touching_blocks());
@@ -88,7 +90,7 @@ Case many_at_one_vertex() {
   return cones_case;
 }
 
-/// All black and emitting 1: the floor sees the four walls, and past them nothing.
+/// Returns the case of an open cube in which all surfaces emit 1 and are black: the floor sees the four walls and nothing else.
 Case without_a_lid() {
   const double expected = 4 * 0.2000437760754;
   return {"a cube without a lid", "all emit 1, black", "mean H of the floor = " + figure(expected, 7), tolerance, [=] {

@@ -14,7 +14,8 @@ namespace {
 constexpr double reflectance = 0.5, tolerance = 0.02;
 constexpr double far_off = std::numeric_limits<double>::infinity();
 
-/// One face emits; uniform reflectance, so the mean radiosity is the mean emission over 1 - rho.
+/// Returns a case in which one face of a cube emits. Reflectance is uniform, so the mean radiosity is the mean emission over 1 -
+/// rho.
 Case lone_emission(double emission) {
   const double expected = emission / 6 / (1 - reflectance);
   return {"cube, one face emits", figure(emission) + " W/m2", "mean B = mean E/(1-rho) = " + figure(expected), tolerance, [=] {
@@ -24,7 +25,7 @@ Case lone_emission(double emission) {
           }};
 }
 
-/// The second of two closed cubes, each with one emitting face.
+/// Returns two closed cubes, each with one emitting face.
 Scene two_cubes(double first, double second, double rho) {
   Scene scene;
   scene.materials = {grey(0, rho), grey(first, rho), grey(second, rho)};
@@ -34,7 +35,8 @@ Scene two_cubes(double first, double second, double rho) {
 }
 
 Case next_to(double bright, double dim) {
-  const double expected = 1.0 / (1 - reflectance) - 1;  // rho H over E, times six, of all faces
+  // rho H / E, times six, summed over all faces.
+  const double expected = 1.0 / (1 - reflectance) - 1;
   return {"two closed cubes, one face of each emits", figure(bright) + " and " + figure(dim) + " W/m2",
           "mean B = mean E/(1-rho) in both", tolerance, [=] {
             const SolvedScene solved(two_cubes(bright, dim, reflectance));
@@ -60,7 +62,7 @@ Case in_one_room(double bright, double dim) {
           }};
 }
 
-/// With shadows, so that there is noise to be squared.
+/// Returns a room with shadows, whose noise the estimate squares.
 Scene shadowed_room(double emission) {
   Scene scene;
   scene.materials = {grey(0, reflectance), grey(emission, 0)};
@@ -81,7 +83,7 @@ Case in_proportion(double emission) {
           }};
 }
 
-/// The floor of a cube in n x n tiles that all emit.
+/// Returns the case of a cube whose floor is n x n tiles that all emit.
 Case many_emitters(int n) {
   const double expected = 1.0 / 6 / (1 - reflectance);
   return {"cube, the floor in tiles that emit",

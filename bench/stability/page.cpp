@@ -28,7 +28,7 @@ std::string table(const Section& section, const std::vector<Measured>& measured)
   return text;
 }
 
-/// Each that does not hold, and why, where that is known.
+/// Returns the list of cases that do not hold, with the reason where it is known.
 std::string failures(std::span<const Section> sections, const Findings& findings) {
   std::string text;
   for (std::size_t s = 0; s < sections.size(); ++s)

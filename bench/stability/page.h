@@ -1,5 +1,5 @@
 #pragma once
-// docs/stability.md.
+// Writes docs/stability.md.
 
 #include "bench/stability/case.h"
 
@@ -9,14 +9,14 @@
 
 namespace alvor::bench {
 
-/// Cases under one heading.
+/// The cases under one heading of the page.
 struct Section {
   std::string title, text;
   std::vector<Case> cases;
 };
 std::vector<Section> all_sections();
 
-/// What was measured, by section, then case.
+/// The results, by section, then by case.
 using Findings = std::vector<std::vector<Measured>>;
 std::string page(std::span<const Section> sections, const Findings& findings);
 

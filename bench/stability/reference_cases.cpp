@@ -1,4 +1,4 @@
-// Face means of boxes, plates and spheres known to many digits.
+// Compares with face means of boxes, plates and spheres that are known to many digits.
 
 #include "bench/error_vs_time/figures.h"
 #include "bench/stability/case.h"
@@ -23,7 +23,7 @@ double mean_of_root(const SolvedScene& solved, std::uint32_t wanted) {
   return solved.mean_irradiance([=](std::uint32_t root) { return root == wanted; }).g;
 }
 
-/// Mean radiosities in the limit of fine meshes: piecewise constant Galerkin with exact factors, extrapolated.
+/// Mean radiosities of a cube's faces in the limit of fine meshes: piecewise constant Galerkin with exact factors, extrapolated.
 struct CubeMeans {
   double reflectance, emitter, opposite, wall;
 };
@@ -44,7 +44,7 @@ Case cube(const CubeMeans& means) {
           }};
 }
 
-/// The same for unit squares with nothing around, by a Nystrom method.
+/// Mean radiosities of two facing unit squares without surroundings, by a Nystrom method.
 struct PlateMeans {
   double distance, reflectance, lower, upper;
 };
@@ -63,8 +63,8 @@ Case plates(const PlateMeans& means) {
       }};
 }
 
-/// A sphere of 2 x 24 x 48 faces seen from inside. On a sphere any patch sees equal areas alike, so irradiance is even
-/// everywhere.
+/// Returns a sphere of 2 x 24 x 48 faces seen from inside. Every patch of a sphere sees equal areas equally, so irradiance is the
+/// same everywhere.
 Scene sphere(const Material& cap, const Material& rest) {
   constexpr int rings = 48, sides = 96;
   Scene scene;
@@ -93,7 +93,7 @@ double share_of_cap(const SolvedScene& solved) {
   return cap / all;
 }
 
-/// H = (sum E A / A) / (1 - sum rho A / A), of the faces as they are.
+/// Returns the case of an integrating sphere: H = (sum E A / A) / (1 - sum rho A / A), with the areas of the actual faces.
 Case integrating_sphere(double cap_reflectance, double reflectance) {
   return {"sphere of 4 608 faces, a cap emits 1", "rho " + figure(cap_reflectance) + " and " + figure(reflectance, 9),
           "H = mean E/(1 - mean rho) in the mean", tolerance, [=] {

@@ -1,5 +1,5 @@
 #pragma once
-// A scene and what solving it published.
+// Solves a scene and evaluates the published solution.
 
 #include "bench/stability/case.h"
 #include "radiosity/solve/solver.h"
@@ -9,11 +9,11 @@
 
 namespace alvor::bench {
 
-inline constexpr double most_seconds = 10;  // that a solve may take
+inline constexpr double most_seconds = 10;  // limit for a solve
 
 class SolvedScene {
  public:
-  /// On one thread, for most_seconds at most.
+  /// Solves the scene on one thread, for at most most_seconds.
   explicit SolvedScene(const Scene& scene, SolveOptions options = {});
 
   const std::optional<Fault>& fault() const { return fault_; }
@@ -22,18 +22,19 @@ class SolvedScene {
   const Material& material_of(const LeafValue& leaf) const { return mesh_->material_of(leaf.patch.root_face()); }
   double area_of(const LeafValue& leaf) const;
 
-  /// Largest relative difference of a leaf's irradiance, in any band, from what is expected of all.
+  /// Returns the largest relative difference of any leaf's irradiance, in any band, from `expected`.
   double worst_error(const Rgb& expected) const;
-  /// The same, of leaves that are not exactly dark.
+  /// Returns the largest relative difference from `expected` over the leaves that are not exactly dark.
   double worst_error_where_lit(const Rgb& expected) const;
-  /// Of the area, on leaves that are not exactly dark.
+  /// Returns the fraction of the area on leaves that are not exactly dark.
   double lit_share() const;
-  /// Irradiance over the area of the roots that are chosen.
+  /// Returns the mean irradiance over the area of the roots that `is_chosen` accepts.
   Rgb mean_irradiance(const std::function<bool(std::uint32_t root)>& is_chosen) const;
   Rgb mean_irradiance() const;
   Rgb mean_radiosity() const;
 
-  /// With the steps, seconds and estimate of this solve. A scene that was refused or a value that is no number counts as wrong.
+  /// Returns the result with the steps, seconds and estimate of this solve. If the scene was refused, or a value is negative or
+  /// not finite, the error is infinite.
   Measured measured(std::string obtained, double error) const;
 
  private:
@@ -45,7 +46,7 @@ class SolvedScene {
   double seconds_ = 0;
 };
 
-/// |value - expected| / expected in the worst band.
+/// Returns |value - expected| / expected in the worst band.
 double relative_error(const Rgb& value, const Rgb& expected);
 
 }  // namespace alvor::bench

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double fine = 1e-6;
 
-/// Steps of one row or column each, per patch, down to an error of 1e-6: fewer than those of the best strategy on record.
+/// Counts the steps, of one row or column each, per patch down to an error of 1e-6: they must be fewer than those of the best
+/// strategy on record.
 Case steps(const std::string& name, double reflectance, double limit, const std::string& record, Scene scene) {
   return {name, "rho " + figure(reflectance, 9), "fewer steps a patch than " + record, limit, [=] {
             RowSystem system(scene, 3);

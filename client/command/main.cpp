@@ -18,10 +18,11 @@ namespace alvor {
 
 namespace {
 
-// Who closes the pipe that we write to, as `head` does, gets an error of ours and not a signal.
+// Ignores SIGPIPE: when the reader of our output closes the pipe, as `head` does, writing returns an error.
 void outlive_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
-// stderr carries only our own lines. GRPC_VERBOSITY in the environment still works for those who look for a fault.
+// Silences gRPC and protobuf, so that stderr carries only our own lines. GRPC_VERBOSITY in the environment still works for
+// debugging.
 void silence_libraries() {
   setenv("GRPC_VERBOSITY", "NONE", 0);
   google::protobuf::SetLogHandler(nullptr);
@@ -51,7 +52,7 @@ ExitStatus say(ExitStatus status, std::string line) {
   return status;
 }
 
-/// Runs the command that was chosen, or prints the help, the version, or what is wrong with the command line.
+/// Runs the chosen command, or prints the help, the version, or the fault of the command line.
 ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

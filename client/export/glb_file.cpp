@@ -31,7 +31,7 @@ Vec3 middle_of_box(const std::vector<Vec3>& points) {
   return lerp(low, high, 0.5);
 }
 
-/// Gathers the binary chunk and the accessors that describe it.
+/// Collects the binary chunk and the accessors that describe it.
 class BinaryChunk {
  public:
   /// Appends `value(i)` for each of `count` vertices; returns the accessor's index.
@@ -94,7 +94,8 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   return attributes;
 }
 
-/// Shown as it is: the light is in the vertex colours. The base values are for viewers that do not know the extension.
+/// Returns the material, shown unlit because the light is in the vertex colours. The base values are for viewers without that
+/// extension.
 json unlit_material() {
   return {{"name", "solution"},
           {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},

@@ -21,7 +21,7 @@ struct Chunks {
   std::string_view text, binary;
 };
 
-/// Takes a chunk of this type off the front of `rest`.
+/// Removes a chunk of this type from the front of `rest` and returns it.
 std::string_view take_chunk(std::string_view& rest, std::uint32_t type, const std::string& place) {
   if (rest.size() < chunk_header_size) fail(place, "missing");
   const std::size_t size = value_at<std::uint32_t>(rest, 0);
@@ -56,7 +56,7 @@ const json& member(const json& object, const char* key, const std::string& place
   return *found;
 }
 
-/// A whole number in [0, 2^32).
+/// Returns a whole number in [0, 2^32).
 std::size_t whole_number(const json& value, const std::string& place) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
     fail(place, "not a whole number below 2^32");
@@ -75,7 +75,7 @@ const json& element(const json& root, const char* list, std::size_t index) {
   return elements[index];
 }
 
-/// The bytes of an accessor's elements, `stride` apart; every element lies within.
+/// The elements of an accessor, `stride` bytes apart; all of them lie within `bytes`.
 struct Elements {
   std::string_view bytes;
   std::size_t count = 0, stride = 0;
@@ -118,13 +118,13 @@ Elements elements_of(const json& root, std::string_view binary, std::size_t inde
   found.stride = whole_number_or(view, "byteStride", kind.size, view_place);
   const std::size_t offset = whole_number_or(accessor, "byteOffset", 0, place);
   if (found.stride < kind.size || found.count == 0) fail(place, "no elements");
-  // All four are below 2^32, so that nothing here overflows.
+  // All four numbers are below 2^32, so nothing overflows.
   if (offset + (found.count - 1) * found.stride + kind.size > found.bytes.size()) fail(place, "beyond its bufferView");
   found.bytes.remove_prefix(offset);
   return found;
 }
 
-/// Reads one attribute of the primitive as vectors of T{x, y, z}, moved by `offset`.
+/// Returns one attribute of the primitive as vectors of T{x, y, z}, moved by `offset`.
 template <class T>
 std::vector<T> read_vectors(const json& root, std::string_view binary, const char* name, const T& offset) {
   const json& primitive = element(element(root, "meshes", 0), "primitives", 0);

@@ -46,7 +46,7 @@ void append_colour(std::string& bytes, const Rgb& linear) {
   for (const double x : {linear.r, linear.g, linear.b}) append_value(bytes, srgb_byte(x));
 }
 
-/// Reads values one after the other. Requires that what is read lies within.
+/// Reads values one after the other. Requires: they lie within the bytes.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : bytes_(bytes) {}
@@ -72,7 +72,7 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-/// The header's text without comments, and the rest of the file.
+/// A PLY file split into its header, without comments, and the rest.
 struct Parts {
   std::string header;
   std::string_view body;
@@ -93,7 +93,7 @@ Parts parts_of(std::string_view bytes) {
   return parts;
 }
 
-/// Takes `expected` off the front of a header.
+/// Removes `expected` from the front of a header. Throws SolutionFileError if the header has anything else there.
 void take(std::string_view& text, std::string_view expected) {
   if (!text.starts_with(expected))
     fail("header", "expected '" + std::string(expected.substr(0, expected.find('\n'))) + "' and what Alvor writes after it");

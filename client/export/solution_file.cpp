@@ -27,7 +27,7 @@ bool is_place(const Vec3& p) {
   return std::abs(p.x) < largest_coordinate && std::abs(p.y) < largest_coordinate && std::abs(p.z) < largest_coordinate;
 }
 
-/// Throws unless whoever draws or probes the mesh can rely on it.
+/// Throws SolutionFileError unless the vertices are consistent, finite and within bounds, as drawing and probing require.
 void check_vertices(const DisplayMesh& mesh) {
   const std::size_t count = mesh.positions.size();
   if (mesh.normals.size() != count || mesh.irradiance.size() != count || mesh.radiosity.size() != count)
@@ -53,7 +53,7 @@ DisplayMesh checked(DisplayMesh mesh) {
   return mesh;
 }
 
-/// Calls `work`; its errors leave as SolutionFileError that begin with the file.
+/// Returns the result of `work`. Its errors become SolutionFileError that begin with `name`.
 template <class Work>
 auto naming(const std::string& name, Work work) {
   try {

@@ -18,14 +18,14 @@ struct Box {
   Vec3 low, high;
   Vec3 centre() const { return lerp(low, high, 0.5); }
   Vec3 size() const { return high - low; }
-  /// (0, 0, 0) is `low`, (1, 1, 1) is `high`.
+  /// Returns the point at fractions of the box's sides: (0, 0, 0) is `low`, (1, 1, 1) is `high`.
   Vec3 at(double x, double y, double z) const {
     const Vec3 s = size();
     return {low.x + x * s.x, low.y + y * s.y, low.z + z * s.z};
   }
 };
 
-/// Turns a y-up direction or place to the mesh's own axes, and back. Views are chosen as if all meshes were y-up.
+/// Converts directions and positions from y-up axes to the mesh's axes, and back. Views are chosen as if all meshes were y-up.
 Vec3 from_upright(UpAxis up, Vec3 p) { return up == UpAxis::y ? p : Vec3{p.x, -p.z, p.y}; }
 Vec3 to_upright(UpAxis up, Vec3 p) { return up == UpAxis::y ? p : Vec3{p.x, p.z, -p.y}; }
 
@@ -42,13 +42,13 @@ Box box_of(const DisplayMesh& mesh) {
   return box;
 }
 
-/// Casts trial rays, given y-up, and tells fronts from backs.
+/// Casts trial rays, given in y-up axes, and distinguishes fronts from backs.
 class Scout {
  public:
   Scout(const DisplayMesh& mesh, const TriangleCaster& caster) : mesh_(mesh), caster_(caster), box_(box_of(mesh)) {}
   const Box& box() const { return box_; }
 
-  /// What a ray meets first: +distance for a front, -distance for a back, 0 for nothing.
+  /// Returns +distance if the ray first hits a front, -distance for a back, 0 for nothing.
   double look(Vec3 origin, Vec3 direction) const {
     const Vec3 along = from_upright(mesh_.up, direction);
     const auto hit = caster_.cast(from_upright(mesh_.up, origin), along);
@@ -64,14 +64,14 @@ class Scout {
   Box box_;
 };
 
-/// A side of the box, seen from outside.
+/// One of the six sides of the bounding box, seen from outside.
 struct Side {
   Vec3 inward;          ///< unit, along an axis
-  double openness = 0;  ///< in [0, 1]: share of rays that enter, weighted by how deep they get
-  double backs = 0;     ///< share of rays that meet the back of a surface first
+  double openness = 0;  ///< in [0, 1]: fraction of rays that enter, weighted by how deep they get
+  double backs = 0;     ///< fraction of rays that first hit a back
 };
 
-/// The plane that rays through `side` start from, just outside the box, at (s, t) in [0, 1].
+/// Returns the start of a trial ray through a side of the box, just outside it, at (s, t) in [0, 1].
 Vec3 start_on(const Box& box, const Vec3& inward, double s, double t) {
   constexpr double outside = 0.01;
   const auto along = [&](double way) { return way > 0 ? -outside : 1 + outside; };
@@ -103,7 +103,8 @@ Camera aimless(double fov_degrees, PictureSize size) {
   return camera;
 }
 
-/// As the Cornell box is shown: straight in, the opening just fills the picture (Cornell: 39 degrees, eye at z = -800).
+/// Returns a view straight through an open side, which just fills the picture. The Cornell box is shown so (39 degrees, eye at z
+/// = -800).
 Camera view_through(const Box& box, const Side& side, PictureSize size) {
   Camera camera = aimless(39, size);
   const Vec3 extent = box.size(), inward = side.inward;
@@ -115,7 +116,7 @@ Camera view_through(const Box& box, const Side& side, PictureSize size) {
   return camera;
 }
 
-/// From above the middle of a closed room's corner, 60 % up, to the opposite corner.
+/// Returns a view from a corner of a closed room, at 60 % of its height, to the opposite corner.
 Camera view_from_corner(const Box& box, bool right, bool far, PictureSize size) {
   constexpr double inset = 0.08;
   const double x = right ? 1 - inset : inset, z = far ? 1 - inset : inset;
@@ -125,7 +126,7 @@ Camera view_from_corner(const Box& box, bool right, bool far, PictureSize size) 
   return camera;
 }
 
-/// In [0, 1]: how much of the room a camera sees; backs in the way count against it.
+/// Returns in [0, 1] how much of the room a camera sees; backs in the way count against it.
 double worth(const Scout& scout, const Camera& camera) {
   const Viewfinder view(camera);
   const double far = length(scout.box().size());
@@ -138,7 +139,7 @@ double worth(const Scout& scout, const Camera& camera) {
   return sum / (grid * grid);
 }
 
-/// The first of the candidates worth the most; a later one must be clearly better.
+/// Returns the candidate that sees most. The first wins unless a later one is clearly better.
 Camera best_of(const Scout& scout, std::span<const Camera> candidates) {
   constexpr double clearly = 0.02;
   const Camera* best = nullptr;
@@ -159,7 +160,7 @@ Camera view_inside(const Scout& scout, PictureSize size) {
   return best_of(scout, corners);
 }
 
-/// All of the box in the picture. Requires: `towards_eye` is unit.
+/// Returns a view that has the whole box in the picture. Requires: `towards_eye` is unit.
 Camera view_along(const Box& box, const Vec3& towards_eye, PictureSize size) {
   Camera camera = aimless(35, size);
   const double narrow = std::min(1.0, static_cast<double>(size.width) / size.height);
@@ -169,7 +170,7 @@ Camera view_along(const Box& box, const Vec3& towards_eye, PictureSize size) {
   return camera;
 }
 
-/// From in front and above if fronts are to be seen from there, else from where they are.
+/// Returns a view from outside: from in front and above if fronts are visible from there, else from another direction.
 Camera view_from_outside(const Scout& scout, PictureSize size) {
   std::vector<Camera> views;
   for (const double y : {0.45, -0.45})
@@ -188,11 +189,11 @@ Camera upright_camera(const Scout& scout, PictureSize size) {
     if (way < horizontal && side.openness > open.openness + 0.01) open = side;
     backs += side.backs / 6;
   }
-  // A plane with things on it lets rays in from all sides, but shows no backs.
+  // Rays also enter from all sides if the scene is a plane with objects on it, but then they hit no backs.
   const bool is_room = backs > 0.4;
   if (is_room && open.openness > 0.4) return view_through(scout.box(), open, size);
   if (!is_room) return view_from_outside(scout, size);
-  // Where all corners are inside walls or furniture, fronts are better seen through the walls.
+  // If all corners are inside walls or furniture, a view from outside through the walls shows more fronts.
   const Camera inside = view_inside(scout, size);
   return worth(scout, inside) > 0.1 ? inside : view_from_outside(scout, size);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a picture is taken from.
+// Cameras and the choice of a default view.
 
 #include "meshing/display_mesh.h"
 
@@ -17,16 +17,16 @@ struct Camera {
   int height = 768;
 };
 
-/// Rays through the pixels of a camera. Pixel coordinates run right and down from the picture's upper left corner.
+/// The rays through the pixels of a camera. Pixel coordinates run right and down from the picture's upper left corner.
 class Viewfinder {
  public:
   explicit Viewfinder(const Camera& camera);
   Vec3 eye() const { return eye_; }
-  /// Unit direction through (x, y); the middle of the first pixel is (0.5, 0.5).
+  /// Returns the unit direction through (x, y); the middle of the first pixel is (0.5, 0.5).
   Vec3 direction(double x, double y) const;
 
  private:
-  Vec3 eye_, corner_, right_, down_;  ///< corner_ is the direction of (0, 0); right_ and down_ are steps of one pixel
+  Vec3 eye_, corner_, right_, down_;  ///< corner_ is the direction at (0, 0); right_ and down_ are steps of one pixel
 };
 
 /// A picture's size in pixels.
@@ -35,10 +35,11 @@ struct PictureSize {
   int height = 768;
 };
 
-/// A view that shows the fronts of things, the mesh's up axis upright: through the open side of a room, as the Cornell box is
-/// shown; from a corner of a closed room; from outside and above for anything else. Requires: !mesh.triangles.empty().
+/// Returns a view that shows the fronts of surfaces with the mesh's up axis upright: through the open side of a room, as the
+/// Cornell box is shown; from a corner of a closed room; from outside and above for anything else. Requires:
+/// !mesh.triangles.empty().
 Camera default_camera(const DisplayMesh& mesh, PictureSize size = {});
-/// The same with a caster of the same triangles at hand.
+/// Returns the default view, using a caster that the caller has already built for the same mesh.
 Camera default_camera(const DisplayMesh& mesh, const TriangleCaster& caster, PictureSize size);
 
 }  // namespace alvor

@@ -7,7 +7,7 @@
 namespace alvor {
 namespace {
 
-/// sRGB bytes at equal steps, after viridis (van der Walt and Smith 2015): equal steps in lightness too.
+/// Colours at equal steps of position, sRGB bytes, after viridis (van der Walt and Smith 2015); steps of lightness are equal too.
 constexpr std::array<Rgb, 11> anchors{{{68, 1, 84},
                                        {72, 36, 117},
                                        {65, 68, 135},
@@ -20,7 +20,8 @@ constexpr std::array<Rgb, 11> anchors{{{68, 1, 84},
                                        {189, 223, 38},
                                        {253, 231, 37}}};
 
-/// The same, after RdBu (Brewer and Harrower 2003), from blue to red: safe for the colour-blind.
+/// Colours at equal steps of position, sRGB bytes, after RdBu (Brewer and Harrower 2003), from blue to red: safe for the
+/// colour-blind.
 constexpr std::array<Rgb, 11> diverging_anchors{{{5, 48, 97},
                                                  {33, 102, 172},
                                                  {67, 147, 195},

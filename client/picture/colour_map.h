@@ -1,15 +1,17 @@
 #pragma once
-// From a place on a scale to a colour.
+// Maps a position on a scale to a colour.
 
 #include "solution/rgb.h"
 
 namespace alvor {
 
-/// Linear sRGB of `position`, clamped to [0, 1]. 0 is dark violet (sRGB 68, 1, 84), 1 bright yellow (253, 231, 37); by way of
-/// blue and green, ever lighter, so that the order shows in grey and to the colour-blind too.
+/// Returns the linear sRGB colour at `position`, clamped to [0, 1]: from dark violet (sRGB 68, 1, 84) at 0 by way of blue and
+/// green to bright yellow (253, 231, 37) at 1. Lightness increases throughout, so the order is visible in grey and to the
+/// colour-blind too.
 Rgb colour_map(double position);
 
-/// For values of either sign: linear sRGB of `position`, clamped to [0, 1]. 0 is dark blue, 0.5 nearly white, 1 dark red.
+/// Returns a colour for values of either sign, as linear sRGB. `position` is clamped to [0, 1]: 0 is dark blue, 0.5 nearly white,
+/// 1 dark red.
 Rgb diverging_colour_map(double position);
 
 }  // namespace alvor

@@ -8,16 +8,16 @@
 namespace alvor {
 namespace {
 
-constexpr double left_out = 0.01;          ///< share of the values beyond either end
+constexpr double left_out = 0.01;          ///< fraction of the values beyond either end
 constexpr double fewest = 10, most = 1e4;  ///< ratio of the ends of an automatic logarithmic scale
 
-/// The value with `share` of `sorted` below it.
+/// Returns the value below which the fraction `share` of `sorted` lies.
 double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
 std::vector<double> linear_ticks(const ColourScale& scale, int most_ticks) {
-  constexpr double slack = 1e-6;  // of a step
+  constexpr double slack = 1e-6;  // in steps
   const RoundNumber step = RoundNumber::at_least((scale.high - scale.low) / most_ticks);
   std::vector<double> found;
   const double last = std::floor(scale.high / step.value() + slack);

@@ -1,5 +1,5 @@
 #pragma once
-// Which value gets which place on the colour map.
+// Maps values to positions on the colour map.
 
 #include <vector>
 
@@ -11,17 +11,17 @@ struct ColourScale {
   double high = 1;
   bool logarithmic = false;
 
-  /// In [0, 1]; values outside the scale get its ends.
+  /// Returns the position of `value` in [0, 1]; values outside the scale get its ends.
   double position(double value) const;
 };
 
-/// A scale for values of equal weight, which ends at the 1, 2 or 5 x 10^n above all but the top hundredth of them. It begins at
-/// 0, or, if logarithmic, at such a number below all but the bottom hundredth of what is not dark, one to four decades below its
-/// end.
+/// Returns a scale for the positive ones among `values`, of equal weight. It ends at the 1, 2 or 5 x 10^n above all but the top
+/// hundredth of them. It begins at 0. A logarithmic scale begins at such a number below all but the bottom hundredth of the
+/// positive values, one to four decades below its end.
 ColourScale automatic_scale(std::vector<double> values, bool logarithmic);
 
-/// Round numbers within the scale, at least one and rarely more than `most`: multiples of 1, 2 or 5 x 10^n, or, where a
-/// logarithmic scale spans a decade or more, such numbers themselves or powers of ten. Requires: most >= 2.
+/// Returns round numbers within the scale, at least one and rarely more than `most`: multiples of 1, 2 or 5 x 10^n. Where a
+/// logarithmic scale spans a decade or more, they are such numbers themselves or powers of ten. Requires: most >= 2.
 std::vector<double> ticks(const ColourScale& scale, int most);
 
 }  // namespace alvor

@@ -14,7 +14,7 @@ ColourScale scale_for(const Stage& stage, const Camera& camera, const FalseColou
   return automatic_scale(std::move(values), options.logarithmic);
 }
 
-// Most find the note taken: reading it does not slow the other threads down.
+// Sets a flag. Mostly it is set already, and reading does not slow other threads down.
 void note(std::atomic<bool>& flag) {
   if (!flag.load(std::memory_order_relaxed)) flag.store(true, std::memory_order_relaxed);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A false-colour picture's colours.
+// Computes the colours of a false-colour picture.
 
 #include "client/picture/false_colour.h"
 #include "client/picture/stage.h"
@@ -8,13 +8,13 @@
 
 namespace alvor {
 
-/// Colours the places of one picture, and notes whether its scale was too short for them. Safe from any thread. `stage` must
+/// Colours points of a false-colour picture, and records whether values lay outside its scale. Safe from any thread. `stage` must
 /// outlive it.
 class Colouring {
  public:
   Colouring(const Stage& stage, const Camera& camera, const FalseColour& options);
 
-  /// Linear sRGB.
+  /// Returns the linear sRGB colour of a point.
   Rgb colour(const Seen& seen) const;
 
   const ColourScale& scale() const { return scale_; }

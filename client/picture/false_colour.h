@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces coloured by the irradiance that arrives at them: what can be asked for.
+// Options of a false-colour picture, which colours surfaces by their irradiance.
 
 #include "client/picture/colour_scale.h"
 #include "solution/rgb.h"
@@ -14,14 +14,14 @@ enum class Band { mean, red, green, blue };
 
 struct FalseColour {
   Band band = Band::mean;
-  std::optional<ColourScale> scale;  ///< automatic_scale of what is seen when empty; give one to pictures that are compared
-  bool logarithmic = false;          ///< the automatic scale
+  std::optional<ColourScale> scale;  ///< empty: automatic_scale of the visible values; give one to compare pictures
+  bool logarithmic = false;          ///< makes the automatic scale logarithmic
   bool legend = true;                ///< draw one beside the view
 };
 
 double value_of(const RgbF& bands, Band band);
 
-/// The unit, under the name of the band unless that is the mean.
+/// Returns the lines above the legend's bar: the name of the band, unless it is the mean, and the unit.
 std::vector<std::string> legend_title(Band band);
 
 }  // namespace alvor

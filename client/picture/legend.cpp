@@ -10,17 +10,17 @@
 namespace alvor {
 namespace {
 
-// Lengths are in dots of the font.
+// Lengths in dots of the font.
 constexpr int usual_width = 66;
 constexpr int margin = 6, bar_width = 10, mark_length = 3, gap = 3;
 constexpr int line_height = 11, title_gap = 5, least_height = 90;
-constexpr double bar_share = 0.76;  ///< of the picture's height
+constexpr double bar_share = 0.76;  ///< height of the bar as a fraction of the picture's
 
 constexpr Colour paper{36, 36, 36}, ink{225, 225, 225};
 
 int pixels_per_dot(int picture_height) { return std::max(1, static_cast<int>(std::lround(picture_height / 384.0))); }
 
-/// Where things go, in pixels.
+/// Positions of the legend's parts, pixels.
 struct Layout {
   int dot = 1;
   PixelBox bar;

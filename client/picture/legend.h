@@ -1,5 +1,5 @@
 #pragma once
-// What the colours of a false-colour picture mean, drawn beside it.
+// Draws the legend of a false-colour picture, which tells the values of the colours.
 
 #include "client/picture/camera.h"
 #include "client/picture/colour_map.h"
@@ -14,28 +14,28 @@ namespace alvor {
 struct Legend {
   ColourScale scale;
   std::vector<std::string> title;  ///< lines above the bar; the unit is the last
-  bool values_below = false;       ///< the ends stand for what lies beyond them too, and say so
+  bool values_below = false;       ///< values beyond an end occur; the end's label says so
   bool values_above = false;
-  Rgb (*colours)(double position) = colour_map;  ///< of the bar
+  Rgb (*colours)(double position) = colour_map;  ///< colour map of the bar
 };
 
-/// A label of the bar.
+/// A number beside the bar.
 struct LegendLabel {
   double position = 0;  ///< 0 at the bar's foot, 1 at its top
   std::string text;
 };
 
-/// From the foot up: the ends of the scale, and the round numbers between them that keep `least_distance` from the others.
-/// Requires: 0 < least_distance <= 1.
+/// Returns the labels from the foot up: the ends of the scale, and the round numbers between that keep `least_distance` from the
+/// others. Requires: 0 < least_distance <= 1.
 std::vector<LegendLabel> labels_of(const Legend& legend, double least_distance);
 
-/// What a legend adds to the width of a picture of this height, pixels.
+/// Returns the pixels that a legend adds to the width of a picture of this height.
 int legend_width(int picture_height);
 
-/// Whether a picture of this size has room for a legend and something to see beside it.
+/// Returns whether a picture of this size has room for a legend and a view.
 bool legend_fits(PictureSize picture);
 
-/// `view` with the legend at its right: wider by legend_width. Labels of very many digits cover a little of the view.
+/// Returns `view` with the legend at its right, wider by legend_width. Labels of very many digits cover a little of the view.
 Image with_legend(const Image& view, const Legend& legend);
 
 }  // namespace alvor

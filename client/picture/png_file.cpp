@@ -10,7 +10,7 @@
 namespace alvor {
 namespace {
 
-/// libpng's simplified interface: no setjmp. Frees what it holds at the end of scope.
+/// Wraps libpng's simplified interface, which needs no setjmp. Frees libpng's memory at the end of the scope.
 struct PngWriter {
   png_image header{};
   explicit PngWriter(const Image& image) {
@@ -33,7 +33,7 @@ struct PngWriter {
 std::string encode_png(const Image& image, const std::string& name) {
   assert(image.rgb.size() == std::size_t{3} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   PngWriter writer(image);
-  // Not compressible means a few bytes more than the pixels; the macro is libpng's bound for that.
+  // An upper bound of the file's size, from libpng: incompressible pixels take a few bytes more than their own.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(writer.header);
   std::string bytes(size, '\0');
   if (!writer.encode(image, bytes.data(), size)) throw FileError(name + ": encode: " + writer.header.message);

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures out.
+// Writes PNG pictures.
 
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace alvor {
 
-/// Rows from the top; three sRGB bytes per pixel.
+/// A picture: rows from the top, three sRGB bytes per pixel.
 struct Image {
   int width = 0;
   int height = 0;
@@ -18,7 +18,7 @@ struct Image {
 /// Returns the bytes of a PNG file. Throws FileError (import/whole_file.h) that begins with `name`.
 std::string encode_png(const Image& image, const std::string& name);
 
-/// The file appears whole or not at all. Throws FileError.
+/// Writes a PNG file, which appears whole or not at all. Throws FileError.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace alvor

@@ -17,15 +17,16 @@ namespace {
 constexpr double background = 0.018;  ///< linear; dark grey
 constexpr double line_strength = 0.6;
 constexpr double light_line = 0.35;
-constexpr double crowded_pixels = 5;  ///< triangles lower than this fade their lines, or the picture would be all lines
+/// Triangles lower than this many pixels fade their lines; otherwise the picture would be all lines.
+constexpr double crowded_pixels = 5;
 
-/// How surfaces are shown.
+/// How a picture shows surfaces.
 struct Look {
   std::function<Rgb(const Seen&)> colour;  ///< linear, in [0, 1]
-  double dark_below;                       ///< luminance; darker places get a light line, others a dark one
+  double dark_below;                       ///< luminance; darker places get light lines, others dark lines
 };
 
-/// Exposure by what a coarse picture sees.
+/// Returns the exposure for the points that a coarse picture of the view shows.
 double exposure_of(const Stage& stage, const Camera& camera) {
   std::vector<LitArea> areas;
   stage.glance(camera, [&](const Seen& seen) {
@@ -41,7 +42,7 @@ class Shader {
   Shader(const Stage& stage, const Camera& camera, Look look, bool wireframe)
       : stage_(stage), view_(camera), look_(std::move(look)), wireframe_(wireframe) {}
 
-  /// Linear, in [0, 1], of the place (x, y) of the picture.
+  /// Returns the colour at (x, y) of the picture: linear, in [0, 1].
   Rgb shade(double x, double y) const {
     const auto seen = stage_.look(view_.eye(), view_.direction(x, y));
     if (!seen) return {background, background, background};
@@ -50,7 +51,7 @@ class Shader {
   }
 
  private:
-  /// How much of a line about a pixel wide, half of it on either side of the outline, covers this place.
+  /// Returns how much of this place, in [0, 1], is covered by a line about one pixel wide along the outline.
   double line_cover(std::uint32_t triangle, double x, double y) const {
     const auto weight = [&](double px, double py) {
       return stage_.centre_weight(triangle, view_.eye(), view_.direction(px, py));

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of a solution, by ray casting.
+// Renders pictures of a solution by ray casting.
 
 #include "client/picture/camera.h"
 #include "client/picture/false_colour.h"
@@ -15,25 +15,25 @@ class Stage;
 struct Seen;
 
 struct RenderOptions {
-  std::optional<Camera> camera;             ///< of the view, legend apart; default_camera of view_size(size) when empty
-  PictureSize size;                         ///< of the whole picture; without a camera only
-  std::optional<double> exposure;           ///< automatic_exposure when empty; give one to all frames of a solve
-  std::optional<FalseColour> false_colour;  ///< shows irradiance instead; there is no exposure then
+  std::optional<Camera> camera;             ///< camera of the view without legend; empty: default_camera of view_size(size)
+  PictureSize size;                         ///< size of the whole picture; used only without a camera
+  std::optional<double> exposure;           ///< empty: automatic_exposure; give one to all frames of a solve
+  std::optional<FalseColour> false_colour;  ///< if set, shows irradiance by colours, without exposure
   bool wireframe = false;                   ///< draw the outlines of the leaves
   int samples_per_side = 2;                 ///< 2 means 2 x 2 rays per pixel
 };
 
-/// What a legend, if there is one, leaves of a picture for the view.
+/// Returns the size of the view in a picture: what the legend, if there is one, leaves of it.
 PictureSize view_size(PictureSize picture, const std::optional<FalseColour>& false_colour);
 
-/// Surfaces with their radiosity or irradiance, interpolated; the backs of surfaces are looked through. Uses all cores; the same
+/// Renders the surfaces with their interpolated radiosity or irradiance; back sides are transparent. Uses all cores; the same
 /// arguments give the same picture. Requires: !mesh.triangles.empty(), samples_per_side >= 1, a view of at least one pixel.
 Image render(const DisplayMesh& mesh, const RenderOptions& options);
 
-/// A view in which each visible place has the colour that `colour` says: linear, in [0, 1]. It is asked from many threads.
+/// Renders a view in which `colour` returns the colour of each visible point: linear, in [0, 1]. It is called from many threads.
 Image render(const Stage& stage, const Camera& camera, const std::function<Rgb(const Seen&)>& colour);
 
-/// The exposure that `render` would choose for this view.
+/// Returns the exposure that `render` would choose for this view.
 double automatic_exposure(const DisplayMesh& mesh, const Camera& camera);
 
 }  // namespace alvor

@@ -9,9 +9,10 @@
 namespace alvor {
 namespace {
 
-constexpr double slack = 1e-9;  ///< relative: what arithmetic makes of a round number is still that number
+/// Relative rounding error within which a computed value still counts as the round number.
+constexpr double slack = 1e-9;
 
-/// "2e-06" as "2e-6", "5e+12" as "5e12".
+/// Returns the number without padding in its exponent: "2e-06" becomes "2e-6", "5e+12" becomes "5e12".
 std::string without_padding(std::string digits) {
   if (const auto at = digits.find("e+"); at != digits.npos) digits.erase(at + 1, 1);
   for (const std::string padded : {"e0", "e-0"})
@@ -22,7 +23,7 @@ std::string without_padding(std::string digits) {
 }  // namespace
 
 double RoundNumber::times(double count) const {
-  // Powers of ten are exact up to 1e22, their inverses never: so divide.
+  // Divides for negative exponents: powers of ten are exact up to 1e22, their inverses never.
   const double power = std::pow(10.0, std::abs(exponent));
   return exponent < 0 ? count * mantissa / power : count * mantissa * power;
 }
@@ -51,11 +52,11 @@ RoundNumber RoundNumber::at_most(double value) {
 
 std::string short_text(double value) {
   std::array<char, 32> text;
-  // Rounded to four digits first; what the shortest form then shows is those digits.
+  // Rounds to four digits first; the shortest form then shows just those.
   const auto rounded = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3);
   double shown = 0;
   std::from_chars(text.data(), rounded.ptr, shown);
-  if (shown == 0) return "0";  // without the sign
+  if (shown == 0) return "0";  // no minus sign
   const bool plain = std::abs(shown) >= 1e-4 && std::abs(shown) < 1e6;
   const auto format = plain ? std::chars_format::fixed : std::chars_format::scientific;
   const auto result = std::to_chars(text.data(), text.data() + text.size(), shown, format);

@@ -1,5 +1,5 @@
 #pragma once
-// The numbers that people like to read on a scale.
+// Round numbers for scales, and short texts of numbers.
 
 #include <string>
 
@@ -10,18 +10,19 @@ struct RoundNumber {
   int mantissa = 1;  ///< 1, 2 or 5
   int exponent = 0;
 
-  /// `count` times the number; the double nearest to the decimal.
+  /// Returns `count` times the number, as the double nearest to the decimal.
   double times(double count) const;
   double value() const { return times(1); }
   RoundNumber next() const;
   RoundNumber previous() const;
 
-  /// The least that is not below `value`, or the greatest not above it. Requires: value > 0, finite.
+  /// Returns the smallest round number that is not below `value`. Requires: value > 0, finite.
   static RoundNumber at_least(double value);
+  /// Returns the largest round number that is not above `value`. Requires: value > 0, finite.
   static RoundNumber at_most(double value);
 };
 
-/// The fewest digits that give `value` to four of them: "0.02", "150", "2e-6".
+/// Returns the shortest text that gives `value` to four digits: "0.02", "150", "2e-6".
 std::string short_text(double value);
 
 }  // namespace alvor

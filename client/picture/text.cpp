@@ -10,7 +10,7 @@
 namespace alvor {
 namespace {
 
-/// As stb_easy_font writes them; four make a box.
+/// A corner as stb_easy_font writes it; four make a box.
 struct FontCorner {
   float x, y, z;
   std::uint8_t colour[4];

@@ -6,12 +6,13 @@
 namespace alvor {
 namespace {
 
-constexpr double middle = 0.25;        ///< where the logarithmic mean goes, before the curve
-constexpr double bright = 1.2;         ///< the brightest surfaces stay below this, before the curve
-constexpr double bright_share = 0.02;  ///< of the lit area, may be brighter
-constexpr double darkest = 1e-3;       ///< of the bright end: what lies below counts as this, so that deep shadow does not decide
+constexpr double middle = 0.25;        ///< logarithmic mean after exposure, before the curve
+constexpr double bright = 1.2;         ///< limit of the brightest surfaces after exposure, before the curve
+constexpr double bright_share = 0.02;  ///< fraction of the lit area that may be brighter
+/// Surfaces darker than this fraction of the bright end count as this bright, so that deep shadow does not decide.
+constexpr double darkest = 1e-3;
 
-/// The luminance that `share` of the weight exceeds. Sorts `areas`.
+/// Returns the luminance that the fraction `share` of the weight exceeds. Sorts `areas`.
 double upper_quantile(std::vector<LitArea>& areas, double share) {
   std::ranges::sort(areas, std::ranges::greater{}, &LitArea::luminance);
   double total = 0;
@@ -33,7 +34,7 @@ double logarithmic_mean(const std::vector<LitArea>& areas, double least) {
   return std::exp(sum / weight);
 }
 
-/// Keeps what is lit; emitters only if nothing else is.
+/// Removes unlit areas, and emitters too if anything else is lit.
 void keep_lit(std::vector<LitArea>& areas) {
   std::erase_if(areas, [](const LitArea& area) { return !(area.luminance > 0 && area.weight > 0); });
   const auto reflects = [](const LitArea& area) { return !area.emitter; };
@@ -47,7 +48,7 @@ LitArea lit_area(const DisplayMesh& mesh, const std::array<std::uint32_t, 3>& tr
   return {luminance(radiosity) / 3, length(twice_area) / 2, emits(mesh.radiosity[a], mesh.irradiance[a])};
 }
 
-/// Narkowicz 2015, "ACES filmic tone mapping curve".
+/// Returns the filmic curve at x (Narkowicz 2015, "ACES filmic tone mapping curve").
 double filmic(double x) {
   x = std::clamp(x, 0.0, 1e3);
   return std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14));

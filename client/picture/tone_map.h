@@ -1,5 +1,5 @@
 #pragma once
-// From radiosity in W/m2 to what a screen shows: exposure, filmic curve, sRGB.
+// Converts radiosity in W/m2 to screen colours: exposure, filmic curve, sRGB.
 
 #include "meshing/display_mesh.h"
 #include "solution/rgb.h"
@@ -9,32 +9,32 @@
 
 namespace alvor {
 
-/// Relative luminance of linear sRGB (Rec. 709 weights).
+/// Returns the relative luminance of linear sRGB (Rec. 709 weights).
 constexpr double luminance(const Rgb& a) { return 0.2126 * a.r + 0.7152 * a.g + 0.0722 * a.b; }
 
-/// More leaves than could be reflected: reflectance is below 1, so something is emitted here.
+/// Returns whether a surface emits: more leaves it than it could reflect, as reflectance is below 1.
 constexpr bool emits(const RgbF& radiosity, const RgbF& irradiance) {
   return radiosity.r > irradiance.r || radiosity.g > irradiance.g || radiosity.b > irradiance.b;
 }
 
-/// What is seen of a surface, for exposure.
+/// The brightness of a visible piece of surface, from which exposure is computed.
 struct LitArea {
   double luminance = 0;
   double weight = 0;  ///< area on the surface or in the picture; any unit
   bool emitter = false;
 };
 
-/// The factor that shows the surfaces well: their logarithmic mean becomes a middle grey, unless the bright ones would burn out.
-/// Emitters count only where nothing else is lit, and may saturate. Greater than 0, whatever the areas.
+/// Returns the exposure, a factor > 0, that shows the surfaces well: their logarithmic mean becomes a middle grey, unless bright
+/// surfaces would then saturate. Emitters count only where nothing else is lit, and may saturate.
 double automatic_exposure(std::vector<LitArea> areas);
 
-/// The same for a whole mesh, every side of it seen alike.
+/// Returns the exposure for a whole mesh, seen equally from all sides.
 double automatic_exposure(const DisplayMesh& mesh);
 
-/// Exposed radiosity through a filmic curve: linear, in [0, 1].
+/// Returns exposed radiosity mapped by a filmic curve: linear, in [0, 1].
 Rgb tone_map(const Rgb& exposed);
 
-/// Linear [0, 1] to an sRGB byte.
+/// Returns the sRGB byte of a linear value, clamped to [0, 1].
 std::uint8_t srgb_byte(double linear);
 
 }  // namespace alvor

@@ -22,12 +22,12 @@ void check(const grpc::Status& status) {
   if (!status.ok()) throw RpcError(status);
 }
 
-/// Of a call that answers at once.
+/// A call context with a deadline of one minute, for calls that return at once.
 struct Deadline : grpc::ClientContext {
   Deadline() { set_deadline(std::chrono::system_clock::now() + std::chrono::minutes(1)); }
 };
 
-/// A UUID would do as well.
+/// Returns a random request id.
 std::string random_id() {
   std::random_device source;
   std::string id;
@@ -35,7 +35,7 @@ std::string random_id() {
   return id;
 }
 
-/// A call whose request is a name: call(context, request, response).
+/// Makes a call whose request is a name: call(context, request, response).
 template <class Request, class Response, class Call>
 Response by_name(const std::string& name, Call&& call) {
   Deadline deadline;
@@ -50,7 +50,7 @@ Response by_name(const std::string& name, Call&& call) {
 
 [[noreturn]] void refuse(const Fault& fault) { throw RpcError({grpc::DATA_LOSS, fault.text()}); }
 
-// All pages of a list; `call` fills in a response, `append` takes its items.
+// Reads all pages of a list: `call` fills in a response, `append` takes its items.
 template <class Request, class Response, class Call, class Append>
 void read_pages(Request request, Call&& call, Append&& append) {
   do {
@@ -115,7 +115,7 @@ v1::Scene Client::upload(const v1::CreateSceneRequest& first, const Scene& scene
   v1::CreateSceneRequest request;
   for (std::uint64_t sent = 0; sent < first.resume_after_chunks(); ++sent) slicer.next(*request.mutable_chunk());
   request = first;
-  // A write fails when the server has refused what came before: Finish then tells why.
+  // A write fails if the server has refused what came before; Finish then returns the reason.
   while (writer->Write(request)) {
     request.Clear();
     if (!slicer.next(*request.mutable_chunk())) break;

@@ -1,5 +1,5 @@
 #pragma once
-// Talks to an Alvor server over a channel, remote or in this process.
+// A client of an Alvor server, over a network channel or in this process.
 
 #include "alvor/v1/scene_service.grpc.pb.h"
 #include "alvor/v1/solve_service.grpc.pb.h"
@@ -20,26 +20,26 @@
 
 namespace alvor {
 
-/// A call that did not return OK.
+/// Thrown when a call did not return OK.
 struct RpcError : std::runtime_error {
   explicit RpcError(const grpc::Status& status);
   grpc::StatusCode code;
 };
 
-/// Blocking calls; each throws RpcError. Safe to use from several threads.
+/// A client with blocking calls; each throws RpcError. Safe to use from several threads.
 class Client {
  public:
   static constexpr std::chrono::seconds default_patience{5};
-  /// A lost server is waited for for `patience`.
+  /// If the connection is lost, calls are tried again for `patience`.
   explicit Client(std::shared_ptr<grpc::Channel> channel, std::chrono::milliseconds patience = default_patience);
 
-  /// False if no connection was made within `patience`.
+  /// Waits for a connection; returns false if there is none within `patience`.
   bool wait_until_connected(std::chrono::milliseconds patience) const;
-  /// The server has gone, or is going and cancels what it still has: only then it does so by itself.
+  /// Returns whether the error means that the server is gone or stopping. A server cancels calls by itself only when it stops.
   static bool is_lost(const RpcError& error) { return error.code == grpc::UNAVAILABLE || error.code == grpc::CANCELLED; }
-  /// Runs `body` once more where it threw that the server could not be reached, and again, until that has gone on for as long as
-  /// this client is patient: a server that hangs up every time is as good as none. For what may be sent twice. `body` may say
-  /// that it got on.
+  /// Runs `body`, and runs it again when it threw that the server could not be reached, until it has failed for as long as the
+  /// client's patience: a server that hangs up every time is as good as none. For requests that may be sent twice. `body` may
+  /// call note_success() to say that it made progress.
   template <class Body>
   auto with_patience(Body&& body, std::stop_token stop = {}) const {
     for (Patience patience(*this, std::move(stop));;) try {
@@ -49,12 +49,13 @@ class Client {
         if (!is_lost(error) || !patience.wait()) throw;
       }
   }
-  /// With a server that does not answer.
+  /// Counts how long a server has not answered.
   class Patience {
    public:
     Patience(const Client& client, std::stop_token stop) : client_(client), stop_(std::move(stop)) {}
     void note_success() { failing_since_.reset(); }
-    /// For the next try, longer each time, and until there is a connection. False when it is at its end, or was stopped.
+    /// Waits before the next try, longer each time, and until there is a connection. Returns false when the patience is used up,
+    /// or a stop was requested.
     bool wait();
 
    private:
@@ -65,8 +66,8 @@ class Client {
     std::chrono::milliseconds pause_{};
   };
 
-  /// Sends `scene` in chunks well below the message limit. Where the connection is lost it goes on, or starts again, and never
-  /// makes two.
+  /// Sends `scene` in chunks well below the message limit. After a lost connection it resumes, or starts again, and never creates
+  /// two scenes.
   v1::Scene create_scene(const Scene& scene, const std::string& display_name);
   v1::Scene get_scene(const std::string& name);
   std::vector<v1::Scene> list_scenes();  ///< all pages
@@ -81,22 +82,21 @@ class Client {
   v1::Solve resume_solve(const std::string& name);
   void delete_solve(const std::string& name);
 
-  /// Where a watch stands; keep it to go on after a lost connection.
+  /// The state of a watch; keep it to continue after a lost connection.
   struct Watch {
     std::string epoch;
     SolutionMirror mirror;
     Detail detail = Detail::exact;
-    bool is_inside_round = false;  ///< the mirror equals no revision: a new watch begins afresh
+    bool is_inside_round = false;  ///< the mirror equals no revision; the next watch starts from nothing
   };
   /// Follows the solve into `watch.mirror` until it has ended, and returns it. Acknowledges each frame before `on_frame` is
-  /// called, so that a slow callback does not hold the stream. Starts afresh when the server does not know
-  /// the mirror's state. When `stop` is
-  /// requested the watch ends and the last known state is returned; the solve goes on.
+  /// called, so that a slow callback does not delay the stream. Starts from nothing if the server does not know the mirror's
+  /// revision. When `stop` is requested, the watch ends and the last known state is returned; the solve continues.
   v1::Solve watch_solve(const std::string& name, Watch& watch, const std::function<void(const Watch&)>& on_frame,
                         std::stop_token stop = {});
 
  private:
-  /// From the chunk that `first` says.
+  /// Uploads the chunks after the first `first.resume_after_chunks`.
   v1::Scene upload(const v1::CreateSceneRequest& first, const Scene& scene);
   std::uint64_t received_chunks(const std::string& request_id);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The same service as alvord's, inside this process.
+// Runs the same service as alvord inside this process.
 
 #include <grpcpp/grpcpp.h>
 
@@ -7,7 +7,7 @@
 
 namespace alvor {
 
-/// A server without a port. Stops its solves and ends when destroyed; channels must not be used after that.
+/// A server without a port. Stops its solves when destroyed; channels must not be used after that.
 class InProcessServer {
  public:
   InProcessServer();

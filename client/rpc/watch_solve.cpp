@@ -11,7 +11,7 @@ namespace {
 [[noreturn]] void lost(const std::string& reason) { throw RpcError({grpc::DATA_LOSS, "a frame does not fit: " + reason}); }
 
 v1::WatchSolveRequest request_for(const std::string& name, Client::Watch& watch) {
-  // What it holds of the round may be undone by a server that goes on from before it.
+  // A mirror in the middle of a round is thrown away: a restarted server may continue from an earlier revision.
   if (watch.is_inside_round) watch = {.detail = watch.detail};
   v1::WatchSolveRequest request;
   request.set_name(name);
@@ -33,7 +33,7 @@ void apply(const v1::WatchSolveResponse& frame, Client::Watch& watch) {
   watch.is_inside_round = delta.to_revision == delta.from_revision && !delta.values.empty();
 }
 
-// NOT_FOUND means that the watch has just ended, which is no harm.
+// Acknowledges a frame. NOT_FOUND means that the watch has just ended, which is no error.
 void acknowledge(v1::SolveService::Stub& solves, const v1::WatchSolveResponse& frame, std::uint64_t frame_count) {
   grpc::ClientContext context;
   v1::AcknowledgeFrameRequest request;
@@ -45,7 +45,7 @@ void acknowledge(v1::SolveService::Stub& solves, const v1::WatchSolveResponse& f
   if (!status.ok() && status.error_code() != grpc::NOT_FOUND) throw RpcError(status);
 }
 
-// However it is left, the call must be over before its reader goes.
+// Cancels the call at the end of the scope: it must be over before its reader is destroyed.
 struct CancelOnExit {
   grpc::ClientContext& context;
   ~CancelOnExit() { context.TryCancel(); }
@@ -66,7 +66,7 @@ v1::Solve Client::watch_solve(const std::string& name, Watch& watch, const std::
     if (!frame.ended() && !frame.has_closing()) acknowledge(*solves_, frame, frames);
     on_frame(watch);
     if (!frame.ended()) continue;
-    (void)reader->Finish();  // everything has arrived: how the call ends does not matter any more
+    (void)reader->Finish();  // everything has arrived, so the status does not matter
     return frame.solve();
   }
   if (stop.stop_requested()) return get_solve(name);

@@ -9,7 +9,7 @@ namespace alvor {
 
 namespace {
 
-constexpr float least_cosine = 0.5f;  ///< between normals of the same surface, or nearly
+constexpr float least_cosine = 0.5f;  ///< least cosine between normals that count as facing the same way
 
 Extent extent_of_points(const Verification& verification) {
   std::vector<Vec3> places;
@@ -21,7 +21,7 @@ std::array<float, 3> floats(Vec3 v) { return {static_cast<float>(v.x), static_ca
 
 }  // namespace
 
-// Six sides of a box hold the points of an empty room: an estimate of their distance is all that is needed.
+// The spacing assumes that the points lie on the six sides of a box, which is near enough.
 ErrorField::ErrorField(const Verification& verification) {
   assert(verification.errors.points > 0);
   const Extent extent = extent_of_points(verification);
@@ -42,9 +42,10 @@ ErrorField::ErrorField(const Verification& verification) {
   }
 }
 
-// The inner loop is over what SIMD does at once: every lane has sums of its own.
+// The inner loop runs over SIMD lanes; each lane has its own sums.
 ErrorField::Sums ErrorField::sums_around(const std::array<float, 3>& place, const std::array<float, 3>& normal) const {
-  constexpr float far = 1e30f, softening = 0.1f;  // squared distance within which points weigh alike: their noise is averaged
+  // `softening` is the squared distance within which points weigh alike, so that their noise is averaged.
+  constexpr float far = 1e30f, softening = 0.1f;
   std::array<float, width> errors{}, truths{}, variances{}, nearest;
   nearest.fill(far);
   for (const Group& group : groups_)

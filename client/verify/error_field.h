@@ -1,5 +1,5 @@
 #pragma once
-// The error between the points where it was measured.
+// Interpolates the error of a solution between the points where it was measured.
 
 #include "client/verify/verification.h"
 
@@ -9,29 +9,29 @@
 
 namespace alvor {
 
-/// Signed relative error of a solution anywhere on its surfaces: that of the light at the points around, near ones first, which
-/// face the same way (inverse distance weighting, Shepard 1968). Errors and truths are averaged apart, so that dark, noisy points
-/// do not stand out, and what may be noise of the truth is taken out (James and Stein 1961). Immutable; safe from any thread.
+/// The signed relative error of a solution anywhere on its surfaces, interpolated between points that face the same way (inverse
+/// distance weighting, Shepard 1968). Errors and truths are averaged separately, so that dark, noisy points do not stand out; the
+/// part that may be noise of the truth is removed (James and Stein 1961). Immutable; safe from any thread.
 class ErrorField {
  public:
-  /// Requires: at least one point that counts.
+  /// Requires: at least one point of `verification` counts.
   explicit ErrorField(const Verification& verification);
 
   struct Value {
     double error = 0;     ///< (solution - truth) / truth; 0 where nothing faces this way
     double distance = 0;  ///< to the nearest point that faces this way, metres
   };
-  /// Linear in the number of points. `normal` is unit.
+  /// Returns the interpolated error. Linear in the number of points. `normal` is unit.
   Value at(Vec3 place, Vec3 normal) const;
 
  private:
   static constexpr std::size_t width = 8;
-  /// Points side by side, as SIMD wants them, relative to centre_ in units of spacing_. What fills up the last has no weight.
+  /// Eight points for SIMD, relative to centre_ in units of spacing_. Unused places of the last group have no weight.
   struct Group {
     std::array<float, width> x{}, y{}, z{}, normal_x{}, normal_y{}, normal_z{}, error{}, truth{}, variance{};
   };
 
-  /// Weighted sums over points.
+  /// Weighted sums over points, and the squared distance of the nearest.
   struct Sums {
     double error = 0, truth = 0, variance = 0;
     float nearest = 0;  ///< squared distance
@@ -40,7 +40,7 @@ class ErrorField {
 
   std::vector<Group> groups_;
   Vec3 centre_;
-  double spacing_ = 1;  ///< about how far points are apart, metres
+  double spacing_ = 1;  ///< typical distance between points, metres
 };
 
 }  // namespace alvor

@@ -15,10 +15,10 @@ namespace alvor {
 namespace {
 
 constexpr double percent = 100;
-constexpr double dot_angle = 0.0025;  ///< radius of a point's dot as the camera sees it
+constexpr double dot_angle = 0.0025;  ///< radius of a point's dot as seen from the camera, radians
 constexpr double dot_strength = 0.45;
 
-/// As far to either side of 0, so that 0 is white; it ends with nine tenths of the points within.
+/// Returns a scale symmetric about 0, so that 0 is white. Its ends enclose the errors of nine tenths of the points.
 ColourScale scale_of(const ErrorField& field, const Verification& verification) {
   std::vector<double> sizes;
   for (const VerifiedPoint& point : verification.points)
@@ -30,7 +30,7 @@ ColourScale scale_of(const ErrorField& field, const Verification& verification) 
   return {-end, end, false};
 }
 
-/// So that edges show where the error is the same on either side: little enough to leave the hue.
+/// Returns a factor of brightness by which edges show where the error is the same on both sides. It does not change the hue.
 double shade(Vec3 normal) {
   const Vec3 light = normalized({0.35, 0.85, 0.5});
   return 0.72 + 0.28 * std::abs(dot(normal, light));

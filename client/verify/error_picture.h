@@ -1,5 +1,5 @@
 #pragma once
-// Where a solution is too dark, and where too bright.
+// Draws where a solution is too dark and where it is too bright.
 
 #include "client/picture/camera.h"
 #include "client/picture/png_file.h"
@@ -7,8 +7,8 @@
 
 namespace alvor {
 
-/// The solution's surfaces from its default camera, coloured by the relative error around each place, with the points as dots
-/// and a legend in percent. `size` is that of the whole picture. Requires: !solution.triangles.empty(), legend_fits(size).
+/// Returns a picture of the solution from its default camera, coloured by the relative error, with the points as dots and a
+/// legend in percent. `size` is the size of the whole picture. Requires: !solution.triangles.empty(), legend_fits(size).
 Image error_picture(const DisplayMesh& solution, const Verification& verification, PictureSize size);
 
 }  // namespace alvor

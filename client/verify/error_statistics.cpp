@@ -8,7 +8,7 @@ namespace alvor {
 
 namespace {
 
-constexpr double normal_97_5 = 1.959964;  ///< quantile of the normal distribution: 95 % lie within it
+constexpr double normal_97_5 = 1.959964;  ///< 97.5 % quantile of the normal distribution, for two-sided 95 % intervals
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -23,10 +23,10 @@ double error(const ComparedPoint& p) { return p.solution - p.truth; }
 double squared_error(const ComparedPoint& p) { return error(p) * error(p) - p.truth_variance; }
 double truth(const ComparedPoint& p) { return p.truth; }
 
-/// Not a number stays what it is: a solution of such values is not a good one.
+/// Returns the root, or 0 for negative values. NaN stays NaN: a solution with such values is not a good one.
 double positive_root(double square) { return square < 0 ? 0 : std::sqrt(square); }
 
-/// Of a mean over points of `influence`, whose mean is 0.
+/// Returns the standard error of a mean over points. `influence` is each point's deviation, with mean 0.
 template <class Influence>
 double standard_error(std::span<const ComparedPoint> points, Influence influence) {
   const double square = mean_of(points, [&](const ComparedPoint& p) { return influence(p) * influence(p); });
@@ -49,7 +49,7 @@ Confidence bias_of(std::span<const ComparedPoint> points, double mean_truth) {
   return {bias, bias - spread, bias + spread};
 }
 
-/// Root of the mean of `square` / truth^2 over points that have a truth.
+/// Returns the root of the mean of `square` / truth^2 over the points whose truth is positive.
 template <class Square>
 double relative_root(std::span<const ComparedPoint> points, Square square) {
   double sum = 0, count = 0;

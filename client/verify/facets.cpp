@@ -8,7 +8,7 @@ namespace alvor {
 
 namespace {
 
-constexpr double line_area = 1e-14;  ///< of the longest side squared: below, a triangle is a line
+constexpr double line_area = 1e-14;  ///< fraction of the longest side squared, below which a triangle is a line
 
 double longest_side(const std::array<Vec3, 3>& corners) {
   return std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});

@@ -14,17 +14,17 @@ namespace alvor {
 namespace {
 
 constexpr std::uint32_t rounds = 64, rays_per_round = 64;
-/// Shadow rays, shared among emitting triangles by what each could bring at most; each has some.
+/// Total of shadow rays; they are shared among emitting triangles by the most that each could send, with a minimum for each.
 constexpr double shadow_rays = 2048;
 constexpr std::uint32_t least_shadow_rays = 4;
 constexpr std::uint32_t trial_rays = 128;
-/// Shadow rays end this far before the emitter, of their length: float32 would meet it.
+/// Fraction of a shadow ray's length by which it ends before the emitter, so that in float32 it does not hit it.
 constexpr double before_emitter = 1e-5;
 
-// Streams of random numbers of one point.
+// The streams of random numbers of one point.
 enum Purpose : std::uint64_t { trial, indirect, direct };
 
-/// What one emitting triangle brings where nothing stands between.
+/// The irradiance from one emitting triangle if nothing blocks it.
 struct Unblocked {
   std::uint32_t triangle;
   Rgb irradiance;
@@ -88,7 +88,7 @@ Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uin
   PathRandom random(stream, direct, triangle);
   const EvenPairs places(random);
   const Vec3 a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2), area = cross(b - a, c - a);
-  // The kernel at each place, cos cos / r2 up to a factor, and how much of the light gets here: a ratio estimate of both.
+  // A ratio estimate: sums of the kernel cos cos / r2, up to a factor, and of the kernel times the light that arrives.
   Rgb arriving;
   double all = 0, all_squared = 0, product = 0, arriving_squared = 0, used = 0;
   for (std::uint32_t n = 0; n < rays; ++n) {
@@ -106,7 +106,7 @@ Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uin
     product += kernel * light.mean();
     arriving_squared += light.mean() * light.mean();
   }
-  if (used < 2) return {{1, 1, 1}, 0.25};  // a sliver above the horizon
+  if (used < 2) return {{1, 1, 1}, 0.25};  // only a sliver lies above the horizon
   const Rgb mean = arriving * (1 / all);
   const double m = mean.mean();
   return {mean, std::max(0.0, arriving_squared - 2 * m * product + m * m * all_squared) / (all * all) * used / (used - 1)};

@@ -1,5 +1,5 @@
 #pragma once
-// Irradiance in free air, from a finished solution.
+// Computes irradiance in free air from a finished solution.
 
 #include "meshing/display_mesh.h"
 #include "radiosity/rays/medium.h"
@@ -13,27 +13,28 @@ namespace alvor {
 
 struct GatheredIrradiance {
   Rgb irradiance;             ///< W/m2
-  double standard_error = 0;  ///< of irradiance.mean(), W/m2; of the sampling alone, not of the solution
+  double standard_error = 0;  ///< error of irradiance.mean(), W/m2; only from sampling, not from the solution
 };
 
-/// Gathers what the surfaces of a solution send to a point. Light of emitters: each triangle's exact form factor times the share
-/// of it that shadow rays reach, so that it has no error where nothing stands between. All other light: rays distributed by the
-/// cosine (Nusselt's analogy). Borrows the mesh and its caster. Immutable; safe from any thread.
+/// Gathers the light that the surfaces of a solution send to a point. Light from emitters is each triangle's exact form factor
+/// times its visible fraction by shadow rays, so it is exact if nothing blocks. All other light is sampled by cosine-distributed
+/// rays (Nusselt's analogy). Borrows the mesh and its caster. Immutable; safe from any thread.
 class Gatherer {
  public:
-  /// `absorption` is of the medium that fills the scene, 1/m per band. Requires: `caster` is of the mesh's triangles.
+  /// `absorption` is the absorption coefficient of the medium that fills the scene, 1/m per band. Requires: `caster` holds the
+  /// mesh's triangles.
   Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption);
 
-  /// The irradiance of a small surface at `point` that looks along `normal` (unit). `stream` names its random numbers. Returns
-  /// nothing where most of what can be seen from the point, in all directions, are backs of surfaces, or nothing at all: it lies
-  /// inside a solid or outside the room.
+  /// Returns the irradiance of a small surface at `point` that faces along `normal` (unit). `stream` selects the random numbers.
+  /// Returns nothing if most surfaces around the point show it their backs, or nothing is around: the point lies inside a solid
+  /// or outside the room.
   std::optional<GatheredIrradiance> gather(Vec3 point, Vec3 normal, std::uint64_t stream) const;
 
  private:
-  /// The share that arrives of what a triangle would bring if nothing stood between, by band, and the variance of the estimate.
+  /// The fraction of a triangle's unblocked light that arrives, by band, and the variance of that estimate.
   struct VisibleShare {
     Rgb mean;
-    double variance = 0;  ///< of mean.mean()
+    double variance = 0;  ///< variance of mean.mean()
   };
 
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;
@@ -46,7 +47,7 @@ class Gatherer {
   const DisplayMesh& mesh_;
   const TriangleCaster& caster_;
   Medium medium_;
-  std::vector<std::uint32_t> emitters_;  ///< triangles
+  std::vector<std::uint32_t> emitters_;  ///< indices of the triangles that emit
   std::vector<bool> is_emitter_;         ///< by triangle
 };
 

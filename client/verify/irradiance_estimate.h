@@ -1,5 +1,5 @@
 #pragma once
-// Irradiance at many points, each to the same number of paths, with its error.
+// Traces irradiance at many points, with the same number of paths each, and estimates its error.
 
 #include "client/verify/path_tracer.h"
 
@@ -11,16 +11,17 @@
 
 namespace alvor {
 
-/// The mean of equal rounds and how far it may be off.
+/// The mean of equal rounds of paths, and its variance.
 class IrradianceEstimate {
  public:
   void add(const Rgb& round);
 
   std::uint32_t rounds() const { return rounds_; }
   const Rgb& mean() const { return mean_; }  ///< W/m2
-  /// Of mean(), per band: unbiased, whatever the rounds' own sampling was. Requires: rounds() >= 2.
+  /// Returns the variance of mean(), per band. Unbiased, however the rounds sample. Requires: rounds() >= 2.
   Rgb variance() const;
-  /// Of mean().mean(): not that of independent bands, for they share their paths. Requires: rounds() >= 2.
+  /// Returns the variance of mean().mean(). Bands share their paths, so it is not the variance of independent bands. Requires:
+  /// rounds() >= 2.
   double variance_of_band_mean() const;
 
  private:
@@ -32,23 +33,23 @@ class IrradianceEstimate {
 };
 
 struct TraceOptions {
-  std::uint64_t paths = 1000;  ///< of each point, >= 2; see RoundPlan for what it is rounded up to
+  std::uint64_t paths = 1000;  ///< paths per point, >= 2; rounded up, see RoundPlan
   std::uint64_t seed = 1;
   int threads = 0;                                                ///< 0: as many as the machine has
-  double time_limit_s = std::numeric_limits<double>::infinity();  ///< no round but the first two is begun after it
-  std::function<void(double)> on_progress;                        ///< gets the share of what is done, from the calling thread
+  double time_limit_s = std::numeric_limits<double>::infinity();  ///< the first two rounds are run in any case
+  std::function<void(double)> on_progress;                        ///< called with the fraction done, from the calling thread
 };
 
-/// Paths come in rounds of a power of two, up to 64 and no more than a sixteenth of all: many enough that their spread tells
-/// the variance, and large enough to be spread evenly.
+/// Divides paths into rounds. A round's size is a power of two, up to 64 and at most a sixteenth of all paths: many rounds are
+/// needed to estimate the variance, large ones to spread their paths evenly.
 struct RoundPlan {
   explicit RoundPlan(std::uint64_t paths);
   std::uint32_t paths_per_round;
   std::uint32_t rounds;  ///< >= 2
 };
 
-/// One estimate per point, in order. A function of the scene, the points, the paths and the seed: not of the number of threads.
-/// All have the same number of rounds; fewer than planned only if time ran out.
+/// Returns one estimate per point, in order. The result depends only on the scene, the points, the paths and the seed, not on the
+/// number of threads. All points have the same number of rounds; fewer than planned only if time ran out.
 std::vector<IrradianceEstimate> trace_irradiance(const PathTracer& tracer, std::span<const SurfacePoint> points,
                                                  const TraceOptions& options);
 

@@ -72,7 +72,7 @@ void LightTree::build(std::uint32_t node, std::uint32_t* first, std::uint32_t* l
   build(child + 1, middle, last);
 }
 
-// A leaf is a plane, so it sends nothing to what is behind it.
+// Returns an estimate of what the lights of a node send to a point. A single light sends nothing to points behind its plane.
 double LightTree::importance(const Node& node, Vec3 point, Vec3 normal) const {
   const Vec3 towards = node.centre - point;
   const double height = dot(normal, towards) + node.radius;

@@ -1,5 +1,5 @@
 #pragma once
-// The random numbers of paths.
+// Random numbers for paths.
 
 #include "solution/patch_id.h"
 
@@ -12,14 +12,14 @@ struct UnitPair {
   double u = 0, v = 0;
 };
 
-/// Independent uniform numbers (SplitMix64, Steele et al. 2014). A stream is named by numbers: which seed, point, round.
+/// Independent uniform random numbers (SplitMix64, Steele et al. 2014). Seed, point and round select the stream.
 class PathRandom {
  public:
   PathRandom(std::uint64_t seed, std::uint64_t point, std::uint64_t round)
       : state_(mix_bits(seed + mix_bits(point + mix_bits(round)))) {}
 
   std::uint64_t bits() { return mix_bits(state_ += 0x9e3779b97f4a7c15u); }
-  /// In [0, 1).
+  /// Returns a number in [0, 1).
   double number() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   UnitPair pair() {
     const std::uint64_t both = bits();
@@ -30,8 +30,8 @@ class PathRandom {
   std::uint64_t state_;
 };
 
-/// Points that fill the unit square evenly: a (0,2)-sequence (Sobol 1967) whose binary digits are flipped at random, so that
-/// each point is uniformly distributed and means over any number of them are unbiased.
+/// Points that fill the unit square evenly: a (0,2)-sequence (Sobol 1967) with randomly flipped binary digits. Each point is
+/// uniformly distributed, so means over any number of them are unbiased.
 class EvenPairs {
  public:
   explicit EvenPairs(PathRandom& random) : flips_(random.bits()) {}

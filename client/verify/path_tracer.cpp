@@ -13,20 +13,22 @@ namespace alvor {
 
 namespace {
 
-/// Of the extent. Twenty times what float32 loses of a place, so that no ray meets the surface it leaves.
+/// Height at which rays start above their surface, as a fraction of the extent: twenty times the rounding of float32, so that no
+/// ray hits the surface it leaves.
 constexpr double off_surface = 1e-6;
 
-/// Paths that carry more go on for certain: ending them at their first bend undoes the even spread of directions. On the
-/// Cornell box 0.5 gives 43 % less variance for the same time than 1; a quarter gives no more.
+/// Paths of higher throughput always continue: ending them at their first bend would undo the even spread of directions. On the
+/// Cornell box 0.5 gives 43 % less variance for the same time than 1; 0.25 gives no more.
 constexpr double dim = 0.5;
 
-/// Uniform on a light.
+/// Returns a place uniform by area on a light.
 Vec3 place_on(const Light& light, UnitPair at) {
   const double edge = std::sqrt(at.u);
   return light.corner + edge * (1 - at.v) * light.side_u + edge * at.v * light.side_v;
 }
 
-/// How much a sample of one way counts where the other might have found the same place.
+/// Returns the balance heuristic's weight of a sample, given the densities with which the two ways would have found the same
+/// place.
 double share_of(double density, double other_density) { return density / (density + other_density); }
 
 }  // namespace
@@ -79,7 +81,7 @@ bool PathTracer::is_enclosed(const SurfacePoint& point, std::uint32_t rays, Path
     const Vec3 direction = cosine_direction(start.normal, at);
     return caster_->cast(start.place, direction) && !meet(start, direction).surface;
   };
-  constexpr double grazing = 2e-4;  // sine of the angle with the surface
+  constexpr double grazing = 2e-4;  // sine of the angle between ray and surface
   std::uint32_t backs = 0, backs_along_surface = 0;
   for (std::uint32_t n = 0; n < rays; ++n) {
     backs += meets_black_back(directions[n]);
@@ -111,8 +113,9 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
   }
 }
 
-// With `density` of directions by cosine and `light_density` by choosing a place, a sample of the latter is
-// emission / pi * cosine / light_density, times its share: which is the emission times the other way's share.
+// `height / (distance pi)` is the density of directions by cosine, `light_density` that of choosing a place on a light. A sample
+// of the latter is emission / pi * cosine / light_density times its weight; this equals the emission times the weight of the
+// other way.
 Rgb PathTracer::from_chosen_light(const Bend& bend, UnitPair choice) const {
   const auto chosen = lights_.choose(bend.place, bend.normal, choice.u);
   if (!chosen) return {};
@@ -139,7 +142,7 @@ PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction) const {
   auto hit = caster_->cast(bend.place, direction);
   if (!hit) return {};
   if (const Surface& back = surfaces_[hit->triangle]; !back.two_sided && dot(back.normal, direction) >= 0) {
-    // Of two faces back to back in one place the ray may have met the wrong one.
+    // The ray may have hit the wrong one of two faces back to back in one place.
     const auto front = caster_->cast_front(bend.place, direction);
     if (!front || front->distance > hit->distance + off_surface) return {};
     hit = front;
@@ -148,7 +151,7 @@ PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction) const {
   const double cosine = -dot(s.normal, direction);
   if (cosine <= 0 && !s.two_sided) return {};
   const Vec3 normal = cosine > 0 ? s.normal : -s.normal;
-  // From u and v rather than along the ray: exactly on the surface, however long the ray was.
+  // Computed from u and v and not along the ray, so that it lies exactly on the surface, however long the ray.
   const Vec3 place = s.corner + hit->u * s.side_u + hit->v * s.side_v;
   return {&s, {place + off_surface * normal, normal}, hit->distance, std::abs(cosine)};
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Irradiance by path tracing: what solutions are verified against. It has nothing in common with the solver but the scene and
-// the library that finds what a ray hits.
+// Computes irradiance by path tracing, against which solutions are verified. It shares with the solver only the scene and the
+// library that intersects rays.
 
 #include "client/verify/facets.h"
 #include "client/verify/light_tree.h"
@@ -16,57 +16,58 @@ namespace alvor {
 
 class TriangleCaster;
 
-/// A point of a surface of the scene, seen from the side that `normal` looks to.
+/// A point of a surface of the scene, on the side that `normal` points to.
 struct SurfacePoint {
   Vec3 position;           ///< metres
   Vec3 normal;             ///< unit
-  std::uint32_t face = 0;  ///< of the scene
+  std::uint32_t face = 0;  ///< face of the scene
 };
 
-/// Estimates irradiance without bias: its expectation is the solution of the rendering equation (Kajiya 1986) of the scene,
-/// media and all. Paths go on in cosine-distributed directions until Russian roulette ends them; at each of their points,
-/// emitted light is sampled both ways, by choosing a place of an emitter and by looking where the path goes, and each way counts
-/// by the balance heuristic (Veach & Guibas 1995), so that no sample exceeds the brightest emission, even in a corner
-/// of two emitters. The one systematic error are rays that start 1e-6 of the scene's extent off their surface, lest they meet
-/// it. Immutable; any number of threads may trace at a time.
+/// Estimates irradiance without bias: the expectation is the solution of the scene's rendering equation (Kajiya 1986), with
+/// media. Paths continue in cosine-distributed directions until Russian roulette ends them. At each bend, emitted light is
+/// sampled in two ways: by choosing a place on an emitter, and by following the path. They are weighted by the balance heuristic
+/// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. One systematic error
+/// remains: rays start 1e-6 of the scene's extent above their surface, so that they do not hit it. Immutable; safe from any
+/// thread.
 class PathTracer {
  public:
-  /// Requires: !find_fault(scene), and at least one face with area. Keeps nothing of `scene`.
+  /// Copies what it needs of `scene`. Requires: !find_fault(scene), and at least one face with area.
   explicit PathTracer(const Scene& scene);
   ~PathTracer();
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  /// The mean of `paths` paths from one point: W/m2 per band. Their first directions and first places on emitters are spread
-  /// evenly, so that means of several calls, each with its own stream, tell the variance, and single paths do not. Best if
+  /// Returns the mean of `paths` paths from one point: W/m2 per band. Their first directions and first places on emitters are
+  /// spread evenly, so the variance must be estimated from several calls with different streams, not from single paths. Best if
   /// `paths` is a power of two.
   Rgb irradiance(const SurfacePoint& point, std::uint32_t paths, PathRandom random) const;
 
-  /// Whether most of what is seen from a point are black backs, by twice this many rays, also along the surface: then it lies under or
-  /// inside a solid, among whose insides may be fronts of others that reach into it. In a gap between a surface and a back, however
-  /// narrow, rays along the surface get out: that is not enclosed.
+  /// Returns whether the point lies under or inside a solid: most of `rays` cosine-distributed rays meet black backs, and so do
+  /// most of as many rays along the surface. The latter tell a narrow gap between a surface and a back, which they leave, from a
+  /// place inside a solid, where fronts of other solids may reach in.
   bool is_enclosed(const SurfacePoint& point, std::uint32_t rays, PathRandom random) const;
 
  private:
-  /// What a ray can hit; local coordinates: centred, longest side 1.
+  /// A triangle that rays can hit, in local coordinates: centred, longest side 1.
   struct Surface {
     Vec3 corner, side_u, side_v, normal;
     Rgb emission, reflectance;
     bool two_sided = false;
-    std::uint32_t light = 0;  ///< of lights_, where it emits
+    std::uint32_t light = 0;  ///< index in lights_ if the surface emits
   };
-  /// Where paths bend: just above a surface.
+  /// A point at which a path bends, just above a surface.
   struct Bend {
     Vec3 place, normal;
   };
-  /// The random numbers of one bend.
+  /// The random numbers used at one bend.
   struct Choices {
     UnitPair light, direction;
+    /// The surface that a ray hits, and the next bend there.
   };
   struct Met {
-    const Surface* surface = nullptr;  ///< null where the path leaves the scene or ends on a black back
+    const Surface* surface = nullptr;  ///< null if the path leaves the scene or ends on a black back
     Bend bend;
-    double distance = 0, cosine = 0;  ///< cosine on the side that was met, > 0
+    double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
   };
 
   Bend start_at(const SurfacePoint& point) const;
@@ -78,7 +79,7 @@ class PathTracer {
   Rgb transmittance(double distance) const;
 
   Extent extent_;
-  Rgb absorption_;  ///< per local unit of length
+  Rgb absorption_;  ///< absorption coefficient per local unit of length
   bool clear_ = true;
   std::vector<Surface> surfaces_;
   LightTree lights_{{}};

@@ -48,7 +48,7 @@ ProbeSample on_nearest_surface(const DisplayMesh& mesh, const TriangleCaster& ca
   return sample;
 }
 
-/// Replaces what the nearest surface says by what arrives at the point itself.
+/// Replaces a sample's values from the nearest surface by the light gathered at the point itself.
 void gather_at(ProbeSample& sample, const Gatherer& gatherer, std::uint64_t stream) {
   sample.irradiance = sample.radiosity = not_a_value;
   const auto gathered = gatherer.gather(sample.point, normalized(sample.normal), stream);
@@ -82,7 +82,7 @@ std::optional<double> number_of(std::string_view field) {
   return value;
 }
 
-/// The point of one line, or why there is none.
+/// The point on one line, or the reason why it cannot be read.
 struct ParsedLine {
   ProbePoint point;
   std::string fault;
@@ -123,7 +123,7 @@ std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const
 }
 
 std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoint> points, const Rgb& absorption) {
-  constexpr double on_surface = 1e-4;  // of the extent
+  constexpr double on_surface = 1e-4;  // fraction of the extent
   const double reach = on_surface * extent_of(mesh);
   const TriangleCaster caster(mesh.positions, mesh.triangles);
   const Gatherer gatherer(mesh, caster, absorption);

@@ -9,7 +9,7 @@ namespace alvor {
 
 namespace {
 
-/// The area of sides up to and including each facet's.
+/// Returns the running sums of the facets' areas; two-sided facets count twice.
 std::vector<double> running_area(const Scene& scene, std::span<const Facet> facets) {
   std::vector<double> sums;
   double sum = 0;
@@ -29,7 +29,7 @@ SurfacePoint draw(const Facet& facet, bool two_sided, PathRandom& random) {
 std::vector<SurfacePoint> draw_surface_points(const Scene& scene, std::size_t count, std::uint64_t seed) {
   const std::vector<Facet> facets = facets_of(scene);
   const std::vector<double> areas = running_area(scene, facets);
-  constexpr std::uint64_t own_stream = ~0ull;  // no path has it
+  constexpr std::uint64_t own_stream = ~0ull;  // no path uses this stream
   std::vector<SurfacePoint> points;
   points.reserve(count);
   for (std::size_t n = 0; n < count; ++n) {

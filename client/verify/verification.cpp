@@ -13,9 +13,9 @@ namespace alvor {
 
 namespace {
 
-/// Solution files hold positions as float32.
+/// Relative rounding of positions in solution files, which are float32.
 constexpr double float_step = 1e-6;
-/// Neither a round's nor that of the points.
+/// A stream of random numbers that neither the rounds nor the points use.
 constexpr std::uint64_t look_around_stream = ~1ull;
 
 std::string text_of(Vec3 p) {
@@ -24,7 +24,7 @@ std::string text_of(Vec3 p) {
   return text.data();
 }
 
-/// A solution of another scene, or of this one in other units, has its box elsewhere.
+/// Throws MismatchError if the bounding boxes differ: the solution belongs to another scene, or to this one in other units.
 void require_same_box(const Scene& scene, const DisplayMesh& solution) {
   constexpr double alike = 0.01;
   const std::vector<Facet> facets = facets_of(scene);
@@ -46,7 +46,7 @@ std::vector<ProbeSample> solution_at(const DisplayMesh& solution, std::span<cons
                       text_of(missed->point));
 }
 
-/// Only where no path brought light need one look for what is in the way.
+/// Returns how a point counts. Only where no path brought light is it necessary to look whether the point is enclosed.
 Standing standing_of(const PathTracer& tracer, const VerifiedPoint& point, PathRandom random) {
   constexpr std::uint32_t rays = 256;
   if (!point.truth.mean().is_zero()) return Standing::counts;

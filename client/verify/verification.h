@@ -1,5 +1,5 @@
 #pragma once
-// A solution against path tracing.
+// Compares a solution with path tracing.
 
 #include "client/verify/error_statistics.h"
 #include "client/verify/irradiance_estimate.h"
@@ -13,11 +13,11 @@ namespace alvor {
 
 struct VerifyOptions {
   std::size_t points = 1000;  ///< >= 1
-  TraceOptions trace;         ///< its seed draws the points too
+  TraceOptions trace;         ///< its seed also draws the points
 };
 
-/// What a point says about a solution. Under a solid there is no light, whatever a solution says, and nobody
-/// can look.
+/// How a point counts in the comparison. Hidden: it lies under or inside a solid, where there is no light and nobody can look.
+/// Dark: neither the truth nor the solution has light.
 enum class Standing { counts, hidden, dark };
 
 struct VerifiedPoint {
@@ -27,34 +27,35 @@ struct VerifiedPoint {
   Standing standing = Standing::counts;
 
   ComparedPoint compared() const { return {solution.mean(), truth.mean().mean(), truth.variance_of_band_mean()}; }
-  /// How far the solution is above the truth, W/m2, bands averaged.
+  /// Returns the solution's irradiance minus the truth, W/m2, bands averaged.
   double error() const { return solution.mean() - truth.mean().mean(); }
-  /// What of its size is not noise of the truth, at 95 %: the points where it is large are wrong, not unlucky.
+  /// Returns the part of |error()| that exceeds the 95 % noise of the truth, W/m2. Sorting by it finds points that are wrong and
+  /// not only noisy.
   double certain_error() const;
 };
 
 struct Verification {
-  std::vector<VerifiedPoint> points;  ///< all that were drawn
-  std::size_t hidden = 0;             ///< of them: under or inside a solid, see PathTracer::is_enclosed
-  std::size_t hidden_lit = 0;         ///< of the hidden: where the solution has light nevertheless
-  std::size_t dark = 0;               ///< not hidden, but no path brought light and the solution has none
-  std::uint64_t paths = 0;            ///< of each point
-  ErrorStatistics errors;             ///< over the points that count: neither hidden nor dark
+  std::vector<VerifiedPoint> points;  ///< all points that were drawn
+  std::size_t hidden = 0;             ///< number under or inside a solid, see PathTracer::is_enclosed
+  std::size_t hidden_lit = 0;         ///< number hidden at which the solution has light all the same
+  std::size_t dark = 0;               ///< number not hidden where neither paths nor the solution have light
+  std::uint64_t paths = 0;            ///< paths per point
+  ErrorStatistics errors;             ///< over the points that count, neither hidden nor dark
 };
 
-/// Why a solution cannot be one of the scene. what() is one line, without the file's name.
+/// Thrown where a solution cannot belong to the scene. what() is one line, without the file's name.
 struct MismatchError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Compares at random points of the scene. Throws MismatchError. Requires: !find_fault(scene), at least one face with area,
-/// !solution.triangles.empty().
+/// Compares a solution with path tracing at random points of the scene. Throws MismatchError. Requires: !find_fault(scene), at
+/// least one face with area, !solution.triangles.empty().
 Verification verify(const Scene& scene, const DisplayMesh& solution, const VerifyOptions& options);
 
-/// Of the points that count those of the largest certain error, the worst first.
+/// Returns the points with the largest certain error, worst first, of those that count.
 std::vector<VerifiedPoint> worst_points(const Verification& verification, std::size_t count);
 
-/// A header and one line per point: x,y,z,nx,ny,nz,truth_r..b,standard_error_r..b,solution_r..b; W/m2.
+/// Returns a CSV text with a header and one line per point: x,y,z,nx,ny,nz,truth_r..b,standard_error_r..b,solution_r..b; W/m2.
 std::string verified_csv(std::span<const VerifiedPoint> points);
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Who may call: bearer tokens, of which only hashes are kept.
+// Checks bearer tokens; the server keeps only their hashes.
 
 #include <map>
 #include <optional>
@@ -8,16 +8,16 @@
 
 namespace alvor {
 
-/// A file of lines `NAME HASH`: HASH is the SHA-256 of a token in 64 hexadecimal digits (printf %s TOKEN | sha256sum), NAME who
-/// it stands for. Empty lines and those that begin with # say nothing; a name may have several tokens.
+/// The tokens of a file with lines `NAME HASH`: NAME is the caller, HASH the SHA-256 of its token in 64 hexadecimal digits
+/// (printf %s TOKEN | sha256sum). Empty lines and lines that begin with # are ignored. A name may have several tokens.
 class BearerTokens {
  public:
-  /// Throws std::invalid_argument, naming the line, if it is no such file or holds no token.
+  /// Reads such a file. Throws std::invalid_argument, naming the line, if the text is malformed or holds no token.
   static BearerTokens parse(std::string_view text);
 
-  /// Whose token it is.
+  /// Returns the name whose token it is, or nothing.
   std::optional<std::string> holder_of(std::string_view token) const;
-  /// Whose call it is by its header `authorization`, empty if it has none. Throws StatusError: UNAUTHENTICATED.
+  /// Returns the caller's name for the header `authorization` (empty if the call has none). Throws StatusError UNAUTHENTICATED.
   std::string caller_of(std::string_view authorization) const;
 
  private:

@@ -23,9 +23,10 @@ using namespace std::chrono_literals;
 
 constexpr int most_of_round = 64;
 constexpr auto between_looks = 1s;
-constexpr auto least_between_looks = 50ms;  // a look takes less than a millisecond
+// Least time between two looks; a look takes less than a millisecond.
+constexpr auto least_between_looks = 50ms;
 constexpr auto traffic_window = 5s;
-constexpr int lost_after_ms = 10'000;  // bytes that were not acknowledged for this long: the peer is gone
+constexpr int lost_after_ms = 10'000;  // a peer that acknowledges no bytes for this long is lost
 
 bool is_this_process(int connection) {
   ucred peer{};
@@ -33,20 +34,20 @@ bool is_this_process(int connection) {
   return getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.pid == getpid();
 }
 
-/// As gRPC sets up what it accepts itself.
+/// Sets the options that gRPC sets on connections that it accepts itself.
 void set_up(int connection) {
   const int yes = 1;
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   setsockopt(connection, IPPROTO_TCP, TCP_USER_TIMEOUT, &lost_after_ms, sizeof lost_after_ms);
 }
 
-/// 0 where nothing is open under the number.
+/// Returns the inode of a descriptor, or 0 if it is not open.
 ino_t inode_of(int descriptor) {
   struct stat found {};
   return fstat(descriptor, &found) == 0 ? found.st_ino : 0;
 }
 
-/// 0 where it is not of TCP.
+/// Returns the bytes received over a TCP connection, or 0 for other sockets.
 std::uint64_t received_bytes(int connection) {
   tcp_info counts{};
   socklen_t size = sizeof counts;
@@ -60,7 +61,7 @@ bool is_silent(int connection) {
   return is_tcp && received_bytes(connection) == 0;
 }
 
-/// Whether accepting goes on by itself after this error: of the connection, or because the system is short of something.
+/// Returns whether accepting can go on after this error: it concerns one connection only, or the system lacks something for now.
 bool is_passing(int error) {
   constexpr std::array passing{EMFILE, ENFILE,   ENOBUFS,     ENOMEM, ECONNABORTED, EPERM,      EINTR,        EAGAIN,
                                EPROTO, ENETDOWN, ENOPROTOOPT, ENONET, EHOSTDOWN,    EOPNOTSUPP, EHOSTUNREACH, ENETUNREACH};
@@ -103,8 +104,8 @@ void FrontDoor::run() {
   }
 }
 
-/// Returns whether the listening socket is still of use. What waits beyond a round is told by poll() again: a flood does not keep
-/// the thread from all else.
+/// Accepts up to `most_of_round` connections. Returns whether the listening socket is still usable. poll() reports further ones
+/// again, so that a flood does not keep the thread from other work.
 bool FrontDoor::accept_round(int listening) {
   for (int n = 0; n < most_of_round; ++n) {
     sockaddr_storage from{};
@@ -149,7 +150,7 @@ bool FrontDoor::has_place_for(const std::string& address) {
   return !has_many && end_oldest_silent();
 }
 
-/// Returns whether there was one.
+/// Closes the oldest connection that has sent nothing. Returns whether there was one.
 bool FrontDoor::end_oldest_silent() {
   auto oldest = connections_.end();
   for (auto each = connections_.begin(); each != connections_.end(); ++each)
@@ -207,7 +208,7 @@ bool FrontDoor::end(const std::string& peer) {
   return true;
 }
 
-/// Forgets what has ended, and notes now and then what was received. Requires: the lock.
+/// Forgets connections that have ended, and records from time to time how much each received. Requires: the lock.
 void FrontDoor::look() {
   const auto now = Clock::now();
   if (now >= last_look_ + between_looks) forget_ended();

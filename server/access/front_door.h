@@ -1,5 +1,5 @@
 #pragma once
-// Accepts the connections of a gRPC server. gRPC's own listener stops for good when descriptors run out, and knows no bounds.
+// Accepts the connections of a gRPC server. gRPC's own listener stops for good when descriptors run out, and has no limits.
 
 #include "server/access/listening_sockets.h"
 
@@ -17,55 +17,56 @@
 
 namespace alvor {
 
-/// Connections that one listener holds at a time. Where all places are taken, the oldest connection that has sent nothing yet
-/// gives way to a new one; else the new one is closed at once.
+/// Limits of the connections that one listener holds at a time. At a limit, the oldest connection that has sent nothing yet is
+/// closed for a new one; if there is none, the new one is closed.
 struct ConnectionLimits {
   std::size_t in_all = 1000;
-  /// From one IPv4 address or one IPv6 network of 64 bits. Connections from this machine do not count: behind a proxy all come
-  /// from there.
+  /// Limit for one IPv4 address or one IPv6 network of 64 bits. Connections from this machine do not count, because behind a
+  /// proxy all connections come from there.
   std::size_t by_address = 100;
 };
 
-/// Thread-safe.
+/// Accepts connections within limits and hands them to gRPC. Thread-safe.
 class FrontDoor {
  public:
   /// Listens from now on; connections wait until open(). Throws as ListeningSockets does.
   FrontDoor(const std::string& address, const ConnectionLimits& limits);
-  /// As close().
+  /// Calls close().
   ~FrontDoor();
 
-  /// Accepts connections, on a thread of its own, until close(). `take` is given each as a non-blocking socket, which it then
-  /// owns; `died` is called at most once, from that thread, if nothing can be accepted any more. Where descriptors run out,
-  /// connections wait until there are some.
+  /// Accepts connections, on a thread of its own, until close(). Calls `take` with each as a non-blocking socket, which `take`
+  /// then owns. Calls `died` from that thread, at most once, if nothing can be accepted any more. If descriptors run out,
+  /// connections wait until some are free.
   void open(std::function<void(int)> take, std::function<void()> died);
   void close();
 
-  /// A connection from inside this process, for which there is always a place. Not open where it fails. One at a time.
+  /// Returns a connection from inside this process, which is always admitted; not open if it failed. One at a time.
   Descriptor connect_as_probe();
-  /// Ends the connection that received the most bytes lately (within the last 5 to 10 s), if these are `least` or more: what it
-  /// sent takes memory. Returns whether there was one. Connections over Unix sockets are left alone.
+  /// Closes the connection that received the most bytes in the last 5 to 10 s, if these are `least` or more, because what it sent
+  /// takes memory. Returns whether it closed one. Connections over Unix sockets are left alone.
   bool end_greediest(std::uint64_t least);
 
-  /// Ends the connection of a peer as gRPC names it: "ipv4:127.0.0.1:50051". Returns whether there was one.
+  /// Closes the connection of a peer, named as gRPC does: "ipv4:127.0.0.1:50051". Returns whether there was one.
   bool end(const std::string& peer);
 
   int port() const { return sockets_.port(); }
   const std::string& address() const { return sockets_.address(); }
   struct Counts {
-    std::size_t open = 0;       ///< now
-    std::uint64_t refused = 0;  ///< since it was made, beyond the limits
+    std::size_t open = 0;       ///< open connections now
+    std::uint64_t refused = 0;  ///< connections refused beyond the limits since construction
   };
   Counts counts() const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// gRPC owns the descriptor and closes it. The inode tells whether its number still stands for the same connection.
+  /// A connection that was handed to gRPC, which owns the descriptor and closes it. The inode tells whether the descriptor's
+  /// number still belongs to the same connection.
   struct Connection {
     ino_t inode = 0;
-    std::uint64_t number = 0;              ///< grows: the order in which they were accepted
-    std::string address;                   ///< "": counts for no address
+    std::uint64_t number = 0;              ///< increases in the order of accepting
+    std::string address;                   ///< address it counts for; "": none
     std::string peer;                      ///< "": a Unix socket
-    std::uint64_t received = 0, then = 0;  ///< bytes when it was looked at last, and the time before that
+    std::uint64_t received = 0, then = 0;  ///< bytes received at the last look, and at the one before
   };
 
   void run();
@@ -84,7 +85,7 @@ class FrontDoor {
   std::function<void()> died_;
   std::atomic<int> probe_port_ = 0;
   mutable std::mutex lock_;
-  std::map<int, Connection> connections_;  ///< by the number of the descriptor; some may have ended since they were looked at
+  std::map<int, Connection> connections_;  ///< by descriptor; some may have ended since the last look
   std::map<std::string, std::size_t> by_address_;
   std::uint64_t accepted_ = 0, refused_ = 0;
   Clock::time_point last_look_, last_traffic_;

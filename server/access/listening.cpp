@@ -21,8 +21,8 @@ std::string read(const std::string& option, const std::string& file) {
   return text;
 }
 
-/// Refuses calls without a token, health checks and reflection too. Whose call it is the services find out (Tenants): what is
-/// added to `context` is added to the connection, for all its calls.
+/// Refuses calls without a valid token, also health checks and reflection. It does not record the caller: what is added to
+/// `context` holds for all calls of the connection. Services find the caller by Tenants.
 class TokenCheck final : public grpc::AuthMetadataProcessor {
  public:
   /// Calls with `identity_header`, if it is not empty, need no token.
@@ -57,7 +57,7 @@ std::shared_ptr<grpc::ServerCredentials> tls_credentials(const ListenOptions& op
   return grpc::SslServerCredentials(tls);
 }
 
-/// Plaintext whose calls are looked at: InsecureServerCredentials takes no TokenCheck.
+/// Returns credentials for plaintext with TokenCheck, which InsecureServerCredentials does not accept.
 std::shared_ptr<grpc::ServerCredentials> local_credentials(const ListenOptions& options) {
   return grpc::experimental::LocalServerCredentials(is_unix(options.address) ? UDS : LOCAL_TCP);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a server listens, and whom it lets in.
+// Options of a listening address, and which clients may connect there.
 
 #include "server/access/bearer_tokens.h"
 
@@ -13,38 +13,37 @@ namespace alvor {
 
 struct ListenOptions {
   std::string address = "127.0.0.1:50051";  ///< HOST:PORT
-  // Names of PEM files; without certificate and key there is no TLS.
+  // Names of PEM files. Without certificate and key there is no TLS.
   std::string certificate, key;
-  std::string client_ca;  ///< clients must then show a certificate that it signed
-  /// Name of a file as BearerTokens reads it: calls must then carry a token. Needs TLS where other machines can call.
+  std::string client_ca;  ///< if set, clients must show a certificate that this CA signed
+  /// Name of a file for BearerTokens; if set, calls must carry a token. Needs TLS if other machines can call.
   std::string tokens;
-  /// Metadata in which a proxy says whose call it is, after it has checked the client's certificate. Trusted on Unix sockets
-  /// alone.
+  /// Metadata key under which a proxy names the caller, after it has checked the client's certificate. Trusted only on Unix
+  /// sockets.
   std::string identity_header;
-  bool insecure = false;  ///< plaintext for other machines too
+  bool insecure = false;  ///< allows plaintext for other machines too
 };
 
-/// Throws std::invalid_argument naming the option: a file cannot be read or makes no sense, options contradict each other, or the
-/// address is not of this machine alone and there is neither TLS nor leave to do without.
+/// Returns the credentials for these options. Throws std::invalid_argument naming the option if a file cannot be read or is
+/// malformed, if options contradict each other, or if other machines can call, there is no TLS and `insecure` is not set.
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const ListenOptions& options);
 
-/// Nothing where all may call. Throws std::invalid_argument: the file cannot be read or is no such file.
+/// Returns the tokens, or nothing if calls need none. Throws std::invalid_argument if the file cannot be read or is malformed.
 std::optional<BearerTokens> tokens_of(const ListenOptions& options);
 
-/// Throws std::invalid_argument naming the option where other machines could call at `address` without TLS, and nobody gave
-/// leave.
+/// Throws std::invalid_argument naming `option` if other machines could call at `address` without TLS and `insecure` is not set.
 void refuse_plaintext(const std::string& option, const std::string& address, const ListenOptions& options);
 
-/// What is said where a port cannot be had.
+/// Returns the error message for an address on which the server cannot listen.
 std::string cannot_listen(const std::string& address);
 
-/// HOST:PORT with the port that was taken.
+/// Returns HOST:PORT with the port that the system assigned.
 std::string with_port(const std::string& address, int port);
 
-/// Whether it is the path of a socket file: unix:PATH.
+/// Returns whether `address` is the path of a socket file: unix:PATH.
 bool is_unix(const std::string& address);
 
-/// Whether only this machine can call there: 127.0.0.0/8, ::1, localhost, a Unix socket.
+/// Returns whether only this machine can connect to `address`: 127.0.0.0/8, ::1, localhost, a Unix socket.
 bool is_loopback(const std::string& address);
 
 }  // namespace alvor

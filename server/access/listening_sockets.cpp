@@ -18,10 +18,11 @@ namespace alvor {
 
 namespace {
 
-constexpr int backlog = 128;  // the most that arrive between two looks of the accepting thread
+// Most connections that may arrive before the accepting thread looks again.
+constexpr int backlog = 128;
 constexpr timeval patience{3, 0};
 
-/// An address of any family as the system takes it.
+/// A socket address of any family.
 struct SocketAddress {
   sockaddr_storage bytes{};
   socklen_t size = sizeof(sockaddr_storage);
@@ -56,20 +57,21 @@ SocketAddress unix_address(const std::string& file) {
 
 void set(int socket, int level, int option, int value) { setsockopt(socket, level, option, &value, sizeof value); }
 
-/// Whether nobody listens on a socket file.
+/// Returns whether nobody listens on the socket file any more.
 bool is_left_behind(const SocketAddress& address) {
   const Descriptor client(socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   return ::connect(client.get(), address.get(), address.size) != 0 && errno == ECONNREFUSED;
 }
 
-/// Not open where the system refuses.
+/// Returns a listening socket; not open if the system refuses.
 Descriptor listen_on(const SocketAddress& address) {
   Descriptor made(socket(address.bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (address.has_port()) set(made.get(), SOL_SOCKET, SO_REUSEADDR, 1);
-  // "::" takes IPv4 too, as servers usually do; where 0.0.0.0 is asked for as well, it is a socket of its own.
+  // "::" takes IPv4 too, as usual for servers. If 0.0.0.0 is listened on as well, it has its own socket.
   if (address.bytes.ss_family == AF_INET6) set(made.get(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
   if (!made.is_open() || bind(made.get(), address.get(), address.size) != 0) return {};
-  if (!address.has_port()) chmod(reinterpret_cast<const sockaddr_un&>(address.bytes).sun_path, 0660);  // nobody can connect yet
+  if (!address.has_port())
+    chmod(reinterpret_cast<const sockaddr_un&>(address.bytes).sun_path, 0660);  // before listen(), so nobody can connect yet
   return listen(made.get(), backlog) == 0 ? std::move(made) : Descriptor();
 }
 
@@ -83,7 +85,7 @@ AddressList resolved(const std::string& host, const std::string& port) {
   return {found, &freeaddrinfo};
 }
 
-/// A wildcard address becomes the loopback's.
+/// Replaces a wildcard address by the loopback address.
 void make_reachable(SocketAddress& address) {
   if (address.bytes.ss_family == AF_INET) {
     auto& to = address.as<sockaddr_in>();
@@ -102,7 +104,7 @@ Descriptor blocking_socket(int family) {
 
 std::string path_in(const std::string& address) { return address.substr(std::string("unix:").size()); }
 
-/// Throws std::invalid_argument.
+/// Splits HOST:PORT. Throws std::invalid_argument if it is malformed.
 std::pair<std::string, std::string> host_and_port(const std::string& address) {
   const std::size_t colon = address.rfind(':');
   std::string host = address.substr(0, colon);

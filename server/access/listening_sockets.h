@@ -9,32 +9,32 @@
 
 namespace alvor {
 
-/// The sockets of one address; non-blocking. A socket file (unix:PATH) is removed when this goes.
+/// The non-blocking listening sockets of one address. The destructor removes a socket file (unix:PATH).
 class ListeningSockets {
  public:
-  /// `address` is HOST:PORT, where port 0 takes a free one and every address of HOST is listened on, or unix:PATH, which only the
-  /// server's user and group may open (mode 0660). Two servers never share an address; a socket file that nobody listens on is
-  /// replaced. Throws std::invalid_argument where it is no such address, std::runtime_error where it cannot listen there.
+  /// Listens on `address`: HOST:PORT, on every address of HOST, where port 0 takes a free one; or unix:PATH, which only the
+  /// server's user and group may open (mode 0660). Two servers never share an address; a socket file on which nobody listens is
+  /// replaced. Throws std::invalid_argument for a malformed address, std::runtime_error if it cannot listen.
   explicit ListeningSockets(const std::string& address);
-  /// Throws std::invalid_argument where it is no such address.
+  /// Throws std::invalid_argument if `address` is malformed.
   static void check(const std::string& address);
   ~ListeningSockets();
   ListeningSockets(const ListeningSockets&) = delete;
   ListeningSockets& operator=(const ListeningSockets&) = delete;
 
   const std::vector<Descriptor>& all() const { return all_; }
-  /// AF_INET, AF_INET6 or AF_UNIX.
+  /// Returns AF_INET, AF_INET6 or AF_UNIX.
   int family(const Descriptor& socket) const;
   int port() const { return port_; }  ///< 0 for a Unix socket
   bool is_unix() const { return !file_.empty(); }
-  /// The address with the port that was taken.
+  /// Returns the address with the port that the system assigned.
   const std::string& address() const { return address_; }
 
-  /// Nobody finds a socket file any more; whoever listens next there may make its own.
+  /// Removes the socket file, so that another server can make its own there.
   void remove_file();
 
-  /// Connects as a client on this machine would; blocking, each operation takes 3 s at most. Over TCP, `before` is told the port
-  /// of the client's end before the connection is made. Returns a descriptor that is not open where it fails.
+  /// Connects as a client on this machine would. The socket is blocking, with at most 3 s for each operation. Over TCP, calls
+  /// `before` with the client's port before connecting. Returns a descriptor that is not open if it failed.
   Descriptor connect(const std::function<void(int)>& before) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Who is at the other end of a connection.
+// The address of a connection's peer.
 
 #include <sys/socket.h>
 
@@ -7,18 +7,18 @@
 
 namespace alvor {
 
-/// Returns what limits by address count: the bytes of an IPv4 address, or of the /64 network that one subscriber of IPv6 has.
-/// Empty for other families.
+/// Returns the network for limits by address: the bytes of an IPv4 address, or of the /64 network that one subscriber of IPv6
+/// has. Empty for other families.
 std::string network_of(const sockaddr& peer);
 
-/// Whether the address is a loopback address.
+/// Returns whether the address is a loopback address.
 bool is_this_machine(const sockaddr& peer);
 
-/// Returns the peer as gRPC's ServerContext::peer() names it: "ipv4:127.0.0.1:50051", "ipv6:%5B::1%5D:50051". Empty for other
-/// families than IPv4 and IPv6.
+/// Returns the peer's name as in gRPC's ServerContext::peer(): "ipv4:127.0.0.1:50051", "ipv6:%5B::1%5D:50051". Empty for families
+/// other than IPv4 and IPv6.
 std::string grpc_name_of(const sockaddr& peer);
 
-/// Returns 0 for other families than IPv4 and IPv6.
+/// Returns the port, or 0 for families other than IPv4 and IPv6.
 int port_of(const sockaddr& peer);
 
 }  // namespace alvor

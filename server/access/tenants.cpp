@@ -30,7 +30,8 @@ std::string turn_of(const std::string& tenant, const grpc::ServerContextBase& co
 }
 
 const std::string& tenant_key() {
-  static const std::string key = "alvor-tenant-" + random_id('k') + random_id('k') + "-bin";  // names may have any bytes
+  static const std::string key =
+      "alvor-tenant-" + random_id('k') + random_id('k') + "-bin";  // -bin: the tenant's name may hold any bytes
   return key;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A file descriptor with an owner.
+// A file descriptor with one owner.
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 
 namespace alvor {
 
-/// Closes its descriptor when it goes.
+/// Owns a file descriptor and closes it on destruction.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -23,7 +23,7 @@ class Descriptor {
 
   int get() const { return number_; }
   bool is_open() const { return number_ >= 0; }
-  /// The caller closes it from now on.
+  /// Gives up ownership: the caller must close the returned descriptor.
   int release() { return std::exchange(number_, -1); }
 
  private:

@@ -8,7 +8,8 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t reserved = 128;  // an idle server has some 40 open
+// Descriptors kept for the database, the log and the listeners. An idle server has about 40 open.
+constexpr std::size_t reserved = 128;
 
 }  // namespace
 
@@ -16,7 +17,7 @@ std::size_t raise_descriptor_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return 1024;
   limit.rlim_cur = limit.rlim_max;
-  setrlimit(RLIMIT_NOFILE, &limit);  // where it is refused, the old one holds
+  setrlimit(RLIMIT_NOFILE, &limit);  // if this fails, the old limit stays
   getrlimit(RLIMIT_NOFILE, &limit);
   return limit.rlim_cur;
 }

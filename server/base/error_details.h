@@ -1,5 +1,5 @@
 #pragma once
-// What a refusal says to programs.
+// Details of an error that programs can read.
 
 #include "server/base/status_error.h"
 
@@ -7,8 +7,8 @@
 
 namespace alvor {
 
-/// A serialized google.rpc.Status: of INVALID_ARGUMENT with the place as a BadRequest.FieldViolation, of UNAVAILABLE with a
-/// RetryInfo. Empty for other codes, whose message says all.
+/// Returns a serialized google.rpc.Status: for INVALID_ARGUMENT with a BadRequest.FieldViolation that names the place, for
+/// UNAVAILABLE with a RetryInfo. Empty for other codes, whose message is enough.
 std::string details_of(const StatusError& refusal);
 
 }  // namespace alvor

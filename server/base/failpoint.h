@@ -1,5 +1,5 @@
 #pragma once
-// Moments at which a test may let the server die.
+// Points in the code at which a test can make the server die.
 
 #include <csignal>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 
 namespace alvor {
 
-/// Kills the process at once, as kill -9 would, if the environment variable ALVOR_FAILPOINT is this name.
+/// Kills the process at once, like kill -9, if the environment variable ALVOR_FAILPOINT is `name`.
 inline void failpoint(std::string_view name) {
   static const char* const chosen = std::getenv("ALVOR_FAILPOINT");
   if (chosen && name == chosen) kill(getpid(), SIGKILL);

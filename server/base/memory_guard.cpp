@@ -23,13 +23,14 @@ constexpr auto unlimited = std::numeric_limits<std::uint64_t>::max();
 
 std::uint64_t page_size() { return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)); }
 
-/// A limit is a number; "max" and what cannot be read are none.
+/// Returns the limit in a file of the control group; unlimited for "max" and for what cannot be read.
 std::uint64_t limit_in(const std::string& file) {
   std::uint64_t bytes = 0;
   return std::ifstream(file) >> bytes && bytes > 0 ? bytes : unlimited;
 }
 
-/// Inside a container its own group is the root of what it sees.
+/// Returns the smallest memory limit of the process's control groups. In a container its own group is the root of the tree it
+/// sees.
 std::uint64_t limit_of_group() {
   std::uint64_t least = unlimited;
   std::ifstream groups("/proc/self/cgroup");  // lines ID:CONTROLLERS:PATH
@@ -48,7 +49,7 @@ std::uint64_t limit_of_group() {
 
 std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-/// Trims at most twice a second: it takes a tenth of a second for a heap of gigabytes.
+/// Trims the heap at most twice a second: for a heap of gigabytes trimming takes a tenth of a second.
 class HeapTrimmer {
  public:
   void ask() {
@@ -89,7 +90,7 @@ std::uint64_t allowed_memory() {
 
 struct MemoryGuard::Relief {
   using Clock = std::chrono::steady_clock;
-  // Trimming a heap of gigabytes takes a tenth of a second.
+  // Least time between two reliefs: trimming a heap of gigabytes takes a tenth of a second.
   static constexpr std::chrono::seconds pause{1};
 
   std::shared_ptr<void> add(std::function<void()> way) {
@@ -102,10 +103,10 @@ struct MemoryGuard::Relief {
             }};
   }
   void give_back() {
-    const std::unique_lock hold(lock, std::try_to_lock);  // somebody else is at it
+    const std::unique_lock hold(lock, std::try_to_lock);  // not held if another thread is doing it
     if (!hold || Clock::now() < last + pause) return;
     for (const auto& [number, way] : ways) way();
-    malloc_trim(0);  // a limit counts what the allocator keeps for later
+    malloc_trim(0);  // memory limits count what the allocator keeps
     last = Clock::now();
   }
 

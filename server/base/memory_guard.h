@@ -1,5 +1,5 @@
 #pragma once
-// How much memory the server may take. It refuses work while there is room to say so, and is not killed for taking too much.
+// Limits the server's memory: work is refused before the system would kill the process.
 
 #include <cstdint>
 #include <functional>
@@ -8,43 +8,43 @@
 
 namespace alvor {
 
-/// Of this process, in bytes.
+/// The resident memory of this process, in bytes.
 struct ResidentMemory {
   std::uint64_t all = 0;
-  std::uint64_t of_files = 0;  ///< the system can take these back
+  std::uint64_t of_files = 0;  ///< memory of mapped files, which the system can take back
 };
 ResidentMemory resident_memory();
 
-/// What this process has taken that nothing but memory can hold, in bytes.
+/// Returns the resident memory that the system cannot take back (all but mapped files), in bytes.
 std::uint64_t held_bytes();
 
-/// Gives memory that was freed back to the system within a second, on a thread of its own: a limit counts what the allocator
-/// keeps. To be called after much was freed.
+/// Returns freed memory to the system within a second, on a thread of its own. Memory limits count what the allocator keeps, so
+/// call this after much was freed.
 void trim_heap_soon();
 
-/// What the control group of this process allows, or else the machine, in bytes.
+/// Returns the memory limit of this process's control group, or else the machine's memory, in bytes.
 std::uint64_t allowed_memory();
 
-/// Copies share the ways of relief. Thread-safe.
+/// Decides whether there is memory for new work. Copies share the registered reliefs. Thread-safe.
 class MemoryGuard {
  public:
   MemoryGuard() : MemoryGuard(0) {}  ///< no limit
-  /// 0: no limit.
+  /// `limit` in bytes; 0: no limit. `used` returns the bytes in use.
   explicit MemoryGuard(std::uint64_t limit, std::uint64_t (*used)() = held_bytes);
 
-  /// As make_room(), then as refuse_without_room().
+  /// Calls make_room(), then refuse_without_room().
   void admit(const std::string& what, std::uint64_t bytes) const;
-  /// Calls the ways of relief if `bytes` more would not fit. The caller must not hold a lock that one of them takes.
+  /// Runs the registered reliefs if `bytes` more would not fit. The caller must not hold a lock that one of them takes.
   void make_room(std::uint64_t bytes) const;
-  /// RESOURCE_EXHAUSTED, saying that `what` needs it, where more than three quarters would be in use with `bytes` more.
+  /// Throws RESOURCE_EXHAUSTED, naming `what`, if more than three quarters of the limit would be in use with `bytes` more.
   void refuse_without_room(const std::string& what, std::uint64_t bytes) const;
   bool has_room(std::uint64_t bytes) const;
-  /// More than seven eighths are in use: something must go.
+  /// Returns whether more than seven eighths of the limit are in use, so that work must be ended.
   bool is_short() const;
 
   std::uint64_t limit() const { return limit_; }
 
-  /// A way to give back memory that nobody needs, until the returned handle goes.
+  /// Registers a function that frees memory nobody needs. It stays registered until the returned handle is destroyed.
   std::shared_ptr<void> relieve_by(std::function<void()> give_back) const;
 
  private:

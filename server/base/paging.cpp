@@ -19,7 +19,7 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
-// 0 is never sealed, so it also stands for digits that are none.
+// Returns the number of 16 hexadecimal digits, or 0 for anything else. Token numbers are never 0.
 std::uint64_t from_hex(const std::string& text, std::size_t first) {
   std::uint64_t value = 0;
   const char* end = text.data() + first + 16;

@@ -1,5 +1,5 @@
 #pragma once
-// Lists in pages, newest first (AIP-158). Every listed resource has a `number` that grows with its age rank: later is larger.
+// Returns lists in pages, newest first (AIP-158). Every listed resource has a `number` that is larger for newer ones.
 
 #include <algorithm>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// What a client asked for, checked: items with a smaller number than `before`.
+/// A checked request for a page: at most `size` items whose number is smaller than `before`.
 struct PageRequest {
   std::size_t size = 50;
   std::uint64_t before = std::numeric_limits<std::uint64_t>::max();
@@ -23,13 +23,13 @@ struct Page {
   std::uint64_t next_before = 0;  ///< `before` of the next page; 0 on the last
 };
 
-/// Makes page tokens and knows its own again. Tokens of another process are refused.
+/// Makes page tokens and checks those that clients send back. Tokens of another process are refused.
 class PageTokens {
  public:
   PageTokens();
-  /// Empty for 0, which is the last page.
+  /// Returns the token for the next page; empty for 0, which marks the last page.
   std::string token(std::uint64_t next_before) const;
-  /// Throws StatusError INVALID_ARGUMENT.
+  /// Returns the checked request. Throws StatusError INVALID_ARGUMENT.
   PageRequest request(std::int32_t page_size, const std::string& token) const;
 
  private:
@@ -37,7 +37,7 @@ class PageTokens {
   std::uint64_t secret_;
 };
 
-/// Requires: no two items of one number.
+/// Returns the page of `all` that `request` asks for. Requires: no two items have the same number.
 template <class Item>
 Page<Item> cut_page(std::vector<std::shared_ptr<Item>> all, const PageRequest& request) {
   std::erase_if(all, [&](const auto& item) { return item->number >= request.before; });

@@ -4,7 +4,7 @@
 
 namespace alvor {
 
-/// `first` and 16 hex digits that nobody can guess, fit for a resource name (AIP-122).
+/// Returns `first` and 16 random hexadecimal digits that nobody can guess: fit for a resource name (AIP-122).
 std::string random_id(char first);
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Requests that may be sent twice and must not do their work twice (AIP-155).
+// Recognises requests that are sent twice, so that their work is not done twice (AIP-155).
 
 #include "server/base/caller.h"
 #include "server/base/status_error.h"
@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// Throws StatusError INVALID_ARGUMENT. "" is no id, which is allowed.
+/// Throws StatusError INVALID_ARGUMENT for a malformed request id. "" means no id and is allowed.
 inline void check_request_id(const std::string& id) {
   const bool is_printable = std::ranges::all_of(id, [](char c) { return c > ' ' && c <= '~'; });
   if (id.size() > 64 || !is_printable) throw invalid_argument("request_id: must be 1 to 64 printable ASCII characters");
@@ -21,13 +21,13 @@ inline StatusError other_request(const std::string& id) {
   return invalid_argument("request_id: '" + id + "' was used for another request");
 }
 
-/// The names of what requests made, as long as that exists. Not thread-safe.
+/// Maps request ids to the names of the resources they made, while these exist. Not thread-safe.
 class RequestIds {
  public:
   void add(const Caller& caller, const std::string& name) {
     if (!caller.request_id.empty()) names_[{caller.tenant, caller.request_id}] = name;
   }
-  /// "" if there is none.
+  /// Returns the name of the resource that the request made, or "".
   std::string find(const Caller& caller) const {
     const auto found = names_.find({caller.tenant, caller.request_id});
     return caller.request_id.empty() || found == names_.end() ? "" : found->second;

@@ -6,13 +6,13 @@
 
 namespace alvor {
 
-/// Of bytes that come one part after the other (FIPS 180-4).
+/// Computes the SHA-256 of bytes that come in parts (FIPS 180-4).
 class Sha256 {
  public:
   Sha256();
   ~Sha256();
   void add(std::string_view bytes);
-  /// In lower-case hexadecimal digits. Nothing can be added afterwards.
+  /// Returns the hash in lower-case hexadecimal digits. Nothing can be added afterwards.
   std::string digits();
 
  private:
@@ -20,7 +20,7 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-/// In lower-case hexadecimal digits.
+/// Returns the SHA-256 of `bytes` in lower-case hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// How the logic behind the calls refuses: an exception that knows its gRPC status.
+// Exceptions with a gRPC status, thrown by the logic behind the calls to refuse a request.
 
 #include <grpcpp/support/status.h>
 
@@ -8,7 +8,8 @@
 
 namespace alvor {
 
-/// The text is cut after 1000 bytes: it may quote what a client sent, and gRPC's trailers hold no more than 8 KB.
+/// A refusal with its gRPC status. The text is cut after 1000 bytes: it may quote what a client sent, and gRPC's trailers hold at
+/// most 8 KB.
 struct StatusError : std::runtime_error {
   StatusError(grpc::StatusCode status_code, const std::string& text)
       : std::runtime_error(text.substr(0, 1000)), code(status_code) {}

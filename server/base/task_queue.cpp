@@ -26,12 +26,12 @@ void TaskQueue::run() {
   while (auto task = take_due(hold)) {
     hold.unlock();
     task();
-    task = nullptr;  // what it holds may be large: not freed under the lock
+    task = nullptr;  // may free much memory, so not under the lock
     hold.lock();
   }
 }
 
-// Waits for the next task; empty when the queue is stopping and none is due.
+// Waits for the next task and returns it; returns an empty function when the queue is stopping and no task is due.
 std::function<void()> TaskQueue::take_due(std::unique_lock<std::mutex>& hold) {
   for (;;) {
     const auto first = tasks_.begin();
@@ -40,7 +40,7 @@ std::function<void()> TaskQueue::take_due(std::unique_lock<std::mutex>& hold) {
     if (first == tasks_.end()) {
       changed_.wait(hold);
     } else {
-      const auto due = first->first;  // the entry may be gone when the wait ends
+      const auto due = first->first;  // copied, as the entry may be gone when the wait ends
       changed_.wait_until(hold, due);
     }
   }

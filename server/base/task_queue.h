@@ -1,5 +1,5 @@
 #pragma once
-// Work that must not run on gRPC's or the solver's threads.
+// Runs tasks that must not run on gRPC's or the solver's threads.
 
 #include <chrono>
 #include <condition_variable>
@@ -10,13 +10,13 @@
 
 namespace alvor {
 
-/// One thread that runs tasks when they are due, those due at the same time in order of posting. Tasks must not throw.
+/// One thread that runs tasks when they are due. Tasks due at the same time run in the order of posting. Tasks must not throw.
 class TaskQueue {
  public:
   using Clock = std::chrono::steady_clock;
 
   TaskQueue();
-  /// Runs what is due, drops what is due later.
+  /// Runs the tasks that are due and drops later ones.
   ~TaskQueue();
   TaskQueue(const TaskQueue&) = delete;
   TaskQueue& operator=(const TaskQueue&) = delete;

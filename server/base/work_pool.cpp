@@ -77,7 +77,7 @@ void WorkPool::run() {
     running_.push_back(&task);
     hold.unlock();
     task.work();
-    task.work = nullptr;  // what it holds may be large: not freed under the lock
+    task.work = nullptr;  // may free much memory, so not under the lock
     hold.lock();
     std::erase(running_, &task);
     if (--next->second.running == 0 && next->second.waiting.empty()) queues_.erase(next);
@@ -85,7 +85,7 @@ void WorkPool::run() {
   }
 }
 
-/// The first caller behind the one before, in a circle, that has a task waiting and may have another thread.
+/// Returns the queue of the next caller in turn (in a circle, after the last one) that has a task waiting and a thread left.
 WorkPool::Queues::iterator WorkPool::next_queue() {
   auto queue = queues_.upper_bound(last_);
   for (std::size_t n = 0; n < queues_.size(); ++n, ++queue) {

@@ -1,5 +1,5 @@
 #pragma once
-// Threads for calls whose work takes long or waits for the disk: none of it may run on gRPC's threads.
+// Threads for calls that take long or wait for the disk; such work must not run on gRPC's threads.
 
 #include "server/base/task_queue.h"
 
@@ -19,15 +19,15 @@
 
 namespace alvor {
 
-/// Tells the work of one call that it shall end, and why. Thread-safe.
+/// Asks the work of one call to end, with a reason. Thread-safe.
 class CallStop {
  public:
-  /// The first reason counts.
+  /// Asks to stop. Only the first reason counts.
   void stop(const grpc::Status& why);
   std::stop_token token() const { return source_.get_token(); }
-  /// Throws StatusError with the reason, if there is one.
+  /// Throws StatusError with the reason if a stop was asked for.
   void refuse_stopped() const;
-  /// OK where it was not stopped.
+  /// Returns the reason, or OK if no stop was asked for.
   grpc::Status reason() const;
 
  private:
@@ -36,26 +36,27 @@ class CallStop {
   grpc::Status why_;
 };
 
+/// Limits of a WorkPool.
 struct WorkLimits {
-  std::size_t waiting = 1000;  ///< tasks of one caller
+  std::size_t waiting = 1000;  ///< waiting tasks of one caller
   int threads = 4;
-  int of_one = 2;                                                   ///< threads that the work of one caller takes at most
-  std::chrono::steady_clock::duration time{std::chrono::hours(1)};  ///< of one task; then it is RESOURCE_EXHAUSTED
+  int of_one = 2;                                                   ///< threads that work for one caller at a time
+  std::chrono::steady_clock::duration time{std::chrono::hours(1)};  ///< most time for a task; then RESOURCE_EXHAUSTED
 };
 
-/// Callers take turns; the tasks of one caller begin in the order in which they were posted. Every task is run, once, even if it
-/// is to stop before it has begun. Tasks must not throw. Thread-safe.
+/// A pool of threads that callers share in turns. The tasks of one caller begin in the order of posting. Every task runs once,
+/// even if it is stopped before it begins. Tasks must not throw. Thread-safe.
 class WorkPool {
  public:
   explicit WorkPool(const WorkLimits& limits);
-  /// As stop(); waits for all tasks.
+  /// Calls stop() and waits for all tasks.
   ~WorkPool();
   WorkPool(const WorkPool&) = delete;
   WorkPool& operator=(const WorkPool&) = delete;
 
-  /// `caller` is a name that other callers do not have. Throws StatusError where too many of its tasks wait: RESOURCE_EXHAUSTED.
+  /// Queues a task. `caller` identifies the caller. Throws StatusError RESOURCE_EXHAUSTED if too many of its tasks wait.
   void post(const std::string& caller, std::shared_ptr<CallStop> stop, std::function<void()> task);
-  /// Stops all tasks, those to come too: UNAVAILABLE.
+  /// Stops all tasks, also later ones, with UNAVAILABLE.
   void stop();
 
  private:
@@ -83,7 +84,7 @@ class WorkPool {
   std::vector<const Task*> running_;
   bool is_stopped_ = false, is_ending_ = false;
   std::vector<std::jthread> threads_;
-  TaskQueue watch_;  ///< uses all of the above
+  TaskQueue watch_;  ///< uses all members above
 };
 
 }  // namespace alvor

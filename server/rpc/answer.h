@@ -1,5 +1,5 @@
 #pragma once
-// From what a call's logic does or throws to what gRPC is told.
+// Runs the logic of a call and turns its result or exception into a gRPC status.
 
 #include "server/access/tenants.h"
 #include "server/base/error_details.h"
@@ -16,14 +16,14 @@
 
 namespace alvor {
 
-/// For the log: a client's text must not fake further lines.
+/// Returns the text with control characters replaced by blanks, so that a client's text cannot fake further lines of the log.
 inline std::string one_line(std::string text) {
   std::ranges::replace_if(
       text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   return text;
 }
 
-/// Runs `body`; what it throws becomes the status, and a line in the log. `call` is for that line.
+/// Runs `body`. Returns OK, or the status for what it threw, which is also logged with the name `call`.
 template <class Body>
 grpc::Status attempt(spdlog::logger& logger, const char* call, Body&& body) {
   try {
@@ -41,7 +41,7 @@ grpc::Status attempt(spdlog::logger& logger, const char* call, Body&& body) {
   }
 }
 
-/// The whole of a unary call whose body is quick and waits for nothing.
+/// Answers a unary call whose body is quick and waits for nothing.
 template <class Body>
 grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, spdlog::logger& logger, const char* call, Body&& body) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
@@ -49,7 +49,7 @@ grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, spdlog::l
   return reactor;
 }
 
-/// A unary call that ends its work when its caller leaves. Deletes itself.
+/// A unary call that stops its work when its caller leaves. Deletes itself.
 class UnaryCall final : public grpc::ServerUnaryReactor {
  public:
   std::shared_ptr<CallStop> stop() const { return stop_; }
@@ -61,8 +61,7 @@ class UnaryCall final : public grpc::ServerUnaryReactor {
   const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
 };
 
-/// The whole of a unary call whose body may wait, for a lock or the disk: `body` is copied, and called with the tenant by a
-/// thread of `pool`.
+/// Answers a unary call whose body may wait for a lock or the disk. A thread of `pool` calls a copy of `body` with the tenant.
 template <class Body>
 grpc::ServerUnaryReactor* answer_from(WorkPool& pool, const Tenants& tenants, grpc::CallbackServerContext* context,
                                       spdlog::logger& logger, const char* call, Body body) {
@@ -81,7 +80,7 @@ grpc::ServerUnaryReactor* answer_from(WorkPool& pool, const Tenants& tenants, gr
   return reactor;
 }
 
-/// A stream that ends as soon as it begins. Deletes itself.
+/// A stream that ends with a status as soon as it begins. Deletes itself.
 template <class Reactor>
 class Refusal final : public Reactor {
  public:

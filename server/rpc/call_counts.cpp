@@ -21,7 +21,7 @@ class Counting final : public grpc::experimental::Interceptor {
   }
 
  private:
-  /// Clients may make up as many methods as they like.
+  /// Counts the call; calls to unknown methods count together, because clients can invent any number of names.
   void note(grpc::StatusCode code) { counts_.note(code == grpc::UNIMPLEMENTED ? "other" : method_, code); }
 
   CallCounts& counts_;
@@ -49,7 +49,7 @@ void CallCounts::note(const std::string& method, grpc::StatusCode code) {
 void CallCounts::begin(const std::string& peer) {
   {
     std::scoped_lock hold(lock_);
-    if (++under_way_[peer] <= most_of_connection || !peer.starts_with("ip")) return;  // other peers are front ends of many
+    if (++under_way_[peer] <= most_of_connection || !peer.starts_with("ip")) return;  // other peers are proxies for many
   }
   flooding_(peer);
 }

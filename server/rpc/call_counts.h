@@ -1,5 +1,5 @@
 #pragma once
-// How many calls ended how.
+// Counts calls by method and status code.
 
 #include <grpcpp/support/server_interceptor.h>
 
@@ -13,13 +13,14 @@
 
 namespace alvor {
 
-/// Calls by method and status code, and those under way by connection. Thread-safe.
+/// Counts ended calls by method and status code, and open calls by connection. Thread-safe.
 class CallCounts {
  public:
-  /// gRPC lets a client have 256 streams at a time, but does not count streams that were reset and not yet wound up.
+  /// Open calls of one connection beyond which it is reported as flooding. gRPC allows 256 streams at a time but does not count
+  /// streams that were reset and not yet cleaned up.
   static constexpr int most_of_connection = 1000;
 
-  /// `flooding` is told the peer of each connection that has more calls under way than most_of_connection, as gRPC writes it:
+  /// `flooding` is called with the peer of each connection that exceeds most_of_connection, as gRPC writes it:
   /// "ipv4:127.0.0.1:50051".
   explicit CallCounts(std::function<void(const std::string&)> flooding) : flooding_(std::move(flooding)) {}
   using Counts = std::map<std::pair<std::string, grpc::StatusCode>, std::uint64_t>;
@@ -32,11 +33,11 @@ class CallCounts {
   const std::function<void(const std::string&)> flooding_;
   mutable std::mutex lock_;
   Counts counts_;
-  std::unordered_map<std::string, int> under_way_;  ///< by peer
+  std::unordered_map<std::string, int> under_way_;  ///< open calls by peer
 };
 
-/// Notes each call of a server when its status is sent; one that its client breaks off before that is not noted. `counts` must
-/// outlive the server.
+/// Returns an interceptor that counts each call when its status is sent. A call that its client cancels before that is not
+/// counted by status. `counts` must outlive the server.
 std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> counting_calls(CallCounts& counts);
 
 }  // namespace alvor

@@ -1,17 +1,18 @@
 #pragma once
-// Threads for what calls do.
+// The threads that do the work of calls.
 
 #include "server/base/task_queue.h"
 #include "server/base/work_pool.h"
 
 namespace alvor {
 
+/// Pools of threads for calls, one for each kind of work.
 struct CallPools {
-  /// Building and loading scenes.
+  /// For building and loading scenes.
   WorkPool building{{.threads = 4, .of_one = 2, .time = std::chrono::minutes(1)}};
-  /// Everything else that may wait for a lock or the disk.
+  /// For all other work that may wait for a lock or the disk.
   WorkPool keeping{{.threads = 8, .of_one = 4}};
-  /// Beginning to watch, for which a solution may have to be loaded.
+  /// For starting watches, which may have to load a solution.
   WorkPool watching{{.threads = 4, .of_one = 2}};
   TaskQueue timers;
 };

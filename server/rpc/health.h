@@ -1,5 +1,5 @@
 #pragma once
-// Whether the server takes calls (grpc.health.v1), for those who ask it in order to restart it or to send no more clients.
+// Tells whether the server takes calls (grpc.health.v1), for supervisors and load balancers.
 
 #include "server/rpc/rpc_server.h"
 
@@ -10,11 +10,11 @@
 
 namespace alvor {
 
-/// Health and nothing else, on an address of its own: without TLS and tokens, which most probes do not have. NOT_SERVING at
-/// first.
+/// A server on an address of its own that answers only health checks, without TLS and tokens, which most probes lack. Starts as
+/// NOT_SERVING.
 class HealthPort {
  public:
-  /// Holds `most_connections` at a time. Throws std::invalid_argument if it cannot listen there.
+  /// Listens on `address` and holds at most `most_connections` at a time. Throws std::invalid_argument if it cannot listen there.
   explicit HealthPort(const std::string& address, std::size_t most_connections = 50);
   ~HealthPort();
   HealthPort(const HealthPort&) = delete;
@@ -26,14 +26,14 @@ class HealthPort {
  private:
   void drain();
 
-  std::unique_ptr<grpc::ServerCompletionQueue> unused_;  ///< gRPC wants one where no service of ours does
+  std::unique_ptr<grpc::ServerCompletionQueue> unused_;  ///< gRPC requires one, as we register no service
   std::unique_ptr<RpcServer> rpc_;
 };
 
-/// Of the server as a whole and of each of its services.
+/// Sets the health of the server as a whole and of each of its services.
 void set_serving(grpc::Server& server, bool is_serving);
 
-/// Empty if the HealthPort at `address` says SERVING, else why not.
+/// Returns "" if the HealthPort at `address` says SERVING, else the reason why not.
 std::string probe_health(const std::string& address);
 
 }  // namespace alvor

@@ -96,7 +96,7 @@ void Metrics::collect_solves(std::vector<MetricFamily>& families) const {
     const v1::Solve facts = solve->describe();
     ++count[facts.state()];
     const v1::Step& step = facts.last_step();
-    // What an earlier server did is not this one's work.
+    // Work that an earlier run of the server did does not count for this run.
     const auto before = seen_.find(facts.name());
     const Seen since = before != seen_.end() ? before->second : Seen{};
     if (before != seen_.end() || facts.restarts() == 0) {

@@ -1,5 +1,5 @@
 #pragma once
-// What an operator may want to know of a running server, as Prometheus asks for it.
+// Metrics of a running server for Prometheus.
 
 #include <prometheus/collectable.h>
 
@@ -19,8 +19,8 @@ class MemoryGuard;
 class FrontDoor;
 struct KeepingCounts;
 
-/// Everything is looked up when it is asked for; nothing is counted while light is solved. Thread-safe; everything it is given
-/// must outlive it.
+/// Collects the server's metrics. It looks everything up when asked and costs a running solve nothing. Thread-safe; all its
+/// arguments must outlive it.
 class Metrics : public prometheus::Collectable {
  public:
   Metrics(const SceneStore& scenes, const SolveStore& solves, const Watches& watches, const CallCounts& calls,
@@ -29,7 +29,7 @@ class Metrics : public prometheus::Collectable {
   std::vector<prometheus::MetricFamily> Collect() const override;
 
  private:
-  /// Of a solve, as it was when it was last looked at.
+  /// A solve's shots and rays at the last collection.
   struct Seen {
     std::uint64_t shots = 0, rays = 0;
   };
@@ -43,10 +43,10 @@ class Metrics : public prometheus::Collectable {
   const MemoryGuard& memory_;
   mutable std::mutex lock_;
   mutable std::map<std::string, Seen> seen_;
-  mutable std::uint64_t shots_ = 0, rays_ = 0;  ///< since the server was started, of solves that are gone too
+  mutable std::uint64_t shots_ = 0, rays_ = 0;  ///< totals since the server was started, with deleted solves
 };
 
-/// Of the connections at one listener, which must outlive it. Thread-safe.
+/// Collects the metrics of the connections at one listener, which must outlive it. Thread-safe.
 class DoorMetrics : public prometheus::Collectable {
  public:
   explicit DoorMetrics(const FrontDoor& door) : door_(door) {}

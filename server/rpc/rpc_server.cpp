@@ -8,13 +8,13 @@ namespace alvor {
 
 namespace {
 
-constexpr int handshake_ms = 10'000;  // until a connection has shown its preface of HTTP/2, and TLS before it
-constexpr int idle_ms = 5 * 60'000;   // without a call; clients connect again when they need it
-constexpr int most_streams = 256;     // of one connection at a time
+constexpr int handshake_ms = 10'000;  // time for a connection's TLS handshake and HTTP/2 preface
+constexpr int idle_ms = 5 * 60'000;   // without a call; clients reconnect when they need to
+constexpr int most_streams = 256;     // on one connection at a time
 constexpr int metadata_bytes = 16'384;
 
-/// A peer that vanished without a word must not keep its watches for ever. A break of 5 s is outlived: TCP sends again until 6.3
-/// s after it began.
+/// Sets limits and keepalive, so that a peer that vanished does not keep its watches for ever. A break of 5 s is survived: TCP
+/// resends until 6.3 s after the break began.
 void bound(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, handshake_ms);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, idle_ms);
@@ -22,7 +22,7 @@ void bound(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, metadata_bytes);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);  // clients may do as much
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 5'000);  // clients may ping as often
 }
 
 }  // namespace

@@ -12,25 +12,26 @@
 
 namespace alvor {
 
+/// Owns a gRPC server and its FrontDoor.
 class RpcServer {
  public:
   using Configure = std::function<void(grpc::ServerBuilder&)>;
 
-  /// Serves from now on. `configure` adds services and options to the builder. `died` is called, from a thread, where connections
-  /// can no longer be accepted. Throws std::runtime_error where gRPC refuses.
+  /// Serves from now on. `configure` adds services and options to the builder. `died` is called, on another thread, when
+  /// connections can no longer be accepted. Throws std::runtime_error if gRPC cannot start the server.
   RpcServer(std::shared_ptr<FrontDoor> door, std::shared_ptr<grpc::ServerCredentials> credentials, const Configure& configure,
             std::function<void()> died);
-  /// Ends what is under way, at once.
+  /// Cancels the calls under way at once.
   ~RpcServer();
   RpcServer(const RpcServer&) = delete;
   RpcServer& operator=(const RpcServer&) = delete;
 
-  /// Accepts nothing more, and waits for the calls under way until `grace` is over.
+  /// Accepts no more connections; waits for the calls under way for at most `grace`.
   void shut_down(std::chrono::milliseconds grace);
 
   grpc::Server& server() { return *server_; }
   FrontDoor& door() { return *door_; }
-  /// With the port that was taken.
+  /// Returns the address with the port that the system assigned.
   const std::string& address() const { return door_->address(); }
 
  private:

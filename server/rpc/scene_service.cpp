@@ -13,7 +13,7 @@ namespace alvor {
 
 namespace {
 
-/// Tells when nothing came for too long. Whom it tells may be gone before that.
+/// Calls `tell` when no message came for as long as `patience`. end() must be called before the receiver of `tell` is destroyed.
 class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
  public:
   using Clock = TaskQueue::Clock;
@@ -23,7 +23,7 @@ class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
     tasks_.post_at(last_.load() + patience_, [self = shared_from_this()] { self->look(); });
   }
   void note_message() { last_ = Clock::now(); }
-  /// Nobody is told from now on.
+  /// Stops: `tell` is not called from now on.
   void end() {
     std::scoped_lock hold(lock_);
     tell_ = nullptr;
@@ -73,7 +73,7 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
     StartRead(&message_);
   }
 
-  /// A call ends once, by whoever is first.
+  /// Finishes the call; only the first of several causes counts.
   void finish(const grpc::Status& status) {
     if (!is_finished_.exchange(true)) Finish(status);
   }
@@ -89,10 +89,10 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
     upload_ = uploads_.take(caller_, message_.resume_after_chunks());
   }
 
-  // A read also fails when the client breaks off, and half a scene must not be taken for a whole one: gRPC marks the call
-  // cancelled before it reports such a read.
+  // Ends the upload after the last read. A read also fails when the client breaks off, and half a scene must not be taken for a
+  // whole one; gRPC marks the call cancelled before it reports such a read.
   void finish_upload() {
-    idle_->end();  // whether it has ended the call is settled now
+    idle_->end();  // from here on a timeout cannot end the call
     if (context_.IsCancelled() || is_finished_) {
       if (!is_first_) uploads_.put(caller_, std::move(upload_));
       return finish({grpc::CANCELLED, "the upload was broken off"});
@@ -130,10 +130,10 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
   Caller caller_;
   std::unique_ptr<SceneUpload> upload_;
   const std::shared_ptr<IdleWatch> idle_;
-  const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();  ///< of building the scene
+  const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();  ///< stops the building of the scene
   v1::CreateSceneRequest message_;
   bool is_first_ = true;
-  bool is_open_ = false;  ///< counted among the open ones
+  bool is_open_ = false;  ///< the upload is counted as open
   std::atomic<bool> is_finished_ = false;
 };
 
@@ -144,8 +144,8 @@ bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.nex
 template <class Message, class Slicer, class Part>
 class SendCall final : public grpc::ServerWriteReactor<Message> {
  public:
-  /// `load` returns the content, by a thread of the pool for building. A reader who takes nothing for as long as `patience` is
-  /// given up: the content takes memory.
+  /// `load` returns the content and runs on a thread of the pool for building. A reader that takes nothing for as long as
+  /// `patience` is cancelled, because the content takes memory.
   template <class Load>
   SendCall(grpc::CallbackServerContext& context, CallPools& pools, std::chrono::steady_clock::duration patience,
            const std::string& turn, spdlog::logger& logger, const char* call, Part part, Load load)

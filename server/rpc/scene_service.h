@@ -1,5 +1,5 @@
 #pragma once
-// The RPCs of alvor.v1.SceneService: thin, over SceneStore.
+// The RPCs of alvor.v1.SceneService, as a thin layer over SceneStore.
 
 #include "alvor/v1/scene_service.grpc.pb.h"
 #include "server/access/tenants.h"
@@ -13,7 +13,7 @@ class logger;
 
 namespace alvor {
 
-/// Everything it is given must outlive the server's calls.
+/// Implements the RPCs. All its arguments must outlive the server's calls.
 class SceneService final : public v1::SceneService::CallbackService {
  public:
   SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools, spdlog::logger& logger)
@@ -31,10 +31,10 @@ class SceneService final : public v1::SceneService::CallbackService {
   grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
   grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
 
-  /// Answers from the pool, see answer_from.
+  /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
-  /// Streams a part of the scene's content, cut by a Slicer.
+  /// Streams the part of the scene's content that `part` returns, cut into messages by a Slicer.
   template <class Message, class Slicer, class Part>
   grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& scene, Part part);
 

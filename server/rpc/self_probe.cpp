@@ -14,7 +14,7 @@ namespace {
 using namespace std::literals;
 
 constexpr auto between_probes = 5s;
-// RFC 9113, section 3.4: the client's preface and an empty SETTINGS frame.
+// The bytes with which a client begins HTTP/2 (RFC 9113, section 3.4): its preface and an empty SETTINGS frame.
 constexpr std::string_view preface = "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\4\0\0\0\0\0"sv;
 constexpr std::size_t frame_header = 9;
 
@@ -24,7 +24,7 @@ bool answers_plainly(int connection) {
   return recv(connection, header.data(), header.size(), MSG_WAITALL) == static_cast<ssize_t>(header.size());
 }
 
-/// A refusal is an answer too: servers may want a certificate of the client.
+/// Returns whether the server answers a TLS hello. A refusal is an answer too: the server may want a client certificate.
 bool answers_hello(int connection) {
   const std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context(SSL_CTX_new(TLS_client_method()), &SSL_CTX_free);
   const std::unique_ptr<SSL, decltype(&SSL_free)> tls(context ? SSL_new(context.get()) : nullptr, &SSL_free);

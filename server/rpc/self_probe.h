@@ -1,5 +1,5 @@
 #pragma once
-// Looks every few seconds whether a new connection is served, as a client would.
+// Checks every few seconds whether a new connection is served, by connecting as a client would.
 
 #include "server/access/front_door.h"
 
@@ -10,17 +10,17 @@
 
 namespace alvor {
 
-/// Whether a new connection gets an answer within 3 s: SETTINGS of HTTP/2, or of TLS any answer to its hello.
+/// Returns whether a new connection gets an answer within 3 s: HTTP/2 SETTINGS, or with TLS any answer to the hello.
 bool is_answered(FrontDoor& door, bool with_tls);
 
+/// Checks the server's own FrontDoor every few seconds.
 class SelfProbe {
  public:
-  /// `tell` is called from a thread when the answer differs from the one before; the first is taken to be yes. `door` must
-  /// outlive this.
+  /// Calls `tell`, on another thread, when the result changes; at first it is taken as answered. `door` must outlive this.
   SelfProbe(FrontDoor& door, bool with_tls, std::function<void(bool)> tell);
-  /// As stop(); waits for a probe that is under way.
+  /// Calls stop() and waits for a probe that is under way.
   ~SelfProbe();
-  /// When it returns, `tell` is not called any more. Does not wait.
+  /// Stops the checks without waiting. After it returns, `tell` is not called any more.
   void stop();
 
  private:

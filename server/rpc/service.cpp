@@ -32,7 +32,7 @@ UploadLimits upload_limits(const ServiceOptions& service) {
 
 }  // namespace
 
-// In the order of use: each may refer to those above it.
+// The parts of the service, in the order of use: each may refer to those above it.
 struct Service::Parts {
   explicit Parts(const ServiceOptions& options)
       : calls(options.flooding),

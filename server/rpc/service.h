@@ -1,5 +1,5 @@
 #pragma once
-// The whole service, for any gRPC server: alvord's or one inside another process.
+// The whole Alvor service, for any gRPC server: alvord's or one in another process.
 
 #include "server/access/tenants.h"
 #include "server/scenes/scene_upload.h"
@@ -15,19 +15,19 @@ namespace alvor {
 
 struct ServiceOptions {
   UploadLimits upload;
-  Archive* archive = nullptr;  ///< must outlive the service; null: all is in memory
-  Quota quota;                 ///< of each tenant
-  /// Whose calls they are; null: all callers are one tenant.
+  Archive* archive = nullptr;  ///< must outlive the service; null: everything is only in memory
+  Quota quota;                 ///< for each tenant
+  /// The callers' tokens; null: all callers are one tenant.
   std::shared_ptr<const BearerTokens> tokens;
   std::string identity_header;  ///< see ListenOptions
   MemoryGuard memory;
-  /// Is told of connections with too many calls under way, see CallCounts. From any thread.
+  /// Called with the peer of a connection that has too many calls under way, see CallCounts. From any thread.
   std::function<void(const std::string& peer)> flooding = [](const std::string&) {};
-  SolveStoreOptions solves;  ///< its logger is that of the whole service
+  SolveStoreOptions solves;  ///< its logger is used by the whole service
 };
 
-/// Calls in this order: register_with, start the server, shut_down, shut the server down, destroy. A server that uses it must be
-/// shut down before it is destroyed.
+/// All services and stores of a server. Call in this order: register_with, start the server, shut_down, shut the server down,
+/// destroy. A server that uses the service must be shut down before the service is destroyed.
 class Service {
  public:
   Service();
@@ -37,7 +37,7 @@ class Service {
   /// Ends all watches, parks or cancels all solves (SolveStore::shut_down) and waits for them. Later CreateSolve and WatchSolve
   /// calls are UNAVAILABLE.
   void shut_down();
-  /// Answers as long as the service exists.
+  /// Returns the metrics, which may be collected as long as the service exists.
   std::shared_ptr<prometheus::Collectable> metrics() const;
 
  private:

@@ -76,7 +76,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* SolveService::WatchSolve(Context* co
   if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<grpc::ByteBuffer>>(refusal);
   auto* call = new WatchCall(*context, watches_, logger_);  // deletes itself
   const auto start = [this, call, tenant, watch] {
-    const auto stop = call->stop();  // once it was started, the call may end at any time
+    const auto stop = call->stop();  // kept here: the call may end at any time once started
     const grpc::Status status = attempt(logger_, "WatchSolve", [&] {
       stop->refuse_stopped();
       call->start(solves_.find(watch.name(), tenant), watch);

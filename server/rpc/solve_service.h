@@ -1,5 +1,5 @@
 #pragma once
-// The RPCs of alvor.v1.SolveService: thin, over SolveStore and Watches.
+// The RPCs of alvor.v1.SolveService, as a thin layer over SolveStore and Watches.
 
 #include "alvor/v1/solve_service.grpc.pb.h"
 #include "server/access/tenants.h"
@@ -9,7 +9,7 @@
 
 namespace alvor {
 
-/// Everything it is given must outlive the server's calls.
+/// Implements the RPCs. All its arguments must outlive the server's calls.
 class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchSolve<v1::SolveService::CallbackService> {
  public:
   SolveService(const SceneStore& scenes, SolveStore& solves, Watches& watches, const Tenants& tenants, CallPools& pools,
@@ -30,7 +30,7 @@ class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchS
   grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSolve(Context*, const grpc::ByteBuffer* request) override;
   Reactor* AcknowledgeFrame(Context*, const v1::AcknowledgeFrameRequest* request, v1::AcknowledgeFrameResponse*) override;
 
-  /// Answers from the pool, see answer_from.
+  /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
 

@@ -52,11 +52,11 @@ WatchCall::WatchCall(grpc::CallbackServerContext& context, Watches& watches, spd
 void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request) {
   WatchPlan plan = plan_of(request);
   solve_ = solve;
-  log_ = solve->log();  // loaded here, where it may fail
+  log_ = solve->log();  // loaded here, where errors can be reported
   if (solve->knows(request.epoch(), request.base_revision())) plan.start.base = request.base_revision();
   else if (request.base_revision() > 0) reset_field_ = field([](auto& message) { message.set_reset(true); });
   const auto watch = std::make_shared<Watch>(watches_.frames_of(solve), plan, *this);
-  watch->ask_for_turn();  // nobody else gets it a turn before begin(): then it may end, and this be gone
+  watch->ask_for_turn();  // reserved until begin(): in an earlier turn the watch could end and delete this call
   watches_.add(id_, watch, solve->creator.tenant);
   listener_ = log_->listen([&watches = watches_, watch] { watches.ask_for_turn(watch); });
   set_watch(watch);
@@ -95,7 +95,7 @@ void WatchCall::OnCancel() {
   watches_.ask_for_turn(watch);
 }
 
-// No lock is held here: forget() waits for a listener that is just running.
+// Holds no lock: forget() waits for a listener that is running.
 void WatchCall::OnDone() {
   if (watch_) {
     watches_.remove(id_);

@@ -1,5 +1,5 @@
 #pragma once
-// A WatchSolve call: a Watch whose frames go over the network.
+// A WatchSolve call: sends the frames of a Watch over the network.
 
 #include "server/base/work_pool.h"
 #include "server/watch/watches.h"
@@ -16,18 +16,19 @@ class logger;
 
 namespace alvor {
 
-/// Deletes itself when gRPC is done with it, which is never before it was finished: by its watch once that was started, by its
-/// maker if starting failed. Raw bytes, because a frame is encoded once for all watchers; what is this watcher's own is appended,
-/// as protobuf allows.
+/// A WatchSolve call. It is finished by its watch once started, or by its maker if starting failed; gRPC then has it delete
+/// itself. It sends raw bytes, because a frame is encoded once for all watchers; protobuf allows appending the fields that belong
+/// to this watcher.
 class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public FrameSink {
  public:
   /// `watches` and `logger` must outlive the server's calls.
   WatchCall(grpc::CallbackServerContext& context, Watches& watches, spdlog::logger& logger);
 
-  /// Tells that the watcher has gone, or the server stops, before start(). May be kept longer than the call.
+  /// Returns the stop that is set when the watcher leaves or the server stops before start(). It may be kept longer than the
+  /// call.
   std::shared_ptr<CallStop> stop() const { return stop_; }
-  /// May run on any thread, once. When it returns the call may be gone. Throws StatusError: the call must then be finished by the
-  /// caller.
+  /// Starts the watch. May run on any thread, once; when it returns the call may be deleted. Throws StatusError: then the caller
+  /// must finish the call.
   void start(const std::shared_ptr<StoredSolve>& solve, const v1::WatchSolveRequest& request);
 
  private:
@@ -45,12 +46,12 @@ class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, publi
   spdlog::logger& logger_;
   const std::string id_;
   const grpc::Slice id_field_;
-  grpc::Slice reset_field_;  ///< of the first frame, if the base is not known
+  grpc::Slice reset_field_;  ///< appended to the first frame if the base is not known
   const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
   std::shared_ptr<StoredSolve> solve_;
   std::shared_ptr<SolutionLog> log_;
   std::mutex lock_;
-  std::shared_ptr<Watch> watch_;  ///< set once it was started; changed under the lock
+  std::shared_ptr<Watch> watch_;  ///< set when started; changed under the lock
   std::uint64_t listener_ = 0;
   grpc::ByteBuffer bytes_;
 };

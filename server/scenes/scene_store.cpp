@@ -12,7 +12,8 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t longest_display_name = 256;
-constexpr std::uint64_t bytes_a_corner = 250;  // of a scene with its mesh, while it is built
+// Memory for a scene with its mesh while the mesh is built.
+constexpr std::uint64_t bytes_a_corner = 250;
 
 bool emits(const BaseMesh& mesh) {
   return std::ranges::any_of(mesh.roots(),
@@ -24,7 +25,7 @@ void describe_mesh(const BaseMesh& mesh, v1::Scene& facts) {
   if (!emits(mesh)) facts.add_warnings("No face emits light: the solution will be dark.");
 }
 
-/// Replaces each reflectance of exactly 1. Returns a sentence that says so; empty where there is none.
+/// Replaces each reflectance of exactly 1 by clamped_reflectance. Returns a sentence about it, or "" if there was none.
 std::string clamp_reflectance_of_one(Scene& scene) {
   std::size_t count = 0;
   std::string first;
@@ -54,7 +55,7 @@ v1::Scene facts_of(const Scene& scene, const BaseMesh& mesh, const std::string& 
   return facts;
 }
 
-/// Throws StatusError where `stop` ends it.
+/// Builds the mesh. Throws StatusError if `stop` ended it.
 BaseMesh build(const Scene& scene, const CallStop& stop) {
   try {
     return BaseMesh(scene, {.stop = stop.token()});
@@ -192,9 +193,9 @@ Page<const StoredScene> SceneStore::list(const PageRequest& request, const std::
 }
 
 void SceneStore::remove(const std::string& name, const std::string& tenant) {
-  SceneUse removed;  // freed after the lock is
+  SceneUse removed;  // destroyed after the lock is released
   std::scoped_lock hold(lock_);
-  // First uses are only handed out under this lock, so a count of one cannot grow meanwhile.
+  // Other uses are only handed out under this lock, so a count of one cannot grow meanwhile.
   const SceneUse& use = entry(name, tenant);
   if (use.token.use_count() > 1) throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves: delete them first");
   if (archive_) archive_->remove_scene(use.scene->number);

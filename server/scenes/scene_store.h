@@ -1,5 +1,5 @@
 #pragma once
-// The scenes that a server holds.
+// The scenes that a server holds, by name, and their content.
 
 #include "alvor/v1/scene_service.pb.h"
 #include "meshing/base_mesh.h"
@@ -22,17 +22,18 @@ struct SceneContent {
   BaseMesh mesh;  ///< at least one root
 };
 
-/// Content by its hash: while anyone uses it there is one of it in memory. Thread-safe.
+/// The content of scenes by its hash. Content in use is in memory once. Thread-safe.
 class SceneContents {
  public:
   explicit SceneContents(Archive* archive) : archive_(archive) {}
   std::shared_ptr<const SceneContent> add(const std::string& sha256, Scene scene, BaseMesh mesh);
-  /// Loaded where it is not in memory, once for all who ask at a time. Throws StatusError, also when `stop` says so.
+  /// Returns the content. Loads it if it is not in memory, once for all who ask at the same time. Throws StatusError, also the
+  /// reason of `stop`.
   std::shared_ptr<const SceneContent> find(const std::string& sha256, const CallStop& stop);
 
  private:
   std::shared_ptr<const SceneContent> known(const std::string& sha256);
-  /// Held by who loads that content.
+  /// Returns the lock that is held while that content is loaded.
   std::shared_ptr<std::mutex> loading(const std::string& sha256);
 
   Archive* const archive_;
@@ -54,39 +55,40 @@ class StoredScene {
 
   const std::uint64_t number;
   const Caller creator;
-  const v1::Scene facts;  ///< as the API tells them
+  const v1::Scene facts;  ///< the message that the API returns
 
-  /// Throws StatusError where it has to be loaded and cannot be, or `stop` says so.
+  /// Returns the scene's content. Throws StatusError if it must be loaded and cannot be, or for the reason of `stop`.
   std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const {
     return kept_ ? kept_ : contents_.find(facts.content_sha256(), stop);
   }
 
  private:
   SceneContents& contents_;
-  const std::shared_ptr<const SceneContent> kept_;  ///< where there is no archive
+  const std::shared_ptr<const SceneContent> kept_;  ///< set where there is no archive
 };
 
-/// A scene that cannot be deleted while any copy of this exists.
+/// A reference to a scene: while any copy of it exists, the scene cannot be deleted.
 struct SceneUse {
   std::shared_ptr<const StoredScene> scene;
   std::shared_ptr<const int> token;
 };
 
-/// Thread-safe. Throws StatusError. Scenes of other tenants than the caller are NOT_FOUND.
+/// Stores scenes by name. Thread-safe. Throws StatusError. A scene of another tenant than the caller's is NOT_FOUND.
 class SceneStore {
  public:
-  /// Begins with the scenes of the archive, if there is one, and keeps all others there. It must outlive the store.
+  /// Loads the scenes of `archive` (may be null) and stores all later ones there. The archive must outlive the store.
   explicit SceneStore(Archive* archive = nullptr, const Quota& quota = {}, MemoryGuard memory = MemoryGuard());
 
-  /// INVALID_ARGUMENT names what is wrong with the scene, RESOURCE_EXHAUSTED says of what there is too much. The mesh is built on
-  /// the calling thread, unless `stop` ends it. The same request again gets the same scene. When it returns the scene is kept.
+  /// Stores a scene and returns it. INVALID_ARGUMENT names the fault in the scene; RESOURCE_EXHAUSTED names the limit or quota
+  /// that is exceeded. The mesh is built on the calling thread unless `stop` ends it. A repeated request returns the same scene.
+  /// The scene is in the archive when this returns.
   std::shared_ptr<const StoredScene> add(Scene scene, const std::string& display_name, const Caller& caller = {},
                                          const CallStop& stop = {});
-  /// NOT_FOUND.
+  /// Returns the scene of this name. Throws NOT_FOUND.
   std::shared_ptr<const StoredScene> find(const std::string& name, const std::string& tenant = {}) const;
   SceneUse use(const std::string& name, const std::string& tenant = {}) const;
   Page<const StoredScene> list(const PageRequest& request, const std::string& tenant = {}) const;
-  /// NOT_FOUND; FAILED_PRECONDITION while it is in use.
+  /// Deletes the scene. Throws NOT_FOUND, or FAILED_PRECONDITION while it is in use.
   void remove(const std::string& name, const std::string& tenant = {});
   std::size_t count() const;
 
@@ -100,7 +102,7 @@ class SceneStore {
   const Quota quota_;
   const MemoryGuard memory_;
   mutable SceneContents contents_;
-  std::mutex adding_;  ///< one scene is written at a time
+  std::mutex adding_;  ///< held while a scene is written: one at a time
   mutable std::mutex lock_;
   std::map<std::string, SceneUse> scenes_;
   RequestIds requests_;

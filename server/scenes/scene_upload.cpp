@@ -15,7 +15,8 @@ void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
 }  // namespace
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
-  constexpr std::uint64_t bytes_of_material = 100;  // in memory; on the wire an empty one is two
+  // A material's size in memory; an empty one takes only two bytes on the wire.
+  constexpr std::uint64_t bytes_of_material = 100;
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size());
   check_limit(bytes_, limits_.bytes, "bytes");
   limits_.memory.refuse_without_room("scene", message.ByteSizeLong());

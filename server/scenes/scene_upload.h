@@ -1,5 +1,5 @@
 #pragma once
-// A scene on its way in.
+// Receives a scene in pieces.
 
 #include "proto/codec.h"
 #include "server/base/memory_guard.h"
@@ -9,23 +9,23 @@
 
 namespace alvor {
 
-/// Beyond these an upload is refused with RESOURCE_EXHAUSTED.
+/// Limits of an upload. An upload beyond one of them is refused with RESOURCE_EXHAUSTED.
 struct UploadLimits {
-  std::uint64_t bytes = std::uint64_t{2} << 30;                            ///< of messages
-  std::uint64_t corners = 50'000'000;                                      ///< of all faces
-  std::chrono::steady_clock::duration patience = std::chrono::minutes(1);  ///< between messages; then ABORTED
-  std::uint64_t corners_of_face = 20'000;  ///< cutting up one that crosses itself takes half a second
-  std::uint64_t bytes_of_name = 1000;      ///< of a material
-  std::uint64_t materials = 1'000'000;     ///< an empty one is two bytes on the wire, but not in memory
+  std::uint64_t bytes = std::uint64_t{2} << 30;                            ///< sum over the messages
+  std::uint64_t corners = 50'000'000;                                      ///< sum over the faces
+  std::chrono::steady_clock::duration patience = std::chrono::minutes(1);  ///< longest time between messages; then ABORTED
+  std::uint64_t corners_of_face = 20'000;  ///< cutting up a face that crosses itself takes half a second at this size
+  std::uint64_t bytes_of_name = 1000;      ///< length of a material's name
+  std::uint64_t materials = 1'000'000;     ///< an empty material takes two bytes on the wire but more in memory
   MemoryGuard memory;
 };
 
-/// One CreateScene call without the network. Not thread-safe. Throws StatusError; the upload is then over.
+/// The logic of one CreateScene call, without the network. Not thread-safe. A StatusError that it throws ends the upload.
 class SceneUpload {
  public:
   explicit SceneUpload(const UploadLimits& limits) : limits_(limits) {}
   void add(const v1::CreateSceneRequest& message);
-  /// All messages have arrived: checks and stores the scene, unless `stop` ends it.
+  /// Checks and stores the scene after all messages have arrived, unless `stop` ends it.
   std::shared_ptr<const StoredScene> finish(SceneStore& store, const Caller& caller = {}, const CallStop& stop = {});
   std::uint64_t chunks() const { return chunks_; }
   std::uint64_t bytes() const { return bytes_; }

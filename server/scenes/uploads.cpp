@@ -26,7 +26,7 @@ void Uploads::put(const Caller& caller, std::unique_ptr<SceneUpload> upload) {
   keep_all_within_limits();
 }
 
-/// Returns what waits, by tenant.
+/// Returns the number and size of the waiting uploads, by tenant.
 std::map<std::string, Uploads::Sum> Uploads::sums() const {
   std::map<std::string, Sum> sums;
   for (const auto& [key, entry] : waiting_) {
@@ -37,7 +37,7 @@ std::map<std::string, Uploads::Sum> Uploads::sums() const {
   return sums;
 }
 
-/// Requires: one of the tenant's waits.
+/// Drops the tenant's oldest waiting upload. Requires: it has one.
 void Uploads::drop_oldest(const std::string& tenant) {
   auto oldest = waiting_.end();
   for (auto each = waiting_.begin(); each != waiting_.end(); ++each)
@@ -50,7 +50,7 @@ void Uploads::keep_tenant_within_limits(const std::string& tenant) {
   while (is_beyond(sums()[tenant])) drop_oldest(tenant);
 }
 
-/// Who has most of what there is too much of loses first.
+/// Drops uploads until all are within the limits, each time the oldest of the tenant that has most of what exceeds its limit.
 void Uploads::keep_all_within_limits() {
   while (true) {
     const auto tenants = sums();

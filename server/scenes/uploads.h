@@ -1,5 +1,5 @@
 #pragma once
-// Uploads whose connection was lost, and that may be gone on with.
+// Keeps uploads whose connection was lost, so that they can be resumed.
 
 #include "server/base/request_ids.h"
 #include "server/scenes/scene_upload.h"
@@ -12,31 +12,33 @@
 
 namespace alvor {
 
-/// How many uploads may wait and how many bytes they may come to, in memory. One tenant alone cannot reach what all may.
+/// Limits of the uploads that wait to be resumed, which are held in memory: for one tenant, and for all. A single tenant cannot
+/// reach the limits for all.
 struct WaitingLimits {
   std::size_t count = 64, count_of_all = 1024;
   std::uint64_t bytes = std::uint64_t{512} << 20, bytes_of_all = std::uint64_t{1} << 30;
 };
 
-/// Thread-safe. Throws StatusError.
+/// The uploads that wait to be resumed. Thread-safe. Throws StatusError.
 class Uploads {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::minutes patience{10};
-  static constexpr std::size_t most_open = 16;  ///< of a tenant, at a time
+  static constexpr std::chrono::minutes patience{10};  ///< how long an upload waits to be resumed
+  static constexpr std::size_t most_open = 16;         ///< open uploads of one tenant
 
   explicit Uploads(const WaitingLimits& limits = {}) : limits_(limits) {}
 
-  /// An upload begins and ends. RESOURCE_EXHAUSTED where a tenant has too many open.
+  /// Counts an upload that begins. Throws RESOURCE_EXHAUSTED if the tenant has too many open.
   void open(const std::string& tenant);
+  /// Counts an upload that has ended.
   void close(const std::string& tenant);
 
-  /// Keeps what has arrived. Does nothing for a request without an id. Where the tenant's uploads are then too many or too large,
-  /// its oldest go; where those of all are, the oldest of the tenant that has most.
+  /// Keeps an unfinished upload. Does nothing for a request without an id. If the tenant then exceeds its limits, its oldest
+  /// uploads are dropped; if all tenants exceed theirs, the oldest of the tenant that has most.
   void put(const Caller& caller, std::unique_ptr<SceneUpload> upload);
-  /// How many chunks wait. NOT_FOUND.
+  /// Returns how many chunks of the caller's upload have arrived. Throws NOT_FOUND.
   std::uint64_t chunks(const Caller& caller);
-  /// Takes it out. NOT_FOUND where none waits, or another number of chunks does.
+  /// Removes and returns the caller's upload. Throws NOT_FOUND if none waits, or if another number of chunks has arrived.
   std::unique_ptr<SceneUpload> take(const Caller& caller, std::uint64_t chunks);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The frames of one solve, encoded once for all who watch it.
+// Encodes the frames of one solve, each once for all its watchers.
 
 #include "server/solves/stored_solve.h"
 
@@ -12,31 +12,32 @@
 
 namespace alvor {
 
-/// One WatchSolveResponse, all but what is a watcher's own, as it goes over the wire.
+/// An encoded WatchSolveResponse, without the fields that differ from watcher to watcher.
 struct Frame {
   grpc::Slice bytes;
   Detail detail = Detail::exact;
   Cursor from, next;
   std::uint64_t to_revision = 0;
   std::uint64_t head = 0;
-  bool last = false;  ///< `ended` is set in it
+  bool last = false;  ///< the frame's `ended` is set
 };
 
-/// Thread-safe.
+/// Encodes the frames of one solve and shares them between watchers. Thread-safe.
 class FrameSource {
  public:
-  /// Keeps the solve's log in memory. `max_leaves` to a frame, if that is less than what a frame holds. Throws StatusError where
-  /// the log cannot be loaded.
+  /// Keeps the solve's log in memory. A frame holds at most `max_leaves` leaves, and at most leaves_per_frame(). Throws
+  /// StatusError if the log cannot be loaded.
   FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves = SolutionLog::unlimited);
 
   StoredSolve& solve() const { return *solve_; }
-  /// The newest revision there is.
+  /// Returns the newest revision of the log.
   std::uint64_t head() const { return log_->head(); }
-  /// Whether frame_after(cursor) would say anything that `cursor` does not know.
+  /// Returns whether frame_after(cursor) would hold anything new for a watcher at `cursor`.
   bool has_news(const Cursor& cursor) const;
-  /// The same frame to all who ask from the same place, for as long as any of them keeps it.
+  /// Returns the frame that follows `cursor`. Watchers at the same cursor get the same frame, for as long as one of them keeps
+  /// it.
   std::shared_ptr<const Frame> frame_after(const Cursor& cursor, Detail detail);
-  /// Says nothing but that the server stops.
+  /// Returns a frame that says only that the server stops.
   std::shared_ptr<const Frame> closing_frame(const Cursor& cursor, const v1::Closing& closing) const;
 
  private:
@@ -47,7 +48,8 @@ class FrameSource {
   const std::string epoch_;
   const std::size_t max_leaves_;
   std::mutex lock_;
-  std::array<std::weak_ptr<const Frame>, 4> recent_;  ///< watchers in step need one, pages and stragglers a few
+  /// The newest frames. Watchers at the head share one frame; watchers that are behind need a few more.
+  std::array<std::weak_ptr<const Frame>, 4> recent_;
   std::size_t oldest_ = 0;
 };
 

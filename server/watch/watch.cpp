@@ -15,7 +15,7 @@ Watch::Watch(std::shared_ptr<FrameSource> frames, const WatchPlan& plan, FrameSi
       sent_revision_(plan.start.base) {}
 
 std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) {
-  turn_asked_ = false;  // before anything is looked at: what happens from here on asks again
+  turn_asked_ = false;  // reset first: events from here on ask for another turn
   std::scoped_lock hold(lock_);
   if (timer_ && now >= *timer_) timer_.reset();
   if (finished_) return std::nullopt;
@@ -46,11 +46,11 @@ std::optional<Watch::Clock::time_point> Watch::see_to_write(Clock::time_point no
     sink_.give_up();
     return std::nullopt;
   }
-  if (write_check_ && *write_check_ > now) return std::nullopt;  // that turn asks again if need be
+  if (write_check_ && *write_check_ > now) return std::nullopt;  // that turn checks again
   return write_check_ = last_write_ + patience;
 }
 
-// An earlier turn asks again for what is due later.
+// Returns `due`, or nothing if an earlier turn was already asked for; that turn will ask for the later one.
 std::optional<Watch::Clock::time_point> Watch::wait_until(Clock::time_point due) {
   if (timer_ && *timer_ <= due) return std::nullopt;
   return timer_ = due;
@@ -68,7 +68,7 @@ void Watch::send(Clock::time_point now) {
   cursor_ = frame->next;
   sent_revision_ = frame->to_revision;
   const std::chrono::duration<double> by_bytes(static_cast<double>(frame->bytes.size()) / plan_.max_bytes_per_s);
-  // Pages of a round follow each other: a mirror between revisions is of little use.
+  // The pages of a round are sent without a pause, because a mirror between revisions is of little use.
   const auto by_rate = frame->next.is_inside_round() ? Clock::duration::zero() : plan_.min_interval;
   next_frame_ = now + std::max(by_rate, std::chrono::duration_cast<Clock::duration>(by_bytes));
   if (frame->last) end_ = grpc::Status::OK;

@@ -1,5 +1,5 @@
 #pragma once
-// One watcher of a solve: when it gets its next frame, without the network.
+// One watcher of a solve: decides when it gets its next frame. Does not use the network.
 
 #include "server/watch/frame_source.h"
 
@@ -15,58 +15,60 @@
 
 namespace alvor {
 
-/// Where frames go. Called with the watch's lock held: must not call back into the watch.
+/// The receiver of a watch's frames. Its functions are called with the watch's lock held and must not call the watch.
 class FrameSink {
  public:
-  /// Whoever should read has not done so for too long: written(false) will follow.
+  /// The reader has taken nothing for too long: ends the write under way. written(false) will follow.
   virtual void give_up() = 0;
-  /// Requires: written() was called for the frame before.
+  /// Sends `frame`. Requires: written() was called for the frame before.
   virtual void write(const Frame& frame) = 0;
-  /// Nothing follows it; the sink may be gone when it returns.
+  /// Ends the stream with `status`; no call follows. The sink may be destroyed when it returns.
   virtual void finish(const grpc::Status& status) = 0;
 
  protected:
   ~FrameSink() = default;
 };
 
-/// What a watcher asked for.
+/// The parameters of a watch, from its request.
 struct WatchPlan {
   Detail detail = Detail::exact;
   Cursor start;
-  std::chrono::steady_clock::duration min_interval{};  ///< between rounds
+  std::chrono::steady_clock::duration min_interval{};  ///< least time between rounds
   double max_bytes_per_s = std::numeric_limits<double>::infinity();
 };
 
-/// Thread-safe. Events only note what happened; take_turn alone decides, and writes under the lock it decided under, so that the
-/// sink is never written to after it was finished. Whoever causes an event has to see to it that a turn follows.
+/// A watcher of a solve. Thread-safe. Events only note what happened; take_turn() alone decides what to write, and writes under
+/// the lock under which it decided, so the sink is never written to after it was finished. Whoever causes an event must call
+/// ask_for_turn() and run the turn.
 class Watch {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::uint64_t window = 2;                    ///< frames under way that were not acknowledged
-  static constexpr std::chrono::seconds bookmark_interval{10};  ///< of silence
-  static constexpr std::chrono::seconds patience{60};           ///< with a write that does not end
+  static constexpr std::uint64_t window = 2;                    ///< most frames that are sent and not acknowledged
+  static constexpr std::chrono::seconds bookmark_interval{10};  ///< silence after which an empty frame is sent
+  static constexpr std::chrono::seconds patience{60};           ///< longest time for one write; then the watcher is given up
 
-  /// The sink must live until finish() was called.
+  /// Requires: the sink lives until its finish() was called.
   Watch(std::shared_ptr<FrameSource> frames, const WatchPlan& plan, FrameSink& sink);
 
-  /// False if a turn was asked for already and has not begun.
+  /// Notes that a turn is wanted. Returns false if a turn was already asked for and has not begun.
   bool ask_for_turn() { return !turn_asked_.exchange(true); }
-  /// Writes the next frame if there is one to write, the window is open and the pace allows it. The first frame is written at
-  /// once, even if it is empty: it tells the watch's id. Returns when another turn is due if nothing happens until then.
+  /// Writes the next frame if there is one, the window is open and the rate limit allows it. The first frame is written at once,
+  /// even if it is empty, because it carries the watch's id. Returns when to take another turn if no event happens until then.
   std::optional<Clock::time_point> take_turn(Clock::time_point now);
 
-  /// The sink is ready for another frame, or will never be.
+  /// Says that the sink can take another frame (`ok`), or never will again.
   void written(bool ok);
-  /// Frames up to the `frame_count`th were applied. Throws StatusError INVALID_ARGUMENT for frames that were never sent.
+  /// Notes that the watcher applied the first `frame_count` frames. Throws StatusError INVALID_ARGUMENT for frames that were
+  /// never sent.
   void acknowledge(std::uint64_t frame_count, std::uint64_t revision);
   /// Ends the watch at its next turn, if it has not ended otherwise.
   void stop(const grpc::Status& reason);
-  /// The same, after a frame that says so.
+  /// Ends the watch at its next turn, after a frame with `closing`.
   void close(const v1::Closing& closing);
 
   std::uint64_t frames_sent() const;
   std::uint64_t bytes_sent() const;
-  /// How many revisions there are that the watcher has not acknowledged.
+  /// Returns the number of revisions that the watcher has not acknowledged.
   std::uint64_t revisions_behind() const;
 
  private:
@@ -88,13 +90,13 @@ class Watch {
   std::uint64_t sent_ = 0, acknowledged_ = 0, bytes_ = 0;
   std::uint64_t acknowledged_revision_;
   std::uint64_t sent_revision_;             ///< to_revision of the newest frame
-  std::shared_ptr<const Frame> under_way_;  ///< set between write() and written()
-  std::optional<grpc::Status> end_;         ///< why to finish once nothing is under way
+  std::shared_ptr<const Frame> under_way_;  ///< the frame being written, from write() to written()
+  std::optional<grpc::Status> end_;         ///< the status to finish with once no frame is being written
   bool finished_ = false;
   std::optional<v1::Closing> closing_;  ///< to be written before the end
   Clock::time_point last_write_ = Clock::time_point::min(), next_frame_ = Clock::time_point::min();
-  std::optional<Clock::time_point> write_check_;  ///< the newest turn that was asked for to see to a write
-  std::optional<Clock::time_point> timer_;        ///< the turn that was last asked for by wait_until
+  std::optional<Clock::time_point> write_check_;  ///< when the newest turn was asked for that checks on the write
+  std::optional<Clock::time_point> timer_;        ///< when the turn is due that wait_until() asked for last
 };
 
 }  // namespace alvor

@@ -73,7 +73,7 @@ void Watches::stop_all() {
   }
 }
 
-/// After the watch's last turn, which still holds it.
+/// Runs on the thread of turns, so after the watch's last turn, which still holds the log.
 void Watches::release(std::shared_ptr<StoredSolve> solve) {
   turns_.post([solve = std::move(solve)] { solve->drop_log(); });
 }
@@ -86,7 +86,7 @@ void Watches::ask_for_turn(const std::shared_ptr<Watch>& watch) {
   if (watch->ask_for_turn()) begin(watch);
 }
 
-/// A turn that is due later does not keep a watch that has ended.
+/// Runs a turn and posts the next one. A turn that is due later does not keep an ended watch alive.
 void Watches::take_turn(const std::shared_ptr<Watch>& watch) {
   const auto due = watch->take_turn(Watch::Clock::now());
   if (!due) return;

@@ -1,5 +1,5 @@
 #pragma once
-// All who watch: finds a watch by its id, and gives each its turns.
+// All watches of the server: finds a watch by its id and runs the turns of all.
 
 #include "server/base/task_queue.h"
 #include "server/watch/watch.h"
@@ -11,35 +11,38 @@
 
 namespace alvor {
 
-/// Thread-safe. All turns are taken on one thread of its own: neither the solver nor gRPC encodes frames.
+/// The open watches. Thread-safe. All turns run on one thread of its own, so that neither the solver's threads nor gRPC's encode
+/// frames.
 class Watches {
  public:
   explicit Watches(std::string epoch, std::uint64_t most_per_tenant = Quota{}.watchers)
       : epoch_(std::move(epoch)), most_per_tenant_(most_per_tenant) {}
   const std::string& epoch() const { return epoch_; }
 
-  /// The same source for all who watch `solve` at a time.
+  /// Returns the frame source of `solve`, which all its watchers share.
   std::shared_ptr<FrameSource> frames_of(const std::shared_ptr<StoredSolve>& solve);
 
-  /// UNAVAILABLE after stop_all; RESOURCE_EXHAUSTED where the tenant has as many as it may.
+  /// Adds a watch under `id`. Throws StatusError: UNAVAILABLE after stop_all(), RESOURCE_EXHAUSTED if the tenant has too many.
   void add(const std::string& id, const std::shared_ptr<Watch>& watch, const std::string& tenant = {});
   void remove(const std::string& id);
-  /// NOT_FOUND when the watch has ended, or is another tenant's; INVALID_ARGUMENT as in Watch::acknowledge.
+  /// Passes an acknowledgement to the watch. Throws StatusError: NOT_FOUND if the watch has ended or is another tenant's,
+  /// INVALID_ARGUMENT as in Watch::acknowledge.
   void acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision, const std::string& tenant = {});
+  /// Sums over the watches, for metrics.
   struct Traffic {
     std::size_t watchers = 0;
     std::uint64_t frames = 0, bytes = 0;  ///< since the server was started
-    std::uint64_t most_behind = 0;        ///< revisions that one watcher has not acknowledged
+    std::uint64_t most_behind = 0;        ///< the most revisions that one watcher has not acknowledged
   };
   Traffic traffic() const;
-  /// Ends every watch, and lets none begin.
+  /// Ends every watch; add() refuses new ones from now on.
   void stop_all();
 
-  /// Lets the solve's log go where nobody else watches it. Requires: the caller's watch and log have gone already.
+  /// Lets the solve unload its log if nobody else watches it. Requires: the caller has given up its watch and its log.
   void release(std::shared_ptr<StoredSolve> solve);
-  /// Gives a new watch its first turn, which was asked for when it was made.
+  /// Runs the first turn of a new watch, which must have been asked for already.
   void begin(const std::shared_ptr<Watch>& watch);
-  /// Quick: may be called from any callback. Two asks before the turn are one turn.
+  /// Runs a turn of `watch` soon; two calls before that turn are one turn. Quick: may be called from any callback.
   void ask_for_turn(const std::shared_ptr<Watch>& watch);
 
  private:
@@ -54,7 +57,7 @@ class Watches {
   mutable std::mutex lock_;
   std::map<std::string, Entry> watches_;
   std::map<std::string, std::weak_ptr<FrameSource>> sources_;  ///< by the name of the solve
-  std::uint64_t frames_ = 0, bytes_ = 0;                       ///< of watches that have ended
+  std::uint64_t frames_ = 0, bytes_ = 0;                       ///< sums over the watches that have ended
   bool stopping_ = false;
   TaskQueue turns_;
 };

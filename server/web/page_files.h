@@ -1,5 +1,5 @@
 #pragma once
-// The files of the page, in memory.
+// Holds the files of the web page in memory.
 
 #include <filesystem>
 #include <map>
@@ -7,17 +7,17 @@
 
 namespace alvor {
 
-/// Read once. Immutable; any thread may look.
+/// The files of the page, read once. Immutable; safe from any thread.
 class PageFiles {
  public:
   struct File {
     std::string content_type, etag;
     std::string bytes;
-    std::string gzip;  ///< the same compressed, from FILE.gz beside FILE; empty where there is none
+    std::string gzip;  ///< gzip of `bytes`, from FILE.gz beside FILE; empty if there is none
   };
-  /// All of `directory`, by their paths in it. Throws std::invalid_argument if it holds no index.html.
+  /// Reads all files of `directory`. Throws std::invalid_argument if it holds no index.html.
   explicit PageFiles(const std::filesystem::path& directory);
-  /// `path` as in a URL: "/" is index.html. Null where there is none.
+  /// Returns the file at a URL path ("/" is index.html), or null.
   const File* find(const std::string& path) const;
 
  private:

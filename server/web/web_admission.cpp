@@ -49,7 +49,7 @@ void WebAdmission::close_all() {
     if (const auto connection = guest.connection.lock()) connection->close();
 }
 
-/// Returns whether the oldest of this address that waits was closed.
+/// Closes the oldest waiting connection of this address. Returns whether there was one.
 bool WebAdmission::evict_from(const std::string& address) {
   const auto oldest = std::ranges::find_if(guests_, [&](const Guest& guest) {
     if (guest.address != address) return false;

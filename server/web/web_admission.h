@@ -1,5 +1,5 @@
 #pragma once
-// Who may connect.
+// Limits the number of open browser connections.
 
 #include "server/web/web_connection.h"
 
@@ -13,21 +13,21 @@
 
 namespace alvor {
 
-/// The connections that are open, within the limits on their number. Where a limit is reached, a connection that waits for a
-/// request gives way to the new one: the oldest of the address that has most (at the limit of one address: the oldest of that).
-/// Where none waits, the new one is not let in. Any thread may use it.
+/// The open connections, within the limits on their number. At a limit, a connection that waits for a request is closed for the
+/// new one: the oldest of the address that has most connections, or at the limit of one address the oldest of that address. If
+/// none waits, the new one is not admitted. Safe from any thread.
 class WebAdmission {
  public:
   explicit WebAdmission(const WebLimits& limits) : limits_(limits) {}
 
-  /// `address`: empty where connections have none. False: it is not let in.
+  /// Admits a connection; returns false if it is refused. `address` is empty for Unix sockets.
   bool admit(const std::shared_ptr<WebConnection>& connection, const std::string& address);
   void leave(const WebConnection* connection);
-  /// Closes one that waits, where there is one.
+  /// Closes one connection that waits for a request, if there is one.
   void make_room();
-  /// Nobody is let in any more; see WebConnection::stop.
+  /// Admits no connection any more; stops all open ones (WebConnection::stop).
   void stop();
-  /// Waits until all have left, but no longer than this.
+  /// Waits until all connections have left, but at most for `patience`.
   void wait_until_empty(WebLimits::Time patience);
   void close_all();
 

@@ -6,9 +6,9 @@ namespace alvor {
 
 namespace {
 
-constexpr int most_digits = 15;  // of a chunk's size, which so fits into 64 bits
+constexpr int most_digits = 15;  // digits of a chunk's size, so that it fits into 64 bits
 
-/// The value of a hexadecimal digit, or -1.
+/// Returns the value of a hexadecimal digit, or -1.
 int digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   const char lower = static_cast<char>(c | 0x20);

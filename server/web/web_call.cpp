@@ -14,7 +14,7 @@ WebCall::WebCall(const Options& options, std::shared_ptr<Listener> listener) : l
 template <class Begin>
 void WebCall::take(Step step, Begin begin) {
   const std::lock_guard lock(mutex_);
-  if (is_over_) return;  // has_ended() is on its way
+  if (is_over_) return;  // has_ended() will be called
   step_ = step;
   begin();
 }
@@ -37,7 +37,7 @@ void WebCall::cancel() {
   if (!std::exchange(is_over_, true) && step_ == Step::none) begin_finish();
 }
 
-/// Requires: the lock, and that nothing is under way.
+/// Starts the last step. Requires: the lock, and no step under way.
 void WebCall::begin_finish() {
   is_over_ = true;
   step_ = Step::finish;

@@ -1,5 +1,5 @@
 #pragma once
-// Calls, passed on to a server by their methods' names.
+// Passes calls on to a gRPC server by method name.
 
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
@@ -13,8 +13,8 @@
 
 namespace alvor {
 
-/// One call: messages are written one by one, then the request ends, then messages are read one by one. Whoever calls decides
-/// when the next one may come, so that no more than one is held. Nothing here waits.
+/// One call: messages are written one by one, then the request ends, then messages are read one by one. The user of the class
+/// decides when the next one may come, so that at most one is in memory. No function waits.
 class WebCall : public std::enable_shared_from_this<WebCall> {
  public:
   struct Options {
@@ -22,8 +22,8 @@ class WebCall : public std::enable_shared_from_this<WebCall> {
     std::string tenant;
     std::optional<std::chrono::system_clock::time_point> deadline;
   };
-  /// Is told what came of each step, on another thread: it must not wait. Kept until after has_ended(), which comes once and
-  /// last.
+  /// Receives the result of each step, on another thread, and must not wait. It is kept until after has_ended(), which comes once
+  /// and last.
   class Listener {
    public:
     virtual ~Listener() = default;
@@ -32,12 +32,12 @@ class WebCall : public std::enable_shared_from_this<WebCall> {
     virtual void has_ended(const grpc::Status& status) = 0;
   };
 
-  // Steps. Each may be taken when the one before has been answered: by has_written(), or has_read(), or has_ended(). Beginning
-  // the call is the first step, answered as if it were a message.
+  // The steps of a call. Each may be taken when the one before was answered by has_written(), has_read() or has_ended(). Starting
+  // the call is the first step and is answered by has_written().
   void write(const grpc::ByteBuffer& message);
   void end_request();
   void read();
-  /// Breaks the call off, at any time.
+  /// Cancels the call; allowed at any time.
   void cancel();
 
  private:
@@ -54,14 +54,14 @@ class WebCall : public std::enable_shared_from_this<WebCall> {
   std::shared_ptr<Listener> listener_;
   std::mutex mutex_;
   Step step_ = Step::none;
-  bool is_over_ = false;  // no more steps but the last
+  bool is_over_ = false;  // only the last step is left
   grpc::ByteBuffer message_;
   grpc::Status status_;
-  std::shared_ptr<WebCall> self_;  // until it has ended
+  std::shared_ptr<WebCall> self_;  // keeps the call alive until it has ended
 };
 
-/// Begins calls and waits for all of them, on one thread. Not the callbacks of gRPC (ClientBidiReactor): these ask for the status
-/// at once, and the channel in process then drops a last message that was not asked for before.
+/// Starts calls and handles their events on one thread. It does not use gRPC's callbacks (ClientBidiReactor): these ask for the
+/// status at once, and the in-process channel then drops a last message that was not asked for before.
 class WebCalls {
  public:
   explicit WebCalls(std::shared_ptr<grpc::Channel> channel);

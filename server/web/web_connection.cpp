@@ -86,7 +86,7 @@ void WebConnection::set_deadline(Timer& timer, std::optional<WebLimits::Time> ti
   timer.expires_at(time_left ? Timer::clock_type::now() + *time_left : Timer::time_point::max());
   if (!time_left) return;
   timer.async_wait([this, &timer, self = shared_from_this()](const boost::system::error_code& fault) {
-    // It may have been set anew after this had been queued.
+    // The timer may have been set again after this handler was queued.
     if (!fault && phase_ != Phase::closed && timer.expiry() <= Timer::clock_type::now()) be_late(timer);
   });
 }
@@ -120,10 +120,10 @@ void WebConnection::has_received(std::size_t count) {
   read();
 }
 
-/// Goes on with the request as far as there are bytes and nothing has to be waited for.
+/// Processes the request until it needs more bytes or must wait for something.
 void WebConnection::advance() {
   while (phase_ == Phase::head || phase_ == Phase::body) {
-    if (is_calling_ || !left_.empty()) return read();  // to see it when the browser goes
+    if (is_calling_ || !left_.empty()) return read();  // reads to notice when the browser leaves
     if (!piece_.empty()) {
       take_messages();
       continue;
@@ -144,11 +144,11 @@ void WebConnection::take_head() {
   WebAnswer found = shared_.site.answer(request);
   if (found.call) return begin_call(std::move(found));
   if (request.has_body) found.closes = true;
-  else (void)reader_.step();  // the request's end
+  else (void)reader_.step();  // reads the end of the request
   answer(found);
 }
 
-/// Sends what is no call's response.
+/// Sends a response that is not a call's.
 void WebConnection::answer(const WebAnswer& answer) {
   if (answer.closes) keeps_alive_ = false;
   std::string head = response_head(answer.status);
@@ -216,7 +216,8 @@ void WebConnection::await_request() {
   advance();
 }
 
-/// A connection that is closed with bytes unread is reset, and the browser may lose the response.
+/// Waits for the browser to close the connection. Closing first with unread bytes would reset the connection, and the browser
+/// might lose the response.
 void WebConnection::say_farewell() {
   answer_.reset();
   stream_->end_writing();

@@ -1,5 +1,5 @@
 #pragma once
-// One connection of a browser: reads requests, answers them, and keeps to the limits.
+// One connection of a browser: reads requests and answers them within the limits.
 
 #include "server/web/web_call.h"
 #include "server/web/web_limits.h"
@@ -20,35 +20,35 @@
 
 namespace alvor {
 
-/// What all connections of a front share. Must outlive them and their calls.
+/// Objects that all connections of a front share. Must outlive the connections and their calls.
 struct WebShared {
   const WebSite& site;
   WebCalls& calls;
   const WebLimits limits;
-  std::atomic<std::size_t> unfinished_bytes = 0;  ///< of messages that are not whole yet
+  std::atomic<std::size_t> unfinished_bytes = 0;  ///< bytes of incomplete messages, over all connections
 };
 
-/// Works on a strand of its own, without a thread, and keeps itself alive until it is closed and its call has ended. Back
-/// pressure goes both ways: bytes are read when the message before was taken, messages when the bytes before were sent. A call is
-/// cancelled when its browser goes.
+/// A connection works on its own strand, without a thread, and keeps itself alive until it is closed and its call has ended. Back
+/// pressure works both ways: bytes are read when the message before was taken, messages when the bytes before were sent. A
+/// browser that leaves cancels its call.
 class WebConnection final : public std::enable_shared_from_this<WebConnection> {
  public:
-  /// `tls`: null for plaintext. `closed` is told once, on the strand.
+  /// `tls` is null for plaintext. `closed` is called once, on the strand.
   WebConnection(WebSocket socket, boost::asio::ssl::context* tls, WebShared& shared,
                 std::function<void(const WebConnection*)> closed);
 
-  // Any thread may call these.
+  // The following functions are safe from any thread.
   void begin();
-  /// Closes it as soon as no response is under way.
+  /// Closes the connection as soon as no response is being sent.
   void stop();
   void close();
-  /// Whether no request is being answered: little is lost when it is closed.
+  /// Returns whether no request is being answered, so that closing the connection loses little.
   bool is_waiting() const { return is_waiting_; }
 
  private:
   using Timer = boost::asio::steady_timer;
   enum class Phase { handshake, idle, head, body, response, farewell, closed };
-  enum class Next { request_body, next_message, next_request, farewell };  // after what is being sent
+  enum class Next { request_body, next_message, next_request, farewell };  // the step after the bytes being sent
   class CallEvents;
 
   void enter(Phase phase, std::optional<WebLimits::Time> time_left);
@@ -68,7 +68,7 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
   void await_request();
   void say_farewell();
 
-  // A call; see web_connection_call.cpp.
+  // Handling of a call; see web_connection_call.cpp.
   void begin_call(WebAnswer answer);
   void take_messages();
   void drop_body();
@@ -95,22 +95,22 @@ class WebConnection final : public std::enable_shared_from_this<WebConnection> {
   bool is_reading_ = false, keeps_alive_ = false;
   std::size_t farewell_bytes_ = 0;
   std::string outgoing_;
-  std::string_view left_, file_;  // to be sent: of outgoing_, then this
+  std::string_view left_, file_;  // still to send: the rest of outgoing_, then file_
   Next next_ = Next::next_request;
 
-  // Of the call whose request or response is under way.
+  // State of the call whose request or response is under way.
   std::optional<WebAnswer> answer_;
-  std::shared_ptr<WebCall> call_;  // null once it has ended or failed
+  std::shared_ptr<WebCall> call_;  // null when it has ended or failed
   std::uint64_t call_number_ = 0;
   std::optional<WebMessages> messages_;
-  std::string_view piece_;   // of the body, not taken yet
+  std::string_view piece_;   // part of the body that was not taken yet
   bool is_calling_ = false;  // a step of the call is under way
   bool has_begun_response_ = false;
   std::size_t unwanted_bytes_ = 0, unfinished_bytes_ = 0;
-  std::optional<grpc::Status> status_;  // for the trailers
+  std::optional<grpc::Status> status_;  // to be sent in the trailers
 };
 
-/// Status line and headers that every response has, with its end still to come.
+/// Returns the status line and the headers that every response has, without the empty line that ends them.
 std::string response_head(int status);
 
 }  // namespace alvor

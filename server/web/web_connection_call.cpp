@@ -1,4 +1,4 @@
-// The part of WebConnection that passes calls on.
+// The part of WebConnection that handles calls.
 
 #include "server/web/web_connection.h"
 
@@ -13,7 +13,7 @@ namespace alvor {
 
 namespace asio = boost::asio;
 
-/// Brings what gRPC tells to the connection's strand, unless the connection has left that call behind.
+/// Passes a call's events to the connection's strand, unless the connection has moved on to another call.
 class WebConnection::CallEvents final : public WebCall::Listener {
  public:
   explicit CallEvents(std::shared_ptr<WebConnection> connection)
@@ -37,7 +37,8 @@ class WebConnection::CallEvents final : public WebCall::Listener {
     });
   }
 
-  // The threads must not end before the call, nor what they run on before the connection and its strand: this goes last.
+  // Keeps the threads running until the call has ended. Declared before connection_, so destroyed after the connection and its
+  // strand.
   const asio::executor_work_guard<asio::io_context::executor_type> work_;
   const std::uint64_t number_;
   const std::shared_ptr<WebConnection> connection_;
@@ -58,7 +59,7 @@ void WebConnection::begin_call(WebAnswer answer) {
   if (request.has("expect") && request.is_1_1) send("HTTP/1.1 100 Continue\r\n\r\n", {}, Next::request_body);
 }
 
-/// Takes as much of the piece as belongs to the next message.
+/// Takes the bytes of the piece that belong to the next message.
 void WebConnection::take_messages() {
   if (!call_) return drop_body();
   piece_.remove_prefix(messages_->take(piece_));
@@ -72,7 +73,7 @@ void WebConnection::take_messages() {
   count_unfinished(0);
 }
 
-/// What comes after the call has failed: browsers read a response only when the request is written.
+/// Drops bytes that arrive after the call has failed: browsers read a response only when they have sent the whole request.
 void WebConnection::drop_body() {
   unwanted_bytes_ += std::exchange(piece_, {}).size();
   if (unwanted_bytes_ > shared_.limits.unwanted_bytes) refuse(answer_->refusal.ok() ? 400 : 401);
@@ -85,7 +86,7 @@ void WebConnection::fail_call(const grpc::Status& status) {
   count_unfinished(0);
 }
 
-/// Returns whether all connections' parts of messages are within the limit, with so many bytes of this one.
+/// Sets the size of this connection's incomplete message. Returns whether the sum over all connections is within the limit.
 bool WebConnection::count_unfinished(std::size_t bytes) {
   const std::size_t before = std::exchange(unfinished_bytes_, bytes);
   return (shared_.unfinished_bytes += bytes - before) <= shared_.limits.unfinished_bytes;
@@ -101,7 +102,7 @@ void WebConnection::has_written() {
 void WebConnection::end_body() {
   if (call_ && messages_->is_inside()) fail_call({grpc::INVALID_ARGUMENT, "the request ends inside a message"});
   enter(Phase::response, std::nullopt);
-  read();  // to see it when the browser goes
+  read();  // reads to notice when the browser leaves
   if (!call_) return begin_response();
   call_->end_request();
 }
@@ -111,13 +112,13 @@ void WebConnection::begin_response() {
   std::string head = response_head(answer_->status);
   for (const auto& [name, value] : answer_->headers) head += name + ": " + value + "\r\n";
   const bool is_1_1 = reader_.request().is_1_1;
-  if (!is_1_1) keeps_alive_ = false;  // the response's end is the connection's
+  if (!is_1_1) keeps_alive_ = false;  // the connection's end marks the response's end
   head += std::string("Content-Type: ") + web_call_type + (is_1_1 ? "\r\nTransfer-Encoding: chunked\r\n" : "\r\n");
   head += keeps_alive_ ? "\r\n" : "Connection: close\r\n\r\n";
   send(std::move(head), {}, Next::next_message);
 }
 
-/// Goes on with the response when what was there of it has been sent.
+/// Continues the response after its bytes so far have been sent.
 void WebConnection::continue_response() {
   if (call_) return call_->read();
   std::string last = chunk(trailers_of(*status_));

@@ -49,7 +49,8 @@ WebListener::~WebListener() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-/// Waits first: without descriptors, accepting fails at once even where nobody asks.
+/// Waits until a connection is there, then accepts it. Without waiting, accept would fail for lack of descriptors even if nobody
+/// connects.
 void WebListener::await_browser(Entrance& entrance) {
   entrance.acceptor.async_wait(Acceptor::wait_read, [this, &entrance](const boost::system::error_code&) {
     if (entrance.acceptor.is_open()) accept(entrance);
@@ -74,7 +75,7 @@ void WebListener::admit(WebSocket socket, const Endpoint& peer) {
   if (admission_.admit(connection, network_of(*peer.data()))) connection->begin();
 }
 
-/// Accepting failed, most likely for want of descriptors: other connections give one back, and it is tried again.
+/// Handles a failed accept, usually for lack of descriptors: closes a waiting connection, and tries again after a pause.
 void WebListener::wait_for_descriptors(Entrance& entrance) {
   admission_.make_room();
   entrance.pause.expires_after(shared_.limits.no_descriptors);

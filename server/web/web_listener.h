@@ -17,21 +17,21 @@
 
 namespace alvor {
 
-/// Accepts from when it is made until it is destroyed, whatever accepting fails with, and runs the connections on two threads.
-/// Destroying it closes what waits at once and what is answered after WebLimits::stop, and returns when all calls have ended.
+/// Accepts connections from construction to destruction, also after errors, and runs them on two threads. The destructor closes
+/// waiting connections at once and others after WebLimits::stop, and returns when all calls have ended.
 class WebListener {
  public:
-  /// `address`: as for ListeningSockets, which may throw. `tls`: null for plaintext. `shared` must outlive it.
+  /// Listens on `address`; throws as ListeningSockets does. `tls` is null for plaintext. `shared` must outlive it.
   WebListener(const std::string& address, std::shared_ptr<boost::asio::ssl::context> tls, WebShared& shared);
   ~WebListener();
-  /// With the port that was taken.
+  /// Returns the address with the port that the system assigned.
   const std::string& address() const { return sockets_.address(); }
 
  private:
   using Protocol = boost::asio::generic::stream_protocol;
   using Acceptor = boost::asio::basic_socket_acceptor<Protocol, WebStrand>;
   using Endpoint = Protocol::endpoint;
-  /// One of the sockets.
+  /// One listening socket.
   struct Entrance {
     Acceptor acceptor;
     boost::asio::steady_timer pause;

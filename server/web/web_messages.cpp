@@ -11,7 +11,7 @@ namespace alvor {
 namespace {
 
 constexpr char trailer_flag = char(0x80);
-constexpr std::size_t block_bytes = 64 << 10;  // of a message
+constexpr std::size_t block_bytes = 64 << 10;  // block size in which a message is held
 
 std::string header_of(char flags, std::size_t length) {
   std::string header(1, flags);

@@ -1,6 +1,6 @@
 #pragma once
-// How gRPC-Web writes messages and trailers into bodies of HTTP: frames of one byte of flags, four of length and the content
-// (github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md, binary).
+// Reads and writes the frames of gRPC-Web, which carry messages and trailers in HTTP bodies: one byte of flags, four of length,
+// and the content (github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md, binary).
 
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/slice.h>
@@ -15,23 +15,23 @@
 
 namespace alvor {
 
-/// Cuts a request's body into messages, one at a time. A request may be of any number of messages.
+/// Cuts a request's body into messages, one at a time. A request may hold any number of messages.
 class WebMessages {
  public:
-  /// Messages of more than `largest` bytes are refused.
+  /// Refuses messages of more than `largest` bytes.
   explicit WebMessages(std::size_t largest) : largest_(largest) {}
 
-  /// Takes bytes up to the end of the next message, at most, and returns how many; fewer than all only where is_whole() or
-  /// !fault().ok() is so afterwards. Requires: neither is so before.
+  /// Takes bytes up to the end of the next message at most, and returns their number. It is less than all only if afterwards
+  /// is_whole() or !fault().ok(). Requires: neither holds before.
   std::size_t take(std::string_view bytes);
-  /// Whether a message is there, for release().
+  /// Returns whether a whole message is ready for release().
   bool is_whole() const { return header_.size() == header_bytes && held_ == length_; }
   grpc::ByteBuffer release();
-  /// Whether the body could not end here.
+  /// Returns whether a message has begun, so that the body must not end here.
   bool is_inside() const { return !header_.empty(); }
-  /// Bytes of the message that has begun.
+  /// Returns the number of bytes held of the current message.
   std::size_t held() const { return held_; }
-  /// Why the body cannot be read any further.
+  /// Returns why the body cannot be read any further, or OK.
   const grpc::Status& fault() const { return fault_; }
 
  private:
@@ -40,19 +40,19 @@ class WebMessages {
 
   std::size_t largest_;
   std::string header_;
-  std::vector<grpc::Slice> parts_;  // in whole blocks: a slice of one byte would take 32
-  std::string block_;               // that is not whole yet
+  std::vector<grpc::Slice> parts_;  // whole blocks; a slice of one byte would take 32
+  std::string block_;               // the block being filled
   std::size_t held_ = 0, length_ = 0;
   grpc::Status fault_;
 };
 
-/// A message of a response as a frame.
+/// Returns a message of a response as a frame.
 std::string frame_of(const grpc::ByteBuffer& message);
 
-/// The trailers of a response as its last frame.
+/// Returns the trailers of a response as its last frame.
 std::string trailers_of(const grpc::Status& status);
 
-/// "10S", "250m", as in the header grpc-timeout; nothing where it is none.
+/// Returns the duration of a grpc-timeout header ("10S", "250m"), or nothing if it is malformed.
 std::optional<std::chrono::nanoseconds> parse_timeout(const std::string& text);
 
 }  // namespace alvor

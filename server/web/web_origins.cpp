@@ -24,7 +24,7 @@ std::string without_default_port(const std::string& scheme, const std::string& p
   return is_default ? std::string() : ":" + std::to_string(number);
 }
 
-/// Returns the origin as browsers write it.
+/// Returns the origin in the form that browsers send.
 std::string normal(const std::string& origin) {
   static const std::regex pattern(R"(([a-z][a-z0-9+.-]*)://([a-z0-9._-]+|\[[0-9a-f:.]+\])(?::([0-9]{1,5}))?(/.*)?)");
   if (origin == "*") refuse(origin, "is not an origin: name each, as scheme://host[:port]");

@@ -1,5 +1,5 @@
 #pragma once
-// Pages of other origins that may call (CORS, https://fetch.spec.whatwg.org/#http-cors-protocol).
+// The other origins whose pages may call (CORS, https://fetch.spec.whatwg.org/#http-cors-protocol).
 
 #include <set>
 #include <span>
@@ -10,12 +10,12 @@ namespace alvor {
 /// A set of origins, each written as browsers send it in the header Origin: "https://room.example:8443".
 class WebOrigins {
  public:
-  /// Letters become lower case and the scheme's own port is left out, as browsers do. Throws std::invalid_argument that names
-  /// --web-origin for what is not scheme://host[:port], for "*" and for "null".
+  /// Normalises origins as browsers do: lower case, without the scheme's default port. Throws std::invalid_argument that names
+  /// --web-origin for anything but scheme://host[:port], also for "*" and "null".
   explicit WebOrigins(std::span<const std::string> origins);
 
   bool empty() const { return origins_.empty(); }
-  /// `origin`: the value of a request's header Origin.
+  /// Returns whether the value of a request's Origin header is in the set.
   bool contains(const std::string& origin) const { return origins_.contains(origin); }
 
  private:

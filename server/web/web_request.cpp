@@ -23,14 +23,14 @@ std::string lower_case(std::string_view text) {
 
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos; }
 
-/// Whether it is said once, and clearly, where the body ends.
+/// Returns whether the headers say once, and unambiguously, where the body ends.
 bool is_framing_clear(const WebRequest& request) {
   const bool has_coding = request.has("transfer-encoding"), has_length = request.has("content-length");
   if (has_coding && (has_length || !request.is_1_1 || lower_case(request.header("transfer-encoding")) != "chunked")) return false;
   return !has_length || is_number(request.header("content-length"));
 }
 
-/// Whether each header that the server decides by is there at most once.
+/// Returns whether each header that the server decides by occurs at most once.
 bool is_unambiguous(const WebRequest& request) {
   static constexpr std::array single{"host",
                                      "origin",
@@ -82,7 +82,7 @@ WebRequestReader::Step WebRequestReader::step() {
   return unread_body_ ? read_body() : read_head();
 }
 
-/// Looks at each byte once until the empty line that ends the head.
+/// Looks for the empty line that ends the head; looks at each byte only once.
 WebRequestReader::Step WebRequestReader::read_head() {
   const std::string_view bytes = unread();
   for (; scanned_ < bytes.size(); ++scanned_) {
@@ -91,7 +91,7 @@ WebRequestReader::Step WebRequestReader::read_head() {
     const bool begins_line = before == '\n';
     if (begins_line && (c == ' ' || c == '\t')) return fail(400);
     if (c != '\n') continue;
-    if (++lines_ > limits_.header_lines + 1) return fail(431);  // the empty line is none of them
+    if (++lines_ > limits_.header_lines + 1) return fail(431);  // the empty line is not counted
     if (bytes.substr(0, scanned_ + 1).ends_with("\r\n\r\n")) return parse_head(scanned_ + 1);
   }
   return bytes.size() >= limits_.header_bytes ? fail(431) : Step::need_more;
@@ -100,7 +100,7 @@ WebRequestReader::Step WebRequestReader::read_head() {
 WebRequestReader::Step WebRequestReader::parse_head(std::size_t length) {
   http::request_parser<http::empty_body> parser;
   parser.header_limit(static_cast<std::uint32_t>(limits_.header_bytes));
-  parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // Beast 1.74 takes boost::none for 0
+  parser.body_limit(std::numeric_limits<std::uint64_t>::max());  // Beast 1.74 treats boost::none as 0
   boost::system::error_code fault;
   const std::size_t taken = parser.put(boost::asio::buffer(buffer_.data() + begin_, length), fault);
   if (fault || taken != length || !parser.is_header_done()) return fail(status_of(fault));
@@ -126,7 +126,7 @@ WebRequestReader::Step WebRequestReader::read_body() {
   begin_ += taken.count;
   if (unread_body_->is_broken()) return fail(400);
   if (!taken.content.empty()) {
-    piece_ = content_.assign(taken.content);  // what was read is overwritten by what comes next
+    piece_ = content_.assign(taken.content);  // copied, as the buffer will be overwritten
     return Step::body;
   }
   if (!unread_body_->is_done()) return Step::need_more;

@@ -1,5 +1,5 @@
 #pragma once
-// Requests of HTTP/1.1 out of the bytes of a connection.
+// Reads HTTP/1.1 requests from the bytes of a connection.
 
 #include "server/web/web_body.h"
 #include "server/web/web_limits.h"
@@ -15,46 +15,45 @@ namespace alvor {
 
 /// The request line and the headers.
 struct WebRequest {
-  std::string method, path;  ///< the path without what follows '?'
-  bool is_1_1 = true;        ///< else HTTP/1.0
+  std::string method, path;  ///< the path without the query
+  bool is_1_1 = true;        ///< false: HTTP/1.0
   bool keeps_alive = true;
   bool has_body = false;
   std::vector<std::pair<std::string, std::string>> headers;  ///< names in lower case
 
   std::size_t count(std::string_view name) const;
   bool has(std::string_view name) const { return count(name) > 0; }
-  /// Empty where there is none; the first of several. `name`: in lower case.
+  /// Returns the value of the first header of this name (in lower case), or "".
   std::string_view header(std::string_view name) const;
 };
 
-/// Takes the bytes of a connection and gives its requests one after the other, strictly: what two readers could understand in two
-/// ways is refused: both Content-Length and Transfer-Encoding, either of them more than once, lengths that are not
-/// digits alone, codings other than "chunked", folded headers, lines that do not end in CRLF, NUL, no or several Host, and
-/// several of any other header that the server decides by. Does no I/O. Memory: WebLimits::header_bytes, and as much for a body's
-/// piece.
+/// Reads requests one after the other, strictly. It refuses whatever two readers could understand in different ways: both
+/// Content-Length and Transfer-Encoding, either of them more than once, lengths that are not only digits, codings other than
+/// "chunked", folded headers, lines that do not end in CRLF, NUL, no or several Host headers, and several of any other header
+/// that the server decides by. Does no I/O. Memory: twice WebLimits::header_bytes.
 class WebRequestReader {
  public:
   enum class Step {
-    need_more,  ///< bytes
-    head,       ///< request() is there
-    body,       ///< piece() is there
-    end,        ///< of the request; the next step belongs to the next one
-    fault       ///< fault() is the status of HTTP; nothing more can be read
+    need_more,  ///< more bytes are needed
+    head,       ///< request() is ready
+    body,       ///< piece() is ready
+    end,        ///< the request has ended; the next step belongs to the next one
+    fault       ///< fault() is the HTTP status; nothing more can be read
   };
   explicit WebRequestReader(const WebLimits& limits) : limits_(limits) {}
 
-  /// Where the next bytes are to be put; empty where as many as may be are unread. Valid until the next call.
+  /// Returns the space for the next bytes; empty if the limit of unread bytes is reached. Valid until the next call.
   std::span<char> room();
-  /// So many bytes were put into room().
+  /// Says that `count` bytes were put into room().
   void commit(std::size_t count);
   Step step();
   const WebRequest& request() const { return request_; }
-  /// Valid until the next step().
+  /// Returns a piece of the body. Valid until the next step().
   std::string_view piece() const { return piece_; }
   int fault() const { return fault_; }
-  /// Whether bytes are there that were not understood yet.
+  /// Returns whether there are bytes that no step has used.
   bool has_bytes() const { return begin_ < end_; }
-  /// Forgets the bytes that are there.
+  /// Drops the unread bytes.
   void drop() { begin_ = end_ = 0; }
 
  private:
@@ -65,12 +64,12 @@ class WebRequestReader {
   Step fail(int status);
 
   const WebLimits limits_;
-  std::vector<char> buffer_;  // of header_bytes once something came
+  std::vector<char> buffer_;  // sized header_bytes once something came
   std::size_t begin_ = 0, end_ = 0;
-  std::size_t scanned_ = 0, lines_ = 0;  // of the head, from begin_
-  std::optional<WebBody> unread_body_;   // from a head's end to its request's
+  std::size_t scanned_ = 0, lines_ = 0;  // progress within the head, from begin_
+  std::optional<WebBody> unread_body_;   // set from the end of a head to the end of its request
   WebRequest request_;
-  std::string content_;  // of the body, which piece_ shows
+  std::string content_;  // the bytes that piece_ refers to
   std::string_view piece_;
   int fault_ = 0;
 };

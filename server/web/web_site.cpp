@@ -20,7 +20,7 @@ bool is_package(std::string_view text) {
          std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '.'; });
 }
 
-/// Whether it is /package.Service/Method.
+/// Returns whether the path is that of a call: /package.Service/Method.
 bool is_call(std::string_view path) {
   const std::size_t slash = path.rfind('/');
   if (slash == std::string_view::npos || slash == 0 || !is_word(path.substr(slash + 1))) return false;
@@ -30,14 +30,14 @@ bool is_call(std::string_view path) {
          is_word(service.substr(dot + 1));
 }
 
-/// Whether a page that this server sent calls it, or no page at all.
+/// Returns whether the request comes from a page of this server, or from no page.
 bool is_own_origin(const WebRequest& request) {
   if (!request.has("origin")) return true;
   const std::string host(request.header("host")), origin(request.header("origin"));
   return origin == "http://" + host || origin == "https://" + host;
 }
 
-/// Whether a browser asks what a page of another origin may send.
+/// Returns whether the request is a CORS preflight: a browser asks what a page of another origin may send.
 bool is_preflight(const WebRequest& request) {
   return request.method == "OPTIONS" && request.has("access-control-request-method");
 }
@@ -45,7 +45,7 @@ bool is_preflight(const WebRequest& request) {
 void answer_preflight(WebAnswer& answer) {
   answer.headers.emplace_back("Access-Control-Allow-Methods", "POST");
   answer.headers.emplace_back("Access-Control-Allow-Headers", "content-type,x-grpc-web,x-user-agent,grpc-timeout,authorization");
-  answer.headers.emplace_back("Access-Control-Max-Age", "7200");  // the longest that Chromium keeps one
+  answer.headers.emplace_back("Access-Control-Max-Age", "7200");  // the most that Chromium accepts
   answer.status = 204;
 }
 
@@ -80,8 +80,8 @@ bool WebSite::is_foreign(const WebRequest& request) const {
   return !is_call(request.path) || !origins_.contains(std::string(request.header("origin")));
 }
 
-/// Returns whether the request is a call by a page of another origin that may call; the answer then says so to the browser,
-/// whatever else it will say.
+/// Returns whether the request is a call from a page of an allowed other origin. If so, adds the CORS headers to the answer,
+/// whatever else it will hold.
 bool WebSite::admit_origin(const WebRequest& request, WebAnswer& answer) const {
   if (origins_.empty() || !is_call(request.path)) return false;
   answer.headers.emplace_back("Vary", "Origin");
@@ -91,7 +91,7 @@ bool WebSite::admit_origin(const WebRequest& request, WebAnswer& answer) const {
   return true;
 }
 
-/// Returns the status of HTTP by which the head alone refuses the request, or 0.
+/// Returns the HTTP status with which the head alone refuses the request, or 0.
 int WebSite::refusal_of(const WebRequest& request) const {
   if (is_foreign(request)) return 403;
   if (is_preflight(request) && !is_own_origin(request)) return request.has_body ? 400 : 0;
@@ -120,7 +120,7 @@ void WebSite::answer_page(const WebRequest& request, WebAnswer& answer) const {
   answer.body = is_small ? file->gzip : file->bytes;
 }
 
-/// Who calls, by what this request says of itself. Throws StatusError: UNAUTHENTICATED.
+/// Returns the tenant that the request's headers prove. Throws StatusError UNAUTHENTICATED.
 std::string WebSite::tenant_of(const WebRequest& request) const {
   if (!identity_header_.empty() && request.count(identity_header_) == 1 && !request.header(identity_header_).empty())
     return std::string(request.header(identity_header_));

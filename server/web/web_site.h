@@ -1,5 +1,5 @@
 #pragma once
-// What requests of HTTP are answered with: files of the page, calls, refusals. No I/O.
+// Decides the answer to an HTTP request: a file of the page, a call, or a refusal. No I/O.
 
 #include "server/access/bearer_tokens.h"
 #include "server/web/page_files.h"
@@ -18,23 +18,24 @@
 
 namespace alvor {
 
-/// What follows the request's head.
+/// The answer to a request, decided from its head.
 struct WebAnswer {
   int status = 200;
-  std::vector<std::pair<std::string, std::string>> headers;  ///< besides those of every response and of the body
-  std::string_view body;                                     ///< of a file; lives as long as the site
-  bool closes = false;                                       ///< the rest of the request is not read
-  std::optional<WebCall::Options> call;                      ///< the body is the request of this call, and of the response
-  grpc::Status refusal;                                      ///< not OK: the call must not be made, and this is its status
+  std::vector<std::pair<std::string, std::string>> headers;  ///< besides the headers of every response and of the body
+  std::string_view body;                                     ///< a file's bytes; valid as long as the site
+  bool closes = false;                   ///< the rest of the request is not read, and the connection is closed
+  std::optional<WebCall::Options> call;  ///< the call to make; bodies carry its messages
+  grpc::Status refusal;                  ///< not OK: make no call, respond with this status
 };
 
-/// The page is for its own origin. Calls may also come from the origins in the options, which get CORS headers; other origins are
-/// refused. Other hosts are refused where it is for this machine only. Immutable; any thread may ask.
+/// The page may be loaded only from its own origin. Calls may also come from the origins in the options, which get CORS headers;
+/// other origins are refused. With only_this_machine, other hosts are refused too. Immutable; safe from any thread.
 class WebSite {
  public:
   struct Options {
-    bool only_this_machine = false;  ///< the Host must then be a name of this machine
-    std::string identity_header;     ///< in lower case; this header names the tenant: only where a trusted front sets it
+    bool only_this_machine = false;  ///< the Host header must name this machine
+    /// Name, in lower case, of the header in which a trusted proxy names the tenant; set it only behind one.
+    std::string identity_header;
     std::span<const std::string> origins;
     std::optional<BearerTokens> tokens;
   };
@@ -56,7 +57,7 @@ class WebSite {
   const PageFiles page_;
 };
 
-/// What bodies of calls are, to and fro.
+/// Content type of the bodies of calls, in both directions.
 inline constexpr const char* web_call_type = "application/grpc-web+proto";
 
 }  // namespace alvor

@@ -84,14 +84,14 @@ std::shared_ptr<asio::ssl::context> make_tls(const std::string& certificate, con
     throw std::invalid_argument("--web: --tls-cert and --tls-key cannot be used");
   SSL_CTX_set_min_proto_version(tls->native_handle(), TLS1_2_VERSION);
   SSL_CTX_set_options(tls->native_handle(), SSL_OP_NO_RENEGOTIATION);
-  SSL_CTX_set_mode(tls->native_handle(), SSL_MODE_RELEASE_BUFFERS);  // idle connections hold none
-  // Sessions go with the clients, in tickets: the server's own memory of them would be for strangers to fill.
+  SSL_CTX_set_mode(tls->native_handle(), SSL_MODE_RELEASE_BUFFERS);  // idle connections hold no buffers
+  // Clients keep their sessions in tickets: strangers could fill a session cache in the server's memory.
   SSL_CTX_set_session_cache_mode(tls->native_handle(), SSL_SESS_CACHE_OFF);
   if (client_ca.empty()) return tls;
   tls->load_verify_file(client_ca, fault);
   if (fault) throw std::invalid_argument("--web: --tls-client-ca cannot be used");
   tls->set_verify_mode(asio::ssl::verify_peer | asio::ssl::verify_fail_if_no_peer_cert);
-  static constexpr unsigned char name[] = "alvord";  // sessions of clients with certificates need one
+  static constexpr unsigned char name[] = "alvord";  // needed for sessions of clients with certificates
   SSL_CTX_set_session_id_context(tls->native_handle(), name, sizeof name - 1);
   return tls;
 }

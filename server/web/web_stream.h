@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of a connection, with TLS or without.
+// Sends and receives the bytes of a connection, with TLS or without.
 
 #include <boost/asio/basic_stream_socket.hpp>
 #include <boost/asio/generic/stream_protocol.hpp>
@@ -21,26 +21,27 @@ namespace alvor {
 using WebStrand = boost::asio::strand<boost::asio::io_context::executor_type>;
 using WebSocket = boost::asio::basic_stream_socket<boost::asio::generic::stream_protocol, WebStrand>;
 
-/// What is asked for is done later; how many bytes it was is told on the socket's strand: 0 where the connection has ended. One
-/// read and one write may be under way at a time. Every call must be made on that strand.
+/// A connection's bytes. Each operation is asynchronous and calls `done` on the socket's strand with the number of bytes, or 0 if
+/// the connection has ended. At most one read and one write may be under way. Every function must be called on that strand.
 class WebStream {
  public:
   using Done = std::function<void(std::size_t count)>;
   virtual ~WebStream() = default;
-  /// Tells 1 where the connection can be used.
+  /// Prepares the connection (TLS handshake); calls `done` with 1 when it can be used.
   virtual void begin(Done done) = 0;
   virtual void read(std::span<char> room, Done done) = 0;
   virtual void write(std::string_view bytes, Done done) = 0;
-  /// Tells the peer that nothing more will be written.
+  /// Tells the peer that no more bytes will come.
   virtual void end_writing() = 0;
-  /// Ends what is under way.
+  /// Cancels the operations under way and closes the connection.
   virtual void close() = 0;
 };
 
-/// `tls`: null for plaintext; must outlive the stream.
+/// Returns a stream over `socket`. `tls` is null for plaintext; otherwise it must outlive the stream.
 std::unique_ptr<WebStream> make_web_stream(WebSocket socket, boost::asio::ssl::context* tls);
 
-/// Throws std::invalid_argument naming the option. `client_ca`: empty, or clients must show a certificate that it signed.
+/// Returns the TLS settings of a server. If `client_ca` is not empty, clients must show a certificate that it signed. Throws
+/// std::invalid_argument naming the option.
 std::shared_ptr<boost::asio::ssl::context> make_tls(const std::string& certificate, const std::string& key,
                                                     const std::string& client_ca);
 

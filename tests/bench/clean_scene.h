@@ -1,5 +1,5 @@
 #pragma once
-// What every scene of ours promises.
+// Checks that every scene of ours must pass.
 
 #include "import/scene_file.h"
 #include "tests/bench/light_walk.h"
@@ -14,8 +14,8 @@ inline void expect_clean(const WeldReport& report) {
   EXPECT_EQ(report.non_manifold_faces, 0u);
 }
 
-/// All light stays where fronts are, but for rays that slip through an edge by rounding, and the undersides that overhanging
-/// cushions lack.
+/// Expects that all light stays on the side of fronts. Exempt are rays that slip through an edge by rounding, and undersides that
+/// overhanging cushions lack.
 inline void expect_light_stays_inside(const BaseMesh& mesh, int paths_per_lamp) {
   const LightWalk walk = LightWalker(mesh).walk(paths_per_lamp, 8);
   EXPECT_GT(walk.rays, paths_per_lamp);

@@ -1,4 +1,4 @@
-// What is computed of measurements, and the programs that the solver is measured against.
+// Tests of the statistics of measurements, and of the programs with which the solver is compared.
 
 #include "bench/error_vs_time/comparisons.h"
 #include "bench/error_vs_time/figures.h"
@@ -89,7 +89,7 @@ TEST(Verdict, IsAMissWhereALooserToleranceRanOutOfTime) {
   EXPECT_EQ(keeps_tolerance(grouped(runs), 0.02).verdict, Verdict::not_measured);
   runs.back().is_done = false;
   EXPECT_EQ(keeps_tolerance(grouped(runs), 0.02).verdict, Verdict::missed);
-  runs.back().setting = 0.02;  // an error that happens to be small is not one that it knew of
+  runs.back().setting = 0.02;  // the error is small by chance; the run did not report it
   EXPECT_EQ(keeps_tolerance(grouped(runs), 0.02).verdict, Verdict::missed);
 }
 
@@ -184,7 +184,7 @@ TEST_F(CornellBox, TextbookShootingGetsBetterOnFinerMeshes) {
   EXPECT_LT(fine, 0.08);
 }
 
-// Large elements lie centred right under small patches there: without a bound on what a shot brings, light grows for ever.
+// Large elements there have their centres right under small patches: without a bound on a shot's light, it would grow for ever.
 TEST(FixedMesh, ConvergesAmongSmallPatches) {
   const BaseMesh mesh(read_scene_file(ALVOR_SCENES "/furnished_room.obj").scene);
   const FixedMeshSolution solution = shoot_on_fixed_mesh(mesh, {.cells = 8});

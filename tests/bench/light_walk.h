@@ -1,5 +1,5 @@
 #pragma once
-// Light on its way from the lamps of a scene, one bounce after the other.
+// Follows light from the lamps of a scene from bounce to bounce.
 
 #include "meshing/base_mesh.h"
 #include "radiosity/rays/visibility.h"
@@ -13,9 +13,9 @@ namespace alvor::test {
 
 struct LightWalk {
   int rays = 0;
-  int left = 0;           ///< met nothing
-  int backs = 0;          ///< met the back of a face
-  std::vector<Vec3> met;  ///< where it met fronts
+  int left = 0;           ///< rays that hit nothing
+  int backs = 0;          ///< rays that hit the back of a face
+  std::vector<Vec3> met;  ///< where rays hit fronts
 };
 
 /// Casts rays from surfaces that light reaches.
@@ -23,7 +23,7 @@ class LightWalker {
  public:
   explicit LightWalker(const BaseMesh& mesh) : mesh_(mesh), caster_(triangles(mesh)) {}
 
-  /// From every lamp, `paths` paths of up to `bounces` rays each.
+  /// Follows `paths` paths of up to `bounces` rays each from every lamp.
   LightWalk walk(int paths, int bounces) {
     for (std::uint32_t root = 0; root < mesh_.roots().size(); ++root)
       if (!mesh_.material_of(root).emission.is_zero())
@@ -72,7 +72,8 @@ class LightWalker {
     }
   }
 
-  /// A point of the unit sphere about the tip of the normal is distributed as the cosine, seen from its foot.
+  /// Returns a cosine-distributed direction: the direction from the foot of the normal to a random point of the unit sphere about
+  /// its tip.
   Vec3 cosine_direction(Vec3 normal) {
     const double y = 1 - 2 * number(), angle = 2 * std::numbers::pi * number(), r = std::sqrt(1 - y * y);
     return normalized(normal * 1.0001 + Vec3{r * std::cos(angle), y, r * std::sin(angle)});

@@ -24,7 +24,7 @@ TEST_P(Stability, Holds) {
                                          << looked_at.limit << ' ' << measured.end;
 }
 
-/// Where nearly all is reflected all patches are too bright or too dark together.
+/// When nearly everything is reflected, all patches are too bright or too dark together.
 TEST(StabilityEstimate, KnowsTheErrorThatAllPatchesHaveInCommon) {
   int looked_at = 0;
   for (const Case& stiff : quick_cases()) {

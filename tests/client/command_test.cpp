@@ -1,4 +1,4 @@
-// The command `alvor` as its users meet it: exit statuses, streams and files. Runs the built binary.
+// Tests the built command `alvor` as users see it: exit statuses, streams and files.
 
 #include "client/command/output/snapshots.h"
 #include "tests/command_line.h"
@@ -76,7 +76,7 @@ TEST_F(Command, SceneWithoutEmittersIsSolvedWithAWarning) {
   EXPECT_TRUE(fs::exists(file("dark.ply")));
 }
 
-/// The quads of a room of 8 faces, wall by wall, with a lamp under its ceiling and a screen; `more` comes after them.
+/// Returns an OBJ of a room of 8 quads, wall by wall, with a lamp under its ceiling and a screen; `more` is appended.
 std::string room_of_eight(const std::string& more = "") {
   return "mtllib room.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 5\nv 0 0 5\nv 0 3 0\nv 4 3 0\nv 4 3 5\nv 0 3 5\n"
          "v 1 2.9 2\nv 3 2.9 2\nv 3 2.9 3\nv 1 2.9 3\nv 1 0.5 1\nv 3 0.5 1\nv 3 2 1\nv 1 2 1\n"
@@ -127,7 +127,7 @@ TEST_F(Command, FacesOfStlKeepTheirNumbersInFormFactors) {
   EXPECT_NE(ran.out.find("12 faces"), std::string::npos) << ran.out;
   EXPECT_EQ(line_count(text_of(file("A.csv"))), 13);
   EXPECT_NE(text_of(file("A.csv")).find("\n11,0.5\n"), std::string::npos);
-  // The cube looks outwards: a furnace modelled so is dark.
+  // The cube's faces look outwards. A user who meant a furnace gets a dark scene.
   EXPECT_NE(ran.err.find("every face looks away from every other: are the normals turned round?"), std::string::npos) << ran.err;
   EXPECT_EQ(ran.err.find("light"), std::string::npos) << ran.err;
 }
@@ -248,7 +248,7 @@ TEST_F(Command, FalseColourIsSpelledBothWays) {
   EXPECT_EQ(text_of(file("colour.png")), text_of(file("color.png")));
 }
 
-/// A mirror at `revision`, with one root patch.
+/// Returns a mirror at `revision`, with one root patch.
 SolutionMirror mirror_at(std::uint64_t revision) {
   SolutionMirror mirror;
   Step step;
@@ -273,7 +273,7 @@ TEST(Snapshots, AreThinnedEvenlyAndEndWithTheLastState) {
     EXPECT_EQ(kept[i].revision - kept[i - 1].revision, kept[1].revision - kept[0].revision);
 }
 
-// A unit cube seen from within: each face sends 0.2 to each other one, to the third digit (0.19982 and 0.20004).
+// A unit cube seen from inside: the form factor between any two faces is 0.2 to the third digit (0.19982 and 0.20004).
 const std::string cube =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
     "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";

@@ -1,4 +1,4 @@
-// The command `alvor compare` as its users meet it.
+// Tests the command `alvor compare` as users see it.
 
 #include "tests/command_line.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Faces of a scene, as tests look at them.
+// Helpers for tests that inspect faces of a scene.
 
 #include "meshing/scene.h"
 
@@ -18,7 +18,7 @@ inline Vec3 corner(const Scene& scene, std::size_t face, std::size_t k) {
   return scene.vertices[scene.corners_of(scene.faces[face])[k]];
 }
 
-/// Area times normal, of a flat polygon.
+/// Returns area times normal of a planar polygon.
 inline Vec3 area_vector(const Scene& scene, std::size_t face) {
   Vec3 sum;
   for (std::size_t k = 2; k < scene.faces[face].corner_count; ++k)

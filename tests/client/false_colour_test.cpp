@@ -1,4 +1,4 @@
-// False colour: the map, the scale, the legend, and the pictures they make.
+// Tests of false colour: colour map, scale, legend and pictures.
 
 #include "client/picture/colour_map.h"
 #include "client/picture/legend.h"
@@ -140,7 +140,7 @@ TEST(Legend, IsLeftOutOfPicturesTooSmallForIt) {
   EXPECT_FALSE(legend_fits({100, 2000}));
 }
 
-/// A picture of a wall of this mean irradiance on a scale from 0 to 4 W/m2.
+/// Returns a picture of a wall of this mean irradiance on a scale from 0 to 4 W/m2.
 Image measured(float irradiance, bool legend = false) {
   RenderOptions options;
   options.camera = facing_wall(256);
@@ -187,7 +187,7 @@ TEST(FalseColour, LegendStandsBesideTheViewAndHidesNothing) {
   std::set<Pixel> colours;
   for (int y = 0; y < whole.height; ++y)
     for (int x = bare.width; x < whole.width; ++x) colours.insert(pixel(whole, x, y));
-  EXPECT_GT(colours.size(), 100u);  // the bar
+  EXPECT_GT(colours.size(), 100u);  // from the legend's bar
 }
 
 TEST(FalseColour, PictureHasTheSizeThatWasAskedFor) {

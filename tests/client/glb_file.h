@@ -1,5 +1,5 @@
 #pragma once
-// glTF files made in the tests.
+// Builds glTF files for tests.
 
 #include <unistd.h>
 
@@ -22,7 +22,7 @@ struct GltfBytes {
   }
 };
 
-/// A binary glTF file that is gone when this is. `json` comes without its braces, `asset` and `buffers`.
+/// A binary glTF file that exists as long as the object. `json` is given without its braces, `asset` and `buffers`.
 class GlbFile {
  public:
   GlbFile(const std::string& json, const GltfBytes& content)

@@ -1,5 +1,5 @@
 #pragma once
-// Small display meshes without a solver.
+// Small display meshes made without a solver.
 
 #include "meshing/display_mesh.h"
 
@@ -10,8 +10,8 @@ namespace alvor {
 
 inline RgbF grey(float value) { return {value, value, value}; }
 
-/// Adds a leaf as build_display_mesh does: (centre, corner, next corner), counter-clockwise seen from the front.
-/// `radiosity_at` gives the radiosity of a place; irradiance is twice that, as of reflectance 0.5.
+/// Adds a leaf as build_display_mesh does: (centre, corner, next corner), counter-clockwise seen from the front. `radiosity_at`
+/// returns the radiosity at a position; irradiance is twice that, as for reflectance 0.5.
 template <class Field>
 void add_leaf(DisplayMesh& mesh, const std::array<Vec3, 4>& corners, Field radiosity_at) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -26,7 +26,7 @@ void add_leaf(DisplayMesh& mesh, const std::array<Vec3, 4>& corners, Field radio
   for (std::uint32_t k = 0; k < 4; ++k) mesh.triangles.push_back({first, first + 1 + k, first + 1 + (k + 1) % 4});
 }
 
-/// A wall of n x n leaves, from corner a along the sides ab and ad.
+/// Adds a wall of n x n leaves, from corner `a` along the sides `ab` and `ad`.
 template <class Field>
 void add_wall(DisplayMesh& mesh, Vec3 a, Vec3 ab, Vec3 ad, int n, Field radiosity_at) {
   for (int i = 0; i < n * n; ++i) {
@@ -35,7 +35,8 @@ void add_wall(DisplayMesh& mesh, Vec3 a, Vec3 ab, Vec3 ad, int n, Field radiosit
   }
 }
 
-/// A box of 4 x 3 x 5 m seen from within, light above, with a gradient on its walls and a lamp that emits under its ceiling.
+/// A box of 4 x 3 x 5 m seen from inside, brighter at the top, with a gradient on its walls and an emitting lamp under its
+/// ceiling.
 struct Room {
   Vec3 origin{};
   bool front_open = true;  ///< the side z = 0

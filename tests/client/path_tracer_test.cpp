@@ -1,4 +1,4 @@
-// Path tracing against closed forms and against Monte Carlo of others.
+// Tests of path tracing against closed forms and against independent Monte Carlo results.
 
 #include "client/verify/irradiance_estimate.h"
 #include "client/verify/surface_points.h"
@@ -18,7 +18,7 @@ namespace {
 using test::add_polygon;
 using test::grey;
 
-constexpr double sure = 4;  ///< standard errors: once in 16 000, if the seed were not fixed
+constexpr double sure = 4;  ///< standard errors: exceeded once in 16 000 cases, and the seed is fixed
 
 IrradianceEstimate traced(const Scene& scene, const SurfacePoint& point, std::uint64_t paths = 4096) {
   return trace_irradiance(PathTracer(scene), std::span(&point, 1), {.paths = paths, .threads = 1}).front();
@@ -26,7 +26,7 @@ IrradianceEstimate traced(const Scene& scene, const SurfacePoint& point, std::ui
 
 double error_of(const IrradianceEstimate& estimate) { return std::sqrt(estimate.variance_of_band_mean()); }
 
-/// A black floor about the z axis at height 0.
+/// Adds a black floor about the z axis at height 0.
 void add_black_floor(Scene& scene, double side) {
   const double h = side / 2;
   const auto black = static_cast<std::uint32_t>(scene.materials.size());
@@ -34,13 +34,13 @@ void add_black_floor(Scene& scene, double side) {
   add_polygon(scene, {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}}, black);
 }
 
-/// A square of this side about the z axis at height z, facing down.
+/// Adds a square of this side about the z axis at height z, facing down.
 void add_ceiling(Scene& scene, double side, double z, std::uint32_t material) {
   const double h = side / 2;
   add_polygon(scene, {{-h, -h, z}, {-h, h, z}, {h, h, z}, {h, -h, z}}, material);
 }
 
-/// Of a point, as seen from below a corner of a rectangle of sides a, b parallel to it at distance 1.
+/// Returns the form factor from a point to a parallel rectangle of sides a, b at distance 1, whose corner is above the point.
 double corner_form_factor(double a, double b) {
   const double ra = std::sqrt(1 + a * a), rb = std::sqrt(1 + b * b);
   return (a / ra * std::atan(b / ra) + b / rb * std::atan(a / rb)) / (2 * std::numbers::pi);
@@ -70,7 +70,7 @@ TEST(PathTracer, AGapIsNotEnclosedHoweverNarrow) {
 }
 
 TEST(PathTracer, FacesBackToBackInOnePlaceAreBothSeen) {
-  // A closed furnace cut in two by a partition of two faces in one place: all is as if it were not there.
+  // A closed furnace cut in two by a partition of two faces in one place: irradiance must be the same as without it.
   Scene scene = test::furnace(0.5, 0.5);
   add_polygon(scene, {{1, 0, 0}, {1, 2, 0}, {1, 2, 4}, {1, 0, 4}}, 0);
   add_polygon(scene, {{1, 0, 4}, {1, 2, 4}, {1, 2, 0}, {1, 0, 0}}, 0);
@@ -88,7 +88,7 @@ TEST(PathTracer, SquareEmitterGivesItsFormFactor) {
   for (const auto& [x, form_factor] : {std::pair{0.0, 4 * corner_form_factor(0.5, 0.5)}, {0.5, 2 * corner_form_factor(1, 0.5)}}) {
     const auto estimate = traced(scene, {{x, 0, 0}, {0, 0, 1}});
     EXPECT_NEAR(estimate.mean().mean(), 3 * form_factor, sure * error_of(estimate));
-    EXPECT_LT(error_of(estimate), 0.005 * 3 * form_factor);  // no sample exceeds the emission
+    EXPECT_LT(error_of(estimate), 0.005 * 3 * form_factor);  // because no sample exceeds the emission
   }
 }
 
@@ -100,7 +100,7 @@ TEST(PathTracer, AMediumDimsByDistance) {
   add_ceiling(scene, side, distance, 0);
   add_black_floor(scene, 1);
   const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}});
-  const double clear = side * side / (std::numbers::pi * distance * distance);  // the square is small: good to 1e-4
+  const double clear = side * side / (std::numbers::pi * distance * distance);  // the square is small: accurate to 1e-4
   EXPECT_NEAR(estimate.mean().r, clear, 3e-4 * clear);
   EXPECT_NEAR(estimate.mean().g, clear * std::exp(-0.5), 3e-4 * clear);
   EXPECT_NEAR(estimate.mean().b, clear * std::exp(-5), 3e-4 * clear);
@@ -117,7 +117,7 @@ TEST(PathTracer, AMediumDimsReflectedLightOnBothLegs) {
   const auto estimate = traced(scene, {{0.2, 0, 0}, {0, 0, 1}}, 1 << 15);
   const double clear = estimate.mean().r;
   EXPECT_GT(clear, 0);
-  EXPECT_NEAR(estimate.mean().g / clear, std::exp(-1), 0.003);  // legs are 5 to 5.02 m long
+  EXPECT_NEAR(estimate.mean().g / clear, std::exp(-1), 0.003);  // path segments are 5 to 5.02 m long
   EXPECT_NEAR(estimate.mean().b / clear, std::exp(-2), 0.003);
 }
 
@@ -127,7 +127,7 @@ TEST(PathTracer, BacksAreBlackAndBlockUnlessTwoSided) {
     Scene scene;
     scene.materials = {grey(1, 0)};
     scene.materials[0].two_sided = two_sided;
-    add_polygon(scene, {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});  // looks up
+    add_polygon(scene, {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});  // faces up
     add_black_floor(scene, 1);
     const auto estimate = traced(scene, below);
     EXPECT_NEAR(estimate.mean().mean(), two_sided ? 4 * corner_form_factor(1, 1) : 0, sure * error_of(estimate) + 1e-12);
@@ -162,7 +162,7 @@ TEST(PathTracer, KnowsNeitherUnitsNorOrigin) {
   EXPECT_NEAR(moved.mean().mean(), here.mean().mean(), sure * error);
 }
 
-/// Numbers of a line; none where it does not begin with one.
+/// Returns the numbers of a line; none if it does not begin with a number.
 std::vector<double> numbers_of(const std::string& line) {
   std::istringstream cells(line);
   std::vector<double> numbers;
@@ -189,7 +189,7 @@ TEST(PathTracer, AgreesWithStoredTruthWithinBothErrors) {
     squares += difference * difference / variance;
     sum += difference / variance, weight += 1 / variance;
   }
-  // Student's squares of 62 degrees of freedom have mean 1.03; the mean of 300 spreads by 0.09.
+  // Squares of Student's t with 62 degrees of freedom have mean 1.03; the mean over 300 has a standard deviation of 0.09.
   EXPECT_NEAR(squares / 300, 1.03, 0.35);
   EXPECT_LT(std::abs(sum / std::sqrt(weight)), sure);  // all points together
 }
@@ -227,7 +227,7 @@ TEST(SurfacePoints, AreUniformByAreaOverFrontsAndBothSidesOfTwoSided) {
   add_polygon(scene, {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}, 0);  // 2 m2
   add_polygon(scene, {{0, 0, 1}, {1, 0, 1}, {0, 2, 1}}, 1);             // 2 x 1 m2
   constexpr int count = 40000;
-  std::array<int, 3> seen{};  // one-sided, front and back of two-sided
+  std::array<int, 3> seen{};  // one-sided; front and back of two-sided
   double mean_x = 0;
   for (const SurfacePoint& point : draw_surface_points(scene, count, 1)) {
     ++seen[point.face == 0 ? 0 : point.normal.z > 0 ? 1 : 2];
@@ -240,7 +240,7 @@ TEST(SurfacePoints, AreUniformByAreaOverFrontsAndBothSidesOfTwoSided) {
   EXPECT_NEAR(mean_x / seen[0], 1, sure * std::sqrt(1.0 / 3 / seen[0]));
 }
 
-/// Small lamps on a ceiling, every other one turned up.
+/// Returns small lamps on a ceiling, every other one facing up.
 LightTree lamps(int count) {
   std::vector<Light> lights;
   for (int n = 0; n < count; ++n) {

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of pictures share: a wall, a camera that faces it, and pixels.
+// Shared by tests of pictures: a wall, a camera that faces it, and pixels.
 
 #include "client/picture/png_file.h"
 #include "client/picture/render.h"
@@ -16,7 +16,7 @@ inline Pixel pixel(const Image& image, int x, int y) {
   return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
 }
 
-/// Straight at a 1 x 1 m wall in the middle of a picture that shows 2 x 2 m.
+/// Returns a camera straight in front of a 1 x 1 m wall, in the middle of a picture that shows 2 x 2 m.
 inline Camera facing_wall(int pixels = 64) {
   Camera camera;
   camera.eye = {0.5, 0.5, 1};

@@ -1,4 +1,4 @@
-// `alvor` between pipes: "-" for stdin and stdout.
+// Tests `alvor` in pipes: "-" for stdin and stdout.
 
 #include "tests/command_line.h"
 
@@ -169,7 +169,8 @@ TEST_F(Pipes, AReaderThatLeavesIsAnErrorAndNoSignal) {
 }
 
 TEST_F(Pipes, AReaderThatHasLeftCostsNoFile) {
-  const std::string line = "cd '" + file("").string() + "' && { '" ALVOR_BINARIES "/alvor' solve " ALVOR_SCENES
+  const std::string line = "cd '" + file("").string() +
+                           "' && { '" ALVOR_BINARIES "/alvor' solve " ALVOR_SCENES
                            "/cornell_box.obj --tolerance 0.3 -o room.ply --report - 2>err; echo $? >status; } | true";
   ASSERT_EQ(std::system(line.c_str()), 0);
   EXPECT_TRUE(fs::exists(file("room.ply"))) << text_of(file("err"));

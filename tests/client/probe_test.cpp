@@ -1,4 +1,4 @@
-// Points in, irradiance and radiosity out.
+// Tests of probing: irradiance and radiosity at points.
 
 #include "client/verify/probe.h"
 #include "import/whole_file.h"
@@ -39,7 +39,8 @@ TEST(Probe, TakesTheSideOfAThinWallThatFacesTheSameWay) {
   EXPECT_FLOAT_EQ(samples[1].radiosity.r, 2);
 }
 
-/// A cube from 0 to `side` whose walls look inwards; the ceiling emits 1 and reflects nothing, all others send out 0.25.
+/// Returns a cube from 0 to `side` whose walls face inwards. The ceiling emits 1 and reflects nothing; all others have radiosity
+/// 0.25.
 DisplayMesh lit_room(double side) {
   DisplayMesh mesh;
   const Vec3 x{side, 0, 0}, y{0, side, 0}, z{0, 0, side};
@@ -55,7 +56,7 @@ DisplayMesh lit_room(double side) {
 }
 
 TEST(Probe, GathersInTheAir) {
-  // From the centre of a cube each wall has the form factor of a square at half its side: the ceiling 0.5541 (Howell, B-3).
+  // The form factor from the centre of a cube to a wall is that to a square at half its side's distance: 0.5541 (Howell, B-3).
   const double ceiling = 0.554144;
   const auto samples = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}, {{1, 1, 1}, {0, -1, 0}}});
   ASSERT_EQ(samples[0].place, ProbePlace::in_air);
@@ -68,12 +69,13 @@ TEST(Probe, GathersInTheAir) {
 
 TEST(Probe, GathersPastWhatStandsInTheLight) {
   DisplayMesh room = lit_room(2);
-  // Two-sided, halfway up, over the half of the room where x < 1: seen from below it hides half of the ceiling's light.
+  // Adds a two-sided sheet halfway up, over the half of the room with x < 1. Seen from below it hides half of the ceiling's
+  // light.
   add_wall(room, {0, 1.5, 0}, {1, 0, 0}, {0, 0, 2}, 1, [](const Vec3&) { return grey(0); });
   add_wall(room, {0, 1.5, 0}, {0, 0, 2}, {1, 0, 0}, 1, [](const Vec3&) { return grey(0); });
   const auto sample = probe(room, std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}})[0];
-  // What the sheet covers is twice a rectangle of 1 x 1 seen from below its corner at 0.5 (Howell, B-4); below its rim the walls
-  // shine.
+  // The sheet's form factor is twice that of a rectangle of 1 x 1 at distance 0.5 seen from below its corner (Howell, B-4). Below
+  // its rim the walls are visible.
   const double ceiling = 0.554144, covered = 0.415538;
   const double expected = 0.5 * (ceiling + 0.25 * (1 - ceiling)) + 0.25 * (0.5 - covered);
   EXPECT_GT(sample.standard_error, 0);
@@ -81,7 +83,7 @@ TEST(Probe, GathersPastWhatStandsInTheLight) {
 }
 
 TEST(Probe, AMediumDimsWhatIsGathered) {
-  // All that is seen from the middle of the floor's air is at least 1 m away, and at most the room's diagonal.
+  // All surfaces visible from the middle of the room are at least 1 m away, and at most the room's diagonal.
   const auto clear = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}})[0];
   const auto dim = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}}, {0, 1, 2})[0];
   EXPECT_NEAR(dim.irradiance.r, clear.irradiance.r, 1e-6);
@@ -91,7 +93,7 @@ TEST(Probe, AMediumDimsWhatIsGathered) {
 }
 
 TEST(Probe, TheStandardErrorIsThatOfTheSpread) {
-  // The ceiling's light comes through slats, in many small triangles.
+  // The ceiling's light comes through slats, drawn as many small triangles.
   DisplayMesh room = lit_room(2);
   for (int n = 0; n < 8; ++n) {
     add_wall(room, {0.25 * n, 1.5, 0}, {0.12, 0, 0}, {0, 0, 2}, 1, [](const Vec3&) { return grey(0); });
@@ -118,7 +120,7 @@ TEST(Probe, SaysNanOutsideTheRoom) {
             "1,3,1,0,-1,0,nan,nan,nan,nan,nan,nan,1,nan\n");
 }
 
-/// A points file, removed at the end.
+/// A points file, removed at the end of the test.
 struct PointsFile {
   std::filesystem::path path = std::filesystem::temp_directory_path() / ("alvor_points_" + std::to_string(getpid()) + ".csv");
   explicit PointsFile(std::string_view text) { write_whole_file(path, text); }

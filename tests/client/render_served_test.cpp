@@ -1,4 +1,5 @@
-// alvor render of a solve on a server. Runs the built binary against a service in this process whose solver waits to be told.
+// Tests `alvor render` of a solve on a server: runs the built binary against a service in this process whose solver the test
+// controls.
 
 #include "client/rpc/client.h"
 #include "server/rpc/service.h"
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 using test::Ran;
 using test::text_of;
 
-/// A service with a port, which holds one solve of `squares`.
+/// A service with a port and one solve of `squares`.
 class RenderServed : public test::CommandLine {
  protected:
   static constexpr std::uint32_t faces = 5;

@@ -1,4 +1,4 @@
-// Pictures: what a pixel shows, where the camera stands, how bright it all is.
+// Tests of pictures: pixels, the default camera and exposure.
 
 #include "client/picture/render.h"
 #include "client/picture/tone_map.h"
@@ -83,7 +83,7 @@ TEST(Render, DoesNotDependOnUnitsOfLightOrPlace) {
   options.size = {160, 120};
   const Image near = render(hand_made_room(), options);
   EXPECT_LE(largest_difference(near, render(hand_made_room({.brightness = 1e-4f}), options)), 1);
-  // Rays are float32 and may fall to the other side of an edge; away from edges the pixels are the same.
+  // Rays are float32 and may fall on the other side of an edge; away from edges the pixels must be equal.
   const Image far = render(hand_made_room({.origin = {1e5, 0, -1e5}}), options);
   EXPECT_EQ(pixel(near, 80, 60), pixel(far, 80, 60));
   EXPECT_EQ(pixel(near, 20, 60), pixel(far, 20, 60));

@@ -1,4 +1,4 @@
-// sample_glb FILE: writes a solution for the validator, far from the origin.
+// sample_glb FILE: writes a solution far from the origin, for the glTF validator.
 
 #include "client/export/solution_file.h"
 #include "tests/client/hand_made_mesh.h"

@@ -186,7 +186,7 @@ TEST(SceneFile, AFileThatIsNoSceneIsRefusedWithTheLibrarysReason) {
 }
 
 SceneFile crash(const std::filesystem::path&) {
-  std::signal(SIGSEGV, SIG_DFL);  // a sanitizer's own handler would not end by the signal
+  std::signal(SIGSEGV, SIG_DFL);  // a sanitizer's handler would not end the process by the signal
   std::raise(SIGSEGV);
   return {};
 }
@@ -226,7 +226,7 @@ TEST(SceneFile, FormatsThatSayWhichAxisPointsUpAreHeeded) {
   EXPECT_EQ(read_scene_file(ALVOR_SCENES "/cornell_box.obj").scene.up, UpAxis::y);
 }
 
-/// A unit square in the xy plane facing +z, two triangles; accessor 0 its corners, 1 its indices.
+/// Returns a unit square in the xy plane facing +z, two triangles. Accessor 0 holds its corners, accessor 1 the indices.
 GltfBytes square_bytes() {
   return GltfBytes().add<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}).add<std::uint16_t>({0, 1, 2, 0, 2, 3});
 }
@@ -259,7 +259,7 @@ TEST(SceneFile, EmissiveStrengthAndBothSidesAreTakenFromTheMaterial) {
 }
 
 TEST(SceneFile, NestedNodesPlaceTheirMeshesAndMirrorsKeepTheFront) {
-  // The outer node turns +z to +x about y and moves; one inner node scales, the other mirrors z by its matrix.
+  // The outer node rotates +z to +x about y and moves; one inner node scales, the other mirrors z by its matrix.
   const std::string nodes =
       R"("scene": 0, "scenes": [{"nodes": [0]}],
          "nodes": [{"children": [1, 2], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476], "translation": [10, 20, 30]},
@@ -273,7 +273,7 @@ TEST(SceneFile, NestedNodesPlaceTheirMeshesAndMirrorsKeepTheFront) {
 }
 
 TEST(SceneFile, StripsAndFansFaceTheSameWayAsTheirTriangles) {
-  // A strip names the corners in zigzag; a fan goes round. Neither has an index accessor in the second mesh.
+  // A strip names the corners in zigzag order, a fan around. In the second mesh neither has an index accessor.
   const GltfBytes bytes = square_bytes().add<std::uint16_t>({0, 1, 3, 2});
   const std::string meshes =
       R"("bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 60, "byteLength": 8}],

@@ -1,4 +1,4 @@
-// Solution files: what comes back, what is refused, and what is left behind.
+// Tests of solution files: round trips, refusals, and files left behind.
 
 #include "client/export/solution_file.h"
 #include "client/export/glb_file.h"
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for each test, removed after it.
+/// Makes a folder for each test and removes it afterwards.
 class SolutionFile : public testing::TestWithParam<const char*> {
  protected:
   SolutionFile() : folder_(fs::temp_directory_path() / ("alvor_solution_file_" + std::to_string(getpid()))) {
@@ -32,7 +32,7 @@ class SolutionFile : public testing::TestWithParam<const char*> {
   std::string encoded(const DisplayMesh& mesh) const { return is_glb() ? encode_glb(mesh) : encode_ply(mesh); }
   DisplayMesh decoded(std::string_view bytes) const { return is_glb() ? decode_glb(bytes) : decode_ply(bytes); }
 
-  /// Why the bytes are refused; empty if they are not.
+  /// Returns why the bytes are refused, or "" if they are not.
   std::string refusal(std::string_view bytes) const {
     write_whole_file(path(), bytes);
     try {
@@ -142,7 +142,7 @@ TEST(PlyFile, CountsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THROW(decode_ply(bytes), SolutionFileError);
 }
 
-/// A GLB whose JSON has `from` replaced by `to`; spaces keep its size.
+/// Returns a GLB whose JSON has `from` replaced by `to`, padded with spaces to the same size.
 std::string with_json(std::string glb, const std::string& from, std::string to) {
   const std::size_t at = glb.find(from);
   EXPECT_NE(at, std::string::npos);

@@ -1,4 +1,4 @@
-// What `alvor` says of command lines that make no sense.
+// Tests of `alvor`'s messages about wrong command lines.
 
 #include "tests/command_line.h"
 

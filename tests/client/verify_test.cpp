@@ -1,4 +1,4 @@
-// Errors against a noisy truth, and `alvor verify`.
+// Tests of error statistics against a noisy truth, and of `alvor verify`.
 
 #include "client/verify/error_field.h"
 #include "tests/command_line.h"
@@ -20,7 +20,7 @@ using test::Ran;
 using test::text_of;
 namespace fs = std::filesystem;
 
-/// Points of mean truth 1 where a solution is off by `error` RMS, and the truth known to `noise`.
+/// Draws points of mean truth 1. The solution's errors have RMS `error`, and the truth's noise has standard deviation `noise`.
 class NoisyPoints {
  public:
   NoisyPoints(double error, double noise) : error_(error), noise_(noise) {}
@@ -35,7 +35,7 @@ class NoisyPoints {
   }
 
  private:
-  /// As it is estimated from 32 rounds: right on average only.
+  /// Returns a variance as estimated from 32 rounds: right only on average.
   double variance() {
     double sum = 0;
     for (int n = 0; n < 31; ++n) sum += std::pow(normal_(random_), 2);
@@ -76,7 +76,7 @@ TEST(ErrorStatistics, ExactlyKnownErrorsAreExact) {
   const ErrorStatistics statistics = error_statistics(points);
   EXPECT_DOUBLE_EQ(statistics.nrmse.value, std::sqrt((0.01 + 0.09 + 0.01) / 3) / (4.0 / 3));
   EXPECT_NEAR(statistics.bias.value, -0.1 / 4, 1e-15);
-  EXPECT_DOUBLE_EQ(statistics.relative_rms, 0.1);  // of two points: the third has no truth
+  EXPECT_DOUBLE_EQ(statistics.relative_rms, 0.1);  // over two points; the third has no truth
 }
 
 TEST(ErrorStatistics, LessErrorThanNoiseIsNone) {
@@ -97,7 +97,7 @@ TEST(ErrorStatistics, LightInTheDarkIsAnInfiniteError) {
   EXPECT_EQ(error_statistics(dark).nrmse.value, 0);
 }
 
-/// A point on a floor at y = 0, where the truth is 1 in each of two rounds but for `noise`.
+/// Returns a point on a floor at y = 0. The truth of its two rounds is 1 plus and minus `noise`.
 VerifiedPoint floor_point(double x, double solution, double noise = 0) {
   VerifiedPoint point{{{x, 0, 0}, {0, 1, 0}}, {}, Rgb{1, 1, 1} * solution};
   for (const double truth : {1 + noise, 1 - noise}) point.truth.add(Rgb{1, 1, 1} * truth);
@@ -147,7 +147,7 @@ class Verify : public test::CommandLine {
   Ran verify(const std::string& options) const { return run("verify " + cornell_box + " room.glb " + options); }
 };
 
-/// The nRMSE by the stored truth of 300 points, computed without any of verify's code.
+/// Returns the nRMSE against the stored truth of 300 points, computed without verify's code.
 double stored_error(const std::string& probed) {
   std::istringstream got(probed);
   std::ifstream truth(ALVOR_TEST_FILES "/truth/cornell_box.irradiance.csv");
@@ -175,7 +175,7 @@ TEST_F(Verify, AgreesWithTheStoredTruth) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   const auto json = nlohmann::json::parse(ran.out);
   const auto nrmse = json.at("nrmse");
-  // The 300 points choose other places: their own interval is about a fifth either way.
+  // The 300 points lie in other places; their own confidence interval is about 20 % either way.
   EXPECT_LE(nrmse.at("low").get<double>(), 1.2 * stored);
   EXPECT_GE(nrmse.at("high").get<double>(), 0.8 * stored);
   EXPECT_GT(json.at("hidden"), 0);  // the floor under the blocks

@@ -4,8 +4,8 @@
 
 namespace alvor::fuzz {
 
-/// While it lives, an allocation by this thread of more than `bytes` at once is a finding. For our own code: protobuf reserves up
-/// to 50 MB for a string whose declared length lies, where the length of the message around it lies too. One at a time.
+/// While it exists, this thread must not allocate more than `bytes` at once. Meant for our own code: protobuf reserves up to 50
+/// MB for a string whose declared length is false, if the length of the message around it is false too. One at a time.
 class AllocationLimit {
  public:
   explicit AllocationLimit(std::size_t bytes);

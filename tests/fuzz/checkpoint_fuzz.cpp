@@ -1,4 +1,4 @@
-// What a server reads back after a restart: any bytes for a log and for a solve's state.
+// Fuzzes what a server reads after a restart: any bytes as a log and as a solve's state.
 
 #include "radiosity/solve/solver.h"
 #include "server/archive/pieces.h"
@@ -17,7 +17,7 @@ void load(std::span<const std::byte> bytes, bool is_log) {
     (void)log.since({});
     return;
   }
-  // It goes on to its end, or is parked at once where that is allowed.
+  // The solve runs to its end, or is parked at once if that is allowed.
   alvor::SolutionLog log;
   std::stop_source park;
   park.request_stop();

@@ -1,4 +1,4 @@
-// Scene and solution files that are read by our own importers: OBJ, MTL, glTF and GLB with their parts, GLB and PLY of a
+// Fuzzes the scene and solution files that our own importers read: OBJ, MTL, glTF and GLB with their parts; GLB and PLY of a
 // solution.
 
 #include "client/export/solution_file.h"
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with what Blender's exporters wrote, so that parts that a made-up scene names are there.
+/// Returns a folder with files of Blender's exporters, so that a made-up scene can name existing parts.
 const fs::path& directory() {
   static const auto made = [] {
     auto path = fs::path("/dev/shm") / ("alvor_fuzz_" + std::to_string(getpid()));
@@ -25,7 +25,7 @@ const fs::path& directory() {
   return made;
 }
 
-/// What is written, and the file that is then read.
+/// A file that is written, and the file that is then read.
 struct Kind {
   const char *written, *read;
   bool is_solution = false;

@@ -1,4 +1,4 @@
-// What a client decodes: any frames, one after the other.
+// Fuzzes the client's decoding: any frames, one after the other.
 
 #include "proto/codec.h"
 #include "solution/solution_mirror.h"

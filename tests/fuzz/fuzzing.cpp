@@ -1,4 +1,4 @@
-// What all fuzz targets share: they are told nothing about bad messages, and find too large allocations.
+// Shared by all fuzz targets: silences messages about bad input, and detects too large allocations.
 
 #include "tests/fuzz/allocation_limit.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Bytes that a fuzzer made up, as what they stand for.
+// Reads values from the bytes that a fuzzer made up.
 
 #include <algorithm>
 #include <cstddef>
@@ -24,7 +24,7 @@ class Input {
     const std::uint8_t high = byte();
     return static_cast<std::uint16_t>(high << 8 | byte());
   }
-  /// As many as the word before them says, or as there are.
+  /// Returns as many bytes as the word before them says, or as there are.
   std::string_view text() {
     const auto taken = left_.first(std::min<std::size_t>(word(), left_.size()));
     left_ = left_.subspan(taken.size());
@@ -35,7 +35,7 @@ class Input {
   std::span<const std::uint8_t> left_;
 };
 
-/// What text() gives back.
+/// Returns the bytes from which text() reads `bytes`.
 inline std::string as_text(std::string_view bytes) {
   std::string text;
   text.push_back(static_cast<char>(bytes.size() >> 8));

@@ -1,4 +1,4 @@
-// A scene on its way in: any messages, in any order.
+// Fuzzes scene uploads: any messages, in any order.
 
 #include "server/base/status_error.h"
 #include "server/scenes/scene_upload.h"

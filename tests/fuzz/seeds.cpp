@@ -1,5 +1,5 @@
-// seeds DIRECTORY FILES: what fuzzing begins with, a folder for each target: real messages, frames and checkpoints, and the
-// files.
+// seeds DIRECTORY FILES: writes the inputs with which fuzzing starts, a folder for each target: real messages, frames and
+// checkpoints, and FILES.
 
 #include "proto/codec.h"
 #include "radiosity/solve/solver.h"
@@ -47,7 +47,7 @@ std::string written(const SolveControl::Write& write) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Requests of one connection, each in two parts, by a browser that waits for the responses.
+/// Returns the requests of one connection, each in two parts, from a browser that waits for the responses.
 std::string connection_of(std::initializer_list<std::string> requests) {
   std::string bytes = "\1";
   for (const std::string& request : requests) {

@@ -1,4 +1,4 @@
-// A watch and whatever may happen to it, in any order. Aborts where it breaks what it promises.
+// Fuzzes a watch with any events in any order. Aborts if it breaks a promise.
 
 #include "proto/codec.h"
 #include "server/base/status_error.h"
@@ -17,7 +17,7 @@ void expect(bool holds) {
   if (!holds) std::abort();
 }
 
-/// Applies what it is sent, as a client would.
+/// Applies the frames it gets, as a client would.
 struct Client final : FrameSink {
   void write(const Frame& frame) override {
     expect(!finished && !under_way);
@@ -81,7 +81,7 @@ void run(fuzz::Input input) {
           solve->run([](auto&, auto&, auto&, SolutionLog&, const SolveControl&) { return SolveOutcome{}; }, {}, {}, {});
         break;
     }
-    expect(client.frames - acknowledged <= Watch::window + 1);  // a frame that says that the server stops needs no window
+    expect(client.frames - acknowledged <= Watch::window + 1);  // the closing frame needs no window
   }
   if (client.mirror.whole() && client.mirror.revision() == solve->log()->head() && client.frames > 0)
     expect(client.mirror.leaves() == solve->log()->leaves(plan.detail));

@@ -1,4 +1,4 @@
-// A browser's connection: any bytes, in any parts, with a server behind it that sends back what it is sent.
+// Fuzzes a browser's connection: any bytes, in any parts, with an echo server behind it.
 
 #include "server/web/web_connection.h"
 #include "tests/fuzz/allocation_limit.h"
@@ -63,7 +63,7 @@ WebLimits small_limits() {
   return limits;
 }
 
-/// Made once, and never unmade: gRPC's threads outlive main().
+/// Made once and never destroyed, because gRPC's threads outlive main().
 struct World {
   World() {
     grpc::ServerBuilder builder;
@@ -86,7 +86,7 @@ void check(bool is_so, const char* words) {
   std::abort();
 }
 
-/// The other end of the connection.
+/// The browser's end of the connection.
 class Browser {
  public:
   explicit Browser(int socket) : socket_(socket) {}
@@ -116,7 +116,7 @@ void run(Input input) {
     is_closed = true;
   })->begin();
   const AllocationLimit limit(1 << 20);
-  const bool is_patient = input.byte() & 1;  // waits for responses before it goes
+  const bool is_patient = input.byte() & 1;  // waits for responses before it closes
   while (!input.empty() && !is_closed) {
     browser.send(input.text());
     io.poll();

@@ -1,4 +1,4 @@
-// What Blender's exporters write, against what Blender says of the room: blender/README.md.
+// Compares files that Blender's exporters wrote with the room as Blender describes it: blender/README.md.
 
 #include "import/scene_file.h"
 #include "meshing/base_mesh.h"
@@ -21,7 +21,7 @@ const nlohmann::json& expected() {
   return whole;
 }
 
-/// A figure of the whole room, as the exporter of this file left it.
+/// Returns a figure of the whole room, as changed by the exporter of this file.
 double figure(const std::string& file, const char* name) {
   const auto& changed = expected()["formats"][file].value("total", nlohmann::json::object());
   return changed.contains(name) ? changed[name].get<double>() : expected()["total"][name].get<double>();
@@ -67,7 +67,7 @@ class BlenderFile : public testing::TestWithParam<const char*> {
   const std::string name = GetParam();
   SceneFile file = [this] {
     SceneFile read = read_scene_file(files / name);
-    if (name == "room_z_up.obj") read.scene.up = UpAxis::z;  // OBJ does not say: --up z
+    if (name == "room_z_up.obj") read.scene.up = UpAxis::z;  // OBJ cannot say it; --up z does
     return read;
   }();
 };
@@ -76,7 +76,7 @@ TEST_P(BlenderFile, HasTheSizeThatBlenderSays) {
   const Measured measured = measure(file.scene);
   const bool is_triangulated = expected()["formats"][name]["triangulated"];
   const double area = figure(name, is_triangulated ? "area_m2" : "polygon_area_m2");
-  // Blender's Collada exporter cuts bent quads along the other diagonal.
+  // Blender's Collada exporter cuts non-planar quads along the other diagonal.
   EXPECT_NEAR(measured.area, area, (name == "room.dae" ? 2e-4 : 1e-5) * area);
   EXPECT_NEAR(measured.signed_volume, figure(name, "signed_volume_m3"), 1e-4 * 56);
   EXPECT_EQ(measured.triangles, static_cast<std::size_t>(figure(name, "triangles")));
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(AllFormats, BlenderFile,
                            return name;
                          });
 
-/// Emission is pi times the radiance that Blender says.
+/// Expects that emission is pi times the radiance in Blender.
 void expect_light(const Scene& scene, const std::string& material) {
   const auto found = std::ranges::find(scene.materials, material, &Material::name);
   ASSERT_NE(found, scene.materials.end()) << material;
@@ -129,7 +129,7 @@ void expect_light(const Scene& scene, const std::string& material) {
   EXPECT_NEAR(found->emission.b, wanted.b, 2e-3 * wanted.max()) << material;
 }
 
-/// Reflectance is the base colour, of a texture its mean.
+/// Expects that reflectance is the base colour, or the texture's mean.
 void expect_reflectance(const Scene& scene, const std::string& material) {
   const auto found = std::ranges::find(scene.materials, material, &Material::name);
   ASSERT_NE(found, scene.materials.end()) << material;
@@ -160,7 +160,7 @@ TEST(BlenderMaterials, AreTheSameInFbxAndCollada) {
     Scene scene = read_scene_file(files / name).scene;
     for (Material& material : scene.materials) std::ranges::replace(material.name, '_', ' ');
     expect_reflectance(scene, "Books");
-    if (name == std::string("room.dae")) continue;  // Blender writes the colour of light without its strength
+    if (name == std::string("room.dae")) continue;  // Blender writes a light's colour without its strength
     for (const char* lamp : {"Lamp panel", "Night light"}) expect_light(scene, lamp);
   }
 }

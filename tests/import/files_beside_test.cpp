@@ -1,4 +1,4 @@
-// glTF files in several parts: what is read, and what is refused.
+// Tests of glTF files in several parts: which parts are read, and which refused.
 
 #include "import/scene_file.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with a triangle in two files, removed at the end.
+/// Makes a folder with a triangle in two files and removes it afterwards.
 class PartsTest : public testing::Test {
  protected:
   PartsTest() {
@@ -32,7 +32,7 @@ class PartsTest : public testing::Test {
   }
   void write(const fs::path& name, const std::string& bytes) const { std::ofstream(folder / name, std::ios::binary) << bytes; }
 
-  /// Writes a scene whose buffer has this URI, and reads it: "accepted", or why not.
+  /// Writes a scene whose buffer has this URI, and reads it. Returns "accepted", or why it was refused.
   std::string read(const std::string& uri, const nlohmann::json& images = {}, const nlohmann::json& material = colour) const {
     nlohmann::json gltf = {{"asset", {{"version", "2.0"}}},
                            {"scene", 0},

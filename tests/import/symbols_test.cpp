@@ -1,5 +1,5 @@
-// Which file each third-party symbol of `alvor` is found in. Two libraries may export the same names: libdraco, which Assimp
-// loads, exports functions of its own version of tinygltf, and calls to ours once ended there.
+// Checks in which library the linker finds each third-party symbol of `alvor`. Two libraries may export the same names: libdraco,
+// which Assimp loads, exports functions of its own version of tinygltf, and our calls once reached those.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,7 +22,8 @@ struct Binding {
 
 std::string file_name(const std::string& path) { return fs::path(path).filename().string(); }
 
-/// All symbols, as the dynamic linker binds them (LD_DEBUG, ld.so(8)): "binding file A [0] to B [0]: normal symbol `f' [V]".
+/// Returns all symbols as the dynamic linker binds them (LD_DEBUG, ld.so(8)): "binding file A [0] to B [0]: normal symbol `f'
+/// [V]".
 std::vector<Binding> bindings_of(const std::string& program) {
   const fs::path log = fs::temp_directory_path() / ("alvor_bindings_" + std::to_string(getpid()));
   const std::string command =
@@ -62,7 +63,7 @@ TEST(Symbols, OfLibrariesInHeadersStayInTheirProgram) {
 
 TEST(Symbols, OfSharedLibrariesAreFoundInTheseAndNoOthers) {
   struct Library {
-    const char* prefix;  ///< of the mangled name
+    const char* prefix;  ///< prefix of the mangled name
     const char* file;
   };
   constexpr std::array libraries{Library{"_ZN6Assimp", "libassimp.so"},

@@ -105,7 +105,7 @@ TEST(BaseMesh, OfFacesThatLieInOnePlaceAndLookTheSameWayTheFirstIsKept) {
   scene.materials = {test::grey(0, 0.5), test::grey(1, 0.2)};
   test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}}, 0);
   test::add_polygon(scene, {{5, 0, 0}, {6, 0, 0}, {6, 2, 0}, {5, 2, 0}}, 0);
-  test::add_polygon(scene, {{1, 2, 0}, {0, 2, 0}, {0, 0, 0}, {1, 0, 0}}, 1);  // from another corner on
+  test::add_polygon(scene, {{1, 2, 0}, {0, 2, 0}, {0, 0, 0}, {1, 0, 0}}, 1);  // starts at another corner
   const BaseMesh mesh(scene);
   ASSERT_EQ(mesh.roots().size(), 2u);
   EXPECT_EQ(mesh.roots()[0].material, 0u);

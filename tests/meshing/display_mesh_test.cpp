@@ -73,7 +73,7 @@ TEST(DisplayMesh, TheFoldsOfACurtainStayClosed) {
   for (int n = 0; n < 3; ++n) test::add_polygon(scene, {rod[n], rod[n + 1], rod[n + 1] + fall, rod[n] + fall});
   const BaseMesh mesh(scene);
   const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{1, 1, 1}; }));
-  // On each fold and side the vertices of both faces lie in one place.
+  // On each fold and side, the vertices of both faces must lie in one place.
   for (const Vec3& fold : {rod[1], rod[2]}) {
     int left = 0, right = 0;
     std::set<std::pair<int, int>> places;
@@ -115,7 +115,7 @@ TEST(DisplayMesh, LeavesWhereNothingArrivesDoNotDarkenTheirNeighbours) {
   const DisplayMesh display = build_display_mesh(mesh, leaves);
   int lit = 0;
   for (std::size_t v = 0; v < display.positions.size(); ++v) lit += display.irradiance[v].r == 3;
-  EXPECT_EQ(lit, 3 + 8);  // three centres, and all corners but the one that only the dark leaf has
+  EXPECT_EQ(lit, 3 + 8);  // three centres, and all corners except the one that only the dark leaf has
 }
 
 TEST(DisplayMesh, EachTriangleStartsAtALeafCentreAndFacesTheFront) {

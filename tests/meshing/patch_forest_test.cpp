@@ -32,7 +32,7 @@ TEST(PatchForest, LevelsAcrossEdgesDifferByAtMostOne) {
   for (const NodeIndex leaf : forest.leaves()) {
     const PatchShape shape = forest.shape(leaf);
     for (int e = 0; e < shape.corner_count; ++e)
-      for (const double t : {0.1, 0.4, 0.9}) {  // nowhere near a corner, which more than two leaves may share
+      for (const double t : {0.1, 0.4, 0.9}) {  // away from corners, which more than two leaves may share
         const NodeIndex other = forest.leaf_across(shape, e, t);
         if (other == PatchForest::no_node) continue;
         EXPECT_LE(std::abs(forest.id(other).level() - forest.id(leaf).level()), 1);

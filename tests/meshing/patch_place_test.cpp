@@ -10,7 +10,7 @@
 namespace alvor {
 namespace {
 
-/// A quad and a triangle that share an edge, and lie flat.
+/// Returns a quad and a triangle that share an edge and lie in one plane.
 Scene quad_and_triangle() {
   Scene scene;
   scene.materials.emplace_back();

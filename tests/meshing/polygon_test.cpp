@@ -54,7 +54,7 @@ TEST(Polygon, StraightCornersAreNoObstacle) {
   EXPECT_NEAR(area_of_pieces(polygon), 4, 1e-12);
 }
 
-/// A comb: `teeth` long thin teeth along x, each of two corners, over a spine. Its area is that of the teeth and the spine.
+/// Returns a comb: `teeth` long thin teeth along x, two corners each, over a spine.
 std::vector<Vec3> comb(int teeth) {
   std::vector<Vec3> polygon{{0, 0, 0}, {double(teeth), 0, 0}};
   for (int n = teeth - 1; n >= 0; --n) {
@@ -87,7 +87,7 @@ TEST(Polygon, TrianglesOfRandomStarsNeitherOverlapNorLeaveGaps) {
   }
 }
 
-// With all corners looked at for each ear, this takes hours.
+// Takes hours if all corners are tested for each ear.
 TEST(Polygon, OneOfAHundredThousandCornersIsCut) {
   const auto polygon = comb(50'000);
   EXPECT_NEAR(area_of_pieces(polygon), 0.5 * length(double_area_vector(polygon)), 1e-6);

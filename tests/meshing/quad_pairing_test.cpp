@@ -11,7 +11,7 @@
 namespace alvor {
 namespace {
 
-/// n x n unit squares in the xy plane, each cut in two, in the order of `order`.
+/// Returns n x n unit squares in the xy plane, each cut in two; the triangles come in the order of `order`.
 Scene cut_grid(std::uint32_t n, std::span<const std::uint32_t> order) {
   Scene scene;
   scene.materials.resize(1);
@@ -42,7 +42,7 @@ TEST(QuadPairing, EveryInputFaceIsToldByOneRoot) {
   std::vector<std::uint32_t> order(2 * 7 * 7);
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::shuffle(order, std::mt19937(2));
-  order.resize(order.size() - 5);  // some triangles have lost the other half of their square
+  order.resize(order.size() - 5);  // some triangles have lost their other half
   const Scene scene = cut_grid(7, order);
   std::vector<int> told(scene.faces.size());
   const BaseMesh mesh(scene);
@@ -78,7 +78,7 @@ TEST(QuadPairing, PairsThatWouldBeCutAgainStayTriangles) {
   }
 }
 
-/// Roots of a square cut along its diagonal, after its last corner and the second triangle's material were changed.
+/// Returns the number of roots of a square cut along its diagonal, with a changed last corner and second material.
 std::size_t roots_of_cut_square(Vec3 last_corner, std::uint32_t second_material) {
   Scene scene;
   scene.materials.resize(2);
@@ -91,9 +91,9 @@ std::size_t roots_of_cut_square(Vec3 last_corner, std::uint32_t second_material)
 TEST(QuadPairing, OnlyFlatConvexStoutPairsOfOneMaterialAreJoined) {
   EXPECT_EQ(roots_of_cut_square({0, 1, 0}, 0), 1u);
   EXPECT_EQ(roots_of_cut_square({0, 1, 0}, 1), 2u);      // two materials
-  EXPECT_EQ(roots_of_cut_square({0, 1, 0.01}, 0), 2u);   // bent
-  EXPECT_EQ(roots_of_cut_square({0.6, 0.7, 0}, 0), 2u);  // a corner of nearly 180 degrees
-  EXPECT_EQ(roots_of_cut_square({-1, -0.1, 0}, 0), 2u);  // concave
+  EXPECT_EQ(roots_of_cut_square({0, 1, 0.01}, 0), 2u);   // not planar
+  EXPECT_EQ(roots_of_cut_square({0.6, 0.7, 0}, 0), 2u);  // has a corner of nearly 180 degrees
+  EXPECT_EQ(roots_of_cut_square({-1, -0.1, 0}, 0), 2u);  // is concave
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The layers. What a folder may include besides itself, and the few files that may do more; docs/design/structure.md says why.
+// The layers: the folders that a folder may include besides itself, and the few files that may include more;
+// docs/design/structure.md says why.
 const std::map<std::string, std::set<std::string>> allowed{
     {"solution", {}},
     {"meshing", {"solution"}},
@@ -43,7 +44,7 @@ const std::set<std::pair<std::string, std::string>> exceptions{
     {"client/command/commands/form_factor_command.cpp", "radiosity"},
     {"client/command/commands/form_factors_command.cpp", "radiosity"},
 };
-// Libraries that stay behind one folder or file.
+// Libraries that only one folder or file may include.
 const std::map<std::string, std::string> kept_behind{
     {"embree", "radiosity/rays/visibility.cpp"},
     {"OpenMesh/", "meshing/base_mesh.cpp"},
@@ -86,7 +87,7 @@ TEST(Includes, ArrowsPointDownTheLayers) {
   }
 }
 
-/// Returns how high the room of `path` in `folder` is; -1 where it is not in one.
+/// Returns the height of `path`'s room in `folder`, or -1 if it is in none.
 int height(const std::string& path, const std::string& folder) {
   if (!path.starts_with(folder + "/")) return -1;
   const std::string rest = path.substr(folder.size() + 1), room = first_folder(rest);

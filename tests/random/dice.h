@@ -7,14 +7,14 @@
 
 namespace alvor::test {
 
-/// The same throws from the same seed, whatever the standard library.
+/// Random numbers that are the same for the same seed with every standard library.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : random_(seed, PatchId::root(0)) {}
   double between(double low, double high) { return low + (high - low) * random_.next(); }
-  /// Uniform in the logarithm. Requires: 0 < low <= high.
+  /// Returns a number whose logarithm is uniform. Requires: 0 < low <= high.
   double magnitude(double low, double high) { return low * std::pow(high / low, random_.next()); }
-  /// 0 .. end - 1.
+  /// Returns an integer in [0, end).
   std::uint32_t below(std::size_t end) { return random_.next_below(static_cast<std::uint32_t>(end)); }
   bool happens(double probability) { return random_.next() < probability; }
   template <class T, std::size_t n>

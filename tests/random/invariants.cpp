@@ -61,7 +61,7 @@ Finding published_numbers_are_finite(const Subject& s) {
   return std::nullopt;
 }
 
-/// Largest emission / (1 - largest reflectance): what a room has that is everywhere as bright as its brightest place.
+/// Returns an upper bound of the radiosity: largest emission / (1 - largest reflectance).
 Rgb brightest_radiosity(const BaseMesh& mesh) {
   Rgb emission, reflectance;
   for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
@@ -72,7 +72,7 @@ Rgb brightest_radiosity(const BaseMesh& mesh) {
 }
 
 Finding radiosity_is_bounded(const Subject& s) {
-  constexpr double rounding = 1e-5;  // of float32, amplified by nothing: the bound is
+  constexpr double rounding = 1e-5;  // of float32; the bound itself contains the amplification
   const Rgb most = (1 + rounding) * brightest_radiosity(s.mesh);
   for (const LeafValue& leaf : s.solved.leaves) {
     const Material& material = s.mesh.material_of(leaf.patch.root_face());
@@ -103,9 +103,9 @@ Finding row_sums_are_at_most_one(const Subject& s) {
   return std::nullopt;
 }
 
-/// Exact: of leaves and of steps, but for `rounding` of the estimated error and of unshot power.
+/// Compares leaves and steps exactly, but for `rounding` of the estimated error and of unshot power.
 Finding difference(const Solved& expected, const Solved& got, double rounding = 0) {
-  if (got.outcome.reason == StopReason::time_limit) return std::nullopt;  // the clock decides what it shows
+  if (got.outcome.reason == StopReason::time_limit) return std::nullopt;  // the result depends on the clock
   if (got.leaves.size() != expected.leaves.size())
     return std::to_string(expected.leaves.size()) + " leaves and " + std::to_string(got.leaves.size());
   for (std::size_t n = 0; n < got.leaves.size(); ++n)
@@ -122,7 +122,7 @@ Finding difference(const Solved& expected, const Solved& got, double rounding = 
   return std::nullopt;
 }
 
-/// As `solved` would be: steps that only show progress come by the clock, so only the last is compared.
+/// Returns `solved` with only its last step. Steps that only show progress depend on the clock.
 Solved end_of(Solved solved) {
   solved.steps.erase(solved.steps.begin(), solved.steps.end() - 1);
   return solved;
@@ -138,7 +138,7 @@ Finding emission_scales(const Subject& s) {
   double factor = std::exp2(static_cast<double>(mix_bits(s.trial.seed) % 41) - 20);
   if (find_fault(with_emission_times(s.trial.scene, factor))) factor = 1 / factor;
   Solved expected = end_of(s.solved), got = end_of(solved(BaseMesh(with_emission_times(s.trial.scene, factor)), s.trial.options));
-  constexpr float least = 1e-30f;  // below it float32 may lose digits or end
+  constexpr float least = 1e-30f;  // below it float32 may lose digits or underflow
   for (LeafValue& leaf : expected.leaves) {
     leaf.irradiance *= static_cast<float>(factor);
   }
@@ -151,11 +151,11 @@ Finding emission_scales(const Subject& s) {
 Finding bands_are_alike(const Subject& s) {
   Solved expected = end_of(s.solved);
   for (LeafValue& leaf : expected.leaves) leaf.irradiance = red_and_green_swapped(leaf.irradiance);
-  constexpr double rounding = 1e-12;  // of sums over bands
+  constexpr double rounding = 1e-12;  // of sums over the bands
   return difference(expected, end_of(solved(BaseMesh(with_red_and_green_swapped(s.trial.scene)), s.trial.options)), rounding);
 }
 
-/// Mean over the area, the bands together, W/m2.
+/// Returns the mean irradiance over the area, bands averaged, W/m2.
 double mean_irradiance(const BaseMesh& mesh, const Solved& solved) {
   double power = 0, area = 0;
   for (const RootPatch& root : mesh.roots()) area += root.area;
@@ -163,12 +163,12 @@ double mean_irradiance(const BaseMesh& mesh, const Solved& solved) {
   return power / area;
 }
 
-/// There the noise of rows is amplified as light is, which estimates do not know.
+/// Returns whether a reflectance is above 0.95. Then the noise of rows is amplified, which the estimates do not know.
 bool reflects_nearly_all(const Scene& scene) {
   return std::ranges::any_of(scene.materials, [](const Material& material) { return material.reflectance.max() > 0.95; });
 }
 
-/// Two solutions of one scene are as far from each other as each says it may be from the truth.
+/// Solves `changed`, which must have the same solution. The two may differ by what their estimated errors allow.
 Finding disagreement(const Subject& s, const Scene& changed, const SolveOptions& options) {
   if (reflects_nearly_all(s.trial.scene)) return std::nullopt;
   const BaseMesh mesh(changed);
@@ -181,7 +181,7 @@ Finding disagreement(const Subject& s, const Scene& changed, const SolveOptions&
   return "mean irradiance " + number(here) + " and " + number(there) + ", estimated error " + number(error);
 }
 
-/// As far as the estimated error says: an error of irradiance is one of the power that arrives.
+/// The power balance may be off by as much as the estimated error allows: an error of irradiance is an error of arriving power.
 Finding power_is_neither_made_nor_lost(const Subject& s) {
   const PowerBalance& balance = s.solved.outcome.balance;
   if (!s.trial.is_well_posed || reflects_nearly_all(s.trial.scene)) return std::nullopt;
@@ -196,7 +196,8 @@ Finding power_is_neither_made_nor_lost(const Subject& s) {
          " unshot " + number(balance.unshot);
 }
 
-/// To the byte, but for exact form factors: those take logarithms of lengths.
+/// Solutions in another unit of length must be equal to the byte, except with exact form factors, which take logarithms of
+/// lengths.
 Finding lengths_do_not_matter(const Subject& s) {
   constexpr double factor = 0x1p-10;
   const Scene changed = with_lengths_times(s.trial.scene, factor);

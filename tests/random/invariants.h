@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of every solution.
+// Invariants that every solution must satisfy.
 
 #include "tests/random/trial.h"
 
@@ -12,10 +12,10 @@ namespace alvor::test {
 struct Breach {
   std::string_view invariant;
   std::string how;
-  bool by_clock = false;  ///< another time it may not fail
+  bool by_clock = false;  ///< the clock was involved, so a repetition may not fail
 };
 
-/// The first invariant that the trial breaks. `only`: looks at the one of this name, and at what it needs.
+/// Returns the first invariant that the trial breaks. If `only` is given, checks only that one and those that it needs.
 std::optional<Breach> find_breach(const Trial& trial, std::string_view only = {});
 
 }  // namespace alvor::test

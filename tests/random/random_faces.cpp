@@ -17,7 +17,7 @@ void add_triangle(Dice& dice, Scene& scene) {
   scene.add_polygon(ring, dice.below(scene.materials.size()));
 }
 
-/// A parallelogram, or with corner 2 moved within its plane.
+/// Adds a parallelogram, or a quad with corner 2 moved within its plane.
 void add_quad(Dice& dice, Scene& scene) {
   const double size = dice.magnitude(0.01, 1);
   const Vec3 at = random_point(dice), u = size * (random_point(dice) - at), v = size * (random_point(dice) - at);
@@ -41,7 +41,7 @@ void add_room(Dice& dice, Scene& scene) {
   const double flat = dice.happens(0.7) ? dice.between(0.3, 1) : dice.magnitude(1e-3, 1);
   const Vec3 low{0, 0, 0}, high{1, dice.between(0.5, 1), flat};
   add_box(scene, low, high, true, six_materials(dice, scene));
-  if (dice.happens(0.3)) scene.faces.erase(scene.faces.begin() + dice.below(6));  // an open room
+  if (dice.happens(0.3)) scene.faces.erase(scene.faces.begin() + dice.below(6));  // opens the room
   for (std::uint32_t n = dice.below(4); n > 0; --n) add_solid(dice, scene, low, high);
 }
 

@@ -5,8 +5,8 @@
 
 namespace alvor::test {
 
-/// Adds a room with things in it, some solids in the open, or a soup of polygons, about one unit large. No two of its faces lie
-/// in the same plane, but they may cross. Requires: materials.
+/// Adds a room with objects, some solids in the open, or random polygons, about one unit large. No two faces lie in one plane,
+/// but they may cross. Requires: the scene has materials.
 void add_random_faces(Dice& dice, Scene& scene);
 
 Vec3 random_point(Dice& dice);

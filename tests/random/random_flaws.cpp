@@ -38,14 +38,14 @@ void add_degenerate(Dice& dice, Scene& scene) {
   scene.add_polygon(std::array<Vec3, 3>{a, b, c}, random_material(dice, scene));
 }
 
-/// A quad with one corner out of its plane.
+/// Adds a quad with one corner out of its plane.
 void add_bent(Dice& dice, Scene& scene) {
   const Vec3 at = random_point(dice), u = 0.5 * random_point(dice), v = 0.5 * random_point(dice);
   const Vec3 off = dice.magnitude(1e-8, 0.3) * random_point(dice);
   scene.add_polygon(std::array<Vec3, 4>{at, at + u, at + u + v + off, at + v}, random_material(dice, scene));
 }
 
-/// Five to eight corners around a middle, in one plane; stars, some of which cross themselves.
+/// Adds a planar star of five to eight corners; some cross themselves.
 void add_star(Dice& dice, Scene& scene) {
   const Vec3 at = random_point(dice), u = 0.5 * random_point(dice), v = 0.5 * random_point(dice);
   const std::uint32_t corners = 5 + dice.below(4), turns = dice.happens(0.2) ? 2 : 1;
@@ -57,7 +57,7 @@ void add_star(Dice& dice, Scene& scene) {
   scene.add_polygon(ring, random_material(dice, scene));
 }
 
-/// The same corners once more, perhaps turned over or begun at another.
+/// Adds a face with the same corners as another, possibly reversed or starting at another corner.
 void add_double(Dice& dice, Scene& scene) {
   const Face face = random_face(dice, scene);
   const auto corners = scene.corners_of(face);
@@ -67,7 +67,7 @@ void add_double(Dice& dice, Scene& scene) {
   scene.add_face(ring, random_material(dice, scene));
 }
 
-/// In the plane of a face, overlapping it, or a hair from it.
+/// Adds a face that overlaps another in its plane, or at a tiny distance.
 void add_coplanar(Dice& dice, Scene& scene) {
   auto ring = ring_of(scene, random_face(dice, scene));
   const Vec3 middle = lerp(ring[0], ring[2], dice.between(0.2, 0.8));
@@ -78,7 +78,7 @@ void add_coplanar(Dice& dice, Scene& scene) {
   scene.add_polygon(ring, random_material(dice, scene));
 }
 
-/// Many faces on one edge.
+/// Adds many faces on one edge.
 void add_fan(Dice& dice, Scene& scene) {
   const Vec3 a = random_point(dice), b = random_point(dice);
   for (std::uint32_t n = 2 + dice.below(4); n > 0; --n)

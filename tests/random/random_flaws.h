@@ -7,11 +7,11 @@
 
 namespace alvor::test {
 
-/// Adds faces as nobody should draw them: slivers, specks, degenerate, bent, concave, doubled, coplanar ones. False if some now
-/// lie in the plane of others that they overlap. Requires: faces.
+/// Adds bad faces: slivers, specks, degenerate, non-planar, concave, doubled and coplanar ones. Returns false if some now overlap
+/// others in their plane. Requires: the scene has faces.
 bool add_flaws(Dice& dice, Scene& scene);
 
-/// Makes the scene one that must be refused, and returns the place that the refusal must name. Requires: faces.
+/// Changes the scene so that it must be refused, and returns the place that the refusal must name. Requires: the scene has faces.
 std::string add_fault(Dice& dice, Scene& scene);
 
 }  // namespace alvor::test

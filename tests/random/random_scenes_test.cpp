@@ -1,5 +1,5 @@
-// Random scenes that must keep invariants. As a test: a few hundred. As a program: random_scenes_test --scenes N --first SEED
-// prints each that fails, shrunk.
+// Checks invariants on random scenes. As a test it tries a few hundred. As a program, random_scenes_test --scenes N --first SEED
+// prints each failing scene, shrunk.
 
 #include "tests/random/invariants.h"
 #include "tests/random/shrink.h"
@@ -16,13 +16,13 @@
 namespace alvor::test {
 namespace {
 
-constexpr int most_shrunk = 5;  // of one invariant: shrinking takes many solves
+constexpr int most_shrunk = 5;  // most failures shrunk per invariant, because shrinking takes many solves
 
 std::string title_of(const Trial& trial, const Breach& breach) {
   return "scene " + std::to_string(trial.seed) + " breaks \"" + std::string(breach.invariant) + "\": " + breach.how + '\n';
 }
 
-/// Shrinks what fails each time it is tried: not what the clock decides.
+/// Returns the trial shrunk, if it fails each time; failures that depend on the clock are not shrunk.
 Trial less_of(const Trial& trial, const Breach& breach) {
   const auto fails = [&](const Trial& candidate) {
     if (!candidate.faulty_place && find_fault(candidate.scene)) return false;
@@ -32,7 +32,7 @@ Trial less_of(const Trial& trial, const Breach& breach) {
   return trial.faulty_place || breach.by_clock || !fails(trial) ? trial : shrunk(trial, fails);
 }
 
-/// All that it takes to repeat the failure.
+/// Returns everything needed to repeat the failure.
 std::string failure_of(const Trial& trial, const Breach& breach) {
   const Trial less = less_of(trial, breach);
   return title_of(trial, breach) + "--- scene.obj\n" + obj_text(less.scene) + "--- scene.mtl\n" + mtl_text(less.scene) +
@@ -48,7 +48,7 @@ TEST(RandomScenes, KeepTheInvariants) {
 
 volatile std::sig_atomic_t current_seed = 0;
 
-// A sanitizer aborts: the scene must be known.
+// Signal handler: prints the current scene when a sanitizer aborts.
 void name_the_scene(int) {
   char line[64];
   std::snprintf(line, sizeof line, "aborted in scene %ld\n", static_cast<long>(current_seed));

@@ -24,7 +24,7 @@ class Shrinker {
   }
 
  private:
-  /// Keeps what `change` made if it is another trial and still fails.
+  /// Applies `change` to a copy, and keeps the copy if it differs and still fails.
   template <class Change>
   bool attempt(Change&& change) {
     Trial candidate = trial_;
@@ -96,7 +96,7 @@ class Shrinker {
     return any;
   }
 
-  /// Vertices and materials that no face uses, and the corners of faces that are gone.
+  /// Drops vertices and materials that no face uses, and corners of removed faces.
   bool drop_unused() {
     return attempt([](Trial& t) {
       const Scene before = t.scene;

@@ -6,8 +6,8 @@
 
 namespace alvor::test {
 
-/// The same failure in less: faces and vertices left out, plain materials, round coordinates, default options, as long as
-/// `fails`; what a minute gives. Requires: fails(trial).
+/// Returns a smaller trial that still fails: with faces and vertices left out, plain materials, round coordinates and default
+/// options. Tries for a minute. Requires: fails(trial).
 Trial shrunk(Trial trial, const std::function<bool(const Trial&)>& fails);
 
 }  // namespace alvor::test

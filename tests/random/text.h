@@ -1,5 +1,5 @@
 #pragma once
-// A trial as files and commands that repeat it.
+// Prints a trial as the files and the command that repeat it.
 
 #include "tests/random/trial.h"
 
@@ -7,13 +7,13 @@
 
 namespace alvor::test {
 
-/// The shortest that reads back as the same number.
+/// Returns the shortest text that reads back as the same number.
 std::string exact_text(double value);
 
 std::string obj_text(const Scene& scene);
-/// Two-sided materials and the medium, which MTL does not know, are remarks.
+/// Returns the MTL text. Two-sided materials and the medium, which MTL cannot express, are comments.
 std::string mtl_text(const Scene& scene);
-/// `alvor solve` with its options.
+/// Returns the `alvor solve` command with the trial's options.
 std::string command_text(const Trial& trial);
 
 }  // namespace alvor::test

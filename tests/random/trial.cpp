@@ -10,7 +10,7 @@ namespace alvor::test {
 
 namespace {
 
-constexpr double longest_solve_s = 10;  // far beyond what such a scene takes, under sanitizers too: what is cut off does not end
+constexpr double longest_solve_s = 10;  // far more than such a scene takes, even under sanitizers; a solve that it ends has hung
 
 Rgb random_bands(Dice& dice, double low, double high) {
   const double grey = dice.between(low, high);
@@ -51,8 +51,8 @@ std::vector<Material> random_materials(Dice& dice, std::size_t count) {
   return materials;
 }
 
-// Exact form factors look at all pairs, and classical strategies take 1 / (1 - reflectance) rounds: both only where they end
-// soon.
+// Returns random options. Exact form factors look at all pairs, and classical strategies take 1 / (1 - reflectance) rounds, so
+// both are used only where they end soon.
 SolveOptions random_options(Dice& dice, const Scene& scene) {
   SolveOptions options;
   options.tolerance = dice.one_of({1e-9, 0.01, 0.05, 0.2});
@@ -75,7 +75,7 @@ SolveOptions random_options(Dice& dice, const Scene& scene) {
   return options;
 }
 
-/// To any size and place.
+/// Scales and moves the scene to a random size and place.
 void move(Dice& dice, Scene& scene) {
   const double size = dice.happens(0.5) ? 1 : dice.magnitude(1e-6, 1e6);
   const double away = dice.happens(0.7) ? 0 : dice.magnitude(1, 400);  // in sizes

@@ -1,5 +1,5 @@
 #pragma once
-// A random scene and how to solve it.
+// A random scene and the options to solve it with.
 
 #include "meshing/scene.h"
 #include "radiosity/solve/solver.h"
@@ -15,14 +15,13 @@ struct Trial {
   std::uint64_t seed = 0;
   Scene scene;
   SolveOptions options;
-  /// Each point of a surface has one front and sees what is in front of it: no face lies in another's plane where they overlap.
-  /// Elsewhere light between such faces depends on which of them a ray finds first.
+  /// Whether no two faces overlap in one plane. Where they do, the light between them depends on which of them a ray hits first.
   bool is_well_posed = true;
-  /// The place that a refusal must name; nothing: the scene has no fault.
+  /// The place that a refusal must name; empty if the scene has no fault.
   std::optional<std::string> faulty_place;
 };
 
-/// The same trial from the same seed: 1 to some 60 faces, mostly nasty.
+/// Returns the trial for a seed, always the same: 1 to about 60 faces, mostly nasty.
 Trial random_trial(std::uint64_t seed);
 
 struct Solved {
@@ -31,7 +30,7 @@ struct Solved {
   std::vector<Step> steps;
 };
 
-/// Requires: roots.
+/// Solves the mesh. Requires: it has roots.
 Solved solved(const BaseMesh& mesh, const SolveOptions& options);
 
 }  // namespace alvor::test

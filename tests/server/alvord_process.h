@@ -1,21 +1,21 @@
 #pragma once
-// The alvord program as a process of its own.
+// Runs the alvord program in a process of its own.
 
 #include "tests/server/child_process.h"
 
 namespace alvor {
 
-/// A running alvord; what it logs can be read line by line.
+/// A running alvord; its log can be read line by line.
 class Alvord : public ChildProcess {
  public:
   explicit Alvord(std::vector<std::string> arguments, const std::string& variable = "ALVOR_TEST=1")
       : ChildProcess(command(std::move(arguments)), STDERR_FILENO, variable) {}
 
-  /// Reads the log up to the line that tells the address after `words`.
+  /// Reads the log up to the line with `words`, and returns the address that follows them.
   std::string address(const std::string& words = "listening on ") {
     for (std::string next = line(); !next.empty(); next = line())
       if (const auto at = next.find(words); at != std::string::npos) {
-        next.pop_back();  // the line's end
+        next.pop_back();  // the newline
         return next.substr(at + words.size());
       }
     return "";

@@ -1,4 +1,4 @@
-// The alvord program, as an operator and a load balancer see it.
+// Tests the alvord program as an operator and a load balancer see it.
 
 #include "client/rpc/client.h"
 #include "tests/server/alvord_process.h"
@@ -23,7 +23,7 @@ std::string text_of(const grpc::ByteBuffer& bytes) {
   return text;
 }
 
-// One request, one answer, of a service whose messages are not compiled in.
+// Makes a call with serialized messages, for services whose messages are not compiled in.
 std::string call(const std::string& address, const std::string& method, const std::string& request) {
   grpc::GenericStub stub(grpc::CreateChannel(address, grpc::InsecureChannelCredentials()));
   grpc::ClientContext context;
@@ -79,7 +79,7 @@ TEST(AlvordProgram, StopsCleanlyWhileItSolvesAndIsWatched) {
   EXPECT_EQ(alvord.exit_status(), 0);
 }
 
-/// `alvord --probe` of the address: its status, and its first line.
+/// Runs `alvord --probe` on the address. Returns its exit status and its first line.
 std::pair<int, std::string> probed(const std::string& address) {
   Alvord probe({"--probe", address});
   std::string line = probe.line();

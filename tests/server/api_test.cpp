@@ -32,7 +32,7 @@ ServiceOptions staged(StagedSolver& stage) {
 TEST(Api, SceneFarLargerThanAMessageComesBackAsItWas) {
   TestServer server;
   Client client(server.channel());
-  const Scene scene = squares(60'000);  // 7 MB; a message may have 4
+  const Scene scene = squares(60'000);  // 7 MB, while a message may have 4 MB
   const v1::Scene facts = client.create_scene(scene, "large");
   EXPECT_EQ(facts.face_count(), 60'000u);
   EXPECT_EQ(client.get_scene(facts.name()).display_name(), "large");
@@ -59,7 +59,7 @@ TEST(Api, UploadBeyondTheLimitEndsEarly) {
             "RESOURCE_EXHAUSTED: scene: more than 1000 corners, the limit of this server");
 }
 
-/// Of a scene in small chunks.
+/// Returns the messages that upload a scene in small chunks.
 std::vector<v1::CreateSceneRequest> upload_of(const Scene& scene, const std::string& request_id) {
   std::vector<v1::CreateSceneRequest> messages(1);
   messages[0].mutable_scene()->set_display_name("room");
@@ -118,7 +118,7 @@ TEST(Api, UploadGoesOnWhereItBrokeOff) {
   while (!ask()) std::this_thread::yield();
   ASSERT_LE(arrived.chunk_count(), 3u);
   std::string name;
-  for (const std::uint64_t sent : {arrived.chunk_count(), std::uint64_t{0}}) {  // and once more from the beginning
+  for (const std::uint64_t sent : {arrived.chunk_count(), std::uint64_t{0}}) {  // resumes, then starts from the beginning
     grpc::ClientContext context;
     v1::Scene stored;
     const auto writer = stub->CreateScene(&context, &stored);

@@ -1,5 +1,5 @@
 #pragma once
-// A program as a process of its own.
+// Runs a program in a process of its own.
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -17,11 +17,11 @@ extern char** environ;
 
 namespace alvor {
 
-/// Killed where it is still running when this goes.
+/// A child process, killed on destruction if it still runs.
 class ChildProcess {
  public:
-  /// Runs the first of `words` with the others, and `variable` (NAME=VALUE) in its environment. What it writes to `stream` can be
-  /// read line by line. Throws std::system_error.
+  /// Runs the first of `words` with the others as arguments, and with `variable` (NAME=VALUE) in its environment. Its output to
+  /// `stream` can be read line by line. Throws std::system_error.
   ChildProcess(std::vector<std::string> words, int stream, std::string variable = "ALVOR_TEST=1") {
     int ends[2] = {-1, -1};
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
@@ -47,14 +47,14 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// The next line of what it writes, with its end; "" after the last.
+  /// Returns the next line of its output with the newline; "" after the last.
   std::string line() {
     char text[4096] = "";
     return std::fgets(text, sizeof text, output_) ? text : "";
   }
   pid_t process() const { return process_; }
   void signal(int number) { ::kill(process_, number); }
-  /// As when the power fails.
+  /// Kills the process without warning, as a power failure would.
   void kill() {
     signal(SIGKILL);
     exit_status();

@@ -1,4 +1,4 @@
-// What is served of a database of which parts are damaged.
+// Tests that undamaged data are served from a database with damaged parts.
 
 #include "server/solves/solve_store.h"
 #include "tests/server/kept_directory.h"
@@ -15,7 +15,7 @@ namespace {
 
 class DamagedRowsTest : public KeptDirectoryTest {
  protected:
-  /// Scenes 1 to 3, each with a solve of its own number that has ended.
+  /// Stores scenes 1 to 3, each with an ended solve of the same number.
   void fill() const {
     Archive archive(directory);
     for (std::uint64_t n = 1; n <= 3; ++n) {
@@ -23,7 +23,7 @@ class DamagedRowsTest : public KeptDirectoryTest {
       archive.add(solve_row(n, n, v1::Solve::SUCCEEDED), n);
     }
   }
-  /// A server on the directory.
+  /// A server's stores on the directory.
   struct Stores {
     explicit Stores(const std::filesystem::path& directory) : archive(directory), scenes(&archive), solves(options(), scenes) {}
     SolveStoreOptions options() {
@@ -47,7 +47,7 @@ class DamagedRowsTest : public KeptDirectoryTest {
     SceneStore scenes;
     SolveStore solves;
   };
-  /// Overwrites the head of the database's page on which `text` is.
+  /// Overwrites the head of the database page that contains `text`.
   void damage_page_of(const std::string& text) const {
     std::fstream file(directory / "alvor.db", std::ios::in | std::ios::out | std::ios::binary);
     std::ostringstream all;

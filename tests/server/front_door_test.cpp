@@ -25,7 +25,7 @@
 namespace alvor {
 namespace {
 
-/// Connects from `from`, an address of this machine. Not open where nobody listens.
+/// Connects from `from`, an address of this machine. The descriptor is not open if nobody listens.
 Descriptor connect_from(const char* from, int port) {
   Descriptor client(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const timeval patience{20, 0};
@@ -40,20 +40,20 @@ Descriptor connect_from(const char* from, int port) {
   return client;
 }
 
-/// Says something, so that it is not the one to give way.
+/// Returns a connection that has sent a byte, so that it is not closed for a new one.
 Descriptor talkative(int port) {
   Descriptor client = connect_from("127.0.0.1", port);
-  send(client.get(), "x", 1, MSG_NOSIGNAL);  // fails where it was closed at once
+  send(client.get(), "x", 1, MSG_NOSIGNAL);  // fails if the server closed it at once
   return client;
 }
 
-/// Waits until the other end has closed it.
+/// Waits until the other end has closed the connection.
 bool is_ended(const Descriptor& client) {
   char byte = 0;
   return recv(client.get(), &byte, 1, 0) <= 0;
 }
 
-/// A door whose connections nobody serves; they stay open until the test closes them.
+/// A front door whose connections are not served; they stay open until the test closes them.
 class OpenDoor {
  public:
   explicit OpenDoor(const ConnectionLimits& limits, const std::string& address = "127.0.0.1:0") : door(address, limits) {
@@ -73,7 +73,7 @@ class OpenDoor {
     std::scoped_lock hold(lock_);
     return accepted_.size();
   }
-  /// As a server that has read that the peer is gone.
+  /// Closes a connection like a server that has read its end.
   void close(std::size_t n) {
     std::scoped_lock hold(lock_);
     accepted_[n] = Descriptor();
@@ -85,7 +85,7 @@ class OpenDoor {
   std::vector<Descriptor> accepted_;
 
  public:
-  FrontDoor door;  // its thread uses all of the above
+  FrontDoor door;  // its thread uses all members above
 };
 
 TEST(FrontDoor, TakesAsManyConnectionsAsItMayAndClosesTheRest) {
@@ -96,7 +96,7 @@ TEST(FrontDoor, TakesAsManyConnectionsAsItMayAndClosesTheRest) {
   EXPECT_TRUE(is_ended(connect_from("127.0.0.1", open.door.port())));
   EXPECT_EQ(open.door.counts().refused, 1u);
   open.close(1);
-  // Whoever comes now finds the place, if not at the first attempt: places are looked at twenty times a second.
+  // A new connection gets the free place, perhaps not at once: the door looks for free places twenty times a second.
   while (open.accepted() < 4) talkative(open.door.port());
 }
 
@@ -225,7 +225,7 @@ TEST(AlvordProgram, OutOfDescriptorsItServesAgainAsSoonAsThereAreSome) {
   const std::string health = alvord.address("health on "), address = alvord.address();
   ASSERT_NE(address, "");
   ASSERT_TRUE(list_scenes(address).ok());
-  // Idle strangers take every descriptor that is left, however many the machine allows.
+  // Idle strangers take all remaining descriptors, however many the machine allows.
   const auto open_now =
       std::distance(std::filesystem::directory_iterator("/proc/" + std::to_string(alvord.process()) + "/fd"), {});
   const rlimit few{static_cast<rlim_t>(open_now + 20), static_cast<rlim_t>(open_now + 20)};
@@ -234,7 +234,7 @@ TEST(AlvordProgram, OutOfDescriptorsItServesAgainAsSoonAsThereAreSome) {
   {
     std::vector<Descriptor> strangers;
     for (int n = 0; n < 60; ++n) strangers.push_back(connect_from("127.0.0.1", port));
-    char answer[9];  // SETTINGS: the server has accepted it and sends them first
+    char answer[9];  // SETTINGS, which the server sends first after it has accepted
     EXPECT_EQ(recv(strangers.front().get(), answer, sizeof answer, MSG_WAITALL), 9);
   }
   EXPECT_TRUE(list_scenes(address).ok());

@@ -1,4 +1,4 @@
-// A data directory on a disk that is full, or cannot be written.
+// Tests of a data directory on a disk that is full or cannot be written.
 
 #include "client/rpc/client.h"
 #include "server/scenes/scene_store.h"
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Does not compress: random triangles, half a megabyte in the database.
+/// Returns random triangles, which do not compress: half a megabyte in the database.
 Scene noise(unsigned seed) {
   Scene scene;
   scene.materials.push_back({"lamp", {1, 2, 3}, {0.5, 0.5, 0.5}, false});
@@ -33,7 +33,7 @@ Scene noise(unsigned seed) {
   return scene;
 }
 
-/// Mounts a small disk, which needs the right to; else its tests are skipped.
+/// Mounts a small disk. Without the right to mount, the tests are skipped.
 class FullDiskTest : public KeptDirectoryTest {
  protected:
   void SetUp() override {
@@ -45,7 +45,7 @@ class FullDiskTest : public KeptDirectoryTest {
   void TearDown() override {
     if (is_mounted_) umount2(directory.c_str(), MNT_DETACH);
   }
-  /// Leaves no block free.
+  /// Fills the disk to its last block.
   void fill_up() const {
     std::ofstream filler(directory / "filler", std::ios::app);
     const std::string block(4096, 'x');
@@ -56,7 +56,7 @@ class FullDiskTest : public KeptDirectoryTest {
     struct stat found = {};
     return stat((directory / "ballast").c_str(), &found) == 0 ? static_cast<std::uintmax_t>(found.st_blocks) * 512 : 0;
   }
-  /// Returns the names of scenes that fitted.
+  /// Adds scenes until the disk is full. Returns the names of those that fitted.
   static std::vector<std::string> add_scenes_until_full(SceneStore& scenes) {
     std::vector<std::string> names;
     for (unsigned n = 0;; ++n) try {
@@ -118,7 +118,8 @@ TEST_F(FullDiskTest, ServerStartsAndServesWhatIsThere) {
   EXPECT_EQ(client.create_scene(noise(1000), "").face_count(), 6000u);
 }
 
-/// Dies when a part of the change is in the database's file already: it is more than SQLite holds in memory.
+/// Ends the process when part of a change is already in the database's file, because the change is larger than SQLite holds in
+/// memory.
 [[noreturn]] void die_in_a_large_change(const fs::path& directory) {
   Database database(directory);
   database.change([](SQLite::Database& open) {
@@ -146,7 +147,7 @@ TEST_F(FullDiskTest, ServerThatWasKilledInTheMiddleOfAWriteStarts) {
   EXPECT_EQ(refusal_to_remove(scenes, name), "");
 }
 
-/// As an older server did: all that it wrote is in a write-ahead log when it dies, `megabytes` and a little.
+/// Ends the process like an older server: everything it wrote, slightly more than `megabytes`, is in a write-ahead log.
 [[noreturn]] void die_as_an_older_server(const fs::path& directory, int megabytes) {
   SQLite::Database older((directory / "alvor.db").string(), SQLite::OPEN_READWRITE);
   older.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; DROP TABLE unkept;");
@@ -157,7 +158,7 @@ TEST_F(FullDiskTest, ServerThatWasKilledInTheMiddleOfAWriteStarts) {
 }
 
 TEST_F(FullDiskTest, LogOfAnOlderServerThatWasKilledIsRead) {
-  for (const int megabytes : {1, 6}) {  // less and more than the ballast has room for
+  for (const int megabytes : {1, 6}) {  // less and more than the ballast holds
     {
       Archive archive(directory);
       SceneStore scenes(&archive);
@@ -213,7 +214,7 @@ TEST_F(FullDiskTest, WhatACrashKeptFromBeingRemovedIsRemovedAtTheStart) {
   EXPECT_EQ(count("checkpoint_pieces"), 0);
 }
 
-/// Ends the process: with 0 if what is there is read, and what would be written is refused in words.
+/// Ends the process, with 0 if stored data can be read and writing is refused with a message.
 [[noreturn]] void use_as_a_stranger(const fs::path& directory, const std::string& name) {
   constexpr uid_t nobody = 65534;
   if (geteuid() == 0 && seteuid(nobody) != 0) std::_Exit(2);

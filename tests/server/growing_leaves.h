@@ -8,11 +8,11 @@
 
 namespace alvor {
 
-/// Invents what a solver might publish: values of leaves that change and split at random, the same for the same seed.
+/// Invents leaf values that change and split at random, as a solver might publish them. The same seed gives the same values.
 class GrowingLeaves {
  public:
   GrowingLeaves(std::uint32_t roots, unsigned seed);
-  /// All roots the first time; later about a quarter of the leaves, some of them split.
+  /// Returns all roots the first time; later about a quarter of the leaves, some of them split.
   std::vector<LeafValue> next();
 
  private:

@@ -1,4 +1,4 @@
-// What outlives a server that is killed, stopped, or never gets to write.
+// Tests that data survive a server that is killed, stopped, or cannot write.
 
 #include "client/rpc/client.h"
 #include "proto/codec.h"
@@ -37,7 +37,7 @@ class KeepingTest : public testing::Test {
   static Client client_of(Alvord& alvord) {
     return Client(grpc::CreateChannel(alvord.address(), grpc::InsecureChannelCredentials()));
   }
-  /// Takes some seconds, most of which it waits.
+  /// Returns a spec whose solve takes some seconds, mostly waiting.
   static v1::SolveSpec slow_spec() {
     v1::SolveSpec spec;
     spec.set_tolerance(0.02);
@@ -161,7 +161,7 @@ TEST_F(KeepingTest, WatcherAheadOfTheCheckpointStartsAfresh) {
   EXPECT_EQ(watch.mirror.leaves(), uninterrupted());
 }
 
-/// Asks for scenes and solves as fast as they are answered, until the server is gone, and notes what was.
+/// Requests scenes and solves as fast as they are answered until the server is gone, and records the answered ones.
 struct Requests {
   std::vector<std::string> scenes, solves;
 
@@ -231,7 +231,7 @@ TEST_F(KeepingTest, EveryDurableStepIsDoneOrNot) {
     }
 }
 
-// More of them by scripts/crashes.sh, which sets their number.
+// scripts/crashes.sh runs more crashes by setting ALVOR_CRASHES.
 TEST_F(KeepingTest, NothingAcknowledgedIsLostWheneverTheServerIsKilled) {
   const char* chosen = std::getenv("ALVOR_CRASHES");
   const int crashes = chosen ? std::atoi(chosen) : 4;
@@ -334,12 +334,12 @@ TEST_F(KeepingTest, DamagedContentIsNotTakenForWhatWasStored) {
   EXPECT_NE(refusal_of(grpc::DATA_LOSS, [&] { archive.content(sha256); }).find("a scene's content: "), std::string::npos);
 }
 
-/// Ends the process: with 0 if a scene that does not fit was refused and left nothing.
+/// Ends the process, with 0 if a scene that does not fit was refused and left nothing behind.
 [[noreturn]] void fill_the_disk(const fs::path& directory) {
   Archive archive(directory);
   SceneStore scenes(&archive);
   scenes.add(test::coloured_room(), "fits");
-  // A file may not grow beyond a limit, as on a full disk.
+  // A limit of the file's size acts like a full disk.
   signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{200'000, 200'000};
   setrlimit(RLIMIT_FSIZE, &limit);
@@ -402,7 +402,7 @@ TEST_F(KeepingTest, TheLogOfAnEndedSolveIsInMemoryWhileSomebodyHoldsIt) {
     solve->drop_log();
     EXPECT_EQ(solve->log(), log) << "somebody holds it";
   }
-  // The solver's thread may just be dropping it too.
+  // The solver's thread may be dropping the log at the same time.
   while (!in_memory.expired()) solve->drop_log();
   EXPECT_EQ(solve->log()->leaves(), leaves);
   EXPECT_TRUE(solve->log()->closed());

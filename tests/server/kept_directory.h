@@ -1,5 +1,5 @@
 #pragma once
-// A data directory for a test, and its database as others see it.
+// A data directory for a test, and direct access to its database.
 
 #include "server/archive/archive.h"
 #include "tests/server/sample_scenes.h"
@@ -18,7 +18,7 @@ class KeptDirectoryTest : public testing::Test {
   KeptDirectoryTest() { std::filesystem::remove_all(directory); }
   ~KeptDirectoryTest() override { std::filesystem::remove_all(directory); }
 
-  /// Requires: no archive has it open.
+  /// Runs `sql` on the database. Requires: no archive has it open.
   void alter(const std::string& sql) const {
     SQLite::Database((directory / "alvor.db").string(), SQLite::OPEN_READWRITE).exec(sql);
   }

@@ -11,7 +11,7 @@
 namespace alvor {
 namespace {
 
-/// Random disjoint leaves of any level under a few far roots, ascending.
+/// Returns random disjoint leaves of any level under a few distant roots, ascending.
 std::vector<LeafValue> scattered(unsigned seed, std::size_t most) {
   std::mt19937_64 random(seed);
   std::vector<LeafValue> leaves;
@@ -61,7 +61,7 @@ TEST(LeafCodec, LeavesNextToEachOtherTakeFiveBytesBeforeCompression) {
     }
   std::vector<LeafValue> leaves;
   for (const auto& [patch, leaf] : all) leaves.push_back({patch, {}});
-  const std::size_t jumps = 10;  // of more than three levels take a byte more
+  const std::size_t jumps = 10;  // changes of level by more than three take an extra byte
   EXPECT_LE(encode_leaves(leaves, Detail::display, SharedExponent(0)).raw_size(), 5 * leaves.size() + jumps);
 }
 

@@ -46,7 +46,7 @@ TEST(MemoryGuard, HeldBytesAreThoseThatWereTaken) {
   EXPECT_NEAR(static_cast<double>(held_bytes() - before), static_cast<double>(taken.size()), 8.0 * mebibyte);
 }
 
-/// Goes on until it is told to end, and gives back memory then.
+/// A solver that runs until it is told to end, and then frees memory.
 SolveOutcome wait_for_end(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
   log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   while (!control.short_of_memory.stop_requested() && !control.stop.stop_requested()) std::this_thread::yield();
@@ -119,7 +119,7 @@ TEST(MemoryGuard, WhatNobodyNeedsIsGivenBackBeforeAnythingIsRefused) {
     EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { guard.admit("scene", 100 * mebibyte); }), "");
   }
   const MemoryGuard other(800 * mebibyte, used_memory);
-  (void)other.relieve_by([] { used = 0; });  // is gone at once
+  (void)other.relieve_by([] { used = 0; });  // unregistered at once
   used = 650 * mebibyte;
   EXPECT_NE(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { other.admit("scene", 100 * mebibyte); }), "");
   used = 0;

@@ -11,7 +11,7 @@
 namespace alvor {
 namespace {
 
-/// The sample of the family whose labels have these values, in order of their names.
+/// Returns the family's sample whose labels have these values, in the order of the labels' names.
 std::optional<double> sample(const TestServer& server, const std::string& name, const std::vector<std::string>& labels = {}) {
   for (const prometheus::MetricFamily& family : server.metrics()->Collect()) {
     if (family.name != name) continue;

@@ -1,4 +1,4 @@
-// What a client does about a server that is lost.
+// Tests how long a client keeps trying when its server is lost.
 
 #include "client/rpc/client.h"
 #include "server/rpc/health.h"
@@ -16,7 +16,7 @@ class PatienceTest : public testing::Test {
     ++tries;
     throw RpcError({code, ""});
   }
-  HealthPort server{"127.0.0.1:0"};  // somebody who takes connections
+  HealthPort server{"127.0.0.1:0"};  // a server that accepts connections
   std::shared_ptr<grpc::Channel> channel = grpc::CreateChannel(server.address(), grpc::InsecureChannelCredentials());
   int tries = 0;
 };
@@ -43,7 +43,8 @@ TEST_F(PatienceTest, ItEnds) {
 
 TEST_F(PatienceTest, ItBeginsAnewAfterEachSuccess) {
   const Client client(channel, milliseconds(1000));
-  const int needed = 40;  // pauses of 50 ms: twice 1000 ms in all, and a machine that is late does not make one of them as long
+  // Pauses of 50 ms take twice the 1000 ms of patience together; no single one becomes as long as that on a slow machine.
+  const int needed = 40;
   const auto gets_on = [&](Client::Patience& patience) {
     patience.note_success();
     return tries < needed ? (fail(grpc::UNAVAILABLE), 0) : tries;

@@ -1,5 +1,5 @@
 #pragma once
-// A browser that sends what the test says, byte by byte.
+// A browser that sends exactly the bytes of a test.
 
 #include <google/protobuf/message.h>
 
@@ -21,7 +21,7 @@
 
 namespace alvor {
 
-/// A message as gRPC-Web writes it into a request's body.
+/// Returns a message as a gRPC-Web frame of a request's body.
 inline std::string framed(const google::protobuf::Message& message) {
   const std::string bytes = message.SerializeAsString();
   const auto length = static_cast<std::uint32_t>(bytes.size());
@@ -30,7 +30,7 @@ inline std::string framed(const google::protobuf::Message& message) {
   return frame + bytes;
 }
 
-/// A folder with a page of one file, which goes with it.
+/// A folder with a page of one file; removed on destruction.
 class PageFolder {
  public:
   explicit PageFolder(const std::string& page = "the page")
@@ -45,7 +45,8 @@ class PageFolder {
   inline static int count_ = 0;
 };
 
-/// The head and body of a call to `method`, as "SceneService/ListScenes". `more`: further header lines with their ends.
+/// Returns the head and body of a call to `method`, such as "SceneService/ListScenes". `more` holds further header lines with
+/// their ends.
 inline std::string call_request(const std::string& method, const std::string& body, const std::string& more = "") {
   return "POST /alvor.v1." + method + " HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/grpc-web+proto\r\n" + more +
          "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
@@ -53,11 +54,11 @@ inline std::string call_request(const std::string& method, const std::string& bo
 
 class RawBrowser {
  public:
-  /// `url`: http://127.0.0.1:PORT/ or unix:PATH. `from`: the address of this machine that the connection comes from.
+  /// Connects to `url`, http://127.0.0.1:PORT/ or unix:PATH, from the address `from` of this machine.
   explicit RawBrowser(const std::string& url, const std::string& from = "127.0.0.1") {
     if (url.starts_with("unix:")) connect_to_path(url.substr(5));
     else connect_to_port(std::stoi(url.substr(url.rfind(':') + 1)), from);
-    const timeval patience{10, 0};  // a test fails rather than hangs
+    const timeval patience{10, 0};  // so that a test fails and does not hang
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   }
@@ -65,7 +66,7 @@ class RawBrowser {
   RawBrowser(RawBrowser&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
   RawBrowser& operator=(RawBrowser&&) = delete;
 
-  /// False where the server has closed the connection.
+  /// Sends bytes. Returns false if the server has closed the connection.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t count = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -74,17 +75,17 @@ class RawBrowser {
     }
     return true;
   }
-  /// What comes until the server closes the connection.
+  /// Returns the bytes received until the server closes the connection.
   std::string receive_all() {
     return receive([](const std::string&) { return false; });
   }
-  /// What comes up to `end`, and what came with it.
+  /// Returns the bytes received up to `end`, with any that came after it.
   std::string receive_until(std::string_view end) {
     return receive([end](const std::string& all) { return all.find(end) != std::string::npos; });
   }
-  /// Whether the server closes the connection without a word.
+  /// Returns whether the server closes the connection without sending a byte.
   bool is_turned_away() { return receive_all().empty() && !is_late_; }
-  /// Whether the connection is still open, and nothing came.
+  /// Returns whether the connection is still open and nothing has arrived.
   bool is_open() const {
     char byte = 0;
     return recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) < 0 && errno == EAGAIN;

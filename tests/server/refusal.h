@@ -6,7 +6,7 @@
 
 namespace alvor {
 
-/// The text with which `call` is refused; "" if it is not, and a remark if the code is another than `code`.
+/// Returns the text with which `call` is refused, "" if it is not, or a remark if the status is not `code`.
 template <class Call>
 std::string refusal_of(grpc::StatusCode code, Call&& call) {
   try {

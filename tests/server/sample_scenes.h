@@ -7,7 +7,7 @@
 
 namespace alvor {
 
-/// A strip of `count` unit squares that share no vertices, of one material that emits and reflects half.
+/// Returns a strip of `count` unit squares that share no vertices, of one material that emits and reflects half.
 inline Scene squares(std::uint32_t count) {
   Scene scene;
   scene.materials.push_back({"lamp", {1, 2, 3}, {0.5, 0.5, 0.5}, false});
@@ -19,7 +19,7 @@ inline Scene squares(std::uint32_t count) {
   return scene;
 }
 
-/// A scene that must be refused, and what the refusal must say.
+/// A scene that must be refused, and the text of the refusal.
 struct BadScene {
   Scene scene;
   std::string reason;

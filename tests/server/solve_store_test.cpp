@@ -25,7 +25,8 @@ class SolveStoreTest : public testing::Test {
   }
   std::shared_ptr<StoredSolve> create() { return solves.create(scenes.use(scene), {}); }
   static v1::Solve ended(const std::shared_ptr<StoredSolve>& solve) {
-    // The state is final before the log's listeners are woken for the last time, but its waiters may be woken earlier.
+    // The state is final before the log's listeners are woken for the last time, but those who wait for the log may be woken
+    // earlier.
     while (!solve->ended()) std::this_thread::yield();
     return solve->describe();
   }
@@ -64,7 +65,7 @@ TEST_F(SolveStoreTest, SolverThatThrowsFailsTheSolveAndNotTheServer) {
   stage.fail("no rays today");
   EXPECT_EQ(ended(solve).state(), v1::Solve::FAILED);
   EXPECT_EQ(ended(solve).end_reason(), "no rays today");
-  solve->log()->wait_beyond(solve->log()->head());  // returns: the log is closed although the solver did not
+  solve->log()->wait_beyond(solve->log()->head());  // returns, as the log is closed though the solver did not close it
 }
 
 TEST_F(SolveStoreTest, OnlySoManyRunAtATimeAndOnlySoManyWait) {
@@ -125,7 +126,7 @@ TEST_F(SolveStoreTest, CancellingASolveThatIsJustBeingParkedIsNotForgotten) {
   }
 }
 
-/// A solver that stops when the test says so, and no sooner.
+/// Tests with a solver that ends only when the test says so.
 class KeptSolveTest : public testing::Test {
  protected:
   ~KeptSolveTest() override {
@@ -205,7 +206,7 @@ class SolveQuotaTest : public testing::Test {
     options.solver = stage.solver();
     return {options, scenes};
   }
-  /// Says how creating one more is refused; "" where it is not.
+  /// Creates one more solve. Returns how it is refused, or "" if it is not.
   std::string refusal(SolveStore& solves, const v1::SolveSpec& spec = {}) {
     return refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); });
   }

@@ -8,13 +8,13 @@
 
 namespace alvor {
 
-/// A solver that does what the test tells it, step by step. One solve at a time.
+/// A solver that the test controls step by step. One solve at a time.
 class StagedSolver {
  public:
   Solver solver();
-  /// Of the running solve; waits for it to start. The test publishes to it.
+  /// Returns the log of the running solve, to which the test publishes; waits for the solve to start.
   SolutionLog& log();
-  /// Bytes of the checkpoint that the running solve goes on from; waits for it to start.
+  /// Returns the size of the checkpoint from which the running solve continues; waits for the solve to start.
   std::size_t resumed_from();
   void finish();
   void fail(const std::string& reason);

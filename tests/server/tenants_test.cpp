@@ -1,4 +1,4 @@
-// Calls of several tenants over one TLS connection: each sees its own, whatever the others do meanwhile.
+// Tests calls of several tenants over one TLS connection: each sees only its own data, whatever the others do meanwhile.
 
 #include "server/access/listening.h"
 #include "server/base/sha256.h"
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 const std::array<std::string, 5> names{"ali", "bob", "cho", "dee", "eva"};
 
-/// A server with TLS and a token for each, and one channel to it.
+/// A server with TLS and a token for each tenant, and one channel to it.
 class TenantsTest : public testing::Test {
  protected:
   TenantsTest() {
@@ -82,7 +82,7 @@ class Tenant {
   Tenant(const std::shared_ptr<grpc::Channel>& channel, std::string name)
       : name_(std::move(name)), scenes_(v1::SceneService::NewStub(channel)), solves_(v1::SolveService::NewStub(channel)) {}
 
-  /// Makes a scene and a solve of its own. The scenes of different tenants are alike.
+  /// Creates a scene and a solve. The scenes of different tenants are equal.
   void settle() {
     Call call(name_);
     v1::Scene made;
@@ -103,7 +103,7 @@ class Tenant {
     solve = begun.name();
   }
 
-  /// The status of each call that names a scene or a solve, but for those that delete.
+  /// Returns the status of each call that names a scene or a solve, except deletions.
   std::vector<grpc::StatusCode> statuses(const std::string& of_scene, const std::string& of_solve) {
     std::vector<grpc::StatusCode> all{get_scene(of_scene),
                                       read<v1::ReadSceneResponse>(&v1::SceneService::Stub::ReadScene, of_scene),
@@ -134,7 +134,7 @@ class Tenant {
     return solves_->DeleteSolve(&call, request, &nothing).error_code();
   }
 
-  /// The names that others gave to what this one is told of.
+  /// Returns the names in this tenant's lists that belong to others.
   std::vector<std::string> foreign_scenes() {
     Call call(name_);
     v1::ListScenesResponse listed;
@@ -181,7 +181,7 @@ TEST_F(TenantsTest, SeeTheirOwnOverOneConnection) {
         for (std::size_t other = 0; other < tenants.size(); ++other) {
           const auto expected = other == t ? grpc::StatusCode::OK : grpc::StatusCode::NOT_FOUND;
           const auto all = tenants[t]->statuses(tenants[other]->scene, tenants[other]->solve);
-          // A solve that has ended cannot be cancelled.
+          // A solve that has ended cannot be cancelled: the call returns FAILED_PRECONDITION.
           for (std::size_t n = 0; n < all.size(); ++n) {
             EXPECT_TRUE(all[n] == expected || (other == t && n == 4 && all[n] == grpc::StatusCode::FAILED_PRECONDITION))
                 << names[t] << " of " << names[other] << ", call " << n << ": " << all[n];

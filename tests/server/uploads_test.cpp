@@ -1,4 +1,4 @@
-// Which broken uploads are kept when there are too many.
+// Tests which interrupted uploads are kept when there are too many.
 
 #include "server/scenes/uploads.h"
 
@@ -9,7 +9,7 @@
 namespace alvor {
 namespace {
 
-/// One whose first chunk has arrived.
+/// Returns an upload whose first chunk has arrived.
 std::unique_ptr<SceneUpload> broken_upload(int vertices = 1) {
   auto upload = std::make_unique<SceneUpload>(UploadLimits{});
   v1::CreateSceneRequest message;
@@ -25,7 +25,7 @@ bool waits(Uploads& uploads, const Caller& caller) {
   return refusal_of(grpc::NOT_FOUND, [&] { uploads.chunks(caller); }).empty();
 }
 
-/// Returns how many of `tenant`'s first `count` wait.
+/// Returns how many of `tenant`'s first `count` uploads wait to be resumed.
 int waiting(Uploads& uploads, const std::string& tenant, int count) {
   int found = 0;
   for (int n = 0; n < count; ++n) found += waits(uploads, {tenant, std::to_string(n)});

@@ -46,7 +46,7 @@ class WatchTest : public testing::Test {
   std::shared_ptr<StoredSolve> make_solve() {
     return std::make_shared<StoredSolve>(1, scenes.add(squares(4), ""), Caller{}, v1::SolveSpec{}, SolveOptions{}, Keeping{});
   }
-  /// The watcher's side of a frame: it went out, was applied and acknowledged.
+  /// Completes a frame on the watcher's side: it was written, applied and acknowledged.
   void deliver(SolutionMirror* mirror = nullptr) {
     watch.written(true);
     if (mirror) {
@@ -238,7 +238,7 @@ TEST_F(WatchTest, FinishesOnceAndOnlyWhenNothingIsUnderWay) {
   EXPECT_EQ(sink.status->error_code(), grpc::CANCELLED);
   publish();
   watch.stop({grpc::UNAVAILABLE, ""});
-  watch.take_turn(now + 1s);  // the recorder objects to whatever comes now
+  watch.take_turn(now + 1s);  // the recorder fails on any further call
 }
 
 TEST_F(WatchTest, WatchersInStepShareTheBytesOfAFrame) {

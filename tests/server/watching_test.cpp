@@ -1,4 +1,4 @@
-// Watchers of one solve, over gRPC.
+// Tests watchers of one solve over gRPC.
 
 #include "client/rpc/client.h"
 #include "tests/server/growing_leaves.h"
@@ -164,7 +164,7 @@ TEST_F(WatchingTest, ServerThatStopsEndsItsWatches) {
   }
 }
 
-// Joining, leaving and publishing cross each other in as many ways as they can.
+// Watchers join, leave and see publishing in as many interleavings as possible.
 TEST_F(WatchingTest, ComingAndGoingWatchersDoNoHarm) {
   std::vector<std::future<void>> visitors;
   for (unsigned visitor = 0; visitor < 4; ++visitor)

@@ -1,4 +1,4 @@
-// What browsers may take of the server, and that it serves others whatever they do.
+// Tests the limits of browsers, and that the server serves others whatever a browser does.
 
 #include "server/web/web_limits.h"
 
@@ -38,7 +38,7 @@ class WebLimitsTest : public testing::Test {
     front = std::make_unique<WebFront>(WebOptions{"127.0.0.1:0", page.path, &listen, {}, "", limits}, server->channel());
   }
   RawBrowser browser(const std::string& from = "127.0.0.1") { return RawBrowser(front->url(), from); }
-  /// Of a page that a new browser asks for.
+  /// Returns whether a new browser gets the page.
   bool is_served(const std::string& from = "127.0.0.1") {
     RawBrowser other = browser(from);
     return other.send(get_page) && other.receive_until("the page").starts_with("HTTP/1.1 200 ");
@@ -54,12 +54,12 @@ class WebLimitsTest : public testing::Test {
     other.send(call_request(method, body));
     std::string answer = other.receive_until("grpc-status: 0\r\n");
     answer.erase(0, answer.find("\r\n\r\n") + 4);
-    answer.erase(0, answer.find("\r\n") + 2 + 5);  // the chunk's size, the message's
+    answer.erase(0, answer.find("\r\n") + 2 + 5);  // removes the chunk's size line and the message's header
     Message message;
     EXPECT_TRUE(message.ParseFromString(answer.substr(0, answer.find("\r\n15\r\n"))));  // 21 bytes of trailers
     return message;
   }
-  /// One that goes on until the test ends it; what it takes to watch it.
+  /// Starts a solve that runs until the test ends it. Returns the framed request that watches it.
   std::string begin_solve() {
     v1::CreateSceneRequest first, second;
     first.mutable_scene()->set_display_name("room");
@@ -76,7 +76,7 @@ class WebLimitsTest : public testing::Test {
       if (family.name == "alvor_watchers") return family.metric[0].gauge.value;
     return -1;
   }
-  /// A browser that watches. Tries again while connections that were left are still counted.
+  /// Returns a browser that watches. Tries again while closed connections are still counted.
   RawBrowser watcher(const std::string& watch, const std::string& from = "127.0.0.1") {
     for (const auto end = Clock::now() + 10s;; std::this_thread::sleep_for(1ms)) {
       RawBrowser other = browser(from);
@@ -169,7 +169,7 @@ TEST_F(WebLimitsTest, PartsOfMessagesAreLimitedTogether) {
   };
   const std::string whole = call_request("SceneService/CreateScene", half + std::string(40'000, 'a'));
   EXPECT_TRUE(comes_true([&] {
-    RawBrowser other = browser();  // what it sends may be read too late
+    RawBrowser other = browser();  // its bytes may be read too late
     other.send(whole.substr(0, whole.size() - 40'000));
     return says("grpc-status: 8");
   }));
@@ -219,7 +219,7 @@ TEST_F(WebLimitsTest, WatchesThatAreLeftAtOnceLeaveNothingBehind) {
   limits.connections_of_one_address = 300;
   serve();
   const std::string watch = begin_solve();
-  for (const std::string& body : {watch, watch + watch + watch}) {  // more messages than the server takes
+  for (const std::string& body : {watch, watch + watch + watch}) {  // more messages than the server reads
     std::vector<RawBrowser> watching;
     for (int n = 0; n < 256; ++n) {
       watching.push_back(browser());
@@ -286,7 +286,7 @@ TEST_F(WebLimitsTest, ItOutlivesALackOfDescriptors) {
   getrlimit(RLIMIT_NOFILE, &before);
   const rlimit low{256, before.rlim_max};
   setrlimit(RLIMIT_NOFILE, &low);
-  RawBrowser waiting = browser();  // before there are none left
+  RawBrowser waiting = browser();  // connects before the descriptors run out
   std::vector<int> taken;
   for (int next = dup(0); next >= 0; next = dup(0)) taken.push_back(next);
   close(taken.back());

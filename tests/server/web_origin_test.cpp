@@ -1,4 +1,4 @@
-// gRPC-Web for pages of other origins, as browsers ask for it over HTTP.
+// Tests gRPC-Web for pages of other origins, as browsers request it over HTTP.
 
 #include "server/web/web_front.h"
 #include "tests/server/alvord_process.h"
@@ -129,7 +129,7 @@ TEST_F(WebOriginTest, WhatIsNoOriginIsRefusedAtTheStart) {
             "--web-origin: 'https://room.example/' has a path: an origin is scheme://host[:port] alone");
 }
 
-/// Whether a running alvord answers a preflight of this origin.
+/// Returns whether a running alvord answers a preflight of this origin.
 bool answers(Alvord& alvord, const std::string& origin) {
   const std::string url = alvord.address("web page on ");
   httplib::Client client(url.substr(0, url.size() - 1));

@@ -1,4 +1,4 @@
-// Requests out of bytes, and what is refused because two readers could understand it in two ways.
+// Tests the parsing of requests, and the refusal of requests that two readers could understand in different ways.
 
 #include "server/web/web_request.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 using Step = WebRequestReader::Step;
 
-/// What a reader makes of bytes that come in parts.
+/// The results of a reader for bytes that come in parts.
 struct Reading {
   int requests = 0, fault = 0;
   std::string paths, bodies;

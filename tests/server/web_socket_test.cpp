@@ -1,4 +1,4 @@
-// The page's port as a Unix socket, behind a front end that says who calls.
+// Tests the page's port as a Unix socket behind a proxy that names the caller.
 
 #include "server/base/sha256.h"
 #include "server/web/web_front.h"
@@ -38,7 +38,7 @@ class WebSocketTest : public testing::Test {
   static std::string page_for(const WebFront& front, const std::string& headers) {
     return answer_to(front, "GET / HTTP/1.1\r\nConnection: close\r\n" + headers + "\r\n").substr(9, 3);
   }
-  /// What ListScenes answers to a request with this header.
+  /// Returns the answer of ListScenes to a request with this header.
   static std::string list_for(const WebFront& front, const std::string& header) {
     return answer_to(front, call_request("SceneService/ListScenes", std::string(5, '\0'), header + "Connection: close\r\n"));
   }
@@ -77,7 +77,7 @@ TEST_F(WebSocketTest, ReplacesASocketAtWhichNobodyListensAndNothingElse) {
     name.sun_family = AF_UNIX;
     std::memcpy(name.sun_path, path.c_str(), path.string().size());
     ASSERT_EQ(bind(left, reinterpret_cast<sockaddr*>(&name), sizeof name), 0);
-    close(left);  // the file stays
+    close(left);  // the socket file stays
     const auto front = serve(address);
     EXPECT_EQ(page_for(*front, "Host: localhost\r\n"), "200");
     EXPECT_EQ(refusal_of(address), "--web: cannot listen on " + address + ": Address already in use");

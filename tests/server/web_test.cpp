@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* type = "application/grpc-web+proto";
 
-/// Bodies of the data frames, and the trailers.
+/// The data frames' messages and the trailers of a response.
 struct Answer {
   std::vector<std::string> messages;
   std::string trailers;
@@ -71,7 +71,7 @@ class WebTest : public testing::Test {
     for (v1::CreateSceneRequest message; slicer.next(*message.mutable_chunk());) body += framed(message);
     return call("SceneService/CreateScene", body);
   }
-  /// One that has published something; what it takes to watch it.
+  /// Starts a solve that has published something. Returns the request that watches it.
   v1::WatchSolveRequest begin_solve() {
     v1::Scene scene;
     EXPECT_TRUE(scene.ParseFromString(create(squares(3)).messages.at(0)));
@@ -176,10 +176,10 @@ TEST_F(WebTest, ThePageIsSentCompressedAndOnlyOnce) {
   EXPECT_EQ(browser.Get("/index.html.gz")->status, 404);
 }
 
-/// All that comes back for these bytes.
+/// Sends bytes and returns everything that comes back.
 std::string answer_to(const std::string& url, const std::string& bytes) {
   RawBrowser browser(url);
-  browser.send(bytes);  // it may well be hung up on
+  browser.send(bytes);  // the server may close the connection meanwhile
   return browser.receive_all();
 }
 

@@ -1,4 +1,4 @@
-// How much work of a running solve a crash cost, by the clock of the run that crashed.
+// Tests how much work of a running solve is counted as lost in a crash, by the clock of the run that crashed.
 
 #include "server/solves/stored_solve.h"
 #include "tests/server/kept_directory.h"
@@ -19,7 +19,7 @@ class WorkLostTest : public KeptDirectoryTest {
   RunClock clock() {
     return [this] { return now; };
   }
-  /// In a run of the server that begins; it ends when this goes.
+  /// A run of the server, from construction to destruction.
   struct Run {
     explicit Run(WorkLostTest& test) : archive(test.directory, test.clock()), now(test.now) {}
     void at(std::chrono::seconds age) { now = begun + age; }
@@ -27,7 +27,7 @@ class WorkLostTest : public KeptDirectoryTest {
     std::chrono::microseconds& now;
     const std::chrono::microseconds begun = now;
   };
-  /// A solve of the scene 1, which is added.
+  /// Adds the scene 1 and a solve of it.
   Archive::SolveRow add_solve(Archive& archive) {
     archive.add(scene_row(1, squares(1)), squares(1));
     Archive::SolveRow row = solve_row(1, 1, v1::Solve::QUEUED);
@@ -36,10 +36,11 @@ class WorkLostTest : public KeptDirectoryTest {
     return row;
   }
   std::optional<std::chrono::microseconds> lost() {
-    now += 3h;  // nobody was alive
+    now += 3h;  // no run existed
     return Archive(directory, clock()).solves().at(0).work_lost;
   }
-  std::chrono::microseconds now = 5h;  ///< of the clock, whose beginning means nothing
+  /// Time of the clock, whose zero has no meaning.
+  std::chrono::microseconds now = 5h;
 };
 
 TEST_F(WorkLostTest, IsTheTimeFromTheCheckpointToTheLastSignOfLife) {
@@ -60,7 +61,7 @@ TEST_F(WorkLostTest, BeginsWhenTheSolveDoesWhereThereIsNoCheckpoint) {
   {
     Run run(*this);
     Archive::SolveRow row = add_solve(run.archive);
-    run.at(1000s);  // it waited
+    run.at(1000s);  // the solve waited
     run.archive.update(row);
     run.at(1003s);
     run.archive.update(row);
@@ -124,7 +125,7 @@ TEST_F(WorkLostTest, HasNothingToDoWithTheTimeOfDay) {
     Run run(*this);
     Archive::SolveRow row = add_solve(run.archive);
     *row.facts.mutable_create_time() = TimeUtil::SecondsToTimestamp(0);
-    *row.facts.mutable_checkpoint_time() = TimeUtil::SecondsToTimestamp(1);  // set ten years ahead meanwhile
+    *row.facts.mutable_checkpoint_time() = TimeUtil::SecondsToTimestamp(1);  // the wall clock was set ahead ten years
     run.archive.update(row, Archive::Checkpoint{});
     run.at(7s);
     run.archive.note_alive();

@@ -9,7 +9,7 @@
 namespace alvor {
 namespace {
 
-/// Waits for its thread until it is opened.
+/// Makes a thread wait until the gate is opened.
 struct Gate {
   std::latch begun{1}, open{1};
   void pass() {
@@ -27,7 +27,7 @@ TEST(WorkPool, OneCallerDoesNotTakeAllThreads) {
   gate.begun.wait();
   for (int n = 0; n < 10; ++n) pool.post("ali", stop, [] {});
   pool.post("bob", stop, [&] { others.count_down(); });
-  others.wait();  // returns: bob's task runs although ali's came before it and wait
+  others.wait();  // returns: bob's task runs although ali's were posted before and wait
   gate.open.count_down();
 }
 

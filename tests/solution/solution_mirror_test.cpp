@@ -48,7 +48,7 @@ TEST(SolutionMirror, RefusesBadAndOverlappingPatchesWhole) {
   EXPECT_EQ(mirror.leaves(), before);
 }
 
-/// A writer that splits and changes leaves at random.
+/// Publishes random splits and changes of leaves.
 class RandomWriter {
  public:
   explicit RandomWriter(unsigned seed) : random_(seed) { leaves_ = {PatchId::root(0), PatchId::root(1), PatchId::root(2)}; }
@@ -78,8 +78,8 @@ class RandomWriter {
   std::vector<PatchId> leaves_;
 };
 
-/// A stream that loses, repeats, swaps and cuts pages, and the watcher that makes the best of it: it goes on from what is
-/// complete, and begins anew when the hash says that what it has is wrong.
+/// A stream that loses, repeats, swaps and cuts pages, and its watcher. The watcher continues from the last complete revision,
+/// and starts from nothing when the hash says that its state is wrong.
 class BadStream {
  public:
   BadStream(const SolutionLog& log, Detail detail, unsigned seed) : log_(log), detail_(detail), random_(seed) {}
@@ -110,7 +110,7 @@ class BadStream {
   void receive(const Delta& page) {
     const bool fits = page.from_revision == mirror_.revision();
     if (!mirror_.apply(page)) return;
-    if (fits) mirror_ = {};  // the hash
+    if (fits) mirror_ = {};  // the hash was wrong
     cursor_ = {.base = mirror_.revision()};
   }
 

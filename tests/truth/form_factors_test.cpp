@@ -1,4 +1,4 @@
-// Every method against exact form factors.
+// Compares every method with exact form factors.
 
 #include "radiosity/form_factors/closed_forms.h"
 #include "radiosity/form_factors/face_form_factor.h"
@@ -15,7 +15,7 @@ using test::ReferenceFormFactor;
 
 const std::vector<ReferenceFormFactor> reference = test::read_reference_form_factors(ALVOR_TEST_FILES "/truth/form_factors.csv");
 
-/// What users are promised of factors that nothing stands between.
+/// Expects the accuracy that is promised to users for unblocked factors.
 void expect_exact(double value, const ReferenceFormFactor& row) {
   EXPECT_NEAR(value, row.value, 1e-7) << row.name;
   EXPECT_NEAR(value, row.value, 1e-5 * row.value) << row.name;

@@ -21,7 +21,7 @@ struct ReferenceFormFactor {
   Polygon from, to;
   std::vector<Polygon> blockers;
 
-  /// A number in the parameters: number("r1=") of "r1=2 r2=1" is 2.
+  /// Returns a number of the parameters: number("r1=") of "r1=2 r2=1" is 2.
   double number(const std::string& key) const { return std::stod(parameters.substr(parameters.find(key) + key.size())); }
   bool has_polygons() const { return from.size() > 2; }
 };
@@ -46,7 +46,7 @@ inline std::vector<ReferenceFormFactor> read_reference_form_factors(const std::f
   std::vector<ReferenceFormFactor> rows;
   std::ifstream in(path);
   std::string line;
-  std::getline(in, line);  // the header
+  std::getline(in, line);  // skips the header
   while (std::getline(in, line)) {
     auto cells = split(line, ',');
     cells.resize(10);
@@ -58,7 +58,7 @@ inline std::vector<ReferenceFormFactor> read_reference_form_factors(const std::f
   return rows;
 }
 
-/// Face 0 is `from`, face 1 `to`, then the blockers.
+/// Returns a scene whose face 0 is `from` and face 1 `to`; the blockers follow.
 inline Scene scene_of(const ReferenceFormFactor& row) {
   Scene scene;
   scene.materials.emplace_back();

@@ -1,4 +1,4 @@
-// The public commands against independent Monte Carlo.
+// Compares the public commands with independent Monte Carlo results.
 
 #include "tests/command_line.h"
 
@@ -19,7 +19,7 @@ using test::fs::path;
 
 const path reference = path(ALVOR_TEST_FILES) / "truth";
 
-/// Rows of numbers; lines that do not begin with one are passed over.
+/// Returns the rows of numbers in a text; skips lines that do not begin with a number.
 std::vector<std::vector<double>> read_numbers(const std::string& text) {
   std::vector<std::vector<double>> rows;
   std::istringstream lines(text);
@@ -32,7 +32,8 @@ std::vector<std::vector<double>> read_numbers(const std::string& text) {
   return rows;
 }
 
-/// RMS difference of the mean irradiance over bands, relative to the mean of the reference. Column 6 is the first of both.
+/// Returns the RMS difference of the irradiance, averaged over bands, relative to the mean of the reference. In both, irradiance
+/// begins in column 6.
 double normalised_rms_error(const std::vector<std::vector<double>>& got, const std::vector<std::vector<double>>& truth) {
   double squares = 0, sum = 0;
   for (std::size_t n = 0; n < truth.size(); ++n) {
@@ -46,7 +47,7 @@ double normalised_rms_error(const std::vector<std::vector<double>>& got, const s
 
 class CornellBox : public CommandLine {
  protected:
-  /// The scene and its points with every length times `scale`.
+  /// Writes the scene and its points with every length times `scale`.
   void write_scaled(double scale) const {
     std::string obj;
     std::istringstream lines(text_of(reference / "cornell_box.obj"));
@@ -86,7 +87,7 @@ class CornellBox : public CommandLine {
   }
 };
 
-// The limit that was set for the defaults; they aim at 2 %. The reference itself is known to 0.3 %.
+// The promised limit for the default options, which aim at 2 %. The reference itself is accurate to 0.3 %.
 constexpr double most_error = 0.03;
 
 TEST_F(CornellBox, IsWithinThreePercentOfMonteCarlo) {

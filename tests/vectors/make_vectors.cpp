@@ -1,4 +1,4 @@
-// make_vectors DIRECTORY: writes the test vectors, when the format of frames has changed. They are the same at each run.
+// make_vectors DIRECTORY: writes the test vectors; to be run when the format of frames has changed. Each run writes the same.
 
 #include "proto/codec.h"
 #include "solution/solution_log.h"
@@ -17,7 +17,7 @@ struct Case {
   std::uint32_t roots;
   std::size_t leaves_per_frame;
   int revisions;
-  bool is_uneven = false;  ///< bands of zero, and neighbours a billion times as bright
+  bool is_uneven = false;  ///< some bands are zero, and neighbours differ a billionfold
 };
 
 void make_uneven(std::vector<LeafValue>& leaves) {
@@ -28,7 +28,7 @@ void make_uneven(std::vector<LeafValue>& leaves) {
   }
 }
 
-/// One watch: frames of a few leaves, while revisions are made between them.
+/// Writes one watch: frames of a few leaves, with new revisions between them.
 void write(const Case& how, const std::filesystem::path& directory) {
   SolutionLog log;
   SolutionMirror mirror;

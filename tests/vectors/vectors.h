@@ -1,6 +1,6 @@
 #pragma once
-// Frames that every mirror must apply alike: FILE.frames, each a length of 32 bits (little-endian) and a WatchSolveResponse, and
-// FILE.leaves, what a mirror then holds: an id of 64 bits and three float32 of each leaf, in order.
+// Test vectors that every mirror must apply alike. FILE.frames holds frames, each a length of 32 bits (little-endian) and a
+// WatchSolveResponse; FILE.leaves holds the mirror's leaves afterwards, each an id of 64 bits and three float32, in order.
 
 #include "alvor/v1/solve_service.pb.h"
 #include "solution/leaf_value.h"

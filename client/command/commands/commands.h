@@ -1,5 +1,5 @@
 #pragma once
-// The subcommands of `alvor`. Each adds itself to the command line and runs from within the parse, if it was chosen.
+// The subcommands of `alvor`. Each function adds a subcommand to the command line; parsing runs the one that was chosen.
 
 #include <CLI/CLI.hpp>
 

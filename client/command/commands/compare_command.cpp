@@ -30,7 +30,7 @@ constexpr PictureSize picture_size{640, 480};
 
 struct CompareCommand {
   std::filesystem::path scene;
-  std::string format;  ///< of a scene from stdin
+  std::string format;  ///< format of a scene from stdin
   std::filesystem::path folder;
   std::string up;  ///< "y" or "z"; empty: as the file says
   CompareOptions options;
@@ -47,7 +47,7 @@ std::string curve_table(const Comparison& comparison) {
   return table;
 }
 
-// All pictures from one camera at one exposure.
+// Draws all pictures with the same camera and exposure.
 void draw(const CompareCommand& command, const BaseMesh& mesh, const Comparison& comparison) {
   const Snapshot converged{0, {}, comparison.converged};
   const DisplayMesh solution = solution_mesh(mesh, converged.leaves);
@@ -111,13 +111,15 @@ void add_compare_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("compare", "Compare the strategies that distribute light");
   command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
-  command.add_option("-o,--output", options->folder, "Table, plots and pictures go here")->required()->type_name("DIR");
+  command.add_option("-o,--output", options->folder, "Folder for the table, plots and pictures")->required()->type_name("DIR");
   add_up_option(command, options->up);
-  command.add_option("--steps", options->options.steps, "Pictures are of this many patches shot or gathered (100)")
+  command.add_option("--steps", options->options.steps, "Draw the pictures after this many shots or gathered patches (100)")
       ->check(CLI::Range(1, 1'000'000));
-  command.add_option("--tolerance", options->options.tolerance, "The mesh is refined to this estimated relative error (0.02)")
+  command
+      .add_option("--tolerance", options->options.tolerance,
+                  "Refine the mesh until the estimated relative error is this small (0.02)")
       ->check(above_up_to(0, 1));
-  command.add_option("--threads", options->options.threads, "Threads that trace rays (as many as the machine has)")
+  command.add_option("--threads", options->options.threads, "Worker threads that trace rays (as many as the machine has)")
       ->check(CLI::Range(1, 1024));
   command.add_option("--seed", options->options.seed, "The same seed gives the same mesh and rows (1)")->check(whole_from(0));
   command.callback([options] { run_compare(*options); });

@@ -25,9 +25,9 @@ std::shared_ptr<grpc::ChannelCredentials> credentials_of(const ServerChoice& ser
   return grpc::CompositeChannelCredentials(tls, grpc::AccessTokenCredentials(first_line(read(server.token_file))));
 }
 
-// Servers are named directly: a proxy meant for the web would only be in the way. A connection that has died without a word is
-// noticed within 20 s of silence (a break of 5 s is none: TCP sends again until 6.3 s after it began); then it is tried every
-// second or two, at the address that the server's name has by then.
+// Connects to a server directly, without the web proxy of the environment. A connection that died silently is detected within 20
+// s (a break of 5 s is survived: TCP resends until 6.3 s after it began). Then it is tried again every second or two, at the
+// current address of the server's name.
 std::shared_ptr<grpc::Channel> dial(const ServerChoice& server) {
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
@@ -35,10 +35,10 @@ std::shared_ptr<grpc::Channel> dial(const ServerChoice& server) {
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 10'000);
   arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 5'000);  // also how long one attempt may take
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 5'000);  // also the time limit of one attempt
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
   arguments.SetInt(GRPC_ARG_DNS_MIN_TIME_BETWEEN_RESOLUTIONS_MS, 1'000);
-  arguments.SetInt(GRPC_ARG_DNS_ARES_QUERY_TIMEOUT_MS, 1'500);  // a question that was lost is not asked again before 5 s
+  arguments.SetInt(GRPC_ARG_DNS_ARES_QUERY_TIMEOUT_MS, 1'500);  // a lost query is otherwise repeated only after 5 s
   return grpc::CreateCustomChannel(server.address, credentials_of(server), arguments);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The server that a command talks to.
+// Connects a command to a server.
 
 #include "client/command/options/server_option.h"
 #include "client/rpc/client.h"
@@ -11,13 +11,13 @@
 
 namespace alvor {
 
-/// A client, and the server behind it where that runs in this process.
+/// A client and, if no server was chosen, a server in this process.
 class Connection {
  public:
   static constexpr std::chrono::seconds patience{5};
 
-  /// No server chosen means one in this process. Throws Failure if a remote one does not answer within `patience`, or a file that
-  /// shows who calls cannot be read.
+  /// Connects to `server`, or to a new server in this process if none was chosen. Throws Failure if a remote server does not
+  /// answer within `patience`, or a file of credentials cannot be read.
   explicit Connection(const ServerChoice& server);
 
   Client& client() { return client_; }

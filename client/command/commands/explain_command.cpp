@@ -1,4 +1,4 @@
-// alvor explain SCENE: what the solver makes of a scene.
+// alvor explain SCENE: prints the plan of a solve, or checks form factors.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
@@ -24,7 +24,7 @@ namespace {
 
 struct ExplainCommand {
   std::filesystem::path scene;
-  std::string format;      ///< of a scene from stdin
+  std::string format;      ///< format of a scene from stdin
   std::string absorption;  ///< three numbers; empty: none
   int max_depth = SolveOptions().max_depth;
   bool json = false;
@@ -66,16 +66,17 @@ void run_explain(const ExplainCommand& command) {
 
 void add_explain_command(CLI::App& app) {
   const auto options = std::make_shared<ExplainCommand>();
-  CLI::App& command = *app.add_subcommand("explain", "What a solve of the scene needs, what not, and why");
+  CLI::App& command = *app.add_subcommand("explain", "Show which solver features a scene needs, and why");
   command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
   command.add_flag("--json", options->json, "Print the plan as a JSON array");
-  command.add_option("--max-depth", options->max_depth, "Levels of subdivision that a solve may use (10)")
+  command.add_option("--max-depth", options->max_depth, "Most levels of subdivision of the solve (10)")
       ->check(CLI::Range(0, PatchId::max_level));
   add_absorption_option(command, options->absorption);
-  command.add_flag("--form-factors", options->form_factors, "Measure reciprocity, additivity and closure instead");
-  command.add_option("--pairs", options->pairs, "Pairs of faces to check, taken at random (50)");
-  command.add_option("--faces", options->faces, "Faces whose row sums to check (100)");
+  command.add_flag("--form-factors", options->form_factors,
+                   "Check reciprocity, additivity and closure of form factors instead of showing the plan");
+  command.add_option("--pairs", options->pairs, "Number of random pairs of faces to check (50)");
+  command.add_option("--faces", options->faces, "Number of faces whose row sums are checked (100)");
   command.add_option("--seed", options->seed, "The same seed checks the same pairs (1)");
   command.callback([options] { run_explain(*options); });
 }

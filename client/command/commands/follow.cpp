@@ -13,13 +13,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double default_tolerance = 0.02;  // the server's, where the spec leaves it to the server
+constexpr double default_tolerance = 0.02;  // the server's default
 
 double tolerance_of(const v1::Solve& solve) {
   return solve.spec().tolerance() > 0 ? solve.spec().tolerance() : default_tolerance;
 }
 
-/// Takes note of every frame.
+/// Records every frame.
 class Observer {
  public:
   Observer(const FollowOptions& options, double tolerance) : options_(options), progress_(tolerance) {}
@@ -40,10 +40,11 @@ class Observer {
   FollowOptions options_;
   ProgressLine progress_;
   Snapshots snapshots_;
-  double first_frame_s_ = -1;  ///< negative until there was one
+  double first_frame_s_ = -1;  ///< negative before the first frame
 };
 
-// The watch remembers where it stands, so a new connection goes on from there.
+// Watches a solve to its end, over several connections if need be: `watch` remembers its state, from which a new connection
+// continues.
 v1::Solve watch_through(Client& client, const std::string& name, Client::Watch& watch,
                         const std::function<void(const Client::Watch&)>& on_frame, std::stop_token stop,
                         std::stop_token stop_waiting) {
@@ -61,11 +62,11 @@ void try_to_cancel(Client& client, const std::string& name) {
   try {
     client.cancel_solve(name);
   } catch (const RpcError&) {
-    // The watch on the same connection meets the same fate and reports it.
+    // The watch on the same connection fails in the same way and reports it.
   }
 }
 
-/// `stop_waiting`: for a server that is lost.
+/// Follows a solve. `stop_waiting` ends the wait for a lost server.
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop,
                 std::stop_token stop_waiting) {
   Observer observer(options, tolerance_of(solve));

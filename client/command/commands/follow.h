@@ -1,5 +1,5 @@
 #pragma once
-// Following a solve from its first frame to its end.
+// Follows a solve from its first frame to its end.
 
 #include "client/command/output/snapshots.h"
 #include "client/rpc/client.h"
@@ -19,15 +19,15 @@ struct FollowOptions {
 struct Followed {
   v1::Solve solve;  ///< its last known state
   SolutionMirror mirror;
-  std::vector<Snapshot> snapshots;  ///< ending with the last state; empty unless asked for
+  std::vector<Snapshot> snapshots;  ///< ends with the last state; empty unless keep_snapshots
   double first_frame_s = 0;         ///< from `begin` to the first frame in the mirror
 };
 
-/// Shows progress on stderr. Returns when the solve has ended or a stop was requested; the solve then goes on. Picks up lost
-/// connections. Throws RpcError when the server stays away.
+/// Follows a solve and shows progress on stderr. Returns when the solve has ended or a stop was requested; then the solve
+/// continues. Reconnects when the connection is lost. Throws RpcError if the server stays away.
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop);
 
-/// The same, but a stop request cancels the solve, and its end is awaited.
+/// Follows a solve as follow() does, but a stop request cancels the solve, and its end is awaited.
 Followed follow_own(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop);
 
 }  // namespace alvor

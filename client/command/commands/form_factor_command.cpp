@@ -1,4 +1,4 @@
-// alvor form-factor SCENE A B: from one face to another, by every method.
+// alvor form-factor SCENE A B: prints the form factor from one face to another, by every method.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
@@ -20,7 +20,7 @@ namespace {
 
 struct FormFactorCommand {
   std::filesystem::path scene;
-  std::string format;  ///< of a scene from stdin
+  std::string format;  ///< format of a scene from stdin
   std::uint32_t from = 0, to = 0;
   bool json = false;
   FormFactorOptions options;
@@ -68,16 +68,21 @@ void run_form_factor(const FormFactorCommand& command) {
 
 void add_form_factor_command(CLI::App& app) {
   const auto options = std::make_shared<FormFactorCommand>();
-  CLI::App& command = *app.add_subcommand("form-factor", "The form factor between two faces, by every method");
+  CLI::App& command = *app.add_subcommand("form-factor", "Compute the form factor between two faces by every method");
   command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
-  command.add_option("from", options->from, "The face that sends, in file order from 0")->required()->type_name("A");
-  command.add_option("to", options->to, "The face that receives")->required()->type_name("B");
+  command.add_option("from", options->from, "Number of the sending face, in file order from 0")->required()->type_name("A");
+  command.add_option("to", options->to, "Number of the receiving face, in file order from 0")->required()->type_name("B");
   command.add_flag("--json", options->json, "Print a JSON list instead of a table");
-  command.add_option("--accuracy", options->options.accuracy, "Relative, of the analytic method past blockers (0.0001)")
+  command
+      .add_option("--accuracy", options->options.accuracy,
+                  "Relative accuracy of the analytic method where faces block the view (0.0001)")
       ->check(CLI::Range(1e-9, 1.0));
-  command.add_option("--rays", options->options.nusselt_rays, "Of the Nusselt method (262144)")->check(CLI::Range(1024, 1 << 28));
-  command.add_option("--resolution", options->options.hemicube_resolution, "Cells along a side of the hemicube's top, even (32)")
+  command.add_option("--rays", options->options.nusselt_rays, "Number of rays of the Nusselt method (262144)")
+      ->check(CLI::Range(1024, 1 << 28));
+  command
+      .add_option("--resolution", options->options.hemicube_resolution,
+                  "Number of cells along a side of the hemicube's top, even (32)")
       ->check(CLI::Range(2, 2048));
   command.add_option("--seed", options->options.seed, "The same seed sends the same rays (1)");
   command.callback([options] {

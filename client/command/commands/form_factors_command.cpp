@@ -1,4 +1,4 @@
-// alvor form-factors SCENE -o F.csv: between all faces.
+// alvor form-factors SCENE -o F.csv: writes the form factors between all faces.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
@@ -25,15 +25,15 @@ namespace {
 
 struct FormFactorsCommand {
   std::filesystem::path scene;
-  std::string format;  ///< of a scene from stdin
+  std::string format;  ///< format of a scene from stdin
   OutputFile output;
   std::filesystem::path areas;  ///< empty: not written
   MatrixOptions options;
 };
 
-/// What is worth telling of a matrix, row by row.
+/// Statistics of a matrix, collected row by row.
 struct Summary {
-  double accuracy = 0;  ///< that was asked for
+  double accuracy = 0;  ///< the accuracy that was asked for
   std::size_t rows = 0, entries = 0, loose = 0, blind = 0;
   double lowest = 1, highest = 0, sum_of_sums = 0, largest_bound = 0;
   std::uint32_t loosest_from = 0, loosest_to = 0;
@@ -83,7 +83,8 @@ std::string areas_csv(const FacePolygons& faces) {
   return text;
 }
 
-/// Written beside its name and moved there when complete, for it may be larger than memory; or to stdout.
+/// Writes the rows to a file beside `path` and renames it when complete, because the matrix may be larger than memory; or to
+/// stdout.
 class RowsFile {
  public:
   explicit RowsFile(const std::filesystem::path& path)
@@ -156,14 +157,15 @@ void run_form_factors(const FormFactorsCommand& command) {
 
 void add_form_factors_command(CLI::App& app) {
   const auto options = std::make_shared<FormFactorsCommand>();
-  CLI::App& command = *app.add_subcommand("form-factors", "The form factors between all faces");
+  CLI::App& command = *app.add_subcommand("form-factors", "Compute the form factors between all faces");
   command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
-  add_output_option(command, options->output, table_kind, "Lines i,j,F,error_bound,area_i; faces in file order from 0")
+  add_output_option(command, options->output, table_kind, "Table with lines i,j,F,error_bound,area_i; faces in file order from 0")
       ->required()
       ->type_name("F.csv");
-  command.add_option("--areas", options->areas, "Also write lines i,area, one per face of the file")->type_name("A.csv");
-  command.add_option("--accuracy", options->options.accuracy, "Absolute, aimed at for each (1e-6)")
+  command.add_option("--areas", options->areas, "Also write a table with lines i,area, one per face of the file")
+      ->type_name("A.csv");
+  command.add_option("--accuracy", options->options.accuracy, "Absolute error to aim at for each form factor (1e-6)")
       ->check(CLI::Range(1e-12, 0.1));
   command.add_option("--threads", options->options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
   command.callback([options] { run_form_factors(*options); });

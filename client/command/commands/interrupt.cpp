@@ -4,7 +4,7 @@ namespace alvor {
 
 namespace {
 
-constexpr int wake_up = SIGUSR1;  // ends the listener's wait when nobody interrupted
+constexpr int wake_up = SIGUSR1;  // ends the listener's wait if no signal came
 
 sigset_t with_wake_up(sigset_t signals) {
   sigaddset(&signals, wake_up);
@@ -30,12 +30,12 @@ Interrupt::~Interrupt() {
   pthread_sigmask(SIG_SETMASK, &previous_, nullptr);
 }
 
-// Waiting in a thread instead of handling: a stop request runs callbacks, which no signal handler may do.
+// Waits for signals in a thread: a stop request runs callbacks, which a signal handler must not do.
 void Interrupt::listen() {
   const sigset_t awaited = with_wake_up(stopping_);
   int caught = 0;
   if (sigwait(&awaited, &caught) != 0 || caught == wake_up) return;
-  pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);  // the next one has its usual effect, here
+  pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);  // the next one ends the process as usual
   source_.request_stop();
   over_.wait(false);
 }

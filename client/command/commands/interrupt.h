@@ -1,5 +1,5 @@
 #pragma once
-// Ctrl-C as a stop request.
+// Turns Ctrl-C into a stop request.
 
 #include <atomic>
 #include <csignal>
@@ -8,8 +8,8 @@
 
 namespace alvor {
 
-/// While it lives, the first SIGINT or SIGTERM requests a stop; the next one ends the process as usual. Construct it before other
-/// threads start: they must inherit the blocked signals.
+/// While it exists, the first SIGINT or SIGTERM requests a stop; the next one ends the process as usual. Construct it before
+/// other threads start: they must inherit the blocked signals.
 class Interrupt {
  public:
   Interrupt();
@@ -23,7 +23,7 @@ class Interrupt {
   void listen();
 
   sigset_t stopping_;  ///< the signals that request a stop
-  sigset_t previous_;  ///< what was blocked before
+  sigset_t previous_;  ///< the signals that were blocked before
   std::stop_source source_;
   std::atomic<bool> over_ = false;
   std::thread listener_;

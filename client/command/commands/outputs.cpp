@@ -18,7 +18,7 @@ void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
   else write_solution_file(output.path, mesh);
 }
 
-// Nothing was published if the solve failed at once: then there is nothing to draw either.
+// Writes the solution and the frames, unless nothing was published because the solve failed at once.
 void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
   if (followed.mirror.steps().empty() || (options.solution.path.empty() && options.frames.empty())) return;
   const BaseMesh mesh(scene);
@@ -62,7 +62,7 @@ void prepare_outputs(const OutputOptions& options) {
 }
 
 void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
-  // What goes to stdout comes last: its reader may have left.
+  // Files to stdout are written last, because the reader may have gone.
   const auto write_report = [&] { write_output(options.report, step_table(followed.mirror.steps())); };
   if (!options.report.empty() && !is_stream(options.report)) write_report();
   write_pictures(options, scene, followed);

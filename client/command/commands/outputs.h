@@ -1,5 +1,5 @@
 #pragma once
-// What solve and watch leave behind.
+// Writes the results of `solve` and `watch`.
 
 #include "client/command/commands/follow.h"
 #include "client/command/output/failure.h"
@@ -14,7 +14,7 @@
 
 namespace alvor {
 
-/// Empty paths were not asked for.
+/// The outputs that were asked for; an empty path means that the output was not.
 struct OutputOptions {
   OutputFile solution;
   std::filesystem::path report;
@@ -25,8 +25,8 @@ struct OutputOptions {
 
 void add_output_options(CLI::App& command, OutputOptions& options);
 
-/// Makes the folder for frames, and leaves stdout to a file that goes there. Throws Failure (usage) if an output could not be
-/// written: better now than after a long solve.
+/// Makes the folder for frames, and reserves stdout for a file that goes there. Throws Failure (usage) if an output cannot be
+/// written, so that the user learns it before a long solve and not after.
 void prepare_outputs(const OutputOptions& options);
 
 /// Writes the files, then prints the JSON object or a summary for people. Throws FileError or SolutionFileError if

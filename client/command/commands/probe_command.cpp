@@ -19,8 +19,8 @@ namespace {
 struct ProbeCommand {
   std::filesystem::path solution;
   std::filesystem::path points;
-  OutputFile output;       ///< not asked for: stdout
-  std::string format;      ///< of a solution from stdin
+  OutputFile output;       ///< stdout if not asked for
+  std::string format;      ///< format of a solution from stdin
   std::string absorption;  ///< three numbers; empty: none
 };
 
@@ -49,12 +49,17 @@ void run_probe(const ProbeCommand& command) {
 
 void add_probe_command(CLI::App& app) {
   const auto options = std::make_shared<ProbeCommand>();
-  CLI::App& command = *app.add_subcommand("probe", "Read a solution at points");
-  command.add_option("solution", options->solution, "What solve wrote; - is stdin")->required()->type_name("SOLUTION");
+  CLI::App& command = *app.add_subcommand("probe", "Read irradiance and radiosity of a solution at points");
+  command.add_option("solution", options->solution, "Solution file that alvor solve wrote; - is stdin")
+      ->required()
+      ->type_name("SOLUTION");
   add_format_option(command, options->format);
-  command.add_option("--points", options->points, "Lines x,y,z,nx,ny,nz; metres; - is stdin")->required()->type_name("P.csv");
+  command.add_option("--points", options->points, "File with lines x,y,z,nx,ny,nz (position in metres, normal); - is stdin")
+      ->required()
+      ->type_name("P.csv");
   add_absorption_option(command, options->absorption);
-  add_output_option(command, options->output, table_kind, "Write here instead of to stdout: .csv or .txt")->type_name("OUT.csv");
+  add_output_option(command, options->output, table_kind, "Table to write instead of printing it: .csv or .txt")
+      ->type_name("OUT.csv");
   command.callback([options] { run_probe(*options); });
 }
 

@@ -1,4 +1,4 @@
-// alvor render SOLUTION: a picture, of a file or of a solve on a server.
+// alvor render SOLUTION: draws a solution file or a solve on a server.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
@@ -27,10 +27,10 @@ namespace {
 
 struct RenderCommand {
   std::string solution;
-  ServerChoice server;  ///< none: `solution` is a file
+  ServerChoice server;  ///< not given: `solution` is a file
   bool ambient = false;
   OutputFile output;
-  std::string format;  ///< of a solution from stdin
+  std::string format;  ///< format of a solution from stdin
   PictureSize size;
   CameraOptions camera;
   FalseColourOptions false_colour;
@@ -51,7 +51,7 @@ std::string place_text(Vec3 p) {
   return text;
 }
 
-/// A camera that somebody chose may stand inside a wall, or look away from everything.
+/// Warns if the chosen camera sees no light: it may be inside a wall, or look away from everything.
 void warn_of_black_view(const DisplayMesh& mesh, const Camera& camera) {
   if (std::ranges::all_of(mesh.radiosity, &RgbF::is_zero))
     return warn(std::array{std::string("the solution is dark: no surface has any light")});
@@ -80,19 +80,25 @@ void run_render(const RenderCommand& command) {
 }
 
 void add_source(CLI::App& command, RenderCommand& options) {
-  command.add_option("solution", options.solution, "What solve wrote, or scenes/SCENE/solves/SOLVE on a server; - is stdin")
+  command
+      .add_option("solution", options.solution,
+                  "Solution file that alvor solve wrote, or scenes/SCENE/solves/SOLVE on a server; - is stdin")
       ->required()
       ->type_name("SOLUTION");
   add_format_option(command, options.format);
-  CLI::Option* server = &add_server_option(command, options.server, "Where the solve is: draw its newest state");
-  command.add_flag("--ambient", options.ambient, "Add an estimate of the light still to come; for display only")->needs(server);
+  CLI::Option* server = &add_server_option(command, options.server, "Server of the solve; its newest state is drawn");
+  command
+      .add_flag("--ambient", options.ambient,
+                "Brighten the picture by an estimate of the light not yet distributed (ambient term)")
+      ->needs(server);
 }
 
 void add_picture(CLI::App& command, RenderCommand& options) {
-  add_output_option(command, options.output, picture_kind, "The picture")->required()->type_name("IMAGE.png");
-  command.add_option("--width", options.size.width, "Pixels (1024)")->check(CLI::Range(1, 16384));
-  command.add_option("--height", options.size.height, "Pixels (768)")->check(CLI::Range(1, 16384));
-  CLI::Option* exposure = command.add_option("--exposure", options.exposure_stops, "Stops brighter than automatic");
+  add_output_option(command, options.output, picture_kind, "Picture to write: .png")->required()->type_name("IMAGE.png");
+  command.add_option("--width", options.size.width, "Width of the picture, pixels (1024)")->check(CLI::Range(1, 16384));
+  command.add_option("--height", options.size.height, "Height of the picture, pixels (768)")->check(CLI::Range(1, 16384));
+  CLI::Option* exposure = command.add_option("--exposure", options.exposure_stops,
+                                             "Stops by which the picture is brighter than with automatic exposure (0)");
   exposure->check(above_up_to(-50, 50));
   command.add_flag("--wireframe", options.wireframe, "Draw the outlines of the leaves");
   exposure->excludes(add_false_colour_options(command, options.false_colour));

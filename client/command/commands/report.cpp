@@ -20,7 +20,7 @@ Step last_step(const Followed& followed) {
   return steps.empty() ? Step{} : steps.back();
 }
 
-/// What looks black, but is not known.
+/// Returns a note about the area that looks black because its light is not known yet.
 std::string unlit(const Step& step) {
   if (step.unlit_fraction == 0) return {};
   return percent(step.unlit_fraction) +

@@ -1,5 +1,5 @@
 #pragma once
-// What is said about a solve: to scripts, to spreadsheets and to people.
+// Reports about a solve: for scripts, spreadsheets and people.
 
 #include "client/command/commands/follow.h"
 
@@ -9,13 +9,13 @@
 
 namespace alvor {
 
-/// CSV: a header and a line per step, oldest first.
+/// Returns a CSV text: a header and one line per step, oldest first.
 std::string step_table(std::span<const Step> steps);
 
-/// One JSON object: the outcome of the solve and the warnings about its scene.
+/// Returns one JSON object: the outcome of the solve and the warnings about its scene.
 std::string outcome_json(const Followed& followed, std::span<const std::string> warnings);
 
-/// One line for people: leaves, rays, seconds, estimated error, why it ended.
+/// Returns one line for people: leaves, rays, seconds, estimated error, why it ended.
 std::string summary(const Followed& followed);
 
 }  // namespace alvor

@@ -1,4 +1,4 @@
-// alvor scenes and alvor solves: what a server holds.
+// alvor scenes and alvor solves: list, show and change the scenes and solves of a server.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
@@ -27,7 +27,7 @@ using google::protobuf::util::TimeUtil;
 
 struct ListOptions {
   ServerChoice server;
-  std::string parent = "scenes/-";  ///< of solves; all scenes
+  std::string parent = "scenes/-";  ///< parent of the solves; "-": all scenes
   bool json = false;
   bool watch = false;
 };
@@ -113,7 +113,7 @@ void require_server(CLI::App& command, ServerChoice& server) {
   add_server_option(command, server, "The server that holds them").required();
 }
 
-/// Again every second, on a screen that is cleared in between, until Ctrl-C.
+/// Prints the list every second until Ctrl-C; clears a terminal before each.
 template <class List>
 void watch(Client& client, List list, const ListOptions& options) {
   Interrupt interrupt;
@@ -128,10 +128,10 @@ void watch(Client& client, List list, const ListOptions& options) {
   }
 }
 
-/// `list` is called with the client and the options.
+/// Adds the subcommand `list`. `list` is called with the client and the options.
 template <class List>
 CLI::App& add_list(CLI::App& parent, const std::shared_ptr<ListOptions>& options, List list) {
-  CLI::App& command = *parent.add_subcommand("list", "List them, newest first");
+  CLI::App& command = *parent.add_subcommand("list", "Print a list, newest first");
   require_server(command, options->server);
   command.add_flag("--json", options->json, "Print a JSON array");
   command.callback([options, list] {
@@ -142,7 +142,7 @@ CLI::App& add_list(CLI::App& parent, const std::shared_ptr<ListOptions>& options
   return command;
 }
 
-/// A solve with its plan.
+/// Prints a solve and its plan.
 void print_solve(const v1::Solve& solve, bool json) {
   if (json) {
     std::cout << json_of(solve).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
@@ -154,9 +154,9 @@ void print_solve(const v1::Solve& solve, bool json) {
 
 void add_get(CLI::App& solves) {
   const auto options = std::make_shared<GetOptions>();
-  CLI::App& command = *solves.add_subcommand("get", "Show one, and what its scene needs of the solver");
+  CLI::App& command = *solves.add_subcommand("get", "Show one solve, and which solver features its scene needs");
   require_server(command, options->server);
-  command.add_option("name", options->name, "As list prints it")->required()->type_name("NAME");
+  command.add_option("name", options->name, "Name as list prints it")->required()->type_name("NAME");
   command.add_flag("--json", options->json, "Print a JSON object");
   command.callback([options] {
     Connection connection(options->server);
@@ -164,13 +164,13 @@ void add_get(CLI::App& solves) {
   });
 }
 
-/// `act` is called with the client and each name.
+/// Adds a subcommand that calls `act` with the client and each name.
 template <class Act>
 void add_act(CLI::App& parent, const std::string& verb, const std::string& description, Act act) {
   const auto options = std::make_shared<NameOptions>();
   CLI::App& command = *parent.add_subcommand(verb, description);
   require_server(command, options->server);
-  command.add_option("names", options->names, "As list prints them")->required()->type_name("NAME");
+  command.add_option("names", options->names, "Names as list prints them")->required()->type_name("NAME");
   command.callback([options, act] {
     Connection connection(options->server);
     for (const std::string& name : options->names) act(connection.client(), name);
@@ -180,26 +180,26 @@ void add_act(CLI::App& parent, const std::string& verb, const std::string& descr
 }  // namespace
 
 void add_scenes_command(CLI::App& app) {
-  CLI::App& scenes = *app.add_subcommand("scenes", "The scenes a server holds")->require_subcommand(1);
+  CLI::App& scenes = *app.add_subcommand("scenes", "List or delete the scenes of a server")->require_subcommand(1);
   add_list(scenes, std::make_shared<ListOptions>(), [](Client& client, const ListOptions&) { return client.list_scenes(); });
   add_act(scenes, "delete", "Delete scenes without solves",
           [](Client& client, const std::string& name) { client.delete_scene(name); });
 }
 
 void add_solves_command(CLI::App& app) {
-  CLI::App& solves = *app.add_subcommand("solves", "The solves a server holds")->require_subcommand(1);
+  CLI::App& solves =
+      *app.add_subcommand("solves", "List, show, cancel, pause, resume or delete the solves of a server")->require_subcommand(1);
   const auto options = std::make_shared<ListOptions>();
   CLI::App& list =
       add_list(solves, options, [](Client& client, const ListOptions& asked) { return client.list_solves(asked.parent); });
-  list.add_option("scene", options->parent, "Only those of this scene")->type_name("SCENE");
-  list.add_flag("--watch", options->watch, "Again every second, until Ctrl-C");
+  list.add_option("scene", options->parent, "Only the solves of this scene")->type_name("SCENE");
+  list.add_flag("--watch", options->watch, "Print the list every second until Ctrl-C");
   add_get(solves);
-  add_act(solves, "cancel", "Stop solves; what they found stays",
+  add_act(solves, "cancel", "Stop solves; their solutions so far are kept",
           [](Client& client, const std::string& name) { client.cancel_solve(name); });
-  add_act(solves, "pause", "Let solves give up their threads and memory until they are resumed",
+  add_act(solves, "pause", "Make solves release their threads and memory until they are resumed",
           [](Client& client, const std::string& name) { client.pause_solve(name); });
-  add_act(solves, "resume", "Let paused solves go on",
-          [](Client& client, const std::string& name) { client.resume_solve(name); });
+  add_act(solves, "resume", "Continue paused solves", [](Client& client, const std::string& name) { client.resume_solve(name); });
   add_act(solves, "delete", "Delete solves that have ended",
           [](Client& client, const std::string& name) { client.delete_solve(name); });
 }

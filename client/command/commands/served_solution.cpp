@@ -12,7 +12,7 @@ namespace alvor {
 
 namespace {
 
-/// A state of a solve, and the solve when it was read.
+/// A state of a solve, and the solve's record when the state was read.
 struct State {
   v1::Solve solve;
   SolutionMirror mirror;
@@ -34,7 +34,8 @@ void require_published(const State& state, const std::string& solve) {
   throw Failure(ExitStatus::failed, solve + (running ? " has published nothing yet" : " has ended and published nothing"));
 }
 
-// Only where a solve has succeeded does exactly dark mean hidden; before, light may not have come that far.
+// Returns the mesh to draw. Only in a solve that has succeeded does exactly dark mean hidden; before, light may not have arrived
+// yet.
 DisplayMesh mesh_of(const BaseMesh& base, const State& state, bool ambient) {
   if (!ambient) return solution_mesh(base, state.mirror.leaves());
   const Snapshot moment = snapshot_of(state.mirror);

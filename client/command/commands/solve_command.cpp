@@ -1,4 +1,4 @@
-// alvor solve SCENE: reads the scene, has it solved here or by a server, follows the light and writes what came out.
+// alvor solve SCENE: reads the scene, has it solved here or by a server, follows the solve and writes the results.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
@@ -38,10 +38,10 @@ const std::map<std::string, v1::FormFactors> form_factor_methods{{"auto", v1::FO
 
 constexpr double pace_of_frames_s = 0.04;
 
-/// What is not set is left to the server.
+/// The options of the command. Unset ones are left to the server.
 struct SolveCommand {
   std::filesystem::path scene;
-  std::string format;  ///< of a scene from stdin
+  std::string format;  ///< format of a scene from stdin
   ServerChoice server;
   OutputOptions outputs;
   std::optional<double> tolerance;
@@ -69,13 +69,13 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
   spec.set_strategy(strategies.at(command.strategy));
   spec.set_priority(priorities.at(command.priority));
   spec.set_form_factors(form_factor_methods.at(command.form_factors));
-  // Without a pace a small room is done between two frames.
+  // Without a pause a small room would be finished between two frames.
   const double pace_s = command.pace_s.value_or(command.outputs.frames.empty() ? 0 : pace_of_frames_s);
   if (pace_s > 0) *spec.mutable_step_pause() = encode_seconds(pace_s);
   return spec;
 }
 
-// What the server refuses of a scene, the reader of the file must see as a fault of that file.
+// Submits the scene. If the server refuses it, reports that as a fault of the file.
 v1::Scene submit(Client& client, const Scene& scene, const std::filesystem::path& path) {
   try {
     return client.create_scene(scene, std::filesystem::path(name_of(path)).filename().string());
@@ -115,19 +115,21 @@ void run_solve(const SolveCommand& command) {
 }
 
 void add_limits(CLI::App& command, SolveCommand& options) {
-  command.add_option("--tolerance", options.tolerance, "Stop at this estimated relative error (0.02)")->check(above_up_to(0, 1));
-  command.add_option("--max-depth", options.max_depth, "Levels of subdivision; 0 does not refine (10)")->check(CLI::Range(0, 15));
+  command.add_option("--tolerance", options.tolerance, "Stop when the estimated relative error is this small (0.02)")
+      ->check(above_up_to(0, 1));
+  command.add_option("--max-depth", options.max_depth, "Most levels of subdivision; 0 means no refinement (10)")
+      ->check(CLI::Range(0, 15));
   command.add_option("--max-elements", options.max_elements, "Stop refining at this many leaves (200000)")->check(whole_from(1));
   command.add_option("--time-limit", options.time_limit_s, "Stop after this many seconds")->check(above_up_to(0, 1e9));
 }
 
 void add_method(CLI::App& command, SolveCommand& options) {
-  command.add_option("--priority", options.priority, "Among the solves of a server: low, normal or high (normal)")
+  command.add_option("--priority", options.priority, "Priority among the solves of a server: low, normal or high (normal)")
       ->check(CLI::IsMember(priorities));
-  command.add_option("--strategy", options.strategy, "How light is distributed (auto)")
+  command.add_option("--strategy", options.strategy, "Order in which light is distributed (auto)")
       ->type_name("S")
       ->check(CLI::IsMember({"auto", "gather", "shoot", "sorted", "sorted+ambient", "overshoot"}));
-  command.add_option("--form-factors", options.form_factors, "How transport rows are found (auto)")
+  command.add_option("--form-factors", options.form_factors, "Method for transport rows (auto)")
       ->type_name("M")
       ->check(CLI::IsMember({"auto", "nusselt", "hemicube", "analytic"}));
   add_absorption_option(command, options.absorption);
@@ -144,7 +146,7 @@ void add_solve_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("solve", "Solve a scene");
   command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
-  add_server_option(command, options->server, "Solve there instead of in this process");
+  add_server_option(command, options->server, "Server that solves the scene, instead of this process");
   add_output_options(command, options->outputs);
   add_up_option(command, options->up);
   add_limits(command, *options);

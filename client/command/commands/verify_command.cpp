@@ -1,4 +1,4 @@
-// alvor verify SCENE SOLUTION: how far a solution is from path tracing.
+// alvor verify SCENE SOLUTION: measures the error of a solution by path tracing.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
@@ -26,12 +26,12 @@ namespace {
 
 struct VerifyCommand {
   std::filesystem::path scene, solution;
-  std::string format;  ///< of the one that comes from stdin
+  std::string format;  ///< format of the file from stdin
   VerifyOptions options;
   std::string absorption;  ///< three numbers; empty: none
   std::string up;          ///< "y" or "z"; empty: as the solution says
   std::optional<double> max_error;
-  std::filesystem::path csv, picture;  ///< empty paths were not asked for
+  std::filesystem::path csv, picture;  ///< empty: not asked for
   bool json = false;
 };
 
@@ -86,14 +86,15 @@ void run_verify(const VerifyCommand& command) {
   require_small_error(command, verification.errors.nrmse.value);
 }
 
-constexpr std::size_t most_points = 10'000'000;  // of some hundred bytes each
+constexpr std::size_t most_points = 10'000'000;  // each takes some hundred bytes
 
 void add_effort(CLI::App& command, VerifyCommand& options) {
   TraceOptions& trace = options.options.trace;
-  command.add_option("--points", options.options.points, "Points, uniform by area over all fronts (1000)")
+  command.add_option("--points", options.options.points, "Number of points, uniform by area over all fronts (1000)")
       ->check(whole_from(2))
       ->check(CLI::Range(std::size_t{2}, most_points));
-  command.add_option("--paths", trace.paths, "Paths from each point, rounded up to whole rounds (1000)")->check(whole_from(2));
+  command.add_option("--paths", trace.paths, "Number of paths from each point, rounded up to whole rounds (1000)")
+      ->check(whole_from(2));
   command.add_option("--time-limit", trace.time_limit_s, "Send no more paths from any point after this many seconds")
       ->check(above_up_to(0, 1e9));
   command.add_option("--seed", trace.seed, "The same seed gives the same points and paths (1)")->check(whole_from(0));
@@ -101,9 +102,12 @@ void add_effort(CLI::App& command, VerifyCommand& options) {
 }
 
 void add_results(CLI::App& command, VerifyCommand& options) {
-  command.add_option("--max-error", options.max_error, "Exit with 5 if the nRMSE, not its interval, exceeds this; 0.02 is 2 %")
+  command
+      .add_option("--max-error", options.max_error,
+                  "Exit with status 5 if the nRMSE exceeds this; 0.02 is 2 %. Its confidence interval does not count")
       ->check(above_up_to(0, 1e9));
-  command.add_option("--csv", options.csv, "Write truth, standard error and solution of each point")->type_name("FILE");
+  command.add_option("--csv", options.csv, "Write the truth, its standard error and the solution at each point")
+      ->type_name("FILE");
   command.add_option("--picture", options.picture, "Draw the error, blue where the solution is too dark, red where too bright")
       ->type_name("FILE.png");
   add_up_option(command, options.up);
@@ -116,7 +120,9 @@ void add_verify_command(CLI::App& app) {
   const auto options = std::make_shared<VerifyCommand>();
   CLI::App& command = *app.add_subcommand("verify", "Measure the error of a solution by unbiased path tracing");
   command.add_option("scene", options->scene, "The scene file that was solved; - is stdin")->required()->type_name("SCENE");
-  command.add_option("solution", options->solution, "What solve wrote; - is stdin")->required()->type_name("SOLUTION");
+  command.add_option("solution", options->solution, "Solution file that alvor solve wrote; - is stdin")
+      ->required()
+      ->type_name("SOLUTION");
   add_format_option(command, options->format);
   add_absorption_option(command, options->absorption);
   add_effort(command, *options);

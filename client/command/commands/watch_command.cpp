@@ -1,4 +1,4 @@
-// alvor watch SOLVE: joins a solve that somebody started on a server. Ctrl-C ends the watch, not the solve.
+// alvor watch SOLVE: follows a solve that somebody started on a server. Ctrl-C ends the watch, not the solve.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
@@ -20,7 +20,7 @@ struct WatchCommand {
   OutputOptions outputs;
 };
 
-/// What was watched, and the scene it belongs to.
+/// The result of a watch, and the scene of the solve.
 struct Watched {
   Scene scene;
   std::vector<std::string> warnings;
@@ -51,8 +51,8 @@ void run_watch(const WatchCommand& command) {
 void add_watch_command(CLI::App& app) {
   const auto options = std::make_shared<WatchCommand>();
   CLI::App& command = *app.add_subcommand("watch", "Follow a solve on a server");
-  command.add_option("solve", options->solve, "scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
-  add_server_option(command, options->server, "Where it runs").required();
+  command.add_option("solve", options->solve, "Name of the solve: scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
+  add_server_option(command, options->server, "Server that runs the solve").required();
   add_output_options(command, options->outputs);
   command.callback([options] { run_watch(*options); });
 }

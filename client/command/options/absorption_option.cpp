@@ -7,7 +7,7 @@
 namespace alvor {
 
 void add_absorption_option(CLI::App& command, std::string& absorption) {
-  command.add_option("--absorption", absorption, "Of a medium that fills the scene, 1/m per band (0,0,0)")
+  command.add_option("--absorption", absorption, "Absorption coefficient of a medium that fills the scene, 1/m per band (0,0,0)")
       ->type_name("R,G,B")
       ->check(triple());
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A medium, as an option says: scene files have none.
+// The option for a medium, which scene files cannot hold.
 
 #include "meshing/scene.h"
 
@@ -9,10 +9,10 @@
 
 namespace alvor {
 
-/// `absorption` gets three numbers, or stays empty.
+/// Adds `--absorption`. `absorption` is set to three numbers, or stays empty.
 void add_absorption_option(CLI::App& command, std::string& absorption);
 
-/// Leaves the scene as it is if `absorption` is empty. Throws Failure (usage) if a number is negative.
+/// Sets the scene's absorption, unless `absorption` is empty. Throws Failure (usage) if a number is negative.
 void take_absorption(const std::string& absorption, Scene& scene);
 
 }  // namespace alvor

@@ -23,9 +23,10 @@ void require_view(const Camera& camera) {
 }  // namespace
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
-  command.add_option("--eye", options.eye, "Where the camera is, metres")->type_name("X,Y,Z")->check(triple());
-  command.add_option("--target", options.target, "What it looks at")->type_name("X,Y,Z")->check(triple());
-  command.add_option("--up", options.up, "What is upright in the picture: y, z or a direction (what the solution file says)")
+  command.add_option("--eye", options.eye, "Position of the camera, metres")->type_name("X,Y,Z")->check(triple());
+  command.add_option("--target", options.target, "Point that the camera looks at, metres")->type_name("X,Y,Z")->check(triple());
+  command
+      .add_option("--up", options.up, "Direction that is up in the picture: y, z or X,Y,Z (the axis that the solution file says)")
       ->type_name("y|z|X,Y,Z")
       ->check(CLI::IsMember({"y", "z"}) | triple());
   command.add_option("--fov", options.fov_degrees, "Vertical angle of view, degrees")->check(above_up_to(0, 170));

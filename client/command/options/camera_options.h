@@ -1,5 +1,5 @@
 #pragma once
-// Where a picture is taken from, as options say.
+// Options for the camera of a picture.
 
 #include "client/picture/camera.h"
 
@@ -10,7 +10,7 @@
 
 namespace alvor {
 
-/// What is empty is chosen to suit the solution. Places and directions are three numbers; `up` may be "y" or "z" instead.
+/// Empty options are chosen to suit the solution. Positions and directions are three numbers; `up` may also be "y" or "z".
 struct CameraOptions {
   std::string eye, target, up;
   std::optional<double> fov_degrees;
@@ -18,7 +18,7 @@ struct CameraOptions {
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
 
-/// For a picture of `size`. Throws Failure (usage) if nothing could be seen that way.
+/// Returns the camera for a picture of `size`. Throws Failure (usage) if the options make no view.
 Camera camera_of(const CameraOptions& options, const DisplayMesh& mesh, PictureSize size);
 
 }  // namespace alvor

@@ -33,14 +33,15 @@ void warn_of_no_room(PictureSize size) {
 CLI::Option* add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
   CLI::Option* wanted =
       command.add_flag("--false-colour,--false-color", options.wanted, "Colour surfaces by irradiance, with a legend in W/m2");
-  command.add_option("--band", options.band, "Which irradiance (mean of the three)")
+  command.add_option("--band", options.band, "Band whose irradiance is shown (the mean of all three)")
       ->type_name("BAND")
       ->check(CLI::IsMember({"r", "g", "b", "mean"}))
       ->needs(wanted);
-  command.add_option("--range", options.range, "Ends of the scale, W/m2 (from 0, to suit the picture)")
+  command
+      .add_option("--range", options.range, "Ends of the colour scale, W/m2 (from 0 to a round number that suits the picture)")
       ->type_name("LOW,HIGH")
       ->needs(wanted);
-  command.add_flag("--log-scale", options.logarithmic, "Equal ratios get equal steps of colour")->needs(wanted);
+  command.add_flag("--log-scale", options.logarithmic, "Use a logarithmic colour scale")->needs(wanted);
   return wanted;
 }
 

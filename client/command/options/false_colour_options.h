@@ -1,5 +1,5 @@
 #pragma once
-// False colour, as options say.
+// Options for false colour.
 
 #include "client/picture/camera.h"
 #include "client/picture/false_colour.h"
@@ -18,11 +18,11 @@ struct FalseColourOptions {
   bool logarithmic = false;
 };
 
-/// Returns the option that asks for false colour.
+/// Adds the options and returns the one that asks for false colour.
 CLI::Option* add_false_colour_options(CLI::App& command, FalseColourOptions& options);
 
-/// What to draw in a picture of `size`, if it is wanted at all. Throws Failure (usage) if the range is none. Without a legend,
-/// and with a warning on stderr, where the picture is too small for one.
+/// Returns the settings for a picture of `size`, or nothing unless false colour is wanted. Throws Failure (usage) if the range is
+/// malformed. If the picture is too small for a legend, leaves it out and warns on stderr.
 std::optional<FalseColour> false_colour_of(const FalseColourOptions& options, PictureSize size);
 
 }  // namespace alvor

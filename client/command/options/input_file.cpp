@@ -16,7 +16,7 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t most_bytes = 0xffffffff;  // as of files (import/whole_file.cpp)
+constexpr std::size_t most_bytes = 0xffffffff;  // the limit for files (import/whole_file.cpp)
 constexpr std::size_t piece = 1 << 20;
 
 std::string read_stdin() {
@@ -39,7 +39,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-/// "glb", "GLB" and ".glb" are one.
+/// Returns the extension of a format: "glb", "GLB" and ".glb" are the same.
 std::string extension_of(const std::string& format) { return lower_case(format.starts_with('.') ? format : "." + format); }
 
 std::string formats_of(InputKind kind) {
@@ -69,7 +69,7 @@ DisplayMesh read_any_solution(const std::filesystem::path& path, const std::stri
 }  // namespace
 
 void add_format_option(CLI::App& command, std::string& format) {
-  command.add_option("--format", format, "The format of what comes from stdin, where the file is -: as its suffix would be")
+  command.add_option("--format", format, "Format of a scene or solution read from stdin (file -), as a suffix: glb")
       ->type_name("FORMAT");
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Checks of option values. Unlike CLI11's own they refuse NaN, and -1 where it would wrap around.
+// Checks of option values. Unlike CLI11's own, they refuse NaN, and -1 for unsigned numbers, where it would wrap around.
 
 #include <CLI/CLI.hpp>
 
@@ -7,11 +7,11 @@
 
 namespace alvor {
 
-/// Greater than `low` and at most `high`.
+/// Accepts numbers greater than `low` and at most `high`.
 CLI::Validator above_up_to(double low, double high);
-/// A whole number, `low` or more.
+/// Accepts whole numbers of `low` or more.
 CLI::Validator whole_from(std::uint64_t low);
-/// Three numbers with commas between them.
+/// Accepts three numbers with commas between them.
 CLI::Validator triple();
 
 }  // namespace alvor

@@ -3,7 +3,7 @@
 namespace alvor {
 
 void add_up_option(CLI::App& command, std::string& up) {
-  command.add_option("--up", up, "The axis that points up (z for STL, PLY and 3DS, what FBX says, else y)")
+  command.add_option("--up", up, "Axis that points up (z for STL, PLY and 3DS, the file's own for FBX, else y)")
       ->type_name("y|z")
       ->check(CLI::IsMember({"y", "z"}));
 }

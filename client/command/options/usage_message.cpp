@@ -8,7 +8,8 @@ namespace alvor {
 
 namespace {
 
-/// How many letters must be changed, added, left out or swapped with the next (optimal string alignment).
+/// Returns how many letters must be changed, added, removed or swapped with the next to turn `a` into `b` (optimal string
+/// alignment).
 std::size_t edits_between(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> edits(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) edits[i][0] = i;
@@ -23,13 +24,13 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
   return edits[a.size()][b.size()];
 }
 
-/// The command that was given words that it does not know, or else the one chosen last: of `alvor solves list`, the list.
+/// Returns the command that got words it does not know, or else the last one chosen: for `alvor solves list`, the list.
 const CLI::App& command_at_fault(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() || !app.remaining().empty() ? app : command_at_fault(*subcommands.front());
 }
 
-/// "alvor solves list"
+/// Returns the command's name with those of its parents, such as "alvor solves list".
 std::string full_name(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
   return (parent ? full_name(*parent) + " " : "") + command.get_name();
@@ -51,7 +52,7 @@ std::vector<std::string> options_of(const CLI::App& command) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word.starts_with('-') && word != "--"; }
 
-/// The fault, with what may have been meant where something is like it.
+/// Returns the fault, with a suggestion unless `meant` is empty.
 std::string with_suggestion(const std::string& fault, const std::string& meant) {
   return meant.empty() ? fault : fault + "; did you mean " + meant + "?";
 }
@@ -66,7 +67,7 @@ std::string unknown_command(const std::string& word, std::span<const std::string
   return with_suggestion("there is no command '" + word + "'", nearest.empty() ? "" : "'" + nearest + "'");
 }
 
-/// Unknown words come before what they lead to, such as a required argument that is missing.
+/// Returns the fault to report. Unknown words are reported before their consequences, such as a missing required argument.
 std::string fault_of(const CLI::App& command, const CLI::Error& error) {
   const std::vector<std::string> unknown = command.remaining(), commands = subcommands_of(command);
   if (!commands.empty() && !unknown.empty() && !is_option(unknown.front())) return unknown_command(unknown.front(), commands);
@@ -81,7 +82,7 @@ std::string fault_of(const CLI::App& command, const CLI::Error& error) {
 
 std::string nearest_word(const std::string& typed, std::span<const std::string> words) {
   std::string nearest;
-  std::size_t fewest = std::max<std::size_t>(2, typed.size() / 3 + 1);  // so many letters, and it is another word
+  std::size_t fewest = std::max<std::size_t>(2, typed.size() / 3 + 1);  // with this many edits it is a different word
   for (const std::string& word : words) {
     const bool is_begun = typed.size() >= 3 && word.starts_with(typed);
     const std::size_t edits = is_begun ? 1 : edits_between(typed, word);

@@ -1,5 +1,5 @@
 #pragma once
-// What is said of a command line that makes no sense.
+// Messages about wrong command lines.
 
 #include <CLI/CLI.hpp>
 
@@ -8,11 +8,11 @@
 
 namespace alvor {
 
-/// Returns one line that names the command and what is wrong, with what may have been meant by a word that is unknown. Fits
+/// Returns one line that names the command and the fault, and suggests a known word for an unknown one. Fits
 /// CLI::App::failure_message.
 std::string usage_message(const CLI::App* app, const CLI::Error& error);
 
-/// Returns the word that is most like `typed`, or an empty string if none is much like it.
+/// Returns the word most similar to `typed`, or "" if none is similar enough.
 std::string nearest_word(const std::string& typed, std::span<const std::string> words);
 
 }  // namespace alvor

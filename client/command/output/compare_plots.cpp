@@ -36,7 +36,8 @@ set xrange [1e-5:*]
 plot for [i = 1:5] "compare.csv" every ::1 using (of(word(names, i), $3)):4 with lines lw 2 lc rgb word(colours, i) title word(names, i)
 )";
 
-/// Ends with the scope; the spawn functions report errors by value, and one that fails shows in the last of them.
+/// Frees the spawn actions at the end of the scope. The spawn functions return errors by value; a failure shows in the last of
+/// them.
 struct SpawnActions {
   posix_spawn_file_actions_t actions;
   SpawnActions() { posix_spawn_file_actions_init(&actions); }

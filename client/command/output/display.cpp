@@ -6,7 +6,7 @@ namespace alvor {
 
 namespace {
 
-// A mirror holds no leaf for a root that nothing was said about.
+// Returns `leaves` with a dark leaf for each root that has none: a mirror holds no leaf for a root that no delta has named.
 std::vector<LeafValue> covering(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
   std::vector<LeafValue> all;
   all.reserve(leaves.size());
@@ -18,7 +18,8 @@ std::vector<LeafValue> covering(const BaseMesh& mesh, std::span<const LeafValue>
   return all;
 }
 
-// `leaves` are sorted by id, so what lies within a patch is contiguous.
+// Returns whether all of `last` within the patch is exactly dark. `last` is sorted by id, so the leaves within a patch are
+// contiguous.
 bool stays_dark(PatchId patch, std::span<const LeafValue> last) {
   auto leaf = std::ranges::lower_bound(last, patch.range_min(), {}, &LeafValue::patch);
   for (; leaf != last.end() && patch.contains(leaf->patch); ++leaf)

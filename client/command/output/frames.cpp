@@ -16,7 +16,7 @@ std::filesystem::path frame_path(const std::filesystem::path& folder, std::size_
   return folder / name;
 }
 
-// Frames of a longer solve before would otherwise end this film.
+// Removes frames from `number` on, which an earlier, longer solve left.
 void remove_frames_from(const std::filesystem::path& folder, std::size_t number) {
   std::error_code ignored;
   while (std::filesystem::remove(frame_path(folder, number), ignored)) ++number;

@@ -1,5 +1,5 @@
 #pragma once
-// A growing solution as numbered pictures.
+// Draws a growing solution as numbered pictures.
 
 #include "client/command/output/snapshots.h"
 #include "meshing/base_mesh.h"
@@ -13,8 +13,8 @@ struct FrameOptions {
   bool ambient = true;  ///< add each moment's ambient term
 };
 
-/// frame_0000.png and so on in `folder`, all from one camera at one exposure, both chosen for the last moment. Those left by a
-/// longer film are removed. Throws FileError. Requires: !moments.empty(), !mesh.roots().empty().
+/// Writes frame_0000.png and so on into `folder`, all with the same camera and exposure, chosen for the last moment. Removes
+/// frames left by a longer run. Throws FileError. Requires: !moments.empty(), !mesh.roots().empty().
 void write_frames(const std::filesystem::path& folder, const BaseMesh& mesh, std::span<const Snapshot> moments,
                   FrameOptions options);
 

@@ -10,7 +10,7 @@ namespace alvor {
 
 namespace {
 
-// Facts of the process, like its streams: set while the command line is read, before any thread starts.
+// State of the process, like its streams; set while the command line is parsed, before any thread starts.
 bool is_quiet = false;
 bool stdout_is_reserved = false;
 
@@ -23,7 +23,7 @@ std::ostream& nowhere() {
 
 void add_quiet_option(CLI::App& command) {
   command.add_flag_callback(
-      "-q,--quiet", [] { is_quiet = true; }, "No progress and no remarks; warnings and errors stay");
+      "-q,--quiet", [] { is_quiet = true; }, "Print no progress and no remarks, only results, warnings and errors");
   for (CLI::App* subcommand : command.get_subcommands([](CLI::App*) { return true; })) add_quiet_option(*subcommand);
 }
 

@@ -26,7 +26,7 @@ std::optional<double> parse_number(std::string_view text) {
   return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// Three significant digits, which is all that people read of a moving number.
+// Returns a number with three significant digits, enough for a number that changes while it is read.
 std::string three_digits(double value, const char* unit) {
   const double size = std::abs(value);
   const int decimals = size < 9.995 ? 2 : size < 99.95 ? 1 : 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers in and out of lines of text, in the same way in every locale.
+// Parses and prints numbers, independent of the locale.
 
 #include <cstddef>
 #include <optional>
@@ -9,17 +9,17 @@
 
 namespace alvor {
 
-/// Exactly `count` finite numbers with commas between them and blanks around them, or nothing.
+/// Returns exactly `count` finite numbers separated by commas, with or without blanks around them, or nothing.
 std::optional<std::vector<double>> parse_numbers(std::string_view line, std::size_t count);
 
-/// The fewest digits that read back as the same value.
+/// Returns the shortest text that reads back as the same value.
 std::string shortest(double value);
 
-/// For people: 4153, "65.2 k", "1.65 M".
+/// Returns a count for people: 4153, "65.2 k", "1.65 M".
 std::string compact(double count);
-/// For people: "2.31 %".
+/// Returns a percentage for people: "2.31 %".
 std::string percent(double fraction);
-/// For people: "0.26 s".
+/// Returns a duration for people: "0.26 s".
 std::string seconds(double duration_s);
 
 }  // namespace alvor

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 2> solution_formats{"glb", "ply"};
 constexpr std::array<std::string_view, 1> picture_formats{"png"};
 constexpr std::array<std::string_view, 2> table_formats{"csv", "txt"};
 
-/// "glb or ply", each after `before`.
+/// Returns the formats, each after `before`: "glb or ply".
 std::string alternatives(const FileKind& kind, const std::string& before) {
   std::string text;
   for (const std::string_view format : kind.formats) text += (text.empty() ? "" : " or ") + before + std::string(format);
@@ -41,7 +41,7 @@ const FileKind table_kind{"a table", table_formats, false, true};
 
 CLI::Option* add_output_option(CLI::App& command, OutputFile& file, const FileKind& kind, const std::string& description) {
   CLI::Option* output = command.add_option("-o,--output", file.path, description + "; - is stdout");
-  command.add_option("--output-format", file.format, "What goes to stdout: " + alternatives(kind, ""))
+  command.add_option("--output-format", file.format, "Format of the file written to stdout: " + alternatives(kind, ""))
       ->type_name("FORMAT")
       ->check(CLI::IsMember(std::vector<std::string>(kind.formats.begin(), kind.formats.end())))
       ->needs(output);

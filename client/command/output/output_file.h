@@ -1,5 +1,5 @@
 #pragma once
-// Files that a command writes, one of which may go to stdout.
+// The output files of a command, one of which may go to stdout.
 
 #include "client/picture/png_file.h"
 
@@ -13,11 +13,11 @@
 
 namespace alvor {
 
-/// What a file holds, and the suffixes, without dots, that tell its format.
+/// A kind of file, and the suffixes, without dots, of its formats.
 struct FileKind {
   std::string_view name;  ///< "a picture"
   std::span<const std::string_view> formats;
-  bool formats_differ;  ///< what goes to stdout must then be told
+  bool formats_differ;  ///< then the format of a file to stdout must be given
   bool may_lack_a_suffix;
 };
 
@@ -25,20 +25,20 @@ extern const FileKind solution_kind;  ///< glb, ply
 extern const FileKind picture_kind;   ///< png
 extern const FileKind table_kind;     ///< csv, txt
 
-/// Where a file goes.
+/// An output file's path and format.
 struct OutputFile {
   std::filesystem::path path;  ///< "-": to stdout; empty: it was not asked for
-  std::string format;          ///< what goes to stdout; empty where a suffix tells it, or there is one format only
+  std::string format;          ///< format of a file to stdout; empty: from the suffix, or the only one
 };
 
-/// Adds `-o, --output` and `--output-format` for a file of this kind. Returns the former.
+/// Adds `-o, --output` and `--output-format` for a file of this kind. Returns `--output`.
 CLI::Option* add_output_option(CLI::App& command, OutputFile& file, const FileKind& kind, const std::string& description);
 
-/// Throws Failure (usage) unless a file of this kind can be written there: the suffix is another, the format is not told, no
-/// such folder, or not ours to write. `option` is what the user knows it by. Nothing is wrong with a file not asked for.
+/// Throws Failure (usage) unless a file of this kind can be written: its suffix is wrong, its format is not given, there is no
+/// such folder, or it is not writable. `option` is the option's name for the message. Accepts a file that was not asked for.
 void require_output(const OutputFile& file, const FileKind& kind, const std::string& option);
 
-/// Leaves stdout to the one among the outputs of a command that is "-", if any. Throws Failure (usage) if there are two.
+/// Reserves stdout for the one output of a command that is "-", if any. Throws Failure (usage) if there are two.
 void reserve_stdout_for(std::initializer_list<std::filesystem::path> outputs);
 
 /// Returns the file's extension in lower case, with its dot: ".glb". Requires: require_output(file, kind, ...) has returned.

@@ -1,5 +1,5 @@
 #pragma once
-// A plan, for people and for programs.
+// Prints a plan for people and for programs.
 
 #include "solution/feature.h"
 
@@ -10,10 +10,10 @@
 
 namespace alvor {
 
-/// A line for each feature: on or off, why, and what that costs or saves.
+/// Returns a line for each feature: on or off, why, and what that costs or saves.
 std::string table_of(std::span<const PlannedFeature> plan);
 
-/// An array of objects with the keys feature, on, reason, cost.
+/// Returns an array of objects with the keys feature, on, reason, cost.
 nlohmann::ordered_json json_of(std::span<const PlannedFeature> plan);
 
 }  // namespace alvor

@@ -9,7 +9,7 @@ namespace alvor {
 
 namespace {
 
-// Errors shrink by factors, so the bar is logarithmic: half full when half the digits are won.
+// Returns the fraction done, on a logarithmic scale: errors shrink by factors, so half is reached at the root of the tolerance.
 double done_share(double estimated_error, double tolerance) {
   if (estimated_error <= tolerance || tolerance >= 1) return 1;
   return std::clamp(std::log(std::min(estimated_error, 1.0)) / std::log(tolerance), 0.0, 1.0);

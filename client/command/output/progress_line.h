@@ -1,5 +1,5 @@
 #pragma once
-// How a solve is doing, on stderr while it runs.
+// Shows the progress of a running solve on stderr.
 
 #include "client/command/output/status_line.h"
 #include "solution/leaf_value.h"
@@ -20,7 +20,7 @@ class ProgressLine {
   StatusLine line_;
 };
 
-/// "[####----] unshot 12.0 %, 4153 leaves, 1.65 M rays, 6.35 M rays/s, 0.26 s"
+/// Returns a line such as "[####----] unshot 12.0 %, 4153 leaves, 1.65 M rays, 6.35 M rays/s, 0.26 s".
 std::string progress_text(const Step& step, double tolerance);
 
 }  // namespace alvor

@@ -13,7 +13,7 @@ void Snapshots::offer(const SolutionMirror& mirror) {
   newest_ = mirror.revision();
   if (offered_++ % stride_ != 0) return;
   if (kept_.size() == most) thin_out();
-  // After thinning, this one may be off the wider stride.
+  // After thinning, this moment may lie between two steps of the wider stride.
   if ((offered_ - 1) % stride_ == 0) kept_.push_back(snapshot_of(mirror));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Moments of a growing solution, kept to be drawn later.
+// Keeps moments of a growing solution, to be drawn later.
 
 #include "solution/solution_mirror.h"
 
@@ -14,18 +14,19 @@ struct Snapshot {
   std::vector<LeafValue> leaves;
 };
 
-/// Requires: !mirror.steps().empty().
+/// Returns the mirror's state. Requires: !mirror.steps().empty().
 Snapshot snapshot_of(const SolutionMirror& mirror);
 
-/// Keeps at most `most` of the moments offered, evenly spread over them: when full, every other one goes and only every other one
-/// of those to come is taken. So no fewer than most / 2 are kept of `most` or more.
+/// Keeps at most `most` of the moments offered, evenly spread over them. When full, it drops every other moment and from then on
+/// takes only every other one of those that it would have taken. So at least most / 2 are kept when `most` or more were offered.
 class Snapshots {
  public:
   static constexpr std::size_t most = 60;
 
-  /// Mirrors that are not whole equal no state of the solve and are passed over, as are revisions already seen.
+  /// Offers the mirror's state. Ignored if the mirror is not whole, as it then equals no state of the solve, or if its revision
+  /// was offered before.
   void offer(const SolutionMirror& mirror);
-  /// What was kept, oldest first, ending with the state of `last`. Leaves nothing behind.
+  /// Returns the kept moments, oldest first, ending with the state of `last`, and forgets them.
   std::vector<Snapshot> take(const SolutionMirror& last);
 
  private:

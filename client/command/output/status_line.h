@@ -1,5 +1,5 @@
 #pragma once
-// A line on stderr that says how far something has come.
+// A line of progress on stderr.
 
 #include <chrono>
 #include <optional>
@@ -7,17 +7,17 @@
 
 namespace alvor {
 
-/// Nothing with --quiet. Else on a terminal one line, redrawn at most ten times a second; in a pipe plain lines, at most one a
-/// second.
+/// Prints a line of progress. On a terminal the line is redrawn, at most ten times a second; to a pipe it is printed at most once
+/// a second. Prints nothing with --quiet.
 class StatusLine {
  public:
   StatusLine();
-  ~StatusLine();  ///< leaves the cursor on a fresh line
+  ~StatusLine();  ///< leaves the cursor on a new line
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
   bool on_terminal() const { return terminal_; }
-  /// Whether it is time to show something again.
+  /// Returns whether enough time has passed to show the line again.
   bool due() const;
   void show(const std::string& text);
 
@@ -28,7 +28,7 @@ class StatusLine {
   std::optional<Clock::time_point> shown_;
 };
 
-/// "[####----]"
+/// Returns a bar such as "[####----]" for a fraction in [0, 1].
 std::string progress_bar(double share);
 
 }  // namespace alvor

@@ -23,7 +23,7 @@ std::string digits(const char* format, double number) {
 
 std::string place(Vec3 p) { return digits("%.7g", p.x) + "," + digits("%.7g", p.y) + "," + digits("%.7g", p.z); }
 
-/// What rounding left of a zero reads as zero.
+/// Returns 0 for values that would print as zero, so that no "-0" is printed.
 double rounded(double cosine) { return std::abs(cosine) < 5e-4 ? 0 : cosine; }
 
 std::string direction(Vec3 n) {

@@ -1,5 +1,5 @@
 #pragma once
-// What verify prints.
+// The output of `alvor verify`.
 
 #include "client/verify/verification.h"
 
@@ -12,10 +12,10 @@ struct VerifyTimes {
   double elapsed_s = 0, cpu_s = 0;
 };
 
-/// Errors, how well the truth is known, and the worst places.
+/// Returns a text for people: errors, noise of the truth, and the worst places.
 std::string verify_summary(const Scene& scene, const Verification& verification, const VerifyTimes& times);
 
-/// One object. Errors are fractions.
+/// Returns one JSON object. Errors are fractions.
 std::string verify_json(const Scene& scene, const Verification& verification, const VerifyTimes& times,
                         std::span<const std::string> warnings);
 
