@@ -35,7 +35,7 @@ SceneFile import_by_extension(const std::filesystem::path& path) {
   return import_in_child(path, import_by_assimp);
 }
 
-SceneFile import_content(const SceneBytes& content) {
+SceneFile import_content(const EncodedScene& content) {
   if (content.bytes.empty()) throw ImportError("file", "is empty");
   const std::string& extension = content.extension;
   if (extension == ".gltf" || extension == ".glb") return import_gltf(content.bytes, content.folder);
@@ -129,7 +129,7 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
   return naming(path.string(), [&] { return import_file(path); });
 }
 
-SceneFile read_scene_content(const SceneBytes& content) {
+SceneFile read_scene_content(const EncodedScene& content) {
   return naming(content.name, [&] { return import_content(content); });
 }
 

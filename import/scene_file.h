@@ -26,7 +26,7 @@ struct SceneFileError : std::runtime_error {
 SceneFile read_scene_file(const std::filesystem::path& path);
 
 /// A scene that does not come from a file of its own, but for example from a pipe.
-struct SceneBytes {
+struct EncodedScene {
   std::string name;  ///< the scene's name in error messages
   std::string bytes;
   std::string extension;         ///< tells the format, in lower case, like ".glb"
@@ -35,7 +35,7 @@ struct SceneBytes {
 
 /// Reads a scene from bytes as read_scene_file does from a file. Throws SceneFileError. Requires:
 /// is_scene_extension(content.extension).
-SceneFile read_scene_content(const SceneBytes& content);
+SceneFile read_scene_content(const EncodedScene& content);
 
 /// Returns whether scenes are read from files with this extension, given in lower case with its dot.
 bool is_scene_extension(const std::string& extension);

@@ -62,7 +62,7 @@ void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets)
     if (material.emission.is_zero()) continue;
     lights.push_back({s.corner, s.side_u, s.side_v, s.normal, facet.area * scale * scale, s.emission, s.two_sided});
   }
-  lights_ = LightTree(std::move(lights));
+  lights_ = EmitterTree(std::move(lights));
 }
 
 Rgb PathTracer::irradiance(const SurfacePoint& point, std::uint32_t paths, PathRandom random) const {

@@ -2,8 +2,8 @@
 // Computes irradiance by path tracing, against which solutions are verified. It shares with the solver only the scene and the
 // library that intersects rays.
 
+#include "client/verify/emitter_tree.h"
 #include "client/verify/facets.h"
-#include "client/verify/light_tree.h"
 #include "client/verify/path_random.h"
 #include "meshing/scene.h"
 
@@ -82,7 +82,7 @@ class PathTracer {
   Rgb absorption_;  ///< absorption coefficient per local unit of length
   bool clear_ = true;
   std::vector<Surface> surfaces_;
-  LightTree lights_{{}};
+  EmitterTree lights_{{}};
   std::unique_ptr<const TriangleCaster> caster_;
 };
 

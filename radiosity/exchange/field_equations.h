@@ -10,7 +10,7 @@
 namespace alvor {
 
 /// A sample seen from a row's centre, in units of the row's edge.
-struct Seen {
+struct WindowSample {
   double s, t, rays, r, g, b;
 };
 
@@ -18,7 +18,7 @@ struct Seen {
 template <int n>
 class FieldEquations {
  public:
-  void add(const Seen& sample, double weight) {
+  void add(const WindowSample& sample, double weight) {
     const double s = sample.s, t = sample.t;
     const double row[width] = {1, s, t, s * s, s * t, t * t, sample.r, sample.g, sample.b, 0, 0, 0};
     for (int i = 0; i < n; ++i) {

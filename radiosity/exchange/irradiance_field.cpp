@@ -49,7 +49,7 @@ class RowSet {
 
 /// Samples around one row.
 struct Window {
-  std::array<Seen, 2 * most_rows + 64> samples;
+  std::array<WindowSample, 2 * most_rows + 64> samples;
   std::size_t count = 0;
   double noise = 0;  ///< variance of the mean over bands of one ray
 };
@@ -59,7 +59,7 @@ auto fit(const Window& window, double radius) {
   FieldEquations<n> equations;
   const double inverse = 1 / (radius * radius);
   for (std::size_t k = 0; k < window.count; ++k) {
-    const Seen& sample = window.samples[k];
+    const WindowSample& sample = window.samples[k];
     const double q = 1 - (sample.s * sample.s + sample.t * sample.t) * inverse;
     if (q > 0) equations.add(sample, q * q * sample.rays);
   }

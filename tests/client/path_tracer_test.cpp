@@ -241,19 +241,19 @@ TEST(SurfacePoints, AreUniformByAreaOverFrontsAndBothSidesOfTwoSided) {
 }
 
 /// Returns small lamps on a ceiling, every other one facing up.
-LightTree lamps(int count) {
+EmitterTree lamps(int count) {
   std::vector<Light> lights;
   for (int n = 0; n < count; ++n) {
     Light light{{n % 10 * 1.0, n / 10 * 1.0, 3}, {0, 0.1, 0}, {0.1, 0, 0}, {0, 0, -1}, 0.005, {1.0 + n, 1, 1}, false};
     if (n % 2) std::swap(light.side_u, light.side_v), light.normal = {0, 0, 1};
     lights.push_back(light);
   }
-  return LightTree(std::move(lights));
+  return EmitterTree(std::move(lights));
 }
 
-TEST(LightTree, ChoosesWithTheProbabilitiesItSays) {
+TEST(EmitterTree, ChoosesWithTheProbabilitiesItSays) {
   constexpr int count = 100, draws = 100000;
-  const LightTree tree = lamps(count);
+  const EmitterTree tree = lamps(count);
   const Vec3 point{2, 3, 0}, normal = normalized({0.3, 0, 1});
   std::vector<int> chosen(count);
   double left = 0;
@@ -271,7 +271,7 @@ TEST(LightTree, ChoosesWithTheProbabilitiesItSays) {
   }
 }
 
-TEST(LightTree, ManyLampsGiveWhatTheyGiveOneByOne) {
+TEST(EmitterTree, ManyLampsGiveWhatTheyGiveOneByOne) {
   Scene scene;
   scene.materials = {grey(10, 0)};
   double expected = 0;

@@ -79,7 +79,7 @@ void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
 class Checkpoint : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
-    Of, Checkpoint,
+    Scenes, Checkpoint,
     testing::Values(Case{"OneLamp", test::room_with_contacts, {.tolerance = 0.02, .max_leaves = 6000}},
                     Case{"ManyLamps", room_with_many_lamps, {.tolerance = 0.03, .max_leaves = 4000}},
                     Case{"Shooting", test::coloured_room, {.tolerance = 0.04, .strategy = Strategy::sorted}},

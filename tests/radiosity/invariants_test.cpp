@@ -59,7 +59,7 @@ class Invariant : public testing::TestWithParam<Scene (*)()> {
  protected:
   Scene scene() const { return GetParam()(); }
 };
-INSTANTIATE_TEST_SUITE_P(Of, Invariant, testing::Values(&test::coloured_room, &pavilion),
+INSTANTIATE_TEST_SUITE_P(Scenes, Invariant, testing::Values(&test::coloured_room, &pavilion),
                          [](const auto& scene) { return scene.index == 0 ? "ARoom" : "APavilion"; });
 
 TEST_P(Invariant, IrradianceIsFiniteAndNotNegative) {

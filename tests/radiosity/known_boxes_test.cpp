@@ -59,7 +59,15 @@ constexpr KnownBox known_boxes[] = {
 };
 
 class BoxOfOneUnknownPerFace : public testing::TestWithParam<KnownBox> {};
-INSTANTIATE_TEST_SUITE_P(Of, BoxOfOneUnknownPerFace, testing::ValuesIn(known_boxes));
+/// "Side1Height10Reflectance999PerMille".
+std::string name_of(const testing::TestParamInfo<KnownBox>& box) {
+  const auto digits = [](double number) {
+    return number < 1 ? "1_" + std::to_string(std::lround(1 / number)) : std::to_string(std::lround(number));
+  };
+  return "Side" + digits(box.param.side) + "Height" + digits(box.param.height) + "Reflectance" +
+         std::to_string(std::lround(1000 * box.param.reflectance)) + "PerMille";
+}
+INSTANTIATE_TEST_SUITE_P(Boxes, BoxOfOneUnknownPerFace, testing::ValuesIn(known_boxes), name_of);
 
 // All faces emit 1 more, so that emission goes along the rows: that alone makes 1 / (1 - rho) everywhere.
 TEST_P(BoxOfOneUnknownPerFace, HasTheKnownRadiosity) {

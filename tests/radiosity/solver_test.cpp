@@ -30,6 +30,15 @@ Scene lit_room(double scale = 1) {
   return scene;
 }
 
+double shortest_edge_of(const BaseMesh& mesh, PatchId patch) {
+  const PatchShape shape = shape_of(mesh, patch);
+  const auto corners = corners_of(mesh, shape);
+  double shortest = 1e9;
+  for (int e = 0; e < shape.corner_count; ++e)
+    shortest = std::min(shortest, length(corners[(e + 1) % shape.corner_count] - corners[e]));
+  return shortest;
+}
+
 TEST(Solver, FurnaceIsExactOnAnyMesh) {
   // B = E / (1 - rho) everywhere, so H = 2 for E = 1 and rho = 0.5.
   for (const int depth : {0, 1, 3}) {
@@ -83,19 +92,23 @@ TEST(Solver, LuminousCeilingOfAConvexRoomSatisfiesTheMeanValueIdentity) {
   EXPECT_NEAR(mean, (1.0 / 6) / (1 - 0.5), 0.005 / 3);
 }
 
-TEST(Solver, UnitsAndOriginDoNotMatter) {
+TEST(Solver, PowersOfTwoOfTheUnitOfLengthChangeNoBit) {
   const auto metres = solved(lit_room());
-  const auto millimetres = solved(lit_room(1000));
-  Scene moved_scene = lit_room();
-  for (Vec3& vertex : moved_scene.vertices) vertex += {1e5, -2e5, 3e5};
-  const auto moved = solved(moved_scene);
-  ASSERT_EQ(metres.size(), millimetres.size());
-  for (std::size_t n = 0; n < metres.size(); ++n)
-    EXPECT_NEAR(metres[n].irradiance.g, millimetres[n].irradiance.g, 0.02 * metres[n].irradiance.g + 1e-3);
-  double before = 0, after = 0;
-  for (const LeafValue& leaf : metres) before += leaf.irradiance.g / double(metres.size());
-  for (const LeafValue& leaf : moved) after += leaf.irradiance.g / double(moved.size());
-  EXPECT_NEAR(before, after, 0.02 * before);
+  for (const double scale : {0.5, 1024.0}) EXPECT_EQ(metres, solved(lit_room(scale))) << scale;
+}
+
+TEST(Solver, UnitsAndOriginDoNotMatter) {
+  Scene moved = lit_room();
+  for (Vec3& vertex : moved.vertices) vertex += {1e5, -2e5, 3e5};
+  const auto metres = solved(lit_room());
+  for (const auto& other : {solved(lit_room(1000)), solved(lit_room(0.001)), solved(moved)}) {
+    ASSERT_EQ(metres.size(), other.size());
+    for (std::size_t n = 0; n < metres.size(); ++n) {
+      EXPECT_EQ(metres[n].patch, other[n].patch);
+      // Coordinates round differently; none is so near to a ray that it matters.
+      EXPECT_NEAR(metres[n].irradiance.g, other[n].irradiance.g, 1e-6 * metres[n].irradiance.g);
+    }
+  }
 }
 
 TEST(Solver, SameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
@@ -107,12 +120,17 @@ TEST(Solver, SameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
 
 TEST(Solver, LimitsAreKeptAndNamed) {
   const BaseMesh mesh(lit_room());
-  SolutionLog few, flat;
-  EXPECT_EQ(solve(mesh, {.tolerance = 1e-9, .max_leaves = 1500}, few, {}).reason, StopReason::max_leaves);
+  constexpr double never = 1e-9, shortest_edge = 0.3;
+  SolutionLog few, shallow, coarse, brief;
+  EXPECT_EQ(solve(mesh, {.tolerance = never, .max_leaves = 1500}, few, {}).reason, StopReason::max_leaves);
   EXPECT_LE(few.leaves().size(), 1500u);
-  SolutionLog shallow;
-  solve(mesh, {.tolerance = 0.02, .max_depth = 2}, shallow, {});
+  EXPECT_EQ(solve(mesh, {.tolerance = never, .max_depth = 2}, shallow, {}).reason, StopReason::max_depth);
   for (const LeafValue& leaf : shallow.leaves()) EXPECT_LE(leaf.patch.level(), 2);
+  EXPECT_EQ(solve(mesh, {.tolerance = never, .min_edge_m = shortest_edge}, coarse, {}).reason, StopReason::max_depth);
+  for (const LeafValue& leaf : coarse.leaves()) {
+    EXPECT_TRUE(leaf.patch.level() == 0 || shortest_edge_of(mesh, leaf.patch) >= shortest_edge * (1 - 1e-12));
+  }
+  EXPECT_EQ(solve(mesh, {.tolerance = never, .time_limit_s = 1e-9}, brief, {}).reason, StopReason::time_limit);
 }
 
 TEST(Solver, RoomWithoutLightIsBlackAndDone) {
@@ -173,21 +191,28 @@ TEST(Solver, StopRequestLeavesAUsableSolution) {
   EXPECT_GT(brightest, 1);
 }
 
-TEST(Solver, StepsCountUpAndUnshotPowerGoesDown) {
+TEST(Solver, StepsCountUpAndUnshotPowerGoesDownInEachPass) {
   const BaseMesh mesh(lit_room());
-  SolutionLog log;
-  solve(mesh, {}, log, {});
-  const auto steps = log.steps();
-  ASSERT_GT(steps.size(), 8u);
-  EXPECT_EQ(steps.front().rays, 0u);
-  EXPECT_EQ(steps.front().unshot_fraction, 1);
-  for (std::size_t n = 1; n < steps.size(); ++n) {
-    EXPECT_GE(steps[n].elapsed_s, steps[n - 1].elapsed_s);
-    EXPECT_GE(steps[n].rays, steps[n - 1].rays);
-    EXPECT_GE(steps[n].leaves, steps[n - 1].leaves);
+  for (const Strategy strategy :
+       {Strategy::automatic, Strategy::gather, Strategy::shoot, Strategy::sorted, Strategy::overshoot}) {
+    SCOPED_TRACE(text(strategy));
+    SolutionLog log;
+    solve(mesh, {.strategy = strategy}, log, {});
+    const auto steps = log.steps();
+    ASSERT_GT(steps.size(), 8u);
+    EXPECT_EQ(steps.front().rays, 0u);
+    EXPECT_EQ(steps.front().unshot_fraction, 1);
+    for (std::size_t n = 1; n < steps.size(); ++n) {
+      EXPECT_EQ(steps[n].revision, steps[n - 1].revision + 1);
+      EXPECT_GE(steps[n].elapsed_s, steps[n - 1].elapsed_s);
+      EXPECT_GE(steps[n].rays, steps[n - 1].rays);
+      EXPECT_GE(steps[n].leaves, steps[n - 1].leaves);
+      const bool is_same_pass = steps[n].rays == steps[n - 1].rays && steps[n].leaves == steps[n - 1].leaves;
+      EXPECT_TRUE(!is_same_pass || steps[n].unshot_fraction <= steps[n - 1].unshot_fraction) << n;
+    }
+    EXPECT_LE(steps.back().unshot_fraction, 1e-6);
+    EXPECT_LE(steps.back().estimated_error, 0.02);
   }
-  EXPECT_LE(steps.back().unshot_fraction, 1e-6);
-  EXPECT_LE(steps.back().estimated_error, 0.02);
 }
 
 TEST(Solver, AmbientTermFadesAsLightIsShot) {

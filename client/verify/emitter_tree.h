@@ -22,9 +22,9 @@ struct Light {
 /// Chooses lights in proportion to an estimate of what they send to a point: power over squared distance, times the cosine at the
 /// point (Conty Estevez & Kulla 2018, without cones of normals). Logarithmic in the number of lights. Every light that can send
 /// something may be chosen; lights below the point's horizon or facing away are seldom chosen. Immutable; safe from any thread.
-class LightTree {
+class EmitterTree {
  public:
-  explicit LightTree(std::vector<Light> lights);
+  explicit EmitterTree(std::vector<Light> lights);
 
   bool empty() const { return lights_.empty(); }
   const Light& operator[](std::uint32_t light) const { return lights_[light]; }

@@ -1,4 +1,4 @@
-#include "client/verify/light_tree.h"
+#include "client/verify/emitter_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -35,7 +35,7 @@ double power_of(const Light& light) { return light.area * light.emission.sum() *
 
 }  // namespace
 
-LightTree::LightTree(std::vector<Light> lights) : lights_(std::move(lights)), leaf_of_(lights_.size()) {
+EmitterTree::EmitterTree(std::vector<Light> lights) : lights_(std::move(lights)), leaf_of_(lights_.size()) {
   if (lights_.empty()) return;
   std::vector<std::uint32_t> order(lights_.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -44,7 +44,7 @@ LightTree::LightTree(std::vector<Light> lights) : lights_(std::move(lights)), le
   build(0, order.data(), order.data() + order.size());
 }
 
-void LightTree::build(std::uint32_t node, std::uint32_t* first, std::uint32_t* last) {
+void EmitterTree::build(std::uint32_t node, std::uint32_t* first, std::uint32_t* last) {
   Box box;
   for (const std::uint32_t* light = first; light != last; ++light) {
     for (const Vec3& corner : corners_of(lights_[*light])) box.add(corner);
@@ -73,7 +73,7 @@ void LightTree::build(std::uint32_t node, std::uint32_t* first, std::uint32_t* l
 }
 
 // Returns an estimate of what the lights of a node send to a point. A single light sends nothing to points behind its plane.
-double LightTree::importance(const Node& node, Vec3 point, Vec3 normal) const {
+double EmitterTree::importance(const Node& node, Vec3 point, Vec3 normal) const {
   const Vec3 towards = node.centre - point;
   const double height = dot(normal, towards) + node.radius;
   if (height <= 0) return 0;
@@ -82,13 +82,13 @@ double LightTree::importance(const Node& node, Vec3 point, Vec3 normal) const {
   return node.power * std::min(height, distance) / (distance * distance * distance);
 }
 
-double LightTree::first_share(std::uint32_t first_child, Vec3 point, Vec3 normal) const {
+double EmitterTree::first_share(std::uint32_t first_child, Vec3 point, Vec3 normal) const {
   const double first = importance(nodes_[first_child], point, normal);
   const double second = importance(nodes_[first_child + 1], point, normal);
   return first + second > 0 ? first / (first + second) : -1;
 }
 
-std::optional<LightTree::Choice> LightTree::choose(Vec3 point, Vec3 normal, double random) const {
+std::optional<EmitterTree::Choice> EmitterTree::choose(Vec3 point, Vec3 normal, double random) const {
   if (lights_.empty()) return std::nullopt;
   double probability = 1;
   std::uint32_t node = 0;
@@ -104,7 +104,7 @@ std::optional<LightTree::Choice> LightTree::choose(Vec3 point, Vec3 normal, doub
   return Choice{nodes_[node].light, probability, random};
 }
 
-double LightTree::probability(Vec3 point, Vec3 normal, std::uint32_t light) const {
+double EmitterTree::probability(Vec3 point, Vec3 normal, std::uint32_t light) const {
   double probability = 1;
   for (std::uint32_t node = leaf_of_[light]; node != 0; node = nodes_[node].parent) {
     const bool is_first = node % 2 == 1;
