@@ -39,7 +39,7 @@ struct Container {
   std::optional<std::string_view> binary;
 };
 
-/// Takes the next chunk of a GLB off the front of `rest`.
+/// Removes the next chunk from the front of a GLB's `rest` and returns it.
 std::string_view take_chunk(std::string_view& rest, std::uint32_t type, const char* name) {
   if (rest.size() < glb::chunk_header_size || value_at<std::uint32_t>(rest, 4) != type)
     throw ImportError("file", std::string("has no ") + name + " chunk");

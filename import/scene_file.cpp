@@ -16,7 +16,7 @@ namespace alvor {
 
 namespace {
 
-/// Upper limit of twice a face's area over the square of its outline's length, below which the face is a line or a point.
+/// A face is a line or a point if twice its area over the square of its outline's length is below this.
 constexpr double flat = 1e-14;
 constexpr std::size_t max_line = 400;
 

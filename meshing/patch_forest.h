@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// Index of a patch within its forest. Roots come first, in the order of the mesh; the four children of a patch are neighbours.
+/// Index of a patch within its forest. Roots come first, in the order of the mesh; the four children of a patch are consecutive.
 using NodeIndex = std::uint32_t;
 
 struct RefinementLimits {

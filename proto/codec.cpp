@@ -11,7 +11,7 @@ namespace alvor {
 
 namespace {
 
-// The longest google.protobuf.Duration: 10 000 years.
+// The longest google.protobuf.Duration, s: 10 000 years.
 constexpr double longest_duration_s = 315'576'000'000;
 
 // Returns the length of the UTF-8 sequence at the start of `text`, or 0 if it is malformed, overlong or a surrogate.

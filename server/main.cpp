@@ -1,4 +1,4 @@
-// alvord: the Alvor server.
+// The main program of alvord, the Alvor server.
 
 #include "server/access/listening.h"
 #include "server/base/descriptor_limit.h"

@@ -49,8 +49,8 @@ struct RgbOf {
   bool is_finite() const { return std::isfinite(r) && std::isfinite(g) && std::isfinite(b); }
 };
 
-using Rgb = RgbOf<double>;  ///< for arithmetic
-using RgbF = RgbOf<float>;  ///< for storage and the wire
+using Rgb = RgbOf<double>;  ///< double precision, for arithmetic
+using RgbF = RgbOf<float>;  ///< float32, for storage and the wire
 
 constexpr RgbF narrow(const Rgb& a) { return {static_cast<float>(a.r), static_cast<float>(a.g), static_cast<float>(a.b)}; }
 constexpr Rgb widen(const RgbF& a) { return {a.r, a.g, a.b}; }

@@ -1,4 +1,4 @@
-// The command `alvor`.
+// The main program of the command `alvor`.
 
 #include "client/command/commands/commands.h"
 #include "client/command/options/usage_message.h"

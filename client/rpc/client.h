@@ -70,13 +70,13 @@ class Client {
   /// two scenes.
   v1::Scene create_scene(const Scene& scene, const std::string& display_name);
   v1::Scene get_scene(const std::string& name);
-  std::vector<v1::Scene> list_scenes();  ///< all pages
+  std::vector<v1::Scene> list_scenes();  ///< reads all pages of the list
   void delete_scene(const std::string& name);
   Scene read_scene(const std::string& name);
 
   v1::Solve create_solve(const std::string& scene_name, const v1::SolveSpec& spec);
   v1::Solve get_solve(const std::string& name);
-  std::vector<v1::Solve> list_solves(const std::string& parent);  ///< all pages
+  std::vector<v1::Solve> list_solves(const std::string& parent);  ///< reads all pages of the list
   v1::Solve cancel_solve(const std::string& name);
   v1::Solve pause_solve(const std::string& name);
   v1::Solve resume_solve(const std::string& name);

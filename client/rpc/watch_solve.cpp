@@ -1,4 +1,4 @@
-// Client::watch_solve: the receiving end of the streamed solution.
+// Client::watch_solve: receives the streamed solution.
 
 #include "client/rpc/client.h"
 #include "proto/codec.h"

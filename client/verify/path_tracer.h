@@ -62,8 +62,8 @@ class PathTracer {
   /// The random numbers used at one bend.
   struct Choices {
     UnitPair light, direction;
-    /// The surface that a ray hits, and the next bend there.
   };
+  /// The surface that a ray hits, and the next bend there.
   struct Met {
     const Surface* surface = nullptr;  ///< null if the path leaves the scene or ends on a black back
     Bend bend;

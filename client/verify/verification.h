@@ -36,9 +36,9 @@ struct VerifiedPoint {
 
 struct Verification {
   std::vector<VerifiedPoint> points;  ///< all points that were drawn
-  std::size_t hidden = 0;             ///< number under or inside a solid, see PathTracer::is_enclosed
-  std::size_t hidden_lit = 0;         ///< number hidden at which the solution has light all the same
-  std::size_t dark = 0;               ///< number not hidden where neither paths nor the solution have light
+  std::size_t hidden = 0;             ///< points under or inside a solid, see PathTracer::is_enclosed
+  std::size_t hidden_lit = 0;         ///< hidden points at which the solution has light nevertheless
+  std::size_t dark = 0;               ///< points not hidden where neither paths nor solution have light
   std::uint64_t paths = 0;            ///< paths per point
   ErrorStatistics errors;             ///< over the points that count, neither hidden nor dark
 };

@@ -19,8 +19,7 @@ struct Quota {
   std::uint64_t solves = 64;                            ///< solves that have not ended
   std::uint64_t ended_solves = 10'000;                  ///< solves that have ended and are kept
   std::uint64_t leaves = 20'000'000;                    ///< upper limit of the leaves of all solves that have not ended
-  /// watches open at a time
-  std::uint64_t watchers = 1000;
+  std::uint64_t watchers = 1000;                        ///< watches open at a time
 };
 
 }  // namespace alvor

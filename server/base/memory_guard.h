@@ -28,7 +28,7 @@ std::uint64_t allowed_memory();
 /// Decides whether there is memory for new work. Copies share the registered reliefs. Thread-safe.
 class MemoryGuard {
  public:
-  MemoryGuard() : MemoryGuard(0) {}  ///< no limit
+  MemoryGuard() : MemoryGuard(0) {}  ///< a guard without limit
   /// `limit` in bytes; 0: no limit. `used` returns the bytes in use.
   explicit MemoryGuard(std::uint64_t limit, std::uint64_t (*used)() = held_bytes);
 

@@ -44,7 +44,7 @@ class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
   std::atomic<Clock::time_point> last_ = Clock::now();
 };
 
-// Reads one message at a time into a SceneUpload. Deletes itself.
+// The CreateScene call: reads one message at a time into a SceneUpload. Deletes itself.
 class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequest> {
  public:
   CreateSceneCall(grpc::CallbackServerContext& context, Caller caller, SceneStore& scenes, Uploads& uploads,
@@ -140,7 +140,7 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
 bool next(SceneSlicer& slicer, v1::ReadSceneResponse& message) { return slicer.next(*message.mutable_chunk()); }
 bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.next(message); }
 
-// Loads a scene and sends a part of its content, piece by piece. Deletes itself.
+// A call that loads a scene and sends a part of its content, piece by piece. Deletes itself.
 template <class Message, class Slicer, class Part>
 class SendCall final : public grpc::ServerWriteReactor<Message> {
  public:

@@ -34,7 +34,7 @@ class Uploads {
   void close(const std::string& tenant);
 
   /// Keeps an unfinished upload. Does nothing for a request without an id. If the tenant then exceeds its limits, its oldest
-  /// uploads are dropped; if all tenants exceed theirs, the oldest of the tenant that has most.
+  /// uploads are dropped; if all tenants together exceed theirs, the oldest of the tenant that has most.
   void put(const Caller& caller, std::unique_ptr<SceneUpload> upload);
   /// Returns how many chunks of the caller's upload have arrived. Throws NOT_FOUND.
   std::uint64_t chunks(const Caller& caller);

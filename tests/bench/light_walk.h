@@ -15,7 +15,7 @@ struct LightWalk {
   int rays = 0;
   int left = 0;           ///< rays that hit nothing
   int backs = 0;          ///< rays that hit the back of a face
-  std::vector<Vec3> met;  ///< where rays hit fronts
+  std::vector<Vec3> met;  ///< points at which rays hit fronts
 };
 
 /// Casts rays from surfaces that light reaches.

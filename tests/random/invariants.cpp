@@ -72,7 +72,7 @@ Rgb brightest_radiosity(const BaseMesh& mesh) {
 }
 
 Finding radiosity_is_bounded(const Subject& s) {
-  constexpr double rounding = 1e-5;  // of float32; the bound itself contains the amplification
+  constexpr double rounding = 1e-5;  // rounding of float32; the bound itself contains the amplification
   const Rgb most = (1 + rounding) * brightest_radiosity(s.mesh);
   for (const LeafValue& leaf : s.solved.leaves) {
     const Material& material = s.mesh.material_of(leaf.patch.root_face());
@@ -151,7 +151,7 @@ Finding emission_scales(const Subject& s) {
 Finding bands_are_alike(const Subject& s) {
   Solved expected = end_of(s.solved);
   for (LeafValue& leaf : expected.leaves) leaf.irradiance = red_and_green_swapped(leaf.irradiance);
-  constexpr double rounding = 1e-12;  // of sums over the bands
+  constexpr double rounding = 1e-12;  // relative, in sums over the bands
   return difference(expected, end_of(solved(BaseMesh(with_red_and_green_swapped(s.trial.scene)), s.trial.options)), rounding);
 }
 

@@ -1,4 +1,4 @@
-// alvor compare SCENE -o DIR: how fast the strategies approach the solution, as a table, plots and pictures.
+// alvor compare SCENE -o DIR: shows how fast the strategies approach the solution, by a table, plots and pictures.
 
 #include "radiosity/solve/compare.h"
 

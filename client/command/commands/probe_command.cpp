@@ -1,4 +1,4 @@
-// alvor probe SOLUTION: irradiance and radiosity at given points.
+// alvor probe SOLUTION: prints irradiance and radiosity at given points.
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
