@@ -17,17 +17,21 @@ using namespace alvor;
 
 const char* const head = R"(# Form factors, measured
 
-Each method of `alvor form-factor` on every geometry of the reference set, whose values are known to at least nine digits. Made by
-`scripts/form_factors.sh`. Errors are relative; a method that saw nothing has an error of 1. *Bound* tells whether the error is within the
-bound that the method gave: for the analytic method that of its quadrature, for the sampled ones three standard errors and what no
-sample may have met, which chance exceeds now and then.
+This page compares each method of `alvor form-factor` with exact values: geometries whose form factors are known to at least nine digits.
+`scripts/form_factors.sh` measures and writes it.
 
-- **analytic**: closed contour integral where nothing stands between; else the visible part is exact from each point (blockers' shadows are
-  cut off, Lambert's formula sums over the rest) and integrated adaptively, cells cut along the lines where shadows begin and end.
-- **nusselt**: cosine-distributed low-discrepancy rays in 64 independent sets.
+- **closed form**: a formula for this kind of geometry.
+- **analytic**: a closed contour integral where nothing stands between. Otherwise, the visible part is exact from each point: blockers'
+  shadows are cut off, and Lambert's formula sums over the rest. It is integrated adaptively, in cells cut along the lines where shadows
+  begin and end.
+- **nusselt**: cosine-distributed low-discrepancy rays, in 64 independent sets.
 - **hemicube**: 1024 hemicubes of 32 x 32 cells on top, one ray through each cell, weighted by exact delta form factors.
 
-Rays see float32 geometry and start a hair in front of their surface: in a wedge of a thousandth of a radian (dih-01) that hair counts.
+*Error* is relative; a method that saw nothing has an error of 1. *Bound* tells whether the error is within the bound that the method gave.
+The analytic method takes its bound from its quadrature. The sampled methods take three standard errors and what no sample may have met;
+chance exceeds that now and then.
+
+Rays see float32 geometry and start a hair in front of their surface. In a wedge of a thousandth of a radian (dih-01) that hair counts.
 
 )";
 

@@ -17,55 +17,52 @@ std::string cores() {
 
 std::string head(const Measurements& measured) {
   return "# Error against run time\n\n"
-         "True and estimated error of Alvor and of what it is compared with, against CPU seconds and rays. "
-         "`scripts/error_vs_time.sh` "
-         "measures everything on this page in one run and writes it, figures and verdicts; this one ran on " +
+         "This page shows how large the error of Alvor is after how much time, next to textbook radiosity and path tracing, and "
+         "whether the targets are met. `scripts/error_vs_time.sh` measures everything in one run and writes this page, figures "
+         "and "
+         "verdicts. This run was on " +
          cores() +
          ".\n\n"
-         "**The yardstick** makes times comparable between machines: path tracing 300 points of the Cornell box by 2 000 paths "
-         "each, on one "
-         "thread. Here it took " +
-         plain(measured.yardstick_spread_s()) + " CPU s (median, and the ends of " + std::to_string(measured.yardsticks.size()) +
-         " times in the course of the run). Two threads take it " + plain(measured.two_threads_faster()) +
-         " times faster: as much as this machine had to give.\n\n";
+         "**The yardstick** makes times comparable between machines: it is the time to trace 2 000 paths from each of 300 points "
+         "of "
+         "the Cornell box, on one thread. Here it took " +
+         plain(measured.yardstick_spread_s()) + " CPU s (the median, and the ends, of " +
+         std::to_string(measured.yardsticks.size()) + " times in the course of the run). Two threads trace the paths " +
+         plain(measured.two_threads_faster()) + " times faster than one: a second thread cannot bring more on this machine.\n\n";
 }
 
 std::string method(const Settings& settings) {
   return "## How it is measured\n\n"
-         "- **Error** is the nRMSE of irradiance at random surface points, uniform by area: the RMS difference from the truth "
-         "over the mean "
-         "truth. Points under or inside solids are left out, and so are those dark in both. A solution is read as `alvor probe` "
-         "reads it: the "
-         "nearest surface that faces the same way, interpolated in the display mesh. Making that mesh is not part of a solve's "
-         "time.\n"
-         "- **Truth** is unbiased path tracing; its own variance is taken out of all errors, as `alvor verify` does.\n"
-         "- **Alvor** solves in its own process, `--strategy auto` unless another is named. Each row is a solve of its own, from "
-         "nothing: the "
-         "median of " +
+         "- **Error** is the nRMSE of irradiance at random surface points, uniform by area: the RMS difference from the truth, "
+         "divided by the mean truth. Points under or inside solids are left out, and so are points that are dark in both. A "
+         "solution is read as `alvor probe` reads it: the nearest surface that faces the same way, interpolated in the display "
+         "mesh. Making that mesh does not count as time of the solve.\n"
+         "- **Truth** is unbiased path tracing. Its own variance is taken out of all errors, as `alvor verify` does.\n"
+         "- **Alvor** solves in its own process, by `--strategy auto` unless another strategy is named. Each line of a table is "
+         "a "
+         "new solve from the beginning: the median of " +
          std::to_string(settings.seeds) + (settings.seeds == 1 ? " seed" : " seeds") +
-         ", and in brackets the least and the most. A solve of more than " + plain(settings.long_run_s) +
-         " s has one seed; after " + plain(settings.time_limit_s) +
-         " s it is stopped, which the tables mark by \\*, and no tighter tolerance is tried. Leaves are "
-         "limited to a million.\n"
-         "- **Textbook strategies**: `gather`, `shoot`, `sorted` and `overshoot` differ in the order in which light is "
-         "distributed and share "
-         "the rows and the refinement with `auto` ([strategies](strategies.md)).\n"
-         "- **Textbook shooting on a fixed mesh** shares nothing with the solver but the casting of rays, sixteen at a time: "
-         "each face is cut "
-         "evenly into elements, no edge longer than the longest side of the scene over 4 to 64; patches of four elements shoot, "
-         "the "
-         "largest unshot power first, until a thousandth of the emitted power is unshot; a shot sends four shadow rays to each "
-         "element, "
-         "weighted as small disks, and is dimmed where it would bring more than it had (Cohen, Chen, Wallace & Greenberg 1988; "
-         "Wallace, Elmquist & Haines 1989). It runs once, for " +
+         ", and in brackets the least and the most. A solve that takes more than " + plain(settings.long_run_s) +
+         " s is run with one seed. After " + plain(settings.time_limit_s) +
+         " s it is stopped; the tables mark that by \\*, and no tighter tolerance is tried. Leaves are limited to a million.\n"
+         "- **Textbook strategies**: `gather`, `shoot`, `sorted` and `overshoot` distribute light in another order than `auto`. "
+         "Rows "
+         "and refinement are the same ([strategies](strategies.md)).\n"
+         "- **Textbook shooting on a fixed mesh** shares only the casting of rays with the solver, sixteen at a time. Each face "
+         "is "
+         "cut evenly into elements, so that no edge is longer than the longest side of the scene over 4 to 64. Patches of four "
+         "elements shoot, the largest unshot power first, until a thousandth of the emitted power is unshot. A shot sends four "
+         "shadow rays to each element, weighted as small disks, and is dimmed where it would bring more than it had (Cohen, "
+         "Chen, "
+         "Wallace & Greenberg 1988; Wallace, Elmquist & Haines 1989). It runs once, for " +
          plain(settings.fixed_mesh_limit_s) +
          " s at most.\n"
-         "- **Path tracing** is that of `alvor verify`, at the same points as the truth with other random numbers. Its rays are "
-         "not counted. "
-         "Its time is in proportion to the points; where tables speak of 10 000 points, and in the plots, it is scaled so.\n"
-         "- Times are CPU seconds of one thread unless wall seconds are said. Where a table says *to reach*, the error is "
-         "interpolated between "
-         "neighbouring settings on a straight line in log-log.\n\n"
+         "- **Path tracing** is that of `alvor verify`, at the same points as the truth, with other random numbers. Its rays are "
+         "not "
+         "counted. Its time is in proportion to the points; where a table says 10 000 points, and in the plots, it is scaled to "
+         "10 000 points.\n"
+         "- **Times** are CPU seconds of one thread, unless wall seconds are said. Where a table says *to reach*, the error is "
+         "interpolated between neighbouring settings, on a straight line in log-log.\n\n"
          "All runs: [runs.csv](error-vs-time/runs.csv).\n\n";
 }
 

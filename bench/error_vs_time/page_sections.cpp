@@ -81,8 +81,8 @@ std::string targets_section(const Measurements& measured) {
 
 std::string truth_section(const Measurements& measured) {
   std::string text =
-      "## The truth\n\nIts standard error is an RMS over points: over the mean irradiance as the nRMSE is, and point by point "
-      "over each point's own.\n\n" +
+      "## The truth\n\nThe truth has an error of its own. *Standard error* is its RMS over all points, divided by the mean "
+      "irradiance, as the nRMSE is; *point by point* divides the error of each point by the irradiance of that point.\n\n" +
       table_head({"scene", "faces", "points", "hidden", "paths each", "mean, W/m2", "standard error", "point by point", "CPU s"});
   for (const SceneContest& held : measured.contests) {
     const TruthSummary& truth = held.truth;
@@ -99,19 +99,19 @@ std::string estimate_section(const Measurements& measured) {
   if (all.empty()) return "";
   const Spread spread = spread_of(all);
   return "## What the estimate is worth\n\n![estimated against true error](error-vs-time/estimates.png)\n\n"
-         "Estimated over true error of the solves by `auto` on one thread that reached their tolerances: medians over seeds, "
-         "then the ends "
-         "over all solves. A ratio below 1 is an error larger than was said.\n\n" +
+         "The table divides the estimated error by the true error, for solves by `auto` on one thread that reached their "
+         "tolerances: medians over seeds, then the ends over all solves. Below 1, the true error was larger than the "
+         "estimate.\n\n" +
          ratio_table(measured) + "\nAll together: " + plain(spread.low) + " to " + plain(spread.high) + ", median " +
          plain(spread.median) + "; " + within_text(all) + " solves are within a factor of two.\n\n";
 }
 
 std::string path_tracing_section(const Measurements& measured) {
-  std::string text =
-      "## Against path tracing\n\nCPU seconds to reach " + tolerance_percent(path_tracing_error) +
-      ". Path tracing finds the light at 10 000 points, Alvor everywhere. *Extrapolated*: error falls as one over the square "
-      "root of the paths, from the most paths that were measured.\n\n" +
-      table_head({"scene", "path tracing", "Alvor", "times faster"});
+  std::string text = "## Against path tracing\n\nCPU seconds to reach " + tolerance_percent(path_tracing_error) +
+                     ". Path tracing finds the light at 10 000 points, Alvor everywhere. *Extrapolated*: not measured, but "
+                     "computed from the most "
+                     "paths that were measured; the error falls as one over the square root of the paths.\n\n" +
+                     table_head({"scene", "path tracing", "Alvor", "times faster"});
   for (const SceneContest& held : measured.contests) {
     const auto comparison = with_path_tracing(held.groups, held.truth.drawn, path_tracing_error);
     if (!comparison) continue;

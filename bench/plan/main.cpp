@@ -77,18 +77,26 @@ void print_page(int runs, const std::string& instructions) {
   std::vector<Measured> all;
   for (const PlanCase& planned : plan_cases())
     all.push_back({planned, measure(planned, false, runs), measure(planned, true, runs)});
-  std::cout
-      << "# Only what the scene needs: measured\n\nWritten by `scripts/plan.sh`. One thread; CPU seconds are the shortest of "
-      << runs
-      << " runs, plan included;\nbytes are the most in use at a time of what the solver allocates by `new` (Embree's tree is not "
-         "in it); "
-         "instructions are those of\n`alvor::solve` under `valgrind --tool=callgrind`. `alvor explain` says why a feature is "
-         "off.\n\n"
-         "## Off, and forced on\n\nThe same scene with what its plan switches off forced on. The difference is the largest one "
-         "of "
-         "irradiance over all leaves, of the\nlargest irradiance.\n\n";
+  std::cout << "# Only what the scene needs: measured\n\n"
+               "This page shows what a scene costs with a part of the solver (a feature) switched off, because the scene does "
+               "not need it, and with that feature forced on. `scripts/plan.sh` measures and writes it. `alvor explain` says "
+               "why a feature is off.\n"
+               "\n"
+               "- One thread. *CPU s* is the shortest of "
+            << runs
+            << " runs, plan included.\n"
+               "- *Peak bytes* is the most in use at a time of what the solver allocates by `new`; Embree's tree is not in it.\n"
+               "- *Instructions* are those of `alvor::solve` under `valgrind --tool=callgrind`.\n"
+               "\n"
+               "## Off, and forced on\n"
+               "\n"
+               "The same scene as planned, and with what its plan switches off forced on. *Difference* is the largest "
+               "difference of irradiance over all leaves, divided by the largest irradiance.\n"
+               "\n";
   print_switched_off(all, counts);
-  std::cout << "\n## Against the general scene\n\nEach as planned, to 2 % (`flat`: without splits, to 0.2 %).\n\n";
+  std::cout
+      << "\n## Against the general scene\n\nEach scene as planned, compared with the general scene, which needs everything. "
+         "Tolerance 2 % (`flat`: without splits, 0.2 %).\n\n";
   print_against_general(all, counts);
 }
 

@@ -46,40 +46,36 @@ std::string head(const Findings& findings, std::span<const Section> sections) {
   for (std::size_t s = 0; s < sections.size(); ++s)
     for (std::size_t n = 0; n < findings[s].size(); ++n, ++all) held += sections[s].cases[n].holds(findings[s][n]);
   return "# Stiff and extreme scenes\n\n"
-         "What the solver makes of scenes in which light is hardly absorbed, and of scenes at the ends of what a file may hold. "
-         "Each "
-         "line is measured\nagainst a closed form, an invariant or a dense solution; `scripts/stability.sh` measures all of them "
-         "again "
-         "and writes this page. The quick ones are\ntests too. " +
+         "This page shows what the solver makes of scenes in which hardly any light is absorbed, and of scenes at the "
+         "limits of what a file may hold. Each line compares a solve with a closed form, an invariant or a dense "
+         "solution. `scripts/stability.sh` measures all of them again and writes this page. The quick cases are tests "
+         "too. " +
          std::to_string(held) + " of " + std::to_string(all) +
          " cases hold.\n\n"
-         "*Error* is relative to what is expected, in the worst band; on \"every leaf\", of the worst leaf. *Estimate* is what "
-         "the "
-         "solve itself says: the\nestimated nRMSE, or for bare systems of rows the bound on what is still to come. *Shots* are "
-         "rows "
-         "gathered or patches shot. All on one thread.\n";
+         "- *Error* is relative to what is expected, in the worst band; where a case says \"every leaf\", it is that of "
+         "the worst leaf.\n"
+         "- *Estimate* is what the solve itself says: the estimated nRMSE, or for bare systems of rows the bound on what"
+         " is still to come.\n"
+         "- *Shots* are rows gathered or patches shot. All solves use one thread.\n";
 }
 
 }  // namespace
 
 std::vector<Section> all_sections() {
-  return {{"Closed forms", "A solve with default options. Where surfaces emit all over, rows that sum to 1 are the whole truth.",
+  return {{"Closed forms", "Solves with default options. Where all surfaces emit, rows that sum to 1 make the solution exact.",
            closed_form_cases()},
-          {"Known means", "A solve with tolerance 1 %, against solutions of the continuous equation.", reference_cases()},
+          {"Known means", "Solves with tolerance 1 %, compared with solutions of the continuous equation.", reference_cases()},
           {"Slow diffusion",
-           "Bare systems of rows against Gaussian elimination of the same rows in 80 bits. The error is that of radiosity, RMS "
-           "over the "
-           "mean.",
+           "Linear systems of rows without a solve around them, compared with Gaussian elimination of the same rows in 80 "
+           "bits. The error is that of radiosity, RMS over the mean.",
            dense_cases()},
           {"Steps to an error of 1e-6",
-           "Of one row or column each, counted per patch: direct light, what is unshot at first, and the sweeps. Records are "
-           "those of "
-           "exact form factors on\nthe same scenes. The coarse grid and the bound on what is still to come read all rows once "
-           "more each, "
-           "which is not counted.",
+           "A step reads one row or column. Steps are counted per patch (n): direct light, the first unshot light, and the"
+           " sweeps. The steps in *expected* are those of other methods with exact form factors on the same scenes. The "
+           "coarse grid and the bound on what is still to come read all rows once more each; that is not counted.",
            step_cases()},
-          {"Geometry", "Right, or a refusal that names the place.", geometry_cases()},
-          {"Light", "The same.", light_cases()}};
+          {"Geometry", "Awkward geometry must be solved right, or refused with the place.", geometry_cases()},
+          {"Light", "Extreme light must be solved right, or refused with the place.", light_cases()}};
 }
 
 std::string page(std::span<const Section> sections, const Findings& findings) {

@@ -10,15 +10,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <numbers>
 
 namespace alvor {
 
 namespace {
 
+// Receivers that one task lights, so that their rays are traced together. Chosen; not measured.
 constexpr std::size_t receivers_per_batch = 64;
+// Packets of 16 rays that a receiver sends: to an emitter whose first packet is partly blocked (packets_when_mixed, more), and to
+// all emitters that it only samples (packets_of_rest). Chosen; not measured. That packets_of_rest is fixed was measured: sending
+// more only where some rays arrived lost half of the light behind a hole in a screen (docs/error-vs-time/tried.md).
 constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
-constexpr double worth_a_closer_look = 0.1;  // of what arrives: weaker emitters get no more rays
+// Share of the receiver's irradiance, as the first packets find it: an emitter whose unblocked irradiance is below this share
+// gets no more rays. Chosen; not measured.
+constexpr double worth_a_closer_look = 0.1;
+// Share of the way to the emitter at which a shadow ray ends, so that it does not hit the emitter itself. Chosen; not measured.
 constexpr float short_of_emitter = 1 - 1e-4f;
 
 using Lanes = std::array<float, RayPacket::width>;
@@ -60,7 +68,7 @@ class ShadowBatch {
   }
 
  private:
-  /// A receiver and an emitter that face each other.
+  /// A receiver and an emitter that face each other, and the visible fraction of the emitter.
   struct Lit {
     std::size_t receiver;
     std::uint32_t emitter;
@@ -123,7 +131,7 @@ class ShadowBatch {
     for (Lit& lit : lit_) lit.fraction.finish();
   }
   double unblocked(const Lit& lit) const { return lit.mean_form_factor() * emitters_[lit.emitter].emission.mean(); }
-  /// What the first rays say.
+  /// Returns each receiver's irradiance by the first packets, emission units, mean over bands.
   std::vector<double> brightness_of_receivers() {
     std::vector<double> brightness(receivers_.size());
     for (Lit& lit : lit_) {
@@ -166,7 +174,8 @@ class ShadowBatch {
       budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
   }
 
-  /// Ray o goes from origin o to a point of the emitter; `round` counts the packets of one pair.
+  /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the emitter. `round` counts the packets of
+  /// one pair.
   void aim(std::size_t r, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
     const Receiver& receiver = receivers_[r];
     const PatchPoints& from = points_[r];
@@ -198,7 +207,7 @@ class ShadowBatch {
     there_[o] = to.normal;
   }
 
-  /// Weighs each ray by cos cos / r2, direction being from patch to emitter; 0 for hidden origins.
+  /// Sets each ray's weight to cos cos / r2; to 0 for hidden origins. Ray directions go from the patch to the emitter.
   void hide(std::size_t packet, const Receiver& receiver) {
     const Float3& n = scene_.root(receiver.shape.root).normal;
     const RayPacket& rays = rays_[packet];
@@ -228,7 +237,8 @@ class ShadowBatch {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
   }
 
-  /// Emitters that bring little each: a number of rays that does not depend on what they find, or the mean would be dark.
+  /// Adds the light of the emitters that are sampled. The number of rays is fixed: if it depended on what the rays find, the mean
+  /// would be too dark.
   void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Samples samples = sample_rest(r, choice, tree);
     if (samples.count == 0) return;
@@ -283,7 +293,7 @@ class ShadowBatch {
   std::uint64_t seed_;
   RayBudget& budget_;
   std::span<DirectLight> light_;
-  std::vector<PatchPoints> points_;  // by receiver
+  std::vector<PatchPoints> points_;  // sample points of each receiver
   std::vector<Lit> lit_;
   std::vector<RayPacket> rays_;
   std::vector<Lanes> weights_;
@@ -304,7 +314,7 @@ void in_batches(const LocalScene& scene, std::span<const Emitter> emitters, std:
   });
 }
 
-/// Calls in_batches with these arguments, compiled for what is needed.
+/// Calls in_batches with these arguments, in the template instance that computes only what `needs` asks for.
 template <class... Arguments>
 void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
   if (needs.occlusion && needs.medium) return in_batches<true, true>(arguments...);
@@ -317,12 +327,14 @@ void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
 
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
                       std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs) {
+  assert(light.size() == receivers.size());
   in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [](auto&& batch) { batch.add_all(); });
 }
 
 void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
                       std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light,
                       ShadowNeeds needs) {
+  assert(light.size() == receivers.size());
   in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [&](auto&& batch) { batch.add_chosen(tree); });
 }
 

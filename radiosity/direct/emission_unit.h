@@ -8,8 +8,9 @@
 
 namespace alvor {
 
-/// One emission unit is the brightest emission of the scene, W/m2 (1 in the dark). Between these two functions the solver's light
-/// and power are multiples of it, so that squares stay within the range of numbers however bright or dim a scene is.
+/// Converts between W/m2 and emission units. One emission unit is the brightest emission of the scene in any band, W/m2; 1 W/m2
+/// if nothing emits. Inside direct, exchange and solve all light and power are multiples of it, so that squares stay within the
+/// range of numbers however bright or dim a scene is.
 class EmissionUnit {
  public:
   explicit EmissionUnit(const BaseMesh& mesh) {
@@ -23,7 +24,7 @@ class EmissionUnit {
   Rgb from_watts_per_m2(const Rgb& light) const { return (1 / watts_per_m2_) * light; }
   /// Returns emission units as W/m2.
   Rgb to_watts_per_m2(const Rgb& light) const { return watts_per_m2_ * light; }
-  /// Returns power, in emission units times m2, as W.
+  /// Returns W for a power in emission units times m2.
   double to_watts(double power) const { return watts_per_m2_ * power; }
 
  private:

@@ -1,21 +1,24 @@
 #include "radiosity/direct/light_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numbers>
 
 namespace alvor {
 
 namespace {
 
-constexpr double small_share = 0.02;     // of all bounds: clusters below it are sampled
-constexpr std::size_t most_single = 48;  // emitters looked at one by one
+// A cluster whose bound is below this share of the sum of all bounds is sampled, not computed one by one. Chosen; not measured.
+constexpr double small_share = 0.02;
+// Most emitters that one receiver computes one by one. Chosen; not measured.
+constexpr std::size_t most_single = 48;
 
 Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
 double along(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-/// Largest dot(direction, p) over the box.
+/// Returns the largest dot(direction, p) over the points p of the box.
 double reach(Vec3 low, Vec3 high, Vec3 direction) {
   return std::max(direction.x * low.x, direction.x * high.x) + std::max(direction.y * low.y, direction.y * high.y) +
          std::max(direction.z * low.z, direction.z * high.z);
@@ -114,6 +117,7 @@ LightChoice LightTree::choose(Vec3 centre, double radius, Vec3 normal) const {
 }
 
 LightTree::Drawn LightTree::draw(const LightChoice& choice, Vec3 centre, double radius, Vec3 normal, RandomStream& random) const {
+  assert(choice.rest_bound > 0);
   double x = random.next() * choice.rest_bound;
   std::size_t c = 0;
   while (c + 1 < choice.rest.size() && x >= choice.rest[c].bound) x -= choice.rest[c++].bound;

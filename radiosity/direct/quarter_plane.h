@@ -1,5 +1,5 @@
 #pragma once
-// From what is known at a patch's quarters to its sixteen strata.
+// Interpolates values of a patch's four quarters to its sixteen strata.
 
 #include "meshing/patch_place.h"
 #include "radiosity/rays/sampling.h"
@@ -9,7 +9,7 @@
 
 namespace alvor {
 
-/// A plane over a patch: the mean of its quarters in the middle, and their differences along the patch's own axes.
+/// A plane fitted to four values at the quarters of a patch: their mean at the centre, their differences along the patch's axes.
 class QuarterPlane {
  public:
   QuarterPlane(const std::array<double, 4>& quarter, bool is_quad) : is_quad_(is_quad) {
@@ -18,7 +18,7 @@ class QuarterPlane {
     along_u_ = is_quad ? b + d - a - c : 2 * (b - a);
     along_v_ = is_quad ? c + d - a - b : 2 * (c - a);
   }
-  /// At the middle of a stratum; not below 0.
+  /// Returns the plane's value at the middle of stratum `o`, at least 0.
   double at_origin(int o) const {
     static const auto quad = middles(4), triangle = middles(3);
     const Uv& at = (is_quad_ ? quad : triangle)[static_cast<std::size_t>(o)];
@@ -26,7 +26,7 @@ class QuarterPlane {
   }
 
  private:
-  /// Of the strata, seen from the middle of the patch.
+  /// Returns the offsets of the strata's middles from the middle of the patch.
   static std::array<Uv, origins_per_patch> middles(int corner_count) {
     const PatchShape whole{0, corner_count, {0, 0}, grid_size};
     std::array<Uv, origins_per_patch> at;

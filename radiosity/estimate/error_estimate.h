@@ -1,5 +1,5 @@
 #pragma once
-// How far the solution is from the truth, patch by patch, in units of irradiance.
+// Estimates how far the solution is from the truth: of single leaves as irradiance, of the whole scene as nRMSE.
 
 #include "meshing/leaf_gradient.h"
 
@@ -7,22 +7,23 @@
 
 namespace alvor {
 
-/// What linear interpolation between leaves misses, RMS over the leaf. Each smooth neighbour's value is compared with the leaf's
-/// linear prediction of it, and the other way; the larger difference is f'' h2 / 2 for a parabola, whose interpolation errs by
-/// 0.18 of that along one axis: 0.25 of the RMS over all neighbours. At a crease, up to which the leaf extrapolates, it is 0.4.
-/// Mean over bands, W/m2. The spans are indexed by node.
+/// Returns the RMS error over the leaf of linear interpolation between leaves, mean over bands, in the unit of `value`. Each
+/// smooth neighbour's value is compared with the leaf's linear prediction of it, and the leaf's value with the neighbour's
+/// prediction. For a parabola the larger difference is f'' h^2 / 2, and its interpolation errs by 0.18 of that along one axis.
+/// The result is 0.25 of the RMS difference over all neighbours, and 0.4 of it at a crease, up to which the leaf extrapolates.
+/// The spans are indexed by node.
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                            std::span<const Rgb> value, std::span<const LeafSlope> slope);
 
-/// The parts of the estimated nRMSE; squares add.
+/// The parts of the estimated nRMSE of the irradiance: RMS error over the mean irradiance. Their squares add up to total().
 struct ErrorEstimate {
-  double interpolation = 0;  ///< of the leaves' values by whoever displays them
-  double misfit = 0;         ///< of what rows say by the field fitted to them
-  double sampling = 0;       ///< noise of that field
-  double unshot = 0;         ///< of stopping early
-  double balance = 0;        ///< of the emitted power: what is not accounted for
-  double mesh() const;
-  double total() const;
+  double interpolation = 0;  ///< error of interpolating linearly between the leaves' values
+  double misfit = 0;         ///< difference between the rows' own samples and the field fitted to them
+  double sampling = 0;       ///< noise of that field and of shadow rays
+  double unshot = 0;         ///< bound on the light that is still to come (Exchange::remaining_error)
+  double balance = 0;        ///< share of the emitted power that is not accounted for (PowerBalance::gap)
+  double mesh() const;       ///< interpolation and misfit together
+  double total() const;      ///< all parts together
 };
 
 }  // namespace alvor

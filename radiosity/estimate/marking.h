@@ -7,18 +7,17 @@
 
 namespace alvor {
 
-/// A way to make the solution better, and where. Patches are nodes of the forest of leaves for split_leaf, of that of rows
-/// otherwise.
+/// One possible refinement of the solution. `patch` is a node of the leaf forest for split_leaf, and of the row forest otherwise.
 struct Candidate {
   enum class Kind { split_leaf, split_row, add_rays };
   Kind kind = Kind::split_leaf;
   NodeIndex patch = 0;
-  double squared_error = 0;  ///< what it would remove most of, area-weighted
-  double rays = 1;           ///< what it costs
+  double squared_error = 0;  ///< squared error, integrated over the patch, most of which the refinement would remove
+  double rays = 1;           ///< rays that the refinement costs
 };
 
-/// The candidates with the most error per ray that together make up `share` of the whole squared error (bulk marking, Doerfler
-/// 1996).
+/// Returns the candidates with the most squared error per ray that together make up `share` of the whole squared error (bulk
+/// marking, Doerfler 1996), the best first.
 std::vector<Candidate> mark(std::vector<Candidate> candidates, double share);
 
 }  // namespace alvor

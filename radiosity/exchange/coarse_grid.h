@@ -1,5 +1,5 @@
 #pragma once
-// The slow part of an exchange of light, found at once on few unknowns.
+// Solves for the slowly converging part of an exchange of light directly, with few unknowns.
 
 #include "radiosity/exchange/coarse_units.h"
 #include "radiosity/exchange/dense_lu.h"
@@ -8,14 +8,15 @@
 
 namespace alvor {
 
-/// The system y = F (e + rho y) for irradiance that is the same all over each unit, balanced over its area (two-grid correction,
-/// Galerkin). Light that changes slowly as it goes round, in a white room or from room to room through small doors, is nearly so.
+/// The system y = F (e + rho y) restricted to irradiance that is constant over each unit, averaged over the unit's area (two-grid
+/// correction, Galerkin). Light that converges slowly, in a white room or from room to room through small doors, is nearly
+/// constant over units.
 class CoarseGrid {
  public:
   CoarseGrid(CoarseUnits units, const RowHits& hits);
 
-  /// Replaces in `step`, which begins as the residual, its mean over each unit by the irradiance that would take it away. By
-  /// patch.
+  /// Improves `step`, which holds the residual at first: replaces its mean over each unit by the irradiance that removes the mean
+  /// of the residual. Both spans are by patch.
   void correct(std::span<const Rgb> residual, std::span<Rgb> step) const;
 
  private:
@@ -23,7 +24,7 @@ class CoarseGrid {
   static std::array<Matrix, 3> matrices(const CoarseUnits& units, const RowHits& hits, std::span<const double> weight);
 
   CoarseUnits units_;
-  std::vector<double> weight_;  // by patch: its share of the area of its unit
+  std::vector<double> weight_;  // each patch's share of the area of its unit
   std::vector<DenseLu<double>> band_;
 };
 

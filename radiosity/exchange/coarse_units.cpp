@@ -8,8 +8,10 @@ namespace alvor {
 namespace {
 
 constexpr std::uint32_t none = ~0u;
-constexpr double least_decrease = 0.1;  // of the units, in a round: with less, pairs alone will not do
+// Share of the units that a round of pairing must remove; if it removes less, unpaired units join pairs. Chosen; not measured.
+constexpr double least_decrease = 0.1;
 
+/// Returns units of patches with equal names (`names` is by patch), numbered in the order of their first patches.
 CoarseUnits numbered(std::span<const std::uint64_t> names) {
   std::unordered_map<std::uint64_t, std::uint32_t> number;
   CoarseUnits units;
@@ -19,7 +21,7 @@ CoarseUnits numbered(std::span<const std::uint64_t> names) {
   return units;
 }
 
-/// `group` is by unit.
+/// Returns the units that arise when units with equal `group` (by unit) are joined.
 CoarseUnits grouped(const CoarseUnits& units, std::span<const std::uint32_t> group) {
   std::vector<std::uint64_t> names;
   for (const std::uint32_t unit : units.of_patch) names.push_back(group[unit]);
@@ -35,7 +37,7 @@ CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
   return numbered(names);
 }
 
-/// Of all units, in turn, the one that sees most of one and is not taken yet. Results are names of groups, by unit.
+/// Joins each unit, in turn, to the unit that it sees most of. Results are group names by unit, for grouped().
 class PairFinder {
  public:
   PairFinder(const CoarseUnits& units, const RowHits& hits)
@@ -51,8 +53,8 @@ class PairFinder {
     return names();
   }
 
-  /// After pairs(): those that are still alone go to the pair of the one that they see most of. Many small things that see
-  /// nothing but one large thing would join it one by one otherwise.
+  /// Returns the groups of pairs(), which must have been called, with unpaired units in the group of the unit that they see most
+  /// of. Without that, many small units that see only one large unit would join it one per round.
   std::vector<std::uint32_t> pairs_and_followers() {
     std::vector<std::uint32_t> name = names();
     for (std::uint32_t unit = 0; unit < units_.count; ++unit) {
@@ -70,7 +72,7 @@ class PairFinder {
     return name;
   }
 
-  /// Of those that may be taken.
+  /// Returns the unit that `unit` sees most of, among those for which may_take() is true; `none` if it sees none of them.
   template <class MayTake>
   std::uint32_t strongest(std::uint32_t unit, MayTake&& may_take) {
     std::vector<std::uint32_t> seen;
@@ -91,7 +93,7 @@ class PairFinder {
   const CoarseUnits& units_;
   const RowHits& hits_;
   std::vector<std::vector<std::uint32_t>> members_;
-  std::vector<double> flux_;  // by unit, from the unit that looks; else 0
+  std::vector<double> flux_;  // by unit: light from the unit that strongest() looks from; 0 between calls
   std::vector<std::uint32_t> partner_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Few groups of patches in which light is nearly even.
+// Groups patches into a few units over which light is nearly constant.
 
 #include "radiosity/exchange/row_hits.h"
 #include "solution/patch_id.h"
@@ -9,20 +9,21 @@
 
 namespace alvor {
 
-/// A unit for each patch; units count from 0.
+/// A partition of patches into units, which are numbered from 0.
 struct CoarseUnits {
-  std::vector<std::uint32_t> of_patch;
+  std::vector<std::uint32_t> of_patch;  ///< unit of each patch
   std::size_t count = 0;
 
-  std::vector<std::vector<std::uint32_t>> members() const;
+  std::vector<std::vector<std::uint32_t>> members() const;  ///< patches of each unit
 };
 
-/// The ancestors of patches in their quadtrees, as deep as no more than `most` are reached; the roots, if they are more.
+/// Returns units that are the patches' ancestors in their quadtrees at the deepest level that has no more than `most` of them;
+/// the roots if these are more.
 CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most);
 
-/// Joins units to pairs, each with the one that it sees most of and that is still alone, and again, until they are at most `most`
-/// (pairwise aggregation, Notay 2010) or none see each other. Where that goes slowly the others join pairs, as in smoothed
-/// aggregation (Vanek et al. 1996). Returns the rounds that took; each looks at all hits.
+/// Joins units in rounds until they are at most `most` or none see each other. In a round each unit forms a pair with the
+/// unpaired unit that it sees most of (pairwise aggregation, Notay 2010). If that leaves more than 90 % of the units, unpaired
+/// ones join the pairs, as in smoothed aggregation (Vanek et al. 1996). Returns the number of rounds; each reads all hits.
 int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most);
 
 }  // namespace alvor

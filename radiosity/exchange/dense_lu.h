@@ -1,6 +1,7 @@
 #pragma once
 // Gaussian elimination with partial pivoting, for small systems.
 
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -8,17 +9,19 @@
 
 namespace alvor {
 
-/// A factored square matrix.
+/// The LU factors of a square matrix.
 template <class Number>
 class DenseLu {
  public:
-  /// `rows` is square and regular.
+  /// Factors the matrix. Requires: `rows` is square and not singular.
   explicit DenseLu(std::vector<std::vector<Number>> rows) : rows_(std::move(rows)), order_(rows_.size()) {
     for (std::size_t k = 0; k < order_.size(); ++k) order_[k] = k;
     for (std::size_t k = 0; k < order_.size(); ++k) eliminate(k);
   }
 
+  /// Returns x with matrix times x = `right_side`. Requires: one number per row.
   std::vector<Number> solve(const std::vector<Number>& right_side) const {
+    assert(right_side.size() == order_.size());
     const std::size_t n = order_.size();
     std::vector<Number> x(n);
     for (std::size_t k = 0; k < n; ++k) {
@@ -46,8 +49,8 @@ class DenseLu {
     }
   }
 
-  std::vector<std::vector<Number>> rows_;  // the upper triangle and, without its diagonal of ones, the lower
-  std::vector<std::size_t> order_;         // of the rows of the matrix
+  std::vector<std::vector<Number>> rows_;  // the upper triangle and, without its diagonal of ones, the lower one
+  std::vector<std::size_t> order_;         // row of the matrix that became each row of the factors
 };
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// How light goes round between patches that have rows, until nothing is unshot.
+// Iterative solution of the exchange of light between patches that have rows, until nothing is unshot.
 
 #include "solution/rgb.h"
 
@@ -9,42 +9,45 @@
 
 namespace alvor {
 
-/// The system x = e + rho F x on its way to its solution, where F are the transport rows, x is the radiosity that was distributed
-/// so far, and e + rho F x - x is unshot. Used by one thread at a time.
+/// The system x = e + rho F x while it is being solved. F are the transport rows, x is the radiosity distributed so far, and
+/// e + rho F x - x is the unshot radiosity. Light is in emission units (see EmissionUnit). Used by one thread at a time.
 class Exchange {
  public:
   virtual ~Exchange() = default;
-  /// Many steps; returns their number. 0: there is nothing left to do.
+  /// Makes many steps (patches shot or gathered) and returns their number. 0: there is nothing left to do.
   virtual std::size_t sweep() = 0;
-  /// |unshot radiosity| times area, summed over bands, W.
+  /// Returns |unshot radiosity| times area, summed over patches and bands, in emission units times m2.
   virtual double unshot_power() const = 0;
-  /// Root of the mean square of unshot radiosity over the area, W/m2.
+  /// Returns the RMS of the unshot radiosity over the area, per band, in emission units.
   virtual Rgb unshot_rms() const = 0;
-  /// Mean of radiosity as far as rows know it, distributed and unshot, over the area, W/m2.
+  /// Returns the mean over the area of the magnitude of the radiosity, distributed and unshot, per band, in emission units.
+  /// Emission that rows do not carry is not in it.
   virtual Rgb mean_radiosity() const = 0;
-  /// What unshot radiosity may come to before it is absorbed, itself included: see alvor::amplification.
+  /// Returns a bound on all light that unshot radiosity becomes before it is absorbed, itself included, as a multiple of it
+  /// (RMS), per band: see alvor::amplification.
   virtual Rgb amplification() const = 0;
-  /// By patch: received by rows so far, W/m2.
+  /// Returns the irradiance that each patch received by its row so far, in emission units.
   virtual std::vector<Rgb> irradiance() const = 0;
-  /// Ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance), each
-  /// reflection weakened by what escapes from an open scene.
+  /// Returns the ambient irradiance (Cohen et al. 1988), in emission units: R times the mean unshot radiosity, with
+  /// R = 1 / (1 - mean reflectance). In an open scene each reflection is weakened by the share of light that escapes.
   virtual Rgb ambient_irradiance() const = 0;
   virtual std::size_t patch_count() const = 0;
-  /// Returns the radiosity that each leaf has shot, patch after patch, where light is exchanged by shots; empty where it is
-  /// gathered.
+  /// Returns the radiosity that each leaf has shot, patch after patch, in emission units. Empty if light is gathered.
   virtual std::vector<Rgb> shot() const { return {}; }
 
-  /// Bound on what is still to come: RMS over the mean radiosity, in the band where it is worst. Where nearly all is reflected it
-  /// is far more than what is unshot: a small residual is no small error. It holds as far as rows are reciprocal, so up to their
-  /// noise.
+  /// Returns a bound on the radiosity that is still to come: its RMS over the mean radiosity, in the worst band. Where nearly all
+  /// light is reflected it is far more than the unshot radiosity: a small residual is no small error. It holds as far as rows are
+  /// reciprocal, so up to their noise.
   double remaining_error() const;
 };
 
-/// How an exchange ended: with the remaining error asked for, with one that more sweeps would hardly change, or asked to stop.
+/// How settle() ended: the remaining error is as small as asked for, more sweeps would hardly change it, or `after_each` stopped
+/// it.
 enum class Settling { settled, stalled, stopped };
 
-/// Sweeps down to `enough` of remaining_error(). It stalls where a thousand steps a patch were not enough, or where for a while
-/// none brought a new low: there rounding begins. `after_each` sweep is told its steps and may ask to stop by false.
+/// Sweeps until remaining_error() is at most `enough`. Gives up (`stalled`) after 1000 steps per patch, or after 64 steps per
+/// patch without a new lowest error, where rounding begins. After each sweep it calls after_each(number of steps), which returns
+/// false to stop.
 Settling settle(Exchange& exchange, double enough, const std::function<bool(std::size_t steps)>& after_each);
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Weighted least squares of a polynomial in two coordinates to samples of irradiance.
+// Fits a polynomial in two coordinates to samples of irradiance by weighted least squares.
 
 #include "solution/rgb.h"
 
@@ -9,12 +9,14 @@
 
 namespace alvor {
 
-/// A sample seen from a row's centre, in units of the row's edge.
+/// A sample of irradiance: place (s, t) relative to a row's centre in edges of the row's patch, number of rays, value per band in
+/// emission units.
 struct WindowSample {
   double s, t, rays, r, g, b;
 };
 
-/// Normal equations of a weighted fit: for each function of the basis its products with the basis, then with the bands.
+/// The normal equations of a weighted fit of the first `n` functions of 1, s, t, s^2, s t, t^2. Row i of `sums_` holds the
+/// products of function i with all six functions, then with the three bands.
 template <int n>
 class FieldEquations {
  public:
@@ -33,10 +35,11 @@ class FieldEquations {
 
   struct Solution {
     std::array<Rgb, 6> coefficient{};
-    double misfit = 0;    ///< mean square residual
-    double response = 0;  ///< of the centre to one ray's variance
-    double noise = 0;     ///< that a sample has of one ray's variance
+    double misfit = 0;    ///< mean square residual of the samples, mean over bands
+    double response = 0;  ///< variance of the fit's value at the centre, as a multiple of one ray's variance
+    double noise = 0;     ///< mean variance of a sample, as a multiple of one ray's variance
   };
+  /// Returns the fit; nothing if there are fewer than n + n / 2 samples or they do not determine it.
   std::optional<Solution> solve() const {
     if (count_ < n + n / 2) return std::nullopt;
     double a[n][width];
@@ -58,9 +61,12 @@ class FieldEquations {
   }
 
  private:
-  static constexpr double kernel_response = 0.7;  // mean of w2 over that of w, where the fit's centre listens
+  // Ratio of the mean of w^2 to the mean of w near the fit's centre, w = (1 - r^2)^2 being the weights. The exact ratio on a disk
+  // evenly filled with samples is 0.60 for a plane and 0.74 for a quadratic.
+  static constexpr double kernel_response = 0.7;
   static constexpr int bands = 6, response = 9, width = 12;
-  /// Gauss-Jordan; the matrix is symmetric positive definite, so pivots come in order.
+  /// Eliminates column i (Gauss-Jordan). Returns false if its pivot is lost in rounding. The matrix is symmetric positive
+  /// definite, so pivots are taken in order.
   bool eliminate(double (&a)[n][width], int i) const {
     if (!(a[i][i] > 1e-9 * sums_[i][i])) return false;
     const double inverse = 1 / a[i][i];

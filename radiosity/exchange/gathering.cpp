@@ -8,11 +8,18 @@ namespace alvor {
 
 namespace {
 
-constexpr double least_gain = 0.01;          // of the squared residual: with less a plain step does better, and ends what stalls
-constexpr std::size_t few_units = 128;       // of a coarse grid that costs next to nothing
-constexpr std::size_t many_units = 400;      // of one for light that goes round slowly
-constexpr std::size_t sweeps_looked_at = 4;  // to see whether it does
-constexpr double slow = 0.004;               // of the squared residual: more is left after these, half in each
+// Share of the squared residual that a combined step must remove; with less a band takes the step without combination, so that
+// systems far from reciprocal cannot stall. Chosen; not measured.
+constexpr double least_gain = 0.01;
+// Units of the first coarse grid, small enough to solve it at little cost. Chosen; not measured.
+constexpr std::size_t few_units = 128;
+// Units of the finer coarse grid for systems that converge slowly. Chosen; not measured.
+constexpr std::size_t many_units = 400;
+// Sweeps between looks at how fast the residual falls. Chosen; not measured.
+constexpr std::size_t sweeps_looked_at = 4;
+// Share of the squared residual that is left after these sweeps if each halves the residual: (1/2)^(2 * 4) = 1/256. A system with
+// more left is slow.
+constexpr double slow = 0.004;
 
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
@@ -100,7 +107,7 @@ Rgb Gathering::product(std::span<const Rgb> a, std::span<const Rgb> b) const {
   return sum;
 }
 
-// As if all leaves of a patch had the same area: it only says how much light there is.
+// All leaves of a patch are taken to have the same area, because the sum only tells how much light there is.
 void Gathering::find_own_power() {
   for (const ShootingPatch& patch : patches_)
     for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k)
@@ -138,7 +145,7 @@ std::size_t Gathering::sweep() {
   return patches_.size();
 }
 
-/// y := F (e + rho y).
+/// Takes the step y := F (e + rho y).
 void Gathering::plain_step() {
   for (std::size_t p = 0; p < patches_.size(); ++p) irradiance_[p] += residual_[p];
   spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
@@ -173,7 +180,7 @@ void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<
   }
 }
 
-// A band that took a plain step starts anew: what it remembers no longer counts.
+// A band that took the step without combination starts anew: its part of all remembered directions is ignored.
 void Gathering::remember(Direction direction, const Rgb& in_bands) {
   for (Direction& other : directions_) other.norm = in_bands * other.norm;
   direction.norm = in_bands * direction.norm;

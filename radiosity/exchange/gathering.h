@@ -1,5 +1,5 @@
 #pragma once
-// Light exchange by gathering everywhere at once, accelerated by generalised conjugate residuals.
+// Light exchange by gathering at all patches at once, accelerated by generalised conjugate residuals.
 
 #include "radiosity/exchange/coarse_grid.h"
 #include "radiosity/exchange/exchange.h"
@@ -14,25 +14,26 @@
 
 namespace alvor {
 
-/// What a system needs. What it does not need takes no time and no memory.
+/// Which parts of the method a system needs. A part that is off takes no time and no memory.
 struct GatheringNeeds {
   bool three_bands = true;   ///< false: all bands are equal
-  bool acceleration = true;  ///< false: few plain steps do
+  bool acceleration = true;  ///< false: only plain steps, for systems that need few of them
 };
 
-/// A linear system has one unknown a patch and band: the irradiance y by its row, y = F (e + rho y). Each step gathers once at
-/// all patches, in parallel, and takes the combination with the directions of the last steps that leaves the smallest residual
-/// (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own. One that gains nearly nothing takes a plain step.
-/// Before that each step is completed by what a coarse grid makes of the residual, a finer one where light was seen to go round
-/// slowly. It needs no transpose of the rows, and its residual, times the reflectance, is the unshot radiosity, of either sign.
-/// Results do not depend on the number of threads.
+/// The exchange of light as a linear system with one unknown per patch and band: y = F (e + rho y), the irradiance by the patch's
+/// row. Each sweep gathers once at all patches, in parallel. A coarse grid first improves the residual to a step; a finer grid
+/// takes its place if the residual falls slowly. The step is then combined with the last six directions so that the smallest
+/// residual is left (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own; a band that gains less than 1 % takes
+/// the step without combination. No transpose of the rows is needed. The residual times the reflectance is the unshot radiosity,
+/// of either sign. Results do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
-  /// Between no patches.
+  /// Makes an exchange between no patches.
   Gathering() = default;
-  /// `leaf_of_place` says where the leaves of patches (consecutive places, as in ShootingPatch) are among `leaf_count` leaves,
-  /// `own_radiosity` by place what they emit and reflect of direct light; `hit_leaf` of each patch is by hit of its row.
-  /// `irradiance` by patch is where to begin. `ids` by patch; without them there is no coarse grid. Borrows all but the vectors.
+  /// Begins at `irradiance` (by patch). Places number the leaves of all patches, patch after patch, as in ShootingPatch;
+  /// `leaf_of_place` is the leaf at each place, among `leaf_count` leaves. `own_radiosity` (by place) is a leaf's emission and
+  /// reflected direct light, in emission units. `hit_leaf` of each patch are the leaves that the hits of its row find. `ids` (by
+  /// patch) may be empty; then there is no coarse grid. Borrows all but the vectors.
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
             std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
             std::vector<PatchId> ids = {}, GatheringNeeds needs = {});
@@ -47,47 +48,49 @@ class Gathering : public Exchange {
   std::size_t patch_count() const override { return patches_.size(); }
 
  private:
+  /// A search direction, by patch: a step of the irradiance, and the change that it takes away from the residual.
   struct Direction {
-    std::vector<Rgb> step, change;  // by patch: of the irradiance, and what that takes from the residual
-    Rgb norm;                       // of the change, squared
+    std::vector<Rgb> step, change;
+    Rgb norm;  // squared norm of `change`, weighted by area
   };
   void gather(std::vector<Rgb>& received);
   Rgb row_times_radiosity(std::size_t patch) const;
   void plain_step();
   void conjugate_step();
   void make_conjugate(Direction& next) const;
-  /// By band 1 where the step shortens the residual well enough, else 0.
+  /// Returns 1 for each band in which the step reduces the squared residual by more than 1 %, else 0.
   Rgb helps(const Rgb& length, const Rgb& overlap) const;
   void advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change);
   void remember(Direction direction, const Rgb& in_bands);
   std::vector<Rgb> reflectance_seen();
   void coarsen(CoarseUnits units);
-  /// Takes a finer coarse grid where the residual falls slowly.
+  /// Looks at the residual every four sweeps and takes a finer coarse grid if it falls by less than half per sweep.
   void watch_decrease();
-  /// Sets what leaves each leaf to light(patch, place). In parallel.
+  /// Sets the light that leaves each leaf to light(patch, place). In parallel.
   template <class Light>
   void spread(Light&& light);
   void find_own_power();
   void find_unshot();
+  /// Returns the scalar product of two functions of the patches, weighted by area, per band.
   Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
 
-  static constexpr std::size_t remembered = 6;
+  static constexpr std::size_t remembered = 6;  // directions kept; each takes 6 numbers per patch. Chosen; not measured
   std::span<const ShootingPatch> patches_;
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const Rgb> own_radiosity_;
   std::vector<const std::uint32_t*> hit_leaf_;
   bool is_accelerated_ = true;
-  LightByLeaf leaving_{0, true};            // what the next gathering finds
+  LightByLeaf leaving_{0, true};            // light that the next gathering finds at each leaf
   std::vector<Rgb> irradiance_, residual_;  // by patch
   std::vector<Rgb> power_weight_;           // by patch: area times reflectance
-  std::vector<Direction> directions_;       // the last ones, in a ring
+  std::vector<Direction> directions_;       // the last directions, in a ring
   std::size_t steps_ = 0;
   std::vector<PatchId> ids_;                  // by patch
   std::vector<std::uint32_t> patch_of_leaf_;  // for the coarse grid
   std::optional<CoarseGrid> coarse_;
-  Rgb squares_before_;  // of the residual, when its decrease was last looked at
+  Rgb squares_before_;  // squared residual when watch_decrease() looked at it last
   std::size_t sweeps_ = 0;
-  bool is_finest_ = false;  // of the coarse grids
+  bool is_finest_ = false;  // the coarse grid has been replaced by the finer one
   double area_ = 0, unshot_power_ = 0;
   Rgb unshot_rms_, unshot_sum_, own_power_, ambient_gain_, amplification_;
 };

@@ -12,21 +12,32 @@ namespace alvor {
 
 namespace {
 
-constexpr double narrow_window = 1.5, wide_window = 3.5;  // radius, in edges of the row's patch
-constexpr double near_rows = 1.6;                         // closer than this rows count by quarters, else as a whole
-constexpr double misfit_allowed = 1.3;                    // of the noise's variance
-constexpr double residual_noise = 0.8;                    // of a sample's variance is left after a fit that knows it
-constexpr std::size_t most_rows = 64;                     // in a window
-constexpr double same_surface = 0.9;                      // cosine between normals
+// Radii of the windows of a plane and of a quadratic, in edges of the row's patch. Measured for wide_window: 5 or 6.5 gave an
+// error of 1.1 % where 3.5 gives 0.9 % (Cornell box, a million rays, docs/error-vs-time/tried.md). narrow_window is chosen; not
+// measured.
+constexpr double narrow_window = 1.5, wide_window = 3.5;
+// Distance, in edges of the row's patch, below which a row counts by its quarters, and beyond which as a whole. Chosen; not
+// measured.
+constexpr double near_rows = 1.6;
+// Multiple of the noise's variance up to which noise explains a misfit. Measured: with 1 half of all windows misfit by
+// chance, 1.3 takes a fifth fewer rays, and with 2 detail is missed in the enfilade (docs/error-vs-time/tried.md).
+constexpr double misfit_allowed = 1.3;
+// Share of a sample's variance that is left in its difference from a fit that uses the sample. It is 0.8 to 0.95, by the size of
+// the window (tests/radiosity/irradiance_field_test.cpp, NoiseIsNoMisfit).
+constexpr double residual_noise = 0.8;
+// Most rows in a window. A wide window of equal patches holds 3.5^2 pi = 38. Chosen; not measured.
+constexpr std::size_t most_rows = 64;
+// Cosine between the normals of two rows from which they are one surface. Chosen; not measured.
+constexpr double same_surface = 0.9;
 
-/// What a number of rays say, and where.
+/// The mean irradiance that a number of rays found, and the mean place of their origins.
 struct Sample {
   Vec3 at;
   Rgb irradiance;
   double rays = 0;
 };
 
-/// The rows of a window, each once, in the order of arrival.
+/// The rows of a window, each once, in the order in which they were added; at most most_rows.
 class RowSet {
  public:
   void add(std::uint32_t row) {
@@ -47,11 +58,11 @@ class RowSet {
   std::size_t count_ = 0;
 };
 
-/// Samples around one row.
+/// The samples around one row.
 struct Window {
   std::array<WindowSample, 2 * most_rows + 64> samples;
   std::size_t count = 0;
-  double noise = 0;  ///< variance of the mean over bands of one ray
+  double noise = 0;  ///< variance of one ray's value (mean over bands), emission units squared
 };
 
 template <int n>
@@ -88,13 +99,13 @@ class Fitter {
   }
 
  private:
-  /// What is known of a row by itself.
+  /// Properties of a row that do not depend on its neighbours.
   struct Known {
     std::array<Sample, 4> quarters;
     Sample whole;
     Vec3 normal;
     double edge = 0;
-    double noise = -1;  ///< variance of one ray, by what no plane through the quarters explains; negative: not known
+    double noise = -1;  ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
     bool is_dark = true;
   };
 
@@ -132,7 +143,8 @@ class Fitter {
     return field;
   }
 
-  /// Breadth first over smooth neighbours.
+  /// Fills the window with the samples of rows around row `n`, breadth first over smooth neighbours, and sets the range of
+  /// `field`.
   void look_around(std::size_t n, FieldFit& field, Window& window) const {
     const Known& own = known_[n];
     const double squared_reach = wide_window * wide_window * own.edge * own.edge;
@@ -180,7 +192,7 @@ class Fitter {
     else take_own_mean(n, window, field);
   }
 
-  /// What the row's own quarters say, beyond what noise explains.
+  /// Returns the mean square difference of the row's own quarters from the fit, less their noise.
   double misfit_of(std::size_t n, const Window& window, const FieldFit& field) const {
     double squares = 0, count = 0;
     for (const Sample& quarter : known_[n].quarters) {
@@ -207,7 +219,7 @@ class Fitter {
   std::span<const NodeIndex> rows_;
   std::span<const SmoothNeighbours> neighbours_;
   std::span<const Vec3> centre_;
-  std::vector<std::uint32_t> place_;  // by node
+  std::vector<std::uint32_t> place_;  // place in rows_ of each node
   std::vector<Known> known_;          // by place
 };
 

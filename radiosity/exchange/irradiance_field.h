@@ -1,5 +1,5 @@
 #pragma once
-// Irradiance by rows as a smooth field: neighbours share their rays.
+// Fits a smooth field to the irradiance of rows, so that neighbouring rows share their rays.
 
 #include "meshing/leaf_gradient.h"
 #include "radiosity/rays/transport_rows.h"
@@ -10,36 +10,39 @@
 
 namespace alvor {
 
-/// What the rays of a row's quarters (its children's places) say: mean irradiance, W/m2. Rays are what it weighs; 0: hidden.
+/// The mean irradiance, in emission units, that the rays of one quarter (a child's place) of a row found.
 struct QuarterSample {
   Rgb irradiance;
-  double rays = 0;
+  double rays = 0;  ///< number of rays, which is the weight of the sample; 0: the quarter is hidden
 };
 using RowSamples = std::array<QuarterSample, 4>;
 
-/// Irradiance around the centre of a row: a polynomial of degree 0, 1 or 2 in the tangent plane.
+/// Irradiance around the centre of a row, in emission units: a polynomial of degree 0, 1 or 2 in the tangent plane.
 struct FieldFit {
   Vec3 centre, s, t;               ///< coordinates of a point are dot(point - centre, s), dot(point - centre, t)
-  std::array<Rgb, 6> coefficient;  ///< of 1, s, t, s2, s t, t2
-  Rgb low, high;                   ///< of the samples it was fitted to
-  double variance = 0;             ///< of the value at the centre by noise, mean over bands, (W/m2)^2
-  double window_misfit = 0;        ///< what the samples of the window differ from it beyond what noise may, (W/m2)^2
-  double squared_misfit = 0;       ///< what the row's samples differ from it beyond their noise, (W/m2)^2; by chance negative
+  std::array<Rgb, 6> coefficient;  ///< coefficients of 1, s, t, s^2, s t, t^2
+  Rgb low, high;                   ///< range of the samples near the centre and of the row's mean, per band
+  double variance = 0;             ///< noise of the value at the centre: variance, mean over bands, emission units squared
+  double window_misfit = 0;        ///< mean square difference of the window's samples, less 1.3 times their noise; at least 0
+  double squared_misfit = 0;  ///< mean square difference of the row's own samples, less their noise; may be negative by chance
 
   static FieldFit constant(const Rgb& value) { return {{}, {}, {}, {value}, value, value}; }
+  /// Adds the same irradiance everywhere.
   void add(const Rgb& irradiance) {
     coefficient[0] += irradiance;
     low += irradiance;
     high += irradiance;
   }
-  /// Within the range of the samples, widened by half, and not negative.
+  /// Returns the irradiance at a point, in emission units. It is kept within the range [low, high], widened by half of its width
+  /// on both sides, but not below a quarter of `low` nor below 0.
   Rgb at(Vec3 point) const;
 };
 
-/// The field of rows over the leaves of a forest, by weighted least squares over the quarter samples of near rows that are joined
-/// smoothly (moving least squares, Lancaster & Salkauskas 1981). Of two windows the wide one with a quadratic is taken where its
-/// misfit is explained by noise, else the narrow one with a plane. Noise is what the quarters of rows say against each other,
-/// averaged over the window. All spans but `neighbours` (by place in `rows`) and `samples` (by place) are by node. In parallel.
+/// Returns a fit for each of `rows`, the leaves of `forest`: weighted least squares over the samples of nearby rows that are
+/// joined smoothly to it (moving least squares, Lancaster & Salkauskas 1981). It is a quadratic over a window of 3.5 edges if
+/// noise explains its misfit; else a plane over 1.5 edges; else, if neither has less noise, the row's own mean. The noise of a
+/// ray is estimated from the differences between quarters of a row, averaged over the window. `neighbours` and `samples` are by
+/// place in `rows`, `centre` is by node. In parallel.
 std::vector<FieldFit> fit_field(const PatchForest& forest, std::span<const NodeIndex> rows,
                                 std::span<const SmoothNeighbours> neighbours, std::span<const RowSamples> samples,
                                 std::span<const Vec3> centre);

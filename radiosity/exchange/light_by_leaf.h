@@ -1,32 +1,34 @@
 #pragma once
-// What leaves each leaf, as rays that hit it find it.
+// The light that leaves each leaf, stored so that rows can sum it over their hits.
 
 #include "solution/rgb.h"
 
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace alvor {
 
-/// A value per leaf: three bands side by side, or only one where all are equal. In double precision: where the reflectance is
-/// 0.999999, one part in 10^7 of what goes round once is a tenth of the solution. Different leaves may be set from different
-/// threads.
+/// The light that leaves each leaf, in emission units: three bands side by side, or one if all bands are equal. It is held in
+/// double precision: at reflectance 0.999999 an error of 1e-7 in each reflection is an error of a tenth of the solution.
+/// Different leaves may be set from different threads.
 class LightByLeaf {
  public:
   LightByLeaf(std::size_t leaves, bool three_bands)
       : three_(three_bands ? leaves : 0), one_(three_bands ? 0 : leaves), has_three_(three_bands) {}
 
-  /// Requires: light.is_grey() but for rounding, where there is one band.
+  /// Sets the light of a leaf. Requires: with one band, the bands of `light` are equal but for rounding.
   void set(std::uint32_t leaf, const Rgb& light) {
     if (has_three_) three_[leaf] = {static_cast<Stored>(light.r), static_cast<Stored>(light.g), static_cast<Stored>(light.b), 0};
     else one_[leaf] = static_cast<Stored>(light.g);
   }
 
   std::size_t size() const { return has_three_ ? three_.size() : one_.size(); }
-  /// Over the leaves of some hits.
+  /// Returns the sum over hits of the light of the leaf that each hit finds.
   Rgb sum(std::span<const std::uint32_t> leaf) const { return has_three_ ? sum_of_three(leaf) : sum_of_one(leaf); }
-  /// The same, each hit weighted; as many weights as leaves.
+  /// Returns the sum over hits of the hit's weight times the light of its leaf. Requires: at least as many weights as leaves;
+  /// more are ignored.
   Rgb weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
 
  private:
@@ -34,7 +36,7 @@ class LightByLeaf {
   struct alignas(4 * sizeof(Stored)) Padded {
     Stored r = 0, g = 0, b = 0, unused = 0;
   };
-  /// Four lanes at a time: one load and one addition a hit.
+  /// Sums three bands, in four lanes: one load and one addition per hit.
   Rgb sum_of_three(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     for (const std::uint32_t l : leaf) {
@@ -44,7 +46,7 @@ class LightByLeaf {
     }
     return {sum[0], sum[1], sum[2]};
   }
-  /// Four hits at a time.
+  /// Sums one band, four hits at a time.
   Rgb sum_of_one(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     std::size_t h = 0;
@@ -61,6 +63,7 @@ class LightByLeaf {
 };
 
 inline Rgb LightByLeaf::weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const {
+  assert(weight.size() >= leaf.size());
   Rgb sum;
   if (!has_three_) {
     double one = 0;

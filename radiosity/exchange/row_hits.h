@@ -1,5 +1,5 @@
 #pragma once
-// Rows as they couple patches.
+// The coupling of patches by the hits of their rows.
 
 #include "radiosity/exchange/shooting.h"
 
@@ -14,7 +14,8 @@ struct RowHits {
   std::span<const std::uint32_t* const> hit_leaf;  ///< by patch, then by hit of its row
   std::span<const std::uint32_t> patch_of_leaf;
 
-  /// body(patch hit, share of the row's irradiance that the hit brings), hit after hit.
+  /// Calls body(patch hit, weight) for each hit of the patch's row. The patch's irradiance is the sum over hits of the weight
+  /// (per band) times the radiosity of the patch hit.
   template <class Body>
   void for_each(std::size_t patch, Body&& body) const {
     const TransportRow& row = *patches[patch].row;

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace alvor {
@@ -60,7 +61,7 @@ std::vector<Rgb> Shooting::reflectance_seen() const {
   return seen;
 }
 
-// Counting sort of all hits by the patch that was hit.
+// Sorts all hits by the patch that was hit (counting sort).
 void Shooting::transpose() {
   first_entry_.assign(patches_.size() + 1, 0);
   for (const std::uint32_t leaf : hit_leaf_) ++first_entry_[patch_of_leaf_[leaf] + 1];
@@ -73,7 +74,7 @@ void Shooting::transpose() {
   transpose_weights();
 }
 
-// In the same order as the entries.
+// Copies the weights of hits into the order of the entries.
 void Shooting::transpose_weights() {
   if (std::ranges::all_of(patches_, [](const ShootingPatch& patch) { return patch.row->hit_weight.empty(); })) return;
   entry_weight_.resize(hit_leaf_.size());
@@ -128,8 +129,9 @@ void Shooting::adopt_unshot() {
   }
 }
 
-// The whole of what comes from elsewhere is divided by m_ii = 1 - rho F_ii.
+// The irradiance from elsewhere, and from the patch's own emission, is divided by m_ii = 1 - rho F_ii.
 void Shooting::gather(std::uint32_t receiver) {
+  assert(receivers_[receiver].unshot.is_zero() && shot_irradiance_[receiver].is_zero());
   const ShootingPatch& patch = patches_[receiver];
   const double weight = receivers_[receiver].weight;
   const std::uint64_t first = first_hit_[receiver], last = first_hit_[receiver + 1];
@@ -190,7 +192,7 @@ Rgb Shooting::mean_radiosity() const {
   return (1 / area) * power;
 }
 
-// The two loops differ in what they read: weights that are not there cost nothing.
+// The first loop runs without hit weights and the second with them, so that rows without weights do not pay for them.
 template <class Leaving>
 void Shooting::send(std::uint32_t shooter, Leaving&& leaving) {
   const std::uint64_t first = first_entry_[shooter], last = first_entry_[shooter + 1];
@@ -245,7 +247,8 @@ void Shooting::keep_ambient_account() {
   }
 }
 
-// Before the shot: what leaves the shooter is no longer unshot, what is reflected of it elsewhere is.
+// Called before the shot. The light that leaves the shooter is no longer unshot; the part that others will reflect becomes
+// unshot.
 void Shooting::book(std::uint32_t shooter, const Rgb& reflected) {
   for (std::uint32_t k = 0; k < patches_[shooter].leaf_count; ++k) {
     const std::uint32_t at = patches_[shooter].first_leaf + k;

@@ -1,5 +1,5 @@
 #pragma once
-// The linear system of transport rows, with what is unshot (Cohen, Chen, Wallace & Greenberg 1988). Strategies drive it.
+// The linear system of transport rows and its unshot radiosity (Cohen, Chen, Wallace & Greenberg 1988). Strategies drive it.
 
 #include "radiosity/rays/transport_rows.h"
 #include "solution/rgb.h"
@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// One shooter and receiver: a patch that has a row. Its leaves are consecutive in the list of leaves.
+/// A patch that has a row: it shoots and receives light. Its leaves are consecutive in the list of leaves.
 struct ShootingPatch {
   const TransportRow* row = nullptr;
   std::uint32_t first_leaf = 0, leaf_count = 0;
@@ -19,107 +19,110 @@ struct ShootingPatch {
   double area = 0;  ///< m2
 };
 
-/// Ambient irradiance (see Exchange) of one unit of unshot power, 1/m2.
+/// Returns the ambient irradiance (see Exchange) of one unit of unshot power, per band, 1/m2.
 Rgb ambient_gain(std::span<const ShootingPatch> patches);
 
-/// See Exchange: 1 / (1 - fading), of the RMS. A reflection leaves of the maximum what is reflected of what the rows see at most
-/// (`reflectance_seen`, by patch), of the power at most the largest reflectance, as rows are reciprocal; so of the RMS the
-/// geometric mean (Riesz & Thorin).
+/// Returns 1 / (1 - q) per band (see Exchange::amplification), where q bounds the share of the RMS radiosity that is left after a
+/// reflection. The largest radiosity is multiplied by at most the largest mean reflectance that a row sees (`reflectance_seen`,
+/// by patch); the power by at most the largest reflectance, if rows are reciprocal. For the RMS q is their geometric mean (Riesz
+/// & Thorin).
 Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen);
 
-/// A leaf's share of the residual.
+/// The radiosity of a leaf, in emission units: distributed and not yet distributed.
 struct ShootingLeaf {
   double area = 0;  ///< m2
-  Rgb unshot;       ///< radiosity not yet distributed, W/m2; may be negative
-  Rgb shot;         ///< radiosity distributed so far, W/m2
+  Rgb unshot;       ///< radiosity not yet distributed; may be negative
+  Rgb shot;         ///< radiosity distributed so far
 };
 
-/// x = e + rho F x, one patch at a time. The state is x = shot radiosity; irradiance I of a patch is its row times x, and the
-/// unshot part is exactly the residual e + rho F x - x, so a split or an edited light is no special case. Within a patch that has
-/// several leaves, the part that came by rows is the same for all of them. Which patch comes next is for radiosity/strategies.h.
+/// The system x = e + rho F x, solved one patch at a time. x is the shot radiosity, the irradiance of a patch is its row times x,
+/// and the unshot radiosity is exactly the residual e + rho F x - x, so a split or an edited light is no special case. All leaves
+/// of a patch receive the same light by its row. Light is in emission units. radiosity/exchange/strategies.h chooses the next
+/// patch.
 class Shooting {
  public:
-  /// `hit_leaf` lists, row after row, the leaf that each hit of the row finds.
+  /// `hit_leaf` lists, row after row, the leaf that each hit of the row finds. Borrows the patches.
   Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf);
 
-  /// Finds what is unshot from scratch, by rows times what was shot: where a pass begins (`unshot` of the leaves then holds
-  /// e - shot), and after patches have gathered. In parallel.
+  /// Computes the unshot radiosity from scratch, from rows times shot radiosity. To be called when a pass begins (`unshot` of the
+  /// leaves then holds e - shot) and after patches have gathered. In parallel.
   void find_unshot();
 
-  /// Shoots what is unshot on the patch, and reflects `advance` of the irradiance that is still to come (Feda & Purgathofer
-  /// 1992): what was advanced is negative unshot radiosity until it has come. The shooter's unshot radiosity is zeroed first: a
-  /// patch that sees itself receives.
+  /// Shoots the unshot radiosity of the patch, and also reflects the irradiance `advance` that is still to come (Feda &
+  /// Purgathofer 1992). An advance counts as negative unshot radiosity until it has come. The shooter's unshot radiosity is set
+  /// to zero first, so that a patch that sees itself receives light of its own.
   void shoot(std::uint32_t shooter, const Rgb& advance = {});
 
-  /// Takes what is unshot as shot everywhere, x := e + rho F x: where gathering begins. Afterwards and after gather(patch),
-  /// irradiance() is that of x as it stands, and what is unshot is not known until find_unshot.
+  /// Counts all unshot radiosity as shot, x := e + rho F x. To be called before the first gather(). Afterwards, and after
+  /// gather(), the unshot radiosity is not known until find_unshot() is called.
   void adopt_unshot();
-  /// One step of Gauss-Seidel: sets x of the patch to what its row makes of x elsewhere, and of itself. Requires: adopt_unshot
-  /// before, no shot since.
+  /// Makes one step of Gauss-Seidel: sets x of the patch to the solution of its own equation, with x of all others as it is.
+  /// Requires: adopt_unshot() was called and no shot made since.
   void gather(std::uint32_t receiver);
 
   std::span<const ShootingPatch> patches() const { return patches_; }
   std::size_t patch_count() const { return patches_.size(); }
   double leaf_area(std::uint32_t leaf) const { return leaves_[leaf].area; }  ///< m2
   std::uint32_t patch_of(std::uint32_t leaf) const { return patch_of_leaf_[leaf]; }
-  /// What the hits of the patch's row found.
+  /// Returns the leaf that each hit of the patch's row finds.
   std::span<const std::uint32_t> leaves_hit(std::uint32_t patch) const {
     return std::span(hit_leaf_).subspan(first_hit_[patch], first_hit_[patch + 1] - first_hit_[patch]);
   }
-  /// |unshot power| of a patch, W, summed over bands; with what it would shoot of `advance`.
+  /// Returns the power that a shot of the patch with `advance` would send: magnitude, summed over bands, emission units times m2.
   double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
-  /// sum over patches, W.
+  /// Returns the sum of unshot_power_of() over all patches, emission units times m2.
   double unshot_power() const;
-  Rgb unshot_rms() const;  ///< these three: see Exchange
-  Rgb mean_radiosity() const;
-  const Rgb& amplification() const { return amplification_; }
-  /// Ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance), each
-  /// reflection weakened by what escapes from an open scene.
+  Rgb unshot_rms() const;                                      ///< see Exchange::unshot_rms
+  Rgb mean_radiosity() const;                                  ///< see Exchange::mean_radiosity
+  const Rgb& amplification() const { return amplification_; }  ///< see Exchange::amplification
+  /// Returns the ambient irradiance, in emission units: see Exchange::ambient_irradiance.
   Rgb ambient_irradiance() const;
-  /// Keeps an account of the unshot power by shots, so that ambient_irradiance() takes no time. Takes as long as a pass over all
-  /// hits. Until patches gather.
+  /// Makes later shots keep the sum of the unshot power up to date, so that ambient_irradiance() takes no time. Takes as long as
+  /// a pass over all hits. Ends when adopt_unshot() is called.
   void keep_ambient_account();
-  /// Calls body(patch) for each that a shot of `shooter` has reached; for some more than once.
+  /// Calls body(patch) for each patch that a shot of `shooter` reaches; for some of them more than once.
   template <class Body>
   void for_each_receiver(std::uint32_t shooter, Body&& body) const {
     for (std::uint64_t e = first_entry_[shooter]; e < first_entry_[shooter + 1]; ++e) body(entries_[e].receiver);
   }
 
-  std::vector<Rgb> irradiance() const;  ///< by patch: received by rows so far
-  /// What was distributed so far, by leaf.
+  /// Returns the irradiance that each patch received by its row so far, in emission units.
+  std::vector<Rgb> irradiance() const;
+  /// Returns the radiosity of each leaf that was distributed so far, in emission units.
   std::vector<Rgb> shot() const;
-  /// What is not, by leaf.
+  /// Returns the radiosity of each leaf that is not distributed yet, in emission units.
   std::vector<Rgb> unshot_by_leaf() const;
 
  private:
   struct Entry {
     std::uint32_t receiver, leaf;
   };
-  /// What a shot reads and writes of each receiver, on one cache line.
+  /// The part of a receiving patch that shots read and write, on one cache line.
   struct alignas(32) Receiver {
     Rgb unshot;         ///< irradiance received and not yet reflected; rho times it is unshot on every leaf
-    double weight = 0;  ///< of one hit
+    double weight = 0;  ///< weight of one hit of its row
   };
-  /// Of an account of the unshot power.
+  /// Running sum of the signed unshot power.
   struct Account {
-    std::vector<Rgb> gain;  ///< by leaf: unshot power that one unit of its radiosity becomes, m2; less than its area
-    Rgb power;              ///< unshot now, W
+    std::vector<Rgb> gain;  ///< by leaf: unshot power that one unit of its radiosity becomes when shot, m2; less than its area
+    Rgb power;              ///< unshot power now, emission units times m2
   };
   void transpose();
   void transpose_weights();
   std::vector<Rgb> reflectance_seen() const;
-  /// body(area, shot radiosity, unshot radiosity).
+  /// Calls body(area, shot radiosity, unshot radiosity) for each leaf.
   template <class Body>
   void for_each_leaf(Body&& body) const;
-  /// Sum over hits [first, last) of the row of what `radiosity` says of their leaves, weighted.
+  /// Returns the sum over hits [first, last) of the row of the hit's weight times radiosity(leaf).
   template <class Radiosity>
   Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;
-  /// Adds to each receiver what `leaving` says of the leaf that its ray found.
+  /// Adds to each receiver its hit's weight times leaving(leaf), for all hits on leaves of the shooter.
   template <class Leaving>
   void send(std::uint32_t shooter, Leaving&& leaving);
+  /// Brings the running sum of the unshot power up to date for a shot that is about to be made.
   void book(std::uint32_t shooter, const Rgb& reflected);
   Rgb signed_unshot_power() const;
-  /// Emission and reflected direct light of a leaf, from the residual.
+  /// Returns the emission and reflected direct light of a leaf, computed from its residual.
   Rgb emission_of(std::uint32_t leaf, std::uint32_t patch) const {
     return leaves_[leaf].unshot + leaves_[leaf].shot - patches_[patch].reflectance * gathered_[patch];
   }
@@ -131,10 +134,10 @@ class Shooting {
   std::vector<std::uint64_t> first_hit_;    // by receiver, into hit_leaf_
   std::vector<std::uint64_t> first_entry_;  // by shooter, into entries_
   std::vector<Entry> entries_;
-  std::vector<RgbF> entry_weight_;    // by entry; empty where all hits of a row weigh the same
+  std::vector<RgbF> entry_weight_;    // by entry; empty if no row has hit weights
   std::vector<Receiver> receivers_;   // by patch
-  std::vector<Rgb> gathered_;         // by patch: received, as far as it is in ShootingLeaf::shot
-  std::vector<Rgb> shot_irradiance_;  // by patch: reflected already, not yet in ShootingLeaf::shot
+  std::vector<Rgb> gathered_;         // by patch: irradiance whose reflection is in ShootingLeaf::shot
+  std::vector<Rgb> shot_irradiance_;  // by patch: irradiance that was reflected and is not yet in ShootingLeaf::shot
   std::vector<double> leaf_power_;    // by patch: sum of area |unshot| over its leaves
   Rgb ambient_gain_;                  // ambient irradiance of one unit of unshot power, 1/m2
   Rgb amplification_;

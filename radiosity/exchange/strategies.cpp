@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t none = ~0u;
 
-/// Place of the largest of `powers` that is above 0, the first of equals, or none.
+/// Returns the index of the largest of `powers`, the first of equals; `none` if no power is above 0.
 std::uint32_t find_largest(std::span<const double> powers) {
   constexpr std::size_t lanes = 16;  // independent maxima, for SIMD
   std::array<double, lanes> best{};
@@ -91,7 +91,7 @@ class SortedStepper : public Stepper {
     return true;
   }
 
-  // A threshold that halves is within a factor of two of the true order by power, at no cost for keeping one.
+  // Shooting all patches above half of the largest power keeps the order by power to within a factor of two, without sorting.
   std::size_t sweep() override {
     powers_.clear();
     double largest = 0;
@@ -114,8 +114,9 @@ class SortedStepper : public Stepper {
   std::vector<double> powers_;  // by patch; empty when not kept up
 };
 
-/// Where the ambient term is far wrong, advancing it may do more harm than shots mend. So it shrinks as the unshot power rises
-/// above its lowest, and for good when there is no new low for long: plain shooting always arrives.
+/// Sorted shooting that also shoots the ambient term in advance. If the ambient term is far wrong, advancing it may add more
+/// unshot power than shots remove. So the share that is advanced shrinks while the unshot power is above its lowest value, and
+/// for good if there is no new lowest value for long: shooting without advance always converges.
 class OvershootStepper : public Stepper {
  public:
   explicit OvershootStepper(Shooting& system) : system_(system), powers_(system.patch_count()), lowest_(system.unshot_power()) {
@@ -146,8 +147,11 @@ class OvershootStepper : public Stepper {
   }
 
  private:
-  static constexpr double usual_rise = 2;     // of the unshot power: what is advanced counts until it has come
-  static constexpr std::size_t patience = 4;  // shots per patch without a new low
+  // Multiple of the lowest unshot power from which the advanced share shrinks; advances raise the power until their light has
+  // come. Chosen; not measured.
+  static constexpr double usual_rise = 2;
+  // Shots per patch without a new lowest unshot power after which the advanced share is halved for good. Chosen; not measured.
+  static constexpr std::size_t patience = 4;
 
   std::uint32_t look_at_all(const Rgb& ahead) {
     for (std::uint32_t p = 0; p < powers_.size(); ++p) powers_[p] = system_.unshot_power_of(p, ahead);
@@ -161,10 +165,10 @@ class OvershootStepper : public Stepper {
   }
 
   Shooting& system_;
-  std::vector<double> powers_;  // by patch, with what is advanced
-  double share_ = 1;            // of the ambient term that is advanced
-  double trust_ = 1;
-  double lowest_ = 0;  // unshot power, W
+  std::vector<double> powers_;  // by patch: unshot power with the advance
+  double share_ = 1;            // share of the ambient term that is advanced
+  double trust_ = 1;            // largest share that may be advanced
+  double lowest_ = 0;           // lowest unshot power so far, emission units times m2
   std::size_t shots_ = 0, low_at_ = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// In which order patches shoot or gather.
+// Strategies: the order in which patches shoot or gather.
 
 #include "radiosity/exchange/exchange.h"
 #include "radiosity/exchange/shooting.h"
@@ -10,42 +10,40 @@
 
 namespace alvor {
 
-/// All of them end at the same solution; what they know of it on the way differs.
+/// How light is exchanged. All strategies end at the same solution; they differ in how fast they come near it.
 enum class Strategy {
-  automatic,  ///< the best one known: gathering everywhere at once (radiosity/exchange/gathering.h), displayed with the ambient
-              ///< term
+  automatic,  ///< the fastest: gathering at all patches at once (radiosity/exchange/gathering.h), displayed with the ambient term
   sorted,     ///< shooting, largest unshot power first (Cohen et al. 1988)
-  sorted_ambient,  ///< the same, displayed with the ambient term
+  sorted_ambient,  ///< `sorted`, displayed with the ambient term
   gather,          ///< Gauss-Seidel over the full system, in the order of the patches
   shoot,           ///< shooting in the order of the patches
-  overshoot,       ///< sorted shooting of unshot + rho ambient; what was too much is taken back (Feda & Purgathofer 1992)
+  overshoot,       ///< sorted shooting of unshot + rho ambient; excess is taken back by negative shots (Feda & Purgathofer 1992)
 };
 
-/// As options and tables name it: "sorted+ambient".
+/// Returns the strategy's name in options and tables, for example "sorted+ambient".
 std::string_view text(Strategy strategy);
-/// Whether the ambient term is added to what is displayed.
+/// Returns whether the ambient term is added to the displayed radiosity.
 bool shows_ambient(Strategy strategy);
 
-/// Takes a system towards its solution. All measure what is left by the same residual, Shooting::unshot_power.
+/// Takes a system towards its solution, step by step. All steppers measure the rest by one residual, Shooting::unshot_power.
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /// Shoots or gathers one patch. False if there is nothing left to do. Among patches that have nothing to shoot the order goes
-  /// on without a step.
+  /// Shoots or gathers one patch. Returns false if there is nothing left to do. Patches with nothing to shoot are passed over.
   virtual bool step() = 0;
-  /// Many steps, in the order of the patches where that is nearly as good; returns their number. What is unshot is known
-  /// afterwards.
+  /// Makes many steps and returns their number. Sorted strategies shoot, in the order of the patches, those above half of the
+  /// largest unshot power. The unshot radiosity is known afterwards.
   virtual std::size_t sweep() = 0;
 };
 
-/// Borrows the system. Requires: what is unshot is known (Shooting::find_unshot). `automatic` has no steps of one patch: in its
-/// place comes `sorted`.
+/// Returns a stepper that borrows the system. `automatic` has no steps of one patch: its stepper is that of `sorted`. Requires:
+/// the unshot radiosity of the system is known (Shooting::find_unshot).
 std::unique_ptr<Stepper> make_stepper(Strategy strategy, Shooting& system);
 
-/// A system and what takes it to its solution.
+/// An exchange of light by a strategy that takes one patch at a time: a system and its stepper.
 class ShotExchange : public Exchange {
  public:
-  /// Requires: what is unshot is known; its patches live longer.
+  /// Requires: the unshot radiosity of the system is known; the system's patches live longer than this.
   ShotExchange(Shooting system, Strategy strategy) : system_(std::move(system)), stepper_(make_stepper(strategy, system_)) {}
   ShotExchange(const ShotExchange&) = delete;
   ShotExchange& operator=(const ShotExchange&) = delete;

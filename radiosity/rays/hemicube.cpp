@@ -1,5 +1,6 @@
 #include "radiosity/rays/hemicube.h"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -7,13 +8,14 @@ namespace alvor {
 
 namespace {
 
-/// Form factor to the rectangle [0, x] x [0, y] at height 1; odd in both (Howell B-3).
+/// Returns the form factor from the point to the rectangle [0, x] x [0, y] at height 1. Odd in x and in y (Howell B-3).
 double top(double x, double y) {
   const double p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * std::numbers::pi);
 }
 
-/// Form factor to the rectangle [0, y] x [0, z] of the wall at distance 1, z along the normal; odd in y (Howell B-5).
+/// Returns the form factor from the point to the rectangle [0, y] x [0, z] of the wall at distance 1, z along the point's normal.
+/// Odd in y (Howell B-5).
 double side(double y, double z) {
   const double q = std::sqrt(1 + z * z);
   return (std::atan(y) - std::atan(y / q) / q) / (2 * std::numbers::pi);
@@ -27,6 +29,7 @@ double over(FormFactor&& f, double s0, double s1, double t0, double t1) {
 }  // namespace
 
 Hemicube::Hemicube(const HemicubeGrid& grid) {
+  assert(grid.top_s >= 1 && grid.top_t >= 1 && grid.side_along >= 1 && grid.side_up >= 1);
   const auto edge = [](int n, int count) { return -1 + n * (2.0 / count); };
   for (int j = 0; j < grid.top_t; ++j)
     for (int i = 0; i < grid.top_s; ++i) {

@@ -3,31 +3,35 @@
 
 #include "meshing/vec3.h"
 
+#include <cassert>
 #include <vector>
 
 namespace alvor {
 
-/// How a hemicube's faces are cut into cells.
+/// The numbers of cells into which a hemicube's five faces are cut.
 struct HemicubeGrid {
-  int top_s = 0, top_t = 0;         ///< across the top
-  int side_along = 0, side_up = 0;  ///< across each of the four sides
+  int top_s = 0, top_t = 0;         ///< cells across the top, in its two directions
+  int side_along = 0, side_up = 0;  ///< cells of each of the four sides: along its lower edge, and upwards
 
   int cell_count() const { return top_s * top_t + 4 * side_along * side_up; }
-  /// Square cells. Requires: resolution even, >= 2.
-  static HemicubeGrid square(int resolution) { return {resolution, resolution, resolution, resolution / 2}; }
+  /// Returns a grid of square cells, `resolution` along each edge of the top. Requires: resolution even, >= 2.
+  static HemicubeGrid square(int resolution) {
+    assert(resolution >= 2 && resolution % 2 == 0);
+    return {resolution, resolution, resolution, resolution / 2};
+  }
 };
 
-/// Half a cube of half side 1 over a point whose normal is z.
+/// The upper half of a cube of side 2 centred at a point whose normal is z.
 class Hemicube {
  public:
-  /// A cell's lower corner, its sides along the face, and its delta form factor: exactly the form factor from the point to the
-  /// cell, so that all sum to 1 whatever the grid.
+  /// A cell: its lower corner, its sides along the face, and its delta form factor, which is the exact form factor from the point
+  /// to the cell. The delta form factors of all cells sum to 1 for every grid.
   struct Cell {
     Vec3 corner, side_s, side_t;
     double delta = 0;
   };
 
-  /// Requires: all numbers >= 1.
+  /// Requires: all numbers of `grid` >= 1.
   explicit Hemicube(const HemicubeGrid& grid);
   const std::vector<Cell>& cells() const { return cells_; }
 

@@ -29,7 +29,8 @@ LocalRoot make_local(const RootPatch& root, const std::array<Vec3, 4>& corners) 
   return local;
 }
 
-/// From Embree's coordinates, affine on each half of the quad, to bilinear ones: Newton on u + a u v, v + b u v.
+/// Converts Embree's coordinates on a quad, which are affine on each half of it, to bilinear ones. Three Newton steps on the
+/// equations u + a u v = x and v + b u v = y.
 Uv bilinear(const LocalRoot& root, double u, double v) {
   const double a = root.twist_u, b = root.twist_v;
   double x = u, y = v;

@@ -1,5 +1,5 @@
 #pragma once
-// The base mesh as rays see it: float32, centred, of unit size.
+// The base mesh in the rays' coordinates: float32, centred, longest side 1.
 
 #include "meshing/base_mesh.h"
 #include "meshing/patch_place.h"
@@ -15,7 +15,7 @@ struct Float3 {
   float x, y, z;
 };
 
-/// One root patch. A quad's point at (u, v) is origin + u edge_u + v edge_v + u v twist.
+/// One root patch in local units. A quad's point at (u, v) is origin + u edge_u + v edge_v + u v twist.
 struct LocalRoot {
   Float3 origin, edge_u, edge_v, twist;
   Float3 tangent, bitangent, normal;  ///< orthonormal, right-handed
@@ -24,7 +24,7 @@ struct LocalRoot {
   std::uint32_t twin = RootPatch::no_twin;
 };
 
-/// Immutable. Borrows the mesh.
+/// A mesh made ready for rays: its root patches in local coordinates, and Embree's scene of them. Immutable. Borrows the mesh.
 class LocalScene {
  public:
   explicit LocalScene(const BaseMesh& mesh);
@@ -33,12 +33,13 @@ class LocalScene {
   const LocalFrame& frame() const { return frame_; }
   const Visibility& visibility() const { return visibility_; }
   const LocalRoot& root(std::uint32_t r) const { return roots_[r]; }
-  /// Corners in local units, double precision.
+  /// Returns the corners of root `r`, 3 or 4, in local units and double precision.
   std::span<const Vec3> corners(std::uint32_t r) const {
     return std::span(corners_[r]).first(static_cast<std::size_t>(mesh_->roots()[r].corner_count));
   }
 
-  /// Paths (see PatchId::finest) of the finest patches at Embree's coordinates; arbitrary where nothing was hit.
+  /// Writes to `path` the path (see PatchId::finest) of the finest patch that each of the sixteen rays hit. The path of a ray
+  /// that hit nothing is arbitrary. Requires: `path` has sixteen places.
   void places_of_hits(const HitPacket& hits, std::uint32_t* path) const;
 
  private:

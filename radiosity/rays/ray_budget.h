@@ -1,5 +1,5 @@
 #pragma once
-// Rays are the currency: how many were sent, how long traversal took, and whether to stop sending.
+// Counts the rays of a solve and the time that they take, and tells when to stop sending them.
 
 #include <atomic>
 #include <chrono>
@@ -8,14 +8,14 @@
 
 namespace alvor {
 
-/// Shared by the threads of a solve.
+/// Ray count, traversal time and stop condition of a solve. Safe from any thread if `out` is.
 class RayBudget {
  public:
-  /// `out` is asked before each batch of rays; once it says true, tracing functions return early with incomplete results.
+  /// Tracing functions call `out` before each batch of rays. Once it returns true they return early, with incomplete results.
   explicit RayBudget(std::function<bool()> out) : out_(std::move(out)) {}
 
   bool is_out() const { return out_(); }
-  /// Runs one traversal of `rays` rays and counts it.
+  /// Calls traverse(), which sends `rays` rays, and adds these rays and the time that it took.
   template <class Traverse>
   void spend(std::uint64_t rays, Traverse&& traverse) {
     const auto start = std::chrono::steady_clock::now();
@@ -26,11 +26,12 @@ class RayBudget {
   }
 
   std::uint64_t rays() const { return rays_; }
-  /// Counts what was spent before this budget was made.
+  /// Adds rays and traversal seconds that were spent before this budget was made, as of a solve that goes on from a checkpoint.
   void add_spent(std::uint64_t rays, double traversal_s) {
     rays_ += rays;
     nanoseconds_ += static_cast<std::uint64_t>(1e9 * traversal_s);
   }
+  /// Returns the seconds spent in traversal, summed over threads.
   double traversal_s() const { return 1e-9 * static_cast<double>(nanoseconds_.load()); }
 
  private:

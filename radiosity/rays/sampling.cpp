@@ -17,7 +17,7 @@ std::uint32_t reverse_bits(std::uint32_t x) {
   return ((x & 0xaaaaaaaau) >> 1) | ((x & 0x55555555u) << 1);
 }
 
-/// Second dimension of the Sobol sequence (Kollig & Keller 2002).
+/// Returns the second coordinate of point n of the Sobol sequence, as bits (Kollig & Keller 2002).
 std::uint32_t sobol_second(std::uint32_t n) {
   std::uint32_t result = 0;
   for (std::uint32_t v = 1u << 31; n != 0; n >>= 1, v ^= v >> 1)
@@ -25,7 +25,8 @@ std::uint32_t sobol_second(std::uint32_t n) {
   return result;
 }
 
-/// The middles of the strata of a patch that is its whole root, and how far, with which sign, they may be moved.
+/// The middles of the strata of a patch that is its whole root, and the signed distances (`sway`) by which a jitter of 1 moves
+/// them.
 struct Strata {
   std::array<float, origins_per_patch> u, v, sway;
   explicit Strata(int corner_count) {
@@ -43,7 +44,7 @@ struct Strata {
 struct Disk {
   double x, y;
 };
-/// Area-preserving and of low distortion (Shirley & Chiu 1997).
+/// Maps the unit square to the unit disk, area-preserving and with low distortion (Shirley & Chiu 1997).
 Disk concentric_disk(Uv p) {
   const double a = 2 * p.u - 1, b = 2 * p.v - 1;
   if (a == 0 && b == 0) return {0, 0};
@@ -68,11 +69,12 @@ void place_on_disk(DirectionSets::Set& set, std::uint64_t scramble) {
   }
 }
 
-/// A point of the cell, as likely as the form factor density there: by rejection. So the cell's exact delta form factor is the
-/// right weight of its ray.
+/// Returns a random point of the cell, distributed as the form factor density, by rejection. The cell's exact delta form factor
+/// is then the right weight of the ray through the point.
 Vec3 point_in(const Hemicube::Cell& cell, RandomStream& random) {
   const auto density = [](Vec3 p) { return p.z / (dot(p, p) * dot(p, p)); };
-  constexpr double most_on_sides = 0.33;  // of z / r4, where z2 = 1 / 3; on the top it is 1
+  // Upper bound of the density z / r^4 on the sides: its maximum is 0.3248, at z^2 = 1 / 3 in the middle. On the top it is 1.
+  constexpr double most_on_sides = 0.33;
   const double most = cell.side_s.z == 0 && cell.side_t.z == 0 ? 1 : most_on_sides;
   for (;;) {
     const Vec3 p = cell.corner + random.next() * cell.side_s + random.next() * cell.side_t;
@@ -107,7 +109,8 @@ DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(
 OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
   static const Strata triangle(3), quad(4);
   const Strata& strata = patch.corner_count == 3 ? triangle : quad;
-  const double room = patch.corner_count == 3 ? 0.3 : 1;  // a triangle's middle is near its edges
+  // Share of the jitter that keeps a point in its stratum. In a triangle 2/3 + room <= 1 must hold for u + v, so room <= 1/3.
+  const double room = patch.corner_count == 3 ? 0.3 : 1;
   const auto size = static_cast<float>(double(patch.size) / grid_size);
   const auto first_u = static_cast<float>(double(patch.first.i) / grid_size);
   const auto first_v = static_cast<float>(double(patch.first.j) / grid_size);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,10 +17,14 @@ namespace alvor {
 
 namespace {
 
+// Smallest number of patches that one task traces. Chosen; not measured.
 constexpr std::size_t patches_per_batch = 8;
-constexpr float nudge = 1e-4f;  // turns a ray that slipped through a seam
+// A ray that slipped through a seam is sent again in sixteen directions: 1 to 16 times this share of the normal is added to its
+// direction, so about 1e-4 radians each. Chosen; not measured.
+constexpr float nudge = 1e-4f;
 
-/// Tangent frame of the patch turned by a random angle: rotates the whole direction set at no cost per ray.
+/// The tangent frame of a patch, turned about the normal by `angle` (radians). It rotates a whole direction set at no cost per
+/// ray.
 struct TurnedFrame {
   Float3 s, t, n;
   TurnedFrame(const LocalRoot& root, double angle) : n(root.normal) {
@@ -51,7 +56,7 @@ void start_at(RayPacket& packet, float x, float y, float z) {
 
 enum class Outcome { stored, escaped, black_back };
 
-/// Traces one row after the other.
+/// Traces rows one after the other. Compiled for scenes with and without back sides and places of hits (see RowNeeds).
 template <bool back_sides, bool places>
 class RowTracer {
  public:
@@ -83,7 +88,7 @@ class RowTracer {
  private:
   std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
 
-  /// Whether one ray of each origin, each in another direction of the hemisphere, meets a back.
+  /// Sends one ray from each origin, each in another direction of the hemisphere, and returns whether any meets a back.
   bool any_back(const PatchPoints& points, const TurnedFrame& frame) {
     RayPacket& some = packets_[0];
     for (int o = 0; o < origins_per_patch; ++o) {
@@ -119,7 +124,7 @@ class RowTracer {
     return 2 * std::ranges::count(outcomes, Outcome::black_back) > RayPacket::width;
   }
 
-  /// All, or one a quarter so that their mean is the middle.
+  /// Chooses the origins of a row: all sixteen, or for a small row one in each quarter, so that their mean is the patch's middle.
   void choose_origins(RowSize size, RandomStream& random) {
     count_ = size == RowSize::small ? 4 : origins_per_patch;
     const int turn = static_cast<int>(random.next_below(4));
@@ -138,7 +143,8 @@ class RowTracer {
     return packet.direction_x[lane] * n.x + packet.direction_y[lane] * n.y + packet.direction_z[lane] * n.z < 0;
   }
 
-  /// Where nearly no ray escapes, the few that do went through seams between faces: float32 traversal is not watertight.
+  /// Sends rays that escaped once more, if at most 1 of 64 rays of the row did. So few went through seams between faces: float32
+  /// traversal is not watertight.
   void retrace_slipped_rays(const Float3& normal) {
     std::size_t escaped = 0;
     for (const HitPacket& hit : std::span(hits_).first(packets().size()))
@@ -183,7 +189,7 @@ class RowTracer {
     row.is_closed = row.rays > 0 && row.hits.size() == row.rays;
   }
 
-  /// False, and nothing is stored, if the origin is hidden.
+  /// Stores the hits of packet `p`. Returns false, and stores nothing, if its origin is hidden.
   bool store_origin(std::size_t p, TransportRow& row) const {
     const Outcomes outcomes = outcomes_of(p);
     if (is_hidden(outcomes)) return false;
@@ -205,7 +211,7 @@ class RowTracer {
         row.hits.push_back(places ? PatchId::finest(hit.root[lane], path[lane]) : PatchId::root(hit.root[lane]));
   }
 
-  /// Hits from behind as hits of the twin, where there is one.
+  /// Returns the hits of packet `p`, each hit from behind turned into a hit of the face's twin if it has one.
   HitPacket turned_to_front(std::size_t p) const {
     HitPacket hit = hits_[p];
     for (int lane = 0; lane < RayPacket::width; ++lane) {
@@ -223,7 +229,7 @@ class RowTracer {
   const DirectionSets& directions_;
   std::uint64_t seed_;
   RayBudget& budget_;
-  // Of the row that is being traced.
+  // Directions, origins, rays and hits of the row that is being traced:
   const DirectionSets::Set* set_ = nullptr;
   int count_ = 0;
   std::array<int, origins_per_patch> origin_{};
@@ -260,6 +266,7 @@ void TransportRow::append(const TransportRow& more) {
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
                                      RayBudget& budget, RowNeeds needs) {
+  assert(shapes.size() == patches.size() && sizes.size() == patches.size());
   const auto trace = [&]<bool back_sides, bool places>() {
     std::vector<TransportRow> rows(patches.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {

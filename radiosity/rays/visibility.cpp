@@ -14,7 +14,7 @@ namespace alvor {
 
 namespace {
 
-/// Denormals cost traversal dearly; the caller's mode is restored.
+/// Makes the processor treat denormal numbers as zero, because they slow traversal down; restores the caller's mode at the end.
 class FlushDenormals {
  public:
   FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
@@ -26,7 +26,7 @@ class FlushDenormals {
   unsigned before_;
 };
 
-/// A device and a scene, released together.
+/// An Embree device and a scene of it, released together.
 class EmbreeScene {
  public:
   explicit EmbreeScene(RTCSceneFlags flags = RTC_SCENE_FLAG_NONE) : device_(rtcNewDevice(nullptr)) {
@@ -41,7 +41,7 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Polygons of N corners each, under the geometry id `id`.
+  /// Adds polygons of N corners each under the geometry id `id`.
   template <std::size_t N>
   void add(unsigned id, std::span<const std::array<float, 3>> vertices, std::span<const std::array<std::uint32_t, N>> polygons) {
     if (polygons.empty()) return;
@@ -102,7 +102,7 @@ RTCIntersectContext incoherent_context() {
 struct Visibility::Handles {
   static constexpr unsigned quads = 0, triangles = 1;
   EmbreeScene scene;
-  std::vector<std::uint32_t> root_of[2];  // by geometry, then primitive
+  std::vector<std::uint32_t> root_of[2];  // root patch of each primitive, by geometry
 };
 
 Visibility::Visibility(std::span<const RootPatch> roots, const LocalFrame& frame) : handles_(std::make_unique<Handles>()) {
@@ -177,7 +177,8 @@ struct ClosestPoint {
   double u, v, squared_distance;
 };
 
-/// Closest point of a triangle, by the regions of its barycentric plane (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Returns the point of triangle (a, b, c) closest to p, by the regions of its barycentric plane (Ericson, Real-Time Collision
+/// Detection, 5.1.5).
 ClosestPoint closest_point(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 ab = b - a, ac = c - a;
   const auto at = [&](double u, double v) {
@@ -221,12 +222,12 @@ bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
   const double distance = std::sqrt(near.squared_distance);
   if (search.best && distance >= search.best->distance) return false;
   search.best = TriangleCaster::Hit{arguments->primID, near.u, near.v, distance};
-  // Slightly more than the distance: the bounds are float32.
+  // The new search radius is slightly more than the distance, because Embree's bounds are float32.
   arguments->query->radius = std::nextafter(static_cast<float>(distance * (1 + 1e-6)), std::numeric_limits<float>::infinity());
   return true;
 }
 
-/// Rejects hits of a packet of one ray that meet the back of a triangle.
+/// Rejects the hits that meet the back of a triangle.
 void pass_backs(const RTCFilterFunctionNArguments* arguments) {
   for (unsigned i = 0; i < arguments->N; ++i) {
     const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);

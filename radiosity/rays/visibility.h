@@ -1,5 +1,5 @@
 #pragma once
-// Rays against surfaces. The only file that names Embree is visibility.cpp.
+// Intersects rays with surfaces. The only file that names Embree is visibility.cpp.
 
 #include "meshing/base_mesh.h"
 
@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// Sixteen rays, traversed together; struct of arrays as SIMD wants it. Local coordinates (see LocalFrame).
+/// Sixteen rays that are traversed together, as a struct of arrays for SIMD. Local coordinates (see LocalFrame).
 struct alignas(64) RayPacket {
   static constexpr int width = 16;
   float origin_x[width], origin_y[width], origin_z[width];
@@ -19,8 +19,9 @@ struct alignas(64) RayPacket {
   float t_min[width], t_max[width];
 };
 
-/// What a packet hit. `root` is `nothing` where a ray left the scene; otherwise u, v are the root patch's coordinates as
-/// Embree gives them (exact for triangles and parallelograms, see PatchPlace for other quads).
+/// The hits of a packet of rays. `root` is `nothing` where a ray left the scene. Otherwise u, v are Embree's coordinates on the
+/// root patch: exact for triangles and parallelograms; LocalScene::places_of_hits converts them for other quads. t is the
+/// distance along the ray in lengths of its direction.
 struct alignas(64) HitPacket {
   static constexpr std::uint32_t nothing = ~0u;
   std::uint32_t root[RayPacket::width];
@@ -28,16 +29,16 @@ struct alignas(64) HitPacket {
   float t[RayPacket::width];
 };
 
-/// Maps metres to the solver's frame: the scene's centre at 0 and its longest side 1, so that float32 traversal sees
-/// neither the units nor the origin.
+/// Maps metres to local coordinates: the scene's centre is 0 and its longest side 1, so that float32 traversal depends neither on
+/// the units nor on the origin of the scene.
 struct LocalFrame {
   Vec3 centre;
   double metres_per_unit = 1;
   Vec3 to_local(Vec3 p) const { return (p - centre) / metres_per_unit; }
 };
 
-/// All root patches but the backs of two-sided faces (a hit from behind belongs to the twin), in local coordinates. Immutable;
-/// any number of threads may trace at a time.
+/// Embree's scene of all root patches in local coordinates, without the backs of two-sided faces (a hit from behind belongs to
+/// the twin). Immutable; any number of threads may trace at a time.
 class Visibility {
  public:
   Visibility(std::span<const RootPatch> roots, const LocalFrame& frame);
@@ -45,8 +46,9 @@ class Visibility {
   Visibility(const Visibility&) = delete;
   Visibility& operator=(const Visibility&) = delete;
 
+  /// Writes the nearest hit of every ray, between its t_min and t_max, to `hits`.
   void closest_hits(std::span<const RayPacket> packets, std::span<HitPacket> hits) const;
-  /// Bit i of `blocked[p]` is set where ray i of packet p meets a surface between t_min and t_max.
+  /// Sets bit i of `blocked[p]` if ray i of packet p meets a surface between its t_min and t_max, and clears it otherwise.
   void occlusions(std::span<const RayPacket> packets, std::span<std::uint16_t> blocked) const;
 
  private:
@@ -54,10 +56,10 @@ class Visibility {
   std::unique_ptr<Handles> handles_;
 };
 
-/// Whether a ray may slip through the common edge of two triangles: rarely, where it must be fast, or never.
+/// Whether a ray may slip through the common edge of two triangles: rarely (`fast`) or never (`watertight`).
 enum class Traversal { fast, watertight };
 
-/// One ray or one point at a time against plain triangles, for drawing, probing and verifying. Immutable; safe from any thread.
+/// Tests one ray or one point at a time against triangles, for drawing, probing and verifying. Immutable; safe from any thread.
 class TriangleCaster {
  public:
   TriangleCaster(std::span<const Vec3> positions, std::span<const std::array<std::uint32_t, 3>> triangles,
@@ -66,21 +68,21 @@ class TriangleCaster {
   TriangleCaster(const TriangleCaster&) = delete;
   TriangleCaster& operator=(const TriangleCaster&) = delete;
 
-  /// A point of triangle `triangle`: (1-u-v) a + u b + v c. `distance` is in the positions' units, along the ray or through
-  /// space.
+  /// A point of triangle `triangle`: (1-u-v) a + u b + v c. `distance` is that from the ray's origin, or from the point asked
+  /// for, in the units of the positions.
   struct Hit {
     std::uint32_t triangle;
     double u, v;
     double distance;
   };
-  /// Nearest surface along `direction` (unit), front or back.
+  /// Returns the nearest surface along `direction` (unit), front or back.
   std::optional<Hit> cast(Vec3 origin, Vec3 direction) const;
-  /// Nearest front along `direction` (unit). Backs are passed through, so that of two sides in one place the one that looks
-  /// against the ray is met.
+  /// Returns the nearest front along `direction` (unit). The ray passes through backs: of two sides in one place it meets the one
+  /// that faces it.
   std::optional<Hit> cast_front(Vec3 origin, Vec3 direction) const;
-  /// Whether a surface, front or back, lies between two points.
+  /// Returns whether a surface, front or back, lies between two points.
   bool is_blocked(Vec3 from, Vec3 to) const;
-  /// Nearest point of a surface whose normal lies within 60 degrees of `normal` (unit).
+  /// Returns the point nearest to `point` on a triangle whose normal lies within 60 degrees of `normal` (unit).
   std::optional<Hit> nearest(Vec3 point, Vec3 normal) const;
 
  private:

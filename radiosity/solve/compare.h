@@ -1,5 +1,5 @@
 #pragma once
-// All strategies on one mesh and one set of rows, each from the start to the solution of the same system.
+// Compares all strategies on one mesh and one set of rows, each from the start to the solution of one system.
 
 #include "meshing/base_mesh.h"
 #include "radiosity/exchange/strategies.h"
@@ -13,42 +13,42 @@
 namespace alvor {
 
 struct CompareOptions {
-  double tolerance = 0.02;    ///< the mesh and rows are those of a solve that stops at this estimated error
-  std::uint64_t steps = 100;  ///< after how many the strategies are looked at
+  double tolerance = 0.02;    ///< estimated error at which the solve stops that makes the mesh and the rows
+  std::uint64_t steps = 100;  ///< steps after which each strategy's picture is kept
   std::uint64_t seed = 1;
-  int threads = 0;  ///< for rays; 0: as many as the machine has. Strategies run on one
+  int threads = 0;  ///< threads for rays; 0: as many as the machine has. Strategies run on one thread
 };
 
-/// How far a strategy had come. The error is the area-weighted RMS error of the displayed radiosity over the RMS radiosity, both
-/// against the solution of the same system; emitters that light by shadow rays count with what they reflect.
+/// The error of a strategy after some steps: the RMS error over the area of the displayed radiosity, divided by the RMS radiosity of
+/// the solution of the system. Emission that rows do not carry is left out of both.
 struct ErrorSample {
   std::uint64_t steps = 0;  ///< patches shot or gathered
-  double cpu_s = 0;         ///< of the one thread
+  double cpu_s = 0;         ///< CPU seconds of the strategy's thread
   double error = 0;
 };
 
+/// The way of one strategy from the start to the solution.
 struct StrategyCourse {
   Strategy strategy = Strategy::automatic;
-  std::vector<ErrorSample> curve;  ///< every step at first, then every 2 %
-  /// After CompareOptions::steps, or fewer if nothing was left to do.
-  double error = 0;
-  std::vector<LeafValue> leaves;
-  Rgb ambient_irradiance;  ///< to be added to what is displayed, W/m2; zero for strategies that do not
+  std::vector<ErrorSample> curve;  ///< after every step at first, then each time the steps have grown by 2 %
+  double error = 0;                ///< error after CompareOptions::steps, or after fewer steps if nothing was left to do
+  std::vector<LeafValue> leaves;   ///< irradiance, W/m2, after as many steps as `error`
+  Rgb ambient_irradiance;          ///< to be added to `leaves` for display, W/m2; zero for strategies that show no ambient term
 };
 
-/// Leaves are in the order of their ids.
+/// The result of compare_strategies(). Leaves are in the order of their ids.
 struct Comparison {
   std::size_t patches = 0, leaves = 0;  ///< patches shoot and gather, leaves are displayed
-  std::vector<LeafValue> converged;
+  std::vector<LeafValue> converged;  ///< irradiance of the solution, W/m2
   std::vector<StrategyCourse> courses;  ///< gather, shoot, sorted, sorted+ambient, overshoot; none in the dark
 };
 
-/// The start is the same for all: nothing is shot, and direct light, which does not come by rows, is unshot on its receivers.
-/// That is the state after the emitters have shot. Each goes on until its error is 1e-6, or far beyond reason. A stop request
-/// ends it early, with what there is. Requires: !mesh.roots().empty().
+/// Runs all strategies on one system and returns their courses. All start with nothing shot and with direct light, which does not
+/// come by rows, unshot on its receivers: the state after the emitters have shot. Each goes on until its error is 1e-6, or for at most
+/// 1000 steps per patch. A stop request ends the comparison early, with the results so far. Requires: !mesh.roots().empty().
 Comparison compare_strategies(const BaseMesh& mesh, const CompareOptions& options, std::stop_token stop);
 
-/// From how many steps on the error stays at or below `error`; nothing if it never does.
+/// Returns the number of steps from which on the error stays at or below `error`; nothing if it does not at the end.
 std::optional<std::uint64_t> steps_to(double error, const StrategyCourse& course);
 
 }  // namespace alvor

@@ -9,8 +9,10 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t most_one_by_one = 12;  // emitters
-constexpr std::size_t parts_shown = 8;       // of a scene with more
+// Most emitters that light the leaves one after the other; more are put into a LightTree. Chosen; not measured.
+constexpr std::size_t most_one_by_one = 12;
+// Parts in which the leaves get their direct light if there are more emitters, each followed by `after_each`. Chosen; not measured.
+constexpr std::size_t parts_shown = 8;
 
 bool is_sound(const DirectLight& light) {
   const auto is_finite = [](float x) { return std::isfinite(x); };
@@ -27,7 +29,7 @@ DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOp
   fit_to_nodes();
 }
 
-// Where most surfaces emit, as in a furnace, a row that sums to 1 is exact and shadow rays are not.
+// If most surfaces emit, as in a furnace, rows carry the emission, because a row that sums to 1 is exact and shadow rays are not.
 void DirectField::choose_emitters() {
   const BaseMesh& mesh = forests_.mesh();
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
@@ -121,7 +123,7 @@ void DirectField::show(std::span<const NodeIndex> leaves, std::span<const Direct
   }
 }
 
-/// Until the other leaves of the face have their own light they show that of this one.
+/// Gives the light of this leaf to all leaves of its face that show none; they show it until their own is found.
 void DirectField::show_on_whole_face(NodeIndex leaf) {
   std::vector<NodeIndex> leaves;
   forests_.leaves().append_leaves_of(forests_.leaves().id(leaf).root_face(), leaves);
@@ -162,7 +164,7 @@ void DirectField::save_waiting(PlainWriter& out) const { out.put(waiting_power_)
 void DirectField::load_waiting(PlainReader& in) {
   waiting_power_ = in.get<double>();
   if (!std::isfinite(waiting_power_)) throw BadBytes("waiting power: not a finite number");
-  // The first emitter is the next again.
+  // No leaf has the light of all emitters, so the first emitter is the next again.
   if (std::ranges::none_of(forests_.leaves().leaves(), [this](NodeIndex leaf) { return is_known_[leaf]; }))
     waiting_power_ = emitted_power_;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The direct field of a solve: irradiance that comes straight from emitters, by leaf.
+// The direct field of a solve: the irradiance of each leaf that comes straight from emitters.
 
 #include "radiosity/direct/direct_light.h"
 #include "radiosity/direct/emission_unit.h"
@@ -12,31 +12,32 @@
 
 namespace alvor {
 
-/// Light and power are in emission units; indices are by leaf node. Borrows all that it is made with. Used by one thread at a
-/// time.
+/// The direct light of all leaves. Light is in emission units, power in emission units times m2; indices are by leaf node. Borrows
+/// all that it is made with. Used by one thread at a time.
 class DirectField {
  public:
   DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
 
   const EmissionUnit& unit() const { return unit_; }
-  /// The emission of a root patch.
+  /// Returns the emission of a root patch, in emission units.
   Rgb emission_of(std::uint32_t root) const { return unit_.from_watts_per_m2(forests_.mesh().material_of(root).emission); }
-  /// The part of it that rows bring to receivers: all where most surfaces emit, else none.
+  /// Returns the part of emission_of(root) that rows bring to receivers: all of it if most surfaces emit, else none.
   Rgb emission_by_rows(std::uint32_t root) const { return plan_.emission_by_rows() ? emission_of(root) : Rgb{}; }
-  /// Of all root patches.
+  /// Returns the power that all root patches emit, summed over bands, in emission units times m2.
   double emitted_power() const { return emitted_power_; }
-  /// Of the emitters whose light was not added yet.
+  /// Returns the part of the emitted power whose light has not been added to leaves yet, in emission units times m2.
   double waiting_power() const { return waiting_power_; }
 
-  /// What arrives at the leaf as far as is known.
+  /// Returns the direct light that the leaf shows: its own, or another leaf's until its own is found.
   const DirectLight& operator[](NodeIndex leaf) const { return light_[leaf]; }
-  /// Share of the area of faces that light may reach on which no direct light is known yet.
+  /// Returns the share of the area of faces that light may reach which shows no direct light yet.
   double unlit_fraction() const;
 
-  /// Adds direct light to the leaves whose rows are traced: few emitters light all of these one after the other, many emitters
-  /// light one part of them after the other. `after_each` is called in between. Returns early where the ray budget is out.
+  /// Adds direct light to the leaves whose rows are traced. Up to twelve emitters light all of these leaves, one emitter after the
+  /// other; more emitters together light them in parts. `after_each` is called after each emitter or part. Returns early where the
+  /// ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
-  /// Lets the leaf's light be found again.
+  /// Makes the next add_new() find the leaf's light again.
   void forget(NodeIndex leaf) { is_known_[leaf] = false; }
 
   /// Makes room for new nodes of the leaf forest.
@@ -46,8 +47,9 @@ class DirectField {
 
   void save_light(PlainWriter& out) const;
   void save_waiting(PlainWriter& out) const;
-  /// Throw BadBytes.
+  /// Reads what save_light() wrote. Throws BadBytes.
   void load_light(PlainReader& in);
+  /// Reads what save_waiting() wrote. Throws BadBytes.
   void load_waiting(PlainReader& in);
 
  private:
@@ -64,11 +66,11 @@ class DirectField {
   RayBudget& budget_;
   const EmissionUnit unit_{forests_.mesh()};
   std::vector<Emitter> emitters_;          ///< brightest first
-  std::unique_ptr<LightTree> light_tree_;  ///< null where there are few
+  std::unique_ptr<LightTree> light_tree_;  ///< null for up to twelve emitters
   double emitted_power_ = 0, waiting_power_ = 0;
   std::vector<DirectLight> light_;
-  std::vector<bool> is_known_;  ///< that of all emitters
-  std::vector<bool> is_lit_;    ///< shows some light: that of all emitters, of the first ones, or of another leaf of the face
+  std::vector<bool> is_known_;  ///< the leaf has its own light of all emitters
+  std::vector<bool> is_lit_;    ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
 };
 
 }  // namespace alvor

@@ -1,4 +1,4 @@
-// Rows of exact form factors in the place of sampled ones.
+// Replaces sampled rows by rows of exact form factors.
 
 #include "radiosity/form_factors/form_factor_matrix.h"
 #include "radiosity/rays/medium.h"
@@ -12,9 +12,11 @@ namespace alvor {
 
 namespace {
 
-constexpr double accuracy = 1e-4;  // of single factors; shadowed ones err more, their sums less
-// The edges of shadows are followed where patches are few and large: there common points err by percents. Among many patches it
-// would take a hundred times as long.
+// Absolute accuracy aimed at for single form factors. Shadowed ones err more, their sums less. Chosen; not measured.
+constexpr double accuracy = 1e-4;
+// Most rows of a scene, and most shadowed patches seen from one patch, for which the edges of shadows are followed. With few and large
+// patches common sample points err by percents (2 % around a block, tests/radiosity/known_boxes_test.cpp). With many, following takes
+// a hundred times as long. Chosen between these; not measured.
 constexpr std::size_t most_rows_followed = 32, most_shadows_followed = 32;
 
 std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
@@ -22,9 +24,8 @@ std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
   return {corners.begin(), corners.begin() + shape.corner_count};
 }
 
-/// What keeps the part of a patch that no solid stands on as bright as it is though the rest receives nothing, and makes the
-/// factors of a row sum to 1 where no ray escaped, and to no more elsewhere: where nearly all is reflected an excess of 1e-4
-/// would never end.
+/// Returns the factor by which a row's form factors are multiplied. If no ray escaped they then sum to 1. Otherwise they are averaged
+/// over the patch's visible part only, and sum to at most 1: if nearly all light is reflected, an excess of 1e-4 would never end.
 double scale_to_closure(std::span<const MatrixEntry> entries, double visible_share, bool is_closed) {
   double sum = 0;
   for (const MatrixEntry& entry : entries) sum += entry.value;
@@ -34,8 +35,8 @@ double scale_to_closure(std::span<const MatrixEntry> entries, double visible_sha
 
 }  // namespace
 
-// Rays were sent all the same, to tell what is hidden. A patch's form factor is spread over its leaves by area. The row is known
-// exactly, so it has no origins and no noise.
+// The rows were traced before, so their hidden origins are known. A form factor to a patch is spread over the patch's leaves by area.
+// Exact rows have no origins and no noise.
 void TracedRows::make_exact() {
   const BaseMesh& mesh = forests_.mesh();
   const std::vector<NodeIndex> rows = forests_.rows().leaves();

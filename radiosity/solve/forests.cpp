@@ -10,8 +10,10 @@ namespace alvor {
 
 namespace {
 
-constexpr double start_edge = 1.0 / 6;  // of the extent: no patch of the first mesh is longer
-constexpr double start_area = 1e-3;     // of the scene's: roots above it get the 4 x 4 patches that curvature is seen on
+// Share of the scene's extent: longest edge that a patch of the first mesh may have. Chosen; not measured.
+constexpr double start_edge = 1.0 / 6;
+// Share of the scene's area above which a root is split into 4 x 4 patches, on which curvature can be seen. Chosen; not measured.
+constexpr double start_area = 1e-3;
 
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
@@ -27,7 +29,7 @@ void save_leaves(const PatchForest& forest, PlainWriter& out) {
   out.put_all(ids);
 }
 
-/// Splits `forest` until its leaves are those that were saved.
+/// Splits `forest` until its leaves are those that were saved. Throws BadBytes if they are not leaves of this scene.
 void load_leaves(PatchForest& forest, PlainReader& in) {
   const auto ids = in.get_all<PatchId>();
   std::vector<LeafValue> patches;

@@ -11,22 +11,22 @@
 
 namespace alvor {
 
-/// Direct light is sharp and indirect light smooth, so they do not share a depth: transport rows hang on the leaves of the row
-/// forest, direct light on the leaves of the leaf forest, which contains the row forest. A row node and a leaf node are of the
-/// same place where their ids are equal. Used by one thread at a time.
+/// The row forest, whose leaves have transport rows, and the leaf forest, whose leaves have direct light. Direct light is sharp and
+/// indirect light smooth, so the leaf forest is finer; every row's place is a node of it. A row node and a leaf node have one place
+/// if their ids are equal. Used by one thread at a time.
 class Forests {
  public:
-  /// Splits the roots as far as a solve needs before its first pass, but none that no light can reach.
+  /// Splits the roots that light may reach as far as a solve needs before its first pass.
   Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits);
 
   const BaseMesh& mesh() const { return mesh_; }
   const PatchForest& rows() const { return rows_; }
   const PatchForest& leaves() const { return leaves_; }
-  double area() const { return area_; }  ///< of all roots, m2
+  double area() const { return area_; }  ///< area of all roots, m2
 
   /// Returns the row whose place contains the leaf node's.
   NodeIndex row_of(NodeIndex leaf) const { return rows_.leaf_at(leaves_.id(leaf)); }
-  /// Returns the leaf node of the row's place; where the leaf forest is coarser there, the leaf that contains it.
+  /// Returns the leaf node with the row's place. If the leaf forest is coarser there, returns the leaf that contains it.
   NodeIndex leaf_node_of(NodeIndex row) const;
   /// Appends the leaves within the row's place.
   void append_leaves_of_row(NodeIndex row, std::vector<NodeIndex>& leaves) const;
@@ -35,19 +35,20 @@ class Forests {
   std::span<const Vec3> leaf_centres() const { return leaf_centre_; }  ///< by leaf node
   double leaf_area(NodeIndex leaf) const { return leaf_area_[leaf]; }  ///< m2
 
-  /// Requires: leaves of the forest, each once.
+  /// Returns the smooth neighbours of each leaf of the row or the leaf forest. Requires: leaves of that forest, each once.
   std::vector<SmoothNeighbours> row_neighbours(std::span<const NodeIndex> rows) { return row_neighbours_.of(rows); }
   std::vector<SmoothNeighbours> leaf_neighbours(std::span<const NodeIndex> leaves) { return leaf_neighbours_.of(leaves); }
 
   bool may_split_leaf(NodeIndex leaf) const { return leaves_.may_split(leaf, limits_); }
   bool may_split_row(NodeIndex row) const;
-  /// Split a leaf of one forest, and others where neighbours require it; what was split is appended to `split`. Return false
-  /// where the limits forbid it.
+  /// Splits a leaf of the leaf forest, after the neighbours that must go first. Appends every node that was split to `split`. Returns
+  /// false if the limits forbid the split.
   bool split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split);
+  /// Splits a leaf of the row forest, as split_leaf() does in the leaf forest.
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
 
   void save(PlainWriter& out) const;
-  /// Requires: just made. Throws BadBytes where the leaves are not those of this scene.
+  /// Reads what save() wrote. Throws BadBytes if the leaves are not those of this scene. Requires: no split since construction.
   void load(PlainReader& in);
 
  private:
@@ -63,9 +64,9 @@ class Forests {
   std::vector<double> leaf_area_;
 };
 
-/// Sorts patches so that any first part of them is spread over the scene and holds much of its area: one patch of each face
-/// first, and these by chance, large ones sooner (weighted sampling without replacement, Efraimidis and Spirakis 2006). The order
-/// of the faces in a file is that of storeys and rooms.
+/// Sorts patches so that any first part of them is spread over the scene and holds much of its area. One patch of each face comes
+/// first; within that the order is random, large patches sooner (weighted sampling without replacement, Efraimidis and Spirakis
+/// 2006). The order of faces in files, storey by storey and room by room, would leave most rooms dark at first.
 void spread_out(const PatchForest& forest, std::vector<NodeIndex>& patches);
 
 }  // namespace alvor

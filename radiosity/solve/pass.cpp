@@ -8,7 +8,9 @@ namespace alvor {
 
 namespace {
 
-constexpr double marked_share = 0.9;  // of the squared error, per pass
+// Share of the candidates' squared error that a pass refines (bulk marking). Chosen; not measured.
+constexpr double marked_share = 0.9;
+// Parts in which the first pass traces the rows of a large scene, so that light shows soon. Chosen; not measured.
 constexpr std::size_t parts_of_first_light = 16;
 
 }  // namespace
@@ -38,10 +40,11 @@ bool Pass::trace_rows(const std::function<void()>& after_each, RowsToTrace which
   return false;
 }
 
-/// Returns false, and changes nothing, where the budget ran out.
+/// Traces those of the rows that are still leaves. Returns false, and changes nothing, if the ray budget ran out.
 bool Pass::trace(std::span<const NodeIndex> batch) {
   std::vector<NodeIndex> rows(batch.begin(), batch.end());
-  std::erase_if(rows, [this](NodeIndex row) { return !state_.forests.rows().is_leaf(row); });  // one before it followed a contact
+  // Some rows are no longer leaves: they were split because a row traced before them lies along a contact.
+  std::erase_if(rows, [this](NodeIndex row) { return !state_.forests.rows().is_leaf(row); });
   if (!state_.rows.trace(rows)) return false;
   for (const NodeIndex row : rows) state_.heed_hidden_origins(row);
   return true;
@@ -88,6 +91,7 @@ bool Pass::refine() {
 
 Shooting Pass::unshot_system() {
   assert(stage_ == Stage::exchanging || stage_ == Stage::estimated);
+  assert(state_.rows.carry_light());
   std::ranges::fill(state_.shot, Rgb{});
   return system_->shooting();
 }

@@ -16,7 +16,7 @@
 
 namespace alvor {
 
-/// Which of the rows that are not traced yet a pass is to trace at once.
+/// How many of the untraced rows a call of Pass::trace_rows traces.
 enum class RowsToTrace { all, a_part };
 
 /// Takes a state through one pass. The steps are called in the order in which they are declared; trace_rows() and
@@ -26,45 +26,45 @@ class Pass {
  public:
   explicit Pass(SolveState& state) : state_(state) {}
 
-  /// Adds the rays that the pass before asked for, and traces rows that are not traced: all, or of many a part that is spread
-  /// over the scene. Calls `after_each` now and then, where SolveState::save() may be called. Returns early where the ray budget
-  /// is out; called again, it goes on from there. Returns whether a part was traced and others are left.
+  /// Adds the rays that the previous pass asked for, and traces rows that are not traced: all of them, or a part that is spread over
+  /// the scene. Calls `after_each` between batches, when SolveState::save() may be called. Returns early if the ray budget is out;
+  /// called again, it goes on from there. Returns whether a part was traced and other rows are left.
   bool trace_rows(
       const std::function<void()>& after_each = [] {}, RowsToTrace which = RowsToTrace::all);
   /// Adds direct light to the leaves whose rows are traced, calling `after_each` as above.
   void add_direct_light(const std::function<void()>& after_each = [] {});
-  /// Sets up the exchange of light; what the pass before found carries over. The caller makes it sweep.
+  /// Returns an exchange of light that begins with what the previous pass found. The caller calls its sweep().
   Exchange& begin_exchange();
-  /// Fits the smooth field that is shown and estimates the error. Finds where refining would pay.
+  /// Fits the smooth field that is shown, finds candidates for refinement and returns the estimated error.
   ErrorEstimate estimate();
-  /// Splits patches and asks for rays where that pays most, which ends the pass. Returns false where nothing was done: the limits
-  /// forbid every split, and rows are not what errs most.
+  /// Splits patches and asks for rays where that removes most error per ray, which ends the pass. Returns false if nothing was done:
+  /// the limits forbid every split, and noise of rows is not the largest error.
   bool refine();
 
-  /// The first three steps, for callers who do not show what comes in between.
+  /// Takes the first three steps at once, for callers who do not show what comes in between.
   Exchange& prepare();
 
   // Between begin_exchange() and refine():
 
   Exchange& exchange() { return *exchange_; }
   const PassSystem& system() const { return *system_; }
-  /// The system as if nothing had been shot: all that is unshot is direct light on its receivers. Borrows from the pass.
-  /// Requires: rows that carry light.
+  /// Returns the system with nothing shot and direct light unshot on its receivers. Forgets the shots in the state. The system
+  /// borrows from the pass. Requires: rows carry light (TracedRows::carry_light).
   Shooting unshot_system();
-  /// Makes what is shown the given irradiance of each patch, without smoothing, in emission units.
+  /// Sets the shown indirect irradiance of each patch to the given one, in emission units, without smoothing.
   void show(std::span<const Rgb> irradiance);
-  /// Makes what is shown the smooth field of what the rays of rows find. A finished pass shows it.
+  /// Sets the shown indirect irradiance to the smooth field fitted to the rows' samples. A finished pass shows it.
   void show_smoothly();
-  /// Moves what is shown by what each row received since it was set.
+  /// Adds to the shown indirect irradiance the light that each row received since it was set.
   void show_what_came_since();
-  /// Where the power went that was emitted, W.
+  /// Returns how much of the emitted power was absorbed, lost and is unshot, W. Before begin_exchange() only `emitted` is set.
   PowerBalance balance() const;
 
   // At any time before refine():
 
-  /// Unshot power as a share of the emitted power; 0 in the dark.
+  /// Returns the unshot power as a share of the emitted power; 0 in the dark.
   double unshot_fraction() const;
-  /// The ambient term for display, see Exchange::ambient_irradiance, W/m2. Zero before the exchange has begun.
+  /// Returns the ambient irradiance for display (see Exchange::ambient_irradiance), W/m2. Zero before the exchange has begun.
   Rgb ambient_irradiance() const;
 
  private:

@@ -1,4 +1,4 @@
-// Where the emitted power went in a pass.
+// The power balance of a pass.
 
 #include "radiosity/solve/pass.h"
 
@@ -6,7 +6,8 @@
 
 namespace alvor {
 
-// Not where rows were switched off: for all faces, or for emitters that no light reaches.
+// Returns whether every patch that sends light has a row. Rows may be switched off for all faces, or for emitters that no light
+// reaches.
 bool Pass::rows_tell_what_is_lost() const {
   if (!state_.rows.carry_light()) return false;
   for (std::uint32_t root = 0; root < state_.mesh.roots().size(); ++root)
@@ -14,8 +15,9 @@ bool Pass::rows_tell_what_is_lost() const {
   return true;
 }
 
-// What leaves a patch is lost as far as its row does not find a front. Where a solid stands on it nothing arrives, and what it
-// emits there is lost too. Where there are no rows nothing tells: what did not arrive must have been lost.
+// The light that leaves a patch is lost in the share of directions in which its row finds no front. The part of a patch on which a
+// solid stands receives nothing, and its emission is lost. Without rows the lost power is taken to be what is not accounted for
+// otherwise.
 PowerBalance Pass::balance() const {
   const DirectField& direct = state_.direct;
   PowerBalance balance{.emitted = direct.unit().to_watts(direct.emitted_power())};

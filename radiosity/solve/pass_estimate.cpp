@@ -1,4 +1,4 @@
-// How far a pass is from the truth, and where refining would pay.
+// Estimates the error of a pass and finds candidates for refinement.
 
 #include "radiosity/solve/pass.h"
 
@@ -12,21 +12,35 @@ namespace alvor {
 
 namespace {
 
-constexpr double rays_per_leaf_split = 4 * 32;  // four children, 16 to 64 shadow rays each
+// Rays that splitting a leaf costs: four children, 32 shadow rays each, the geometric mean of 16 and 64.
+constexpr double rays_per_leaf_split = 4 * 32;
+// Rays that splitting a row costs: four children, a row and 32 shadow rays each.
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
+// Rays above which a row gets no more. Chosen; not measured.
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-constexpr double unseen_detail = 2.5;  // of the squared error: shadows smaller than what sixteen origins tell, from many scenes
-constexpr double noise_in_display = 0.16;      // of the variance of direct light: vertices average over the leaves around them
-constexpr double noise_in_differences = 0.25;  // of that variance: what noise adds to a squared interpolation error
-constexpr double noise_of_origins = 1.7;       // of their variance, and what it may be above that by chance
-constexpr double misfit_at_centre = 0.25;      // of the squared misfit in a window, that its fit has in the middle
-constexpr double contact_error = 0.1;          // of a patch's irradiance: how much it varies where a solid's outline crosses it
+// Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show. Measured on
+// six scenes (ARCHITECTURE.md, Estimate, mark, refine).
+constexpr double unseen_detail = 2.5;
+// Share of the variance of a leaf's direct light that is seen in the display. Bilinear interpolation between vertices that average the
+// four leaves around them leaves (5/12)^2 = 0.17; the slopes by which the display mesh extrapolates are not in it. Chosen; not
+// measured.
+constexpr double noise_in_display = 0.16;
+// Share of the variance of a leaf's direct light that noise adds to its squared interpolation error. Independent noise on a regular
+// grid adds 0.14 inside a surface and 0.30 at a crease (computed from interpolation_error); 0.25 lies between.
+constexpr double noise_in_differences = 0.25;
+// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations above the
+// mean of sixteen squared normal deviations.
+constexpr double noise_of_origins = 1.7;
+// Share of a window's squared misfit that its fit has at the centre: a guess. Chosen; not measured.
+constexpr double misfit_at_centre = 0.25;
+// Share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; not measured.
+constexpr double contact_error = 0.1;
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
 double squared(double x) { return x * x; }
 
-/// Some leaves of a forest, each with its neighbours, and what they hold, by node.
+/// Some leaves of a forest, each with its neighbours, and their centres and values, by node.
 struct Field {
   const PatchForest& forest;
   std::span<const NodeIndex> leaves;
@@ -97,7 +111,8 @@ void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patch
     if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
 }
 
-/// Adds the errors of rows, squared and integrated over the area, in emission units squared times m2.
+/// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2. Adds candidates that
+/// split rows or give them more rays.
 void Pass::estimate_rows(ErrorEstimate& error) {
   const auto patches = system_->patches();
   std::vector<double> errors(patches.size());
@@ -122,7 +137,8 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   add_candidates(Candidate::Kind::split_row, system_->rows(), errors, rays_per_row_split);
 }
 
-/// Returns the mean square of what arrives at the origins of a leaf beyond its slope and the noise of their shadow rays.
+/// Returns the mean square deviation of the irradiance at a leaf's origins from the leaf's linear slope, less the noise of shadow
+/// rays, at least 0; in emission units squared.
 double Pass::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
   const Forests& forests = state_.forests;
   const DirectLight& direct = state_.direct[leaf];
@@ -141,7 +157,8 @@ double Pass::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafS
   return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct.origin_variance);
 }
 
-/// Adds the errors of leaves, as estimate_rows() does. Returns the power that arrives, in emission units times m2.
+/// Adds the errors of leaves to `error`, and candidates that split leaves, as estimate_rows() does for rows. Returns the power that
+/// arrives at all leaves, mean over bands, in emission units times m2.
 double Pass::estimate_leaves(ErrorEstimate& error) {
   Forests& forests = state_.forests;
   const auto leaves = system_->leaves();

@@ -1,5 +1,5 @@
 #pragma once
-// The linear system of one pass, made of rows, leaves and direct light as they stand.
+// Makes the linear system of one pass from the rows, leaves and direct light of the state.
 
 #include "radiosity/exchange/light_by_leaf.h"
 #include "radiosity/exchange/shooting.h"
@@ -11,8 +11,8 @@
 
 namespace alvor {
 
-/// Patches are the leaves of the row forest, in their order; leaves are listed patch after patch, and a leaf's place is its index
-/// in that list. Light is in emission units. Borrows the state, which must not be refined meanwhile.
+/// The linear system of a pass. Patches are the leaves of the row forest, in their order. Leaves are listed patch after patch; a
+/// leaf's place is its index in that list. Light is in emission units. Borrows the state, which must not be refined meanwhile.
 class PassSystem {
  public:
   explicit PassSystem(SolveState& state);
@@ -25,11 +25,12 @@ class PassSystem {
     return leaves().subspan(patches_[patch].first_leaf, patches_[patch].leaf_count);
   }
 
-  /// Starts an exchange of light by the strategy of the options; where no light goes along rows there is nothing to exchange.
+  /// Returns an exchange of light by the strategy of the options. If rows carry no light it has no patches.
   std::unique_ptr<Exchange> begin_exchange() const;
-  /// The system as the shots recorded in the state have left it.
+  /// Returns the system with the shots that are recorded in the state (SolveState::shot).
   Shooting shooting() const;
-  /// Radiosity of each leaf node: emitted, and reflected of direct light and of what its row received (SolveState::field).
+  /// Returns the radiosity of each leaf node that rows carry: emission (see DirectField::emission_by_rows), and reflection of direct
+  /// light and of the irradiance that its row received (SolveState::field).
   LightByLeaf radiosity() const;
 
  private:
@@ -38,7 +39,7 @@ class PassSystem {
   SolveState& state_;
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
-  std::vector<Rgb> own_radiosity_;  ///< by place: emitted, and reflected of direct light
+  std::vector<Rgb> own_radiosity_;  ///< by place: emission that rows carry, and reflected direct light
 };
 
 }  // namespace alvor

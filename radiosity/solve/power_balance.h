@@ -2,14 +2,15 @@
 
 namespace alvor {
 
-/// Where the emitted power went, W, bands together. Rows are samples, each receiver's its own: what arrives is not exactly what
-/// was sent, and the difference tells how good they are, whatever the estimate of the error says.
+/// The emitted power and what became of it, W, summed over bands. Each receiver has its own samples (its row), so the power that
+/// arrives is not exactly the power that was sent. The difference measures the rows' quality independently of the error estimate.
 struct PowerBalance {
   double emitted = 0;
-  double absorbed = 0;  ///< by fronts
-  double lost = 0;      ///< left the scene, met black backs, or faded in the medium; where no rows tell: the rest
+  double absorbed = 0;  ///< absorbed by fronts
+  double lost = 0;      ///< left the scene, met black backs, or faded in the medium. Without rows to tell: all of the rest
   double unshot = 0;    ///< not distributed yet
-  /// What is not accounted for, as a share of the emitted power; negative: more came than was sent. 0 in the dark.
+  /// Returns the power that is not accounted for, as a share of the emitted power. Negative: more arrived than was sent. 0 in the
+  /// dark.
   double gap() const { return emitted > 0 ? (emitted - absorbed - lost - unshot) / emitted : 0; }
 };
 

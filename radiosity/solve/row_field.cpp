@@ -3,6 +3,7 @@
 #include "radiosity/solve/saved_nodes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace alvor {
@@ -24,6 +25,7 @@ RowField::RowField(const Forests& forests, bool has_rows) : forests_(forests), h
 const FieldFit& RowField::fit(NodeIndex row) const { return has_rows_ ? fit_[row] : no_field; }
 
 void RowField::set(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance) {
+  assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
   for (std::size_t n = 0; n < rows.size(); ++n) {
     irradiance_[rows[n]] = irradiance[n];
     fit_[rows[n]] = FieldFit::constant(irradiance[n]);
@@ -31,6 +33,7 @@ void RowField::set(std::span<const NodeIndex> rows, std::span<const Rgb> irradia
 }
 
 void RowField::move_to(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance) {
+  assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
   for (std::size_t n = 0; n < rows.size(); ++n) {
     fit_[rows[n]].add(irradiance[n] - irradiance_[rows[n]]);
     irradiance_[rows[n]] = irradiance[n];
@@ -38,6 +41,7 @@ void RowField::move_to(std::span<const NodeIndex> rows, std::span<const Rgb> irr
 }
 
 void RowField::set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits) {
+  assert(fits.size() == rows.size() && (has_rows_ || rows.empty()));
   for (std::size_t n = 0; n < rows.size(); ++n) fit_[rows[n]] = fits[n];
 }
 

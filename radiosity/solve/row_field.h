@@ -1,5 +1,5 @@
 #pragma once
-// Indirect irradiance as it is shown: a smooth field that rows were fitted to.
+// The indirect irradiance that is shown: a smooth field fitted to the rows.
 
 #include "radiosity/exchange/irradiance_field.h"
 #include "radiosity/solve/forests.h"
@@ -9,32 +9,33 @@
 
 namespace alvor {
 
-/// Irradiance in emission units; indices are by row node. Without rows that carry light it is zero everywhere and takes no
-/// memory.
+/// The field of indirect irradiance, in emission units; indices are by row node. If rows carry no light it is zero everywhere and
+/// takes no memory.
 class RowField {
  public:
   RowField(const Forests& forests, bool has_rows);
 
   /// Returns the irradiance that rows bring to a point on the row's patch.
   Rgb at(NodeIndex row, Vec3 point) const { return has_rows_ ? fit_[row].at(point) : Rgb{}; }
-  /// Returns the irradiance that the row itself received.
+  /// Returns the irradiance that the row itself received when the field was set.
   Rgb irradiance(NodeIndex row) const { return has_rows_ ? irradiance_[row] : Rgb{}; }
   const FieldFit& fit(NodeIndex row) const;
 
-  /// Makes the field constant over each of `rows`. Requires: as many values as rows.
+  /// Makes the field constant over each of `rows`. Requires: as many values as rows; rows carry light.
   void set(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance);
-  /// Moves the field of each row by what the row received since it was set.
+  /// Adds to the field of each row the difference between `irradiance` and the irradiance that the row had received before. Requires:
+  /// as many values as rows; rows carry light.
   void move_to(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance);
-  /// Replaces the field of each row by a fit, and keeps what the row received.
+  /// Replaces the field of each row by a fit; irradiance(row) does not change. Requires: as many fits as rows; rows carry light.
   void set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits);
 
   /// Makes room for new nodes of the row forest.
   void fit_to_nodes();
-  /// Gives the children of a row that was split its field.
+  /// Copies the field of a row that was split to its children.
   void hand_down(NodeIndex split_row);
 
   void save(PlainWriter& out) const;
-  /// Throws BadBytes.
+  /// Reads what save() wrote. Throws BadBytes.
   void load(PlainReader& in);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// How what a forest's leaves hold is written to a checkpoint and read from it.
+// Writes the values of a forest's leaves to a checkpoint and reads them from it.
 
 #include "meshing/patch_forest.h"
 #include "solution/plain_bytes.h"
@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// Writes what `by_node` holds at `nodes`.
+/// Writes the values of `by_node` at `nodes`.
 template <class T>
 void save_at(std::span<const NodeIndex> nodes, const std::vector<T>& by_node, PlainWriter& out) {
   std::vector<T> some;
@@ -20,7 +20,7 @@ void save_at(std::span<const NodeIndex> nodes, const std::vector<T>& by_node, Pl
   out.put_all(some);
 }
 
-/// Reads what save_at wrote. Throws BadBytes, naming `what`, where a value is not sound: not finite, as is_sound(T) says.
+/// Reads what save_at wrote. Throws BadBytes that names `what` if is_sound(value) is false for a value: it is not finite.
 template <class T, class IsSound>
 void load_at(std::span<const NodeIndex> nodes, std::vector<T>& by_node, PlainReader& in, const char* what, IsSound&& is_sound) {
   const auto some = in.get_all<T>(nodes.size(), what);

@@ -1,5 +1,5 @@
 #pragma once
-// How a solve is steered while it runs, and what it takes to go on with it later.
+// Steers a solve while it runs: stop requests, priority, checkpoints.
 
 #include "solution/plain_bytes.h"
 
@@ -10,28 +10,28 @@
 
 namespace alvor {
 
-/// Among the solves of a process: worker threads go to the highest first. Each has at least the thread it was called on.
+/// Priority among the solves of a process. Worker threads go to the highest first; each solve has at least the thread that called it.
 enum class SolvePriority { low, normal, high };
 
-/// All functions are called on the thread that solves.
+/// Requests to a solve and the functions that it calls, all on the thread that solves.
 struct SolveControl {
-  /// Obeyed within one batch of rays or shots; leaves a usable solution in the log.
+  /// Ends the solve within one batch of rays or shots. The log keeps the last step that was published.
   std::stop_token stop;
-  /// Obeyed as soon: the solve ends with the last step that it published.
+  /// Ends the solve as `stop` does, with the reason StopReason::memory.
   std::stop_token short_of_memory;
-  /// Obeyed at the next place from which the solve can go on as if it had not been interrupted: `save` is then called once more.
+  /// Ends the solve at the next place from which it can go on as if it had not been interrupted, after one more call of `save`.
   std::stop_token park;
 
-  /// Asked at such places whether to call `save`. Null: never.
+  /// Called at such places; returns whether `save` is to be called. Null: never.
   std::function<bool()> is_checkpoint_due;
-  /// What it is given writes the checkpoint, and may be called only there. The log is to be saved with it.
+  /// Writes the checkpoint. May be called only during the call of `save`.
   using Write = std::function<void(PlainWriter&)>;
+  /// Called with a function that writes the checkpoint. The callee saves the log with it. Null: nothing is saved.
   std::function<void(const Write&)> save;
 
   SolvePriority priority = SolvePriority::normal;
 
-  /// A checkpoint of the same mesh, plan and options to go on from; the log is as it was saved with it. Empty: from the
-  /// beginning.
+  /// A checkpoint of this mesh, plan and options to go on from, with the log as it was saved then. Empty: the solve begins anew.
   std::span<const std::byte> checkpoint;
 };
 

@@ -3,15 +3,17 @@
 #include "radiosity/solve/saved_nodes.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace alvor {
 
 namespace {
 
-constexpr double held_by_floats = 1e37;  // W/m2, with room for sums
+// Largest irradiance that is published, W/m2: a 34th of the largest float32 (3.4e38), which leaves room for sums.
+constexpr double held_by_floats = 1e37;
 
-/// Returns a bound on the irradiance of the solution, W/m2. Where every surface emitted like the brightest and reflected like the
-/// lightest, B would be this everywhere, and H no larger. What rays estimate may lie beyond, the truth does not.
+/// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max rho). If every surface emitted and
+/// reflected like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth does not.
 Rgb largest_irradiance(const BaseMesh& mesh) {
   Rgb emission, reflectance;
   for (const RootPatch& root : mesh.roots()) {
@@ -86,7 +88,7 @@ void SolveState::follow_contact(NodeIndex split_leaf) {
 bool SolveState::split_row(NodeIndex row) {
   if (!forests.rows().is_leaf(row)) return true;
   if (!split_leaf(forests.leaf_node_of(row))) return false;
-  if (!forests.rows().is_leaf(row)) return true;  // it followed a contact
+  if (!forests.rows().is_leaf(row)) return true;  // split_leaf() split the row, which lies along a contact
   std::vector<NodeIndex> split;
   const bool is_done = forests.split_row(row, split);
   fit_to_nodes();
@@ -117,6 +119,7 @@ void SolveState::save(PlainWriter& out) const {
 }
 
 void SolveState::load(PlainReader& in, std::uint32_t version) {
+  assert(std::ranges::none_of(forests.rows().leaves(), [this](NodeIndex row) { return rows.is_traced(row); }));
   forests.load(in);
   fit_to_nodes();
   rows.load_rows(in, version);

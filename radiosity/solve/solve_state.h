@@ -1,5 +1,5 @@
 #pragma once
-// All that a solve keeps from pass to pass.
+// The state that a solve keeps from pass to pass.
 
 #include "radiosity/solve/direct_field.h"
 #include "radiosity/solve/forests.h"
@@ -12,8 +12,8 @@
 
 namespace alvor {
 
-/// The parts of a solve, each the owner of what its name says. A Pass makes them better; between passes they can be saved. Used
-/// by one thread at a time.
+/// The parts of a solve: forests, rows, direct light and the shown field, each owned by one member. A Pass improves them; between
+/// passes they can be saved. Used by one thread at a time.
 class SolveState {
  public:
   /// Requires: the plan is of this mesh and these options. The mesh and the budget must outlive the state.
@@ -31,36 +31,40 @@ class SolveState {
   TracedRows rows;
   RowField field;
   DirectField direct;
-  std::vector<Rgb> shot;  ///< by leaf node: radiosity that shots distributed so far, in emission units; 0 where light is gathered
+  std::vector<Rgb> shot;  ///< by leaf node: radiosity that shots distributed so far, in emission units; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
   bool may_be_lit(NodeIndex row) const { return rows.may_be_lit(row); }
-  /// What rows bring to the centre of a leaf.
+  /// Returns the irradiance that rows bring to the centre of a leaf, in emission units.
   Rgb indirect(NodeIndex leaf) const { return field.at(forests.row_of(leaf), forests.leaf_centres()[leaf]); }
-  /// Irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light alone. Never
-  /// negative, and never more than where all surfaces were like the brightest.
+  /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
+  /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
   std::vector<LeafValue> leaf_values() const;
-  /// Power that is not distributed yet while no pass exchanges light: what waits at emitters and what direct light leaves to
-  /// reflect. In emission units.
+  /// Returns the power that is not distributed yet if no exchange has begun: the emitters' waiting power and the reflection of direct
+  /// light. Summed over bands, in emission units times m2.
   double unshot_power() const;
 
-  /// Split a leaf of the leaf forest, or a row with the leaves below it. Rows follow leaves along contacts, where a solid's
-  /// outline crosses them. Return false where the limits forbid it.
+  /// Splits a leaf of the leaf forest, and its row too if the row is as fine and not traced, or a solid's outline crosses it. Returns
+  /// true if the leaf is split now, false if the limits forbid it.
   bool split_leaf(NodeIndex leaf);
+  /// Splits a row, and the leaf of its place if that is not split. Returns true if the row is split now, false if the limits forbid
+  /// it.
   bool split_row(NodeIndex row);
-  /// To be called when a row was traced. Which points are hidden under a solid is known from rows only: along contacts leaves
-  /// must not be finer than rows, and direct light that was found without that knowledge is found again.
+  /// Uses the hidden origins that tracing found for a row; to be called when it was traced. Direct light of the row's leaves is found
+  /// again without hidden points. A row that a solid's outline crosses is split as its leaves are, because only rows know which
+  /// points are hidden.
   void heed_hidden_origins(NodeIndex row);
 
-  static constexpr std::uint32_t saved_version = 3;  ///< 3: rows know whether they are closed
-  /// Writes what it takes to go on from here with another state of the same mesh, plan and options. Only what leaves hold is
-  /// written: all else is found again.
+  static constexpr std::uint32_t saved_version = 3;  ///< since 3 rows are saved with TransportRow::is_closed
+  /// Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on; all else is computed
+  /// again.
   void save(PlainWriter& out) const;
-  /// Reads what save() wrote, or a server of version 2. Requires: nothing was done yet. Throws BadBytes, and is then of no use.
+  /// Reads what save() wrote, or the save() of version 2. Throws BadBytes; the state must not be used after that. Requires: no row was
+  /// traced and nothing split since construction.
   void load(PlainReader& in, std::uint32_t version);
 
  private:
-  const Rgb largest_irradiance_;  ///< that the solution can have, W/m2
+  const Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
   void follow_contact(NodeIndex split_leaf);
 };

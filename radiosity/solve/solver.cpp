@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -17,40 +18,51 @@ namespace alvor {
 
 namespace {
 
-constexpr double pass_remaining = 0.1;    // of the tolerance: a pass goes on until what is still to come is less
-constexpr double final_remaining = 1e-6;  // the same, of a pass that may be the last
-constexpr double near_the_end = 1.5;      // times the tolerance: the next pass is likely the last
-constexpr double displayed_error = 0.5;   // of the estimated error: how far a display may lag behind
-constexpr double worth_going_on = 0.98;   // of the lowest error so far
+// Share of the tolerance that Exchange::remaining_error() must fall below to end a pass. Squares add, so what is still to come adds
+// 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
+constexpr double pass_remaining = 0.1;
+// Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; not measured.
+constexpr double final_remaining = 1e-6;
+// Multiple of the tolerance: after an estimated error below it the next pass is taken to be the last. Chosen; not measured.
+constexpr double near_the_end = 1.5;
+// Share of the estimated error by which a display may differ from the solution. Squares add, so a display errs by at most
+// sqrt(1 + 0.5^2) = 1.12 times the estimated error. Chosen; not measured.
+constexpr double displayed_error = 0.5;
+// Share of the lowest error so far that a pass without splits must get below to count as a gain. Chosen; not measured.
+constexpr double worth_going_on = 0.98;
+// Passes without gain that are made before the solve ends. Chosen; not measured.
 constexpr int most_idle_passes = 4;
-constexpr double publish_when = 0.75;     // of the unshot power at the last publication
-constexpr double publishing_share = 0.1;  // of the time, at most, goes into steps that only show progress
+// Share of the unshot power at the last publication below which an exchange publishes again. Chosen; not measured.
+constexpr double publish_when = 0.75;
+// Largest share of the time that may go into steps that only show progress. Chosen; not measured.
+constexpr double publishing_share = 0.1;
+// Number of first steps that are published whatever they cost. Chosen; not measured.
 constexpr std::uint64_t always_published = 12;
 
-/// What a run knows besides its state.
+/// The progress of a run that is not part of its state. Saved with checkpoints.
 struct Progress {
   double elapsed_s = 0, cpu_s = 0, traversal_s = 0;
   std::uint64_t rays = 0, shots = 0;
-  std::uint64_t passes = 0;  ///< that came to their end
+  std::uint64_t passes = 0;  ///< passes that came to their end
   ErrorEstimate error{.unshot = 1};
   PowerBalance balance;
   double lowest_error = 0;
-  std::uint64_t leaves_before = 0;  ///< the last pass that gained something
-  std::uint64_t idle_passes = 0;    ///< since
+  std::uint64_t leaves_before = 0;  ///< leaves in the last pass that gained something
+  std::uint64_t idle_passes = 0;    ///< passes since then
 };
 
-/// The pauses of a paced solve are not part of its time.
+/// Measures the wall seconds of a solve, without its pauses.
 class SolveClock {
  public:
   double elapsed_s() const { return seconds(Clock::now() - start_ - paused_); }
-  /// Returns early once `must_stop` says so.
+  /// Waits, and does not count the time. Returns early once must_stop() is true.
   void pause(double duration_s, const std::function<bool()>& must_stop) {
     const auto before = Clock::now(), end = before + of(duration_s);
     while (!must_stop() && Clock::now() < end)
       std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), most_nap));
     paused_ += Clock::now() - before;
   }
-  /// What was elapsed before this clock was made.
+  /// Adds seconds that had elapsed before this clock was made.
   void add_elapsed(double elapsed_s) { start_ -= of(elapsed_s); }
 
  private:
@@ -62,7 +74,7 @@ class SolveClock {
   Clock::duration paused_{};
 };
 
-/// One step: every face, and no light on any.
+/// Publishes one step: every face, and no light on any.
 SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
   std::vector<LeafValue> values;
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) values.push_back({PatchId::root(root), {}});
@@ -73,7 +85,7 @@ SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLo
   return {.reason = StopReason::dark, .cpu_s = cpu.seconds()};
 }
 
-/// Of a scene with light.
+/// One run of the solver, on a scene with light.
 class Run {
  public:
   Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
@@ -113,7 +125,7 @@ class Run {
     }
   }
 
-  /// False where passes that split nothing, but only add rays, do not bring the error down any more.
+  /// Returns false if passes that split nothing, but only add rays, no longer reduce the error.
   bool gains() {
     const bool has_split = state_.leaf_count() > is_.leaves_before;
     if (has_split || is_.error.total() < worth_going_on * is_.lowest_error) {
@@ -124,7 +136,7 @@ class Run {
     return ++is_.idle_passes <= most_idle_passes;
   }
 
-  /// False if it was stopped: then the last published step stands.
+  /// Makes a pass up to its estimate and publishes it. Returns false if it was stopped: then the last published step stands.
   bool pass() {
     if (!light()) return false;
     pass_->begin_exchange();
@@ -136,8 +148,8 @@ class Run {
     return true;
   }
 
-  /// Traces rows and adds direct light: in the first pass part by part, so that all of the scene soon has some. False if it was
-  /// stopped.
+  /// Traces rows and adds direct light, in the first pass part by part, so that all of the scene soon shows some light. Returns false
+  /// if it was stopped.
   bool light() {
     bool is_more = true;
     while (is_more && !must_stop()) {
@@ -152,7 +164,7 @@ class Run {
     return !must_stop();
   }
 
-  /// The last pass goes on to where rounding begins, if it gets there: gathering is cheap.
+  /// Exchanges light down to final_remaining, publishes, and returns the reason for the end: `reason`, or why it came to less.
   StopReason converge(StopReason reason) {
     if (!exchange_down_to(final_remaining)) return stop_reason();
     pass_->show_what_came_since();
@@ -162,14 +174,14 @@ class Run {
     return is_stuck() ? StopReason::stalled : reason;
   }
 
-  /// Noise of rows that all of the scene has in common shows in what they lose of the power or add to it: where nearly all is
-  /// reflected, a thousandth of each row is a large part of the solution.
+  /// Computes the power balance and adds its gap to the estimated error. The gap measures noise of rows that the whole scene has in
+  /// common: if nearly all light is reflected, a thousandth of each row is a large part of the solution.
   void account() {
     is_.balance = pass_->balance();
     is_.error.balance = std::abs(is_.balance.gap());
   }
 
-  /// False if it was stopped.
+  /// Exchanges light until Exchange::remaining_error() is at most `remaining_error` or it stalls. Returns false if it was stopped.
   bool exchange_down_to(double remaining_error) {
     Exchange& exchange = pass_->exchange();
     double published = exchange.unshot_power();
@@ -186,7 +198,7 @@ class Run {
     return end != Settling::stopped;
   }
 
-  /// Steps that only show progress may cost a small share of the time; the first ones always appear.
+  /// Publishes a step that only shows progress, if it is one of the first twelve or publishing takes less than a tenth of the time.
   void publish_if_due() {
     const bool is_early = log_.head() < always_published;
     if (is_early || clock_.elapsed_s() - published_at_ > publishing_s_ / publishing_share) publish();
@@ -247,11 +259,13 @@ class Run {
   double cpu_s() const { return is_.cpu_s + cpu_.seconds(); }
 
   bool is_stuck() const { return has_stalled_ && is_.error.unshot > pass_remaining * options_.tolerance; }
-  /// A pass that may be the last goes on to the end where that is cheap: what it shows is then smoothed as a whole.
+  /// Returns whether this pass may be the last and its exchange is cheap. It then goes on to the end, so that all of the light is
+  /// smoothed.
   bool may_be_last() const {
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || is_.error.total() < near_the_end * options_.tolerance);
   }
-  /// Whatever is under way is given up: from the middle of an exchange a solve would go on otherwise.
+  /// Returns whether to give up even in the middle of an exchange. A request to park does not count: a solve that went on from the
+  /// middle of an exchange would go on differently.
   bool must_break_off() const {
     return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() ||
            clock_.elapsed_s() > options_.time_limit_s;
@@ -276,7 +290,7 @@ class Run {
   SolveState state_;
   std::optional<Pass> pass_{state_};
   Progress is_;
-  bool has_stalled_ = false;  // light was still going round when the last exchange ended
+  bool has_stalled_ = false;  // the last exchange ended before it converged
   double published_at_ = 0, publishing_s_ = 0;
 };
 
@@ -307,6 +321,8 @@ std::string_view text(StopReason reason) {
 
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control) {
+  assert(!mesh.roots().empty());
+  assert(!control.checkpoint.empty() || log.head() == 0);
   const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   tbb::task_arena arena(threads, 1, priority_of(control.priority));
   const CpuClock cpu(arena);

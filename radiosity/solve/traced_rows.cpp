@@ -8,7 +8,9 @@ namespace alvor {
 
 namespace {
 
-constexpr double small_area = 2e-5;  // of the scene's: roots below begin with small rows
+// Share of the scene's area below which a root begins with a small row. Measured: a scene of 50 000 faces starts 1.5 times sooner than
+// with whole rows (docs/error-vs-time/tried.md).
+constexpr double small_area = 2e-5;
 
 void save(const TransportRow& row, PlainWriter& out) {
   out.put(row.rays);
@@ -118,7 +120,7 @@ bool TracedRows::add_wanted_rays() {
   return true;
 }
 
-// Leaves only ever get finer, so each look-up starts where the last one ended.
+// Leaves are only ever split, so the look-up of each hit starts at the leaf that it found last.
 void TracedRows::find_hit_leaves(NodeIndex row) {
   const auto& hits = rows_[row].hits;
   auto& found = hit_leaves_[row];

@@ -1,5 +1,5 @@
 #pragma once
-// The transport rows of a solve: which are traced, which are to get more rays, and which leaves their hits find.
+// The transport rows of a solve: traced rows, rows that want more rays, and the leaves that hits find.
 
 #include "radiosity/plan/plan.h"
 #include "radiosity/rays/transport_rows.h"
@@ -11,36 +11,36 @@
 
 namespace alvor {
 
-/// One row for each leaf of the row forest; spans and indices are by row node. Borrows all that it is made with. Used by one
-/// thread at a time.
+/// The transport rows of the row forest's leaves. Indices are row nodes. Borrows all that it is made with. Used by one thread at a
+/// time.
 class TracedRows {
  public:
   TracedRows(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
 
   const TransportRow& operator[](NodeIndex row) const { return rows_[row]; }
   bool is_traced(NodeIndex row) const { return is_traced_[row]; }
-  /// The leaf nodes that the row's hits found, hit by hit, when find_hit_leaves was called last.
+  /// Returns the leaf node that each hit of the row found when find_hit_leaves() was called last.
   std::span<const NodeIndex> leaves_hit(NodeIndex row) const { return hit_leaves_[row]; }
 
-  /// Light goes along rows. Otherwise they are there to tell what is hidden, and hold no hits.
+  /// Returns whether light goes along rows. If not, rows only tell which origins are hidden, and hold no hits.
   bool carry_light() const { return plan_.needs(Feature::indirect_rows); }
   bool may_be_lit(NodeIndex row) const { return plan_.may_be_lit(forests_.rows().id(row).root_face()); }
-  /// Rows of the row forest's leaves that light may reach and that are not traced.
+  /// Returns the leaves of the row forest that light may reach and whose rows are not traced.
   std::vector<NodeIndex> untraced() const;
 
-  /// Traces the rows that are still leaves. Returns false, and changes nothing, where the ray budget ran out.
+  /// Traces the rows. Returns false, and changes nothing, if the ray budget ran out. Requires: leaves of the row forest.
   bool trace(std::span<const NodeIndex> rows);
-  /// Replaces the hits of all rows by exact form factors between patches (FormFactorMethod::analytic). What rays found out about
-  /// hidden origins and closure stays.
+  /// Replaces the hits of all rows by exact form factors between patches (FormFactorMethod::analytic). Keeps the hidden origins and
+  /// is_closed that rays found.
   void make_exact();
 
   /// Asks for another round of rays for these rows.
   void want_rays(std::span<const NodeIndex> rows);
   bool want_any() const { return !wanting_.empty(); }
-  /// Adds the rays that were asked for to some of the rows. Returns false, and changes nothing, where the ray budget ran out.
+  /// Adds the rays that were asked for to a batch of rows. Returns false, and changes nothing, if the ray budget ran out.
   bool add_wanted_rays();
 
-  /// Finds which leaves the hits of the row lie on now. Different rows may be looked at from different threads.
+  /// Finds the leaves on which the hits of the row lie now, for leaves_hit(). Different threads may call it for different rows.
   void find_hit_leaves(NodeIndex row);
 
   /// Makes room for new nodes of the row forest.
@@ -50,11 +50,13 @@ class TracedRows {
 
   void save_rows(PlainWriter& out) const;
   void save_wanted(PlainWriter& out) const;
-  /// Throw BadBytes. `version` is that of the checkpoint.
+  /// Reads what save_rows() wrote in a checkpoint of that version. Throws BadBytes.
   void load_rows(PlainReader& in, std::uint32_t version);
+  /// Reads what save_wanted() wrote. Throws BadBytes.
   void load_wanted(PlainReader& in);
 
-  static constexpr std::size_t rows_per_batch = 8192;  // between which a solve can be interrupted and go on later
+  /// Rows that are traced at once. A solve can be interrupted between batches and go on later. Chosen; not measured.
+  static constexpr std::size_t rows_per_batch = 8192;
 
  private:
   std::vector<TransportRow> traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
@@ -70,7 +72,7 @@ class TracedRows {
   std::vector<bool> is_traced_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;
   std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
-  std::vector<NodeIndex> wanting_;    ///< rows that the newest round has not reached
+  std::vector<NodeIndex> wanting_;    ///< rows that have not got the rays of the newest round
 };
 
 }  // namespace alvor
