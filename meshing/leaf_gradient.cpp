@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace alvor {
 
@@ -60,6 +61,7 @@ std::vector<SmoothNeighbours> NeighbourTable::of(std::span<const NodeIndex> leav
   std::vector<SmoothNeighbours> all(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     const NodeIndex leaf = leaves[n];
+    assert(forest_.is_leaf(leaf));
     const bool is_fresh =
         is_known_[leaf] && std::ranges::all_of(known_[leaf], [this](NodeIndex other) { return forest_.is_leaf(other); });
     if (!is_fresh) known_[leaf] = SmoothNeighbours(forest_, leaf);

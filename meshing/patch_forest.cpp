@@ -39,6 +39,7 @@ bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits) cons
 }
 
 bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches) {
+  assert(is_leaf(leaf));
   if (!may_split(leaf, limits)) return false;
   const PatchShape patch = shape(leaf);
   for (int e = 0; e < patch.corner_count; ++e) {
@@ -54,6 +55,7 @@ bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vec
 
 void PatchForest::split_down_to(std::span<const LeafValue> patches) {
   for (const LeafValue& value : patches) {
+    assert(value.patch.is_valid() && value.patch.root_face() < mesh_->roots().size());
     NodeIndex node = leaf_at(value.patch);
     while (id(node).level() < value.patch.level()) {
       split_one(node);

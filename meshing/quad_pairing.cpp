@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -127,6 +128,11 @@ class Pairer {
 }  // namespace
 
 std::vector<TrianglePair> pair_triangles(std::span<const PairableTriangle> triangles, std::span<const Vec3> positions) {
+  assert(std::ranges::is_sorted(triangles, {}, &PairableTriangle::face));
+  assert(std::ranges::all_of(triangles, [&](const PairableTriangle& triangle) {
+    const auto& [a, b, c] = triangle.corners;
+    return a != b && b != c && c != a && std::max({a, b, c}) < positions.size();
+  }));
   return Pairer(triangles, positions).pairs();
 }
 

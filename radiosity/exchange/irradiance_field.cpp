@@ -19,8 +19,8 @@ constexpr double narrow_window = 1.5, wide_window = 3.5;
 // Distance, in edges of the row's patch, below which a row counts by its quarters, and beyond which as a whole. Chosen; not
 // measured.
 constexpr double near_rows = 1.6;
-// Multiple of the noise's variance up to which noise explains a misfit. Measured: with 1 half of all windows misfit by
-// chance, 1.3 takes a fifth fewer rays, and with 2 detail is missed in the enfilade (docs/error-vs-time/tried.md).
+// Multiple of the noise's variance up to which noise explains a misfit. Measured: with 1 half of all windows misfit by chance;
+// with 1.3 a fifth fewer rays are needed; with twice that allowance detail is missed (docs/error-vs-time/tried.md).
 constexpr double misfit_allowed = 1.3;
 // Share of a sample's variance that is left in its difference from a fit that uses the sample. It is 0.8 to 0.95, by the size of
 // the window (tests/radiosity/irradiance_field_test.cpp, NoiseIsNoMisfit).

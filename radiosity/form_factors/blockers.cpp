@@ -9,13 +9,18 @@ namespace alvor {
 
 namespace {
 
+// Most corners of two polygons together that are joined; cutting a polygon adds corners, of which ConvexPolygon holds 80. Chosen;
+// not measured.
 constexpr std::size_t most_corners = 32;
-constexpr double same_plane = 1e-9;  // sine between normals
-constexpr double straight = 1e-9;    // sine at a corner that is none
+// Sine of the angle between the normals of polygons that count as coplanar. Chosen; not measured.
+constexpr double same_plane = 1e-9;
+// Sine of the angle at a corner that counts as straight and is dropped. Chosen; not measured.
+constexpr double straight = 1e-9;
 
-/// A polygon by its welded vertices; empty once it was joined to another.
+/// A polygon as the list of its welded vertices. Empty after it was joined to another.
 using Ring = std::vector<std::uint32_t>;
 
+/// Joins neighbouring coplanar polygons into convex ones.
 class Joining {
  public:
   explicit Joining(const BaseMesh& mesh) {
@@ -64,7 +69,8 @@ class Joining {
     return joined;
   }
 
-  /// Edge c of `a` runs against an edge of `b`. Nothing if they are not in one plane or not convex together.
+  /// Returns the union of two polygons; nothing if they are not in one plane or not convex together. Requires: edge c of `a` is
+  /// an edge of `b`, in the opposite direction.
   std::optional<Ring> union_of(const Ring& a, std::size_t c, const Ring& b) const {
     if (a.size() + b.size() > most_corners || length(cross(normal(a), normal(b))) > same_plane) return std::nullopt;
     if (dot(normal(a), normal(b)) < 0) return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-// What may stand between faces: the mesh as few large convex polygons.
+// Blockers: the faces of a mesh, which may stand between others, joined into few large convex polygons.
 
 #include "meshing/base_mesh.h"
 #include "radiosity/form_factors/convex_polygon.h"
@@ -9,6 +9,7 @@
 
 namespace alvor {
 
+/// An axis-aligned bounding box.
 struct Box {
   Vec3 low, high;
 
@@ -17,14 +18,14 @@ struct Box {
   bool touches(const Box& other) const;
 };
 
-/// Every root patch, neighbours in one plane joined into convex polygons as far as that goes: a wall of many quads blocks light
-/// as one. Both sides block. Immutable; safe from any thread.
+/// All root patches as blockers of light. Neighbours in one plane are joined as long as the result is convex, so that a wall of
+/// many quads blocks light as one polygon. Both sides block. Immutable; safe from any thread.
 class Blockers {
  public:
   explicit Blockers(const BaseMesh& mesh);
 
   std::span<const ConvexPolygon> all() const { return polygons_; }
-  /// Those whose bounding boxes touch `box`, into `found`. O(all().size()).
+  /// Sets `found` to the blockers whose bounding boxes touch `box`. O(all().size()).
   void find_in(const Box& box, std::vector<const ConvexPolygon*>& found) const;
 
  private:

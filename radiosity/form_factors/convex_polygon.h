@@ -1,5 +1,5 @@
 #pragma once
-// Convex planar polygons and what planes cut off them.
+// Convex planar polygons and their parts on one side of a plane.
 
 #include "meshing/vec3.h"
 
@@ -10,16 +10,18 @@
 
 namespace alvor {
 
+/// The plane of the points with height 0.
 struct Plane {
-  Vec3 normal;  ///< need not be unit; heights are in its unit
+  Vec3 normal;  ///< need not be unit; heights are in units of its length
   double offset = 0;
 
   double height(Vec3 p) const { return dot(normal, p) - offset; }
 };
 
-/// Corners in order. No allocation; a copy costs as many corners as there are.
+/// A convex planar polygon: its corners in order. It allocates nothing; a copy copies only the corners that there are.
 class ConvexPolygon {
  public:
+  /// Most corners: 64 of a face (see FacePolygons) and 16 that cuts add. Chosen; not measured.
   static constexpr int capacity = 80;
 
   ConvexPolygon() {}
@@ -39,7 +41,7 @@ class ConvexPolygon {
     corners_[count_++] = corner;
   }
   void clear() { count_ = 0; }
-  /// Nothing with an area.
+  /// Returns whether there are too few corners for an area.
   bool is_empty() const { return count_ < 3; }
   std::span<const Vec3> corners() const { return {corners_, static_cast<std::size_t>(count_)}; }
 
@@ -50,14 +52,14 @@ class ConvexPolygon {
   };
 };
 
-/// Area vector: along the normal of counter-clockwise corners, as long as the area.
+/// Returns the area vector of a polygon: along the normal of counter-clockwise corners, as long as the area.
 Vec3 area_vector(std::span<const Vec3> polygon);
-/// The plane of a polygon, unit normal, the polygon's front upwards. Requires: an area greater than 0.
+/// Returns the plane of a polygon, with unit normal to the polygon's front. Requires: an area greater than 0.
 Plane plane_of(std::span<const Vec3> polygon);
-/// True if no corner turns the wrong way. Requires: planar.
+/// Returns whether no corner turns the wrong way. Requires: planar.
 bool is_convex(std::span<const Vec3> polygon);
 
-/// The part of the polygon at heights >= 0 (Sutherland & Hodgman 1974). One corner more at most.
+/// Returns the part of the polygon at heights >= 0 (Sutherland & Hodgman 1974). It has at most one corner more than the polygon.
 ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane);
 
 }  // namespace alvor

@@ -5,6 +5,7 @@
 #include "radiosity/rays/sampling.h"
 
 #include <array>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,10 +15,13 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t most_blockers = 200;  // between two faces, for `auto` to cut their shadows
-constexpr double ray_start = 1.5e-7;        // in front of the surface, local units
+// Most blockers between two faces for which "auto" takes the analytic method. Chosen; not measured.
+constexpr std::size_t most_blockers = 200;
+// Distance of a ray's start from its surface, local units (the scene's longest side is 1): five times the spacing of float32 at
+// 1/2. Chosen; not measured.
+constexpr double ray_start = 1.5e-7;
 
-/// Points spread over a face: its pieces by area, each a fan of triangles.
+/// Maps the unit square to points of a face: its pieces by area, each a fan of triangles. Local coordinates.
 class FacePoints {
  public:
   FacePoints(const FacePolygons& faces, std::uint32_t face, const LocalFrame& frame) {
@@ -65,7 +69,7 @@ struct Frame {
   Vec3 out(Vec3 local) const { return local.x * s + local.y * t + local.z * n; }
 };
 
-/// Collects rays into packets; each has a weight and a set it belongs to, and sums by set what arrives at the front of one face.
+/// Traces weighted rays in packets, and sums for each set of rays the weights of those that arrive at the front of one face.
 class RaySums {
  public:
   RaySums(const LocalScene& scene, std::uint32_t face, std::size_t sets) : scene_(scene), face_(face), sums_(sets) {}
@@ -82,8 +86,11 @@ class RaySums {
     ++rays_;
     if (++used_ == RayPacket::width) trace();
   }
-  /// Requires: no ray waits, as after a multiple of sixteen.
-  const std::vector<double>& sums() const { return sums_; }
+  /// Returns the sum of each set. Requires: the number of rays added is a multiple of sixteen, so that none waits for its packet.
+  const std::vector<double>& sums() const {
+    assert(used_ == 0);
+    return sums_;
+  }
   std::uint64_t rays() const { return rays_; }
 
  private:
@@ -110,8 +117,8 @@ class RaySums {
   std::uint64_t rays_ = 0;
 };
 
-/// Mean of independent estimates, and three standard errors of it plus `least`: what none of the samples may have met (the rule
-/// of three: something that n samples did not meet is rarer than 3 / n).
+/// Returns the mean of independent estimates with the bound: three standard errors plus `least`, the largest value that no sample
+/// may have met. By the rule of three an event that n samples did not meet is rarer than 3 / n.
 FormFactor with_bound(const std::vector<double>& estimates, double least) {
   double mean = 0, squares = 0;
   const auto count = static_cast<double>(estimates.size());
@@ -129,7 +136,7 @@ MeasuredFormFactor timed(std::string_view name, Method&& method) {
   return result;
 }
 
-/// Point n of Roberts' four-dimensional low-discrepancy sequence (2018), shifted.
+/// Returns point n of Roberts' four-dimensional low-discrepancy sequence (2018), shifted modulo 1.
 std::array<double, 4> spread_point(std::uint64_t n, const std::array<double, 4>& shift) {
   constexpr double g = 1.16730397826141868426;  // root of x^5 = x + 1
   std::array<double, 4> point;

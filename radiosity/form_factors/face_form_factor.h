@@ -13,17 +13,18 @@
 
 namespace alvor {
 
+/// A form factor, the method that found it, and its cost.
 struct MeasuredFormFactor : FormFactor {
   std::string_view method;  ///< "analytic", "nusselt", "hemicube" or "auto"
-  std::uint64_t rays = 0;   ///< 0 where none were sent
-  double seconds = 0;
+  std::uint64_t rays = 0;   ///< rays sent; 0 by the analytic method
+  double seconds = 0;       ///< wall seconds
 };
 
 struct FormFactorOptions {
-  double accuracy = 1e-4;      ///< relative, of the analytic method where something stands between
-  int nusselt_rays = 1 << 18;  ///< in 64 independent sets
-  int hemicube_points = 1024;
-  int hemicube_resolution = 32;  ///< cells along a side of the top; even
+  double accuracy = 1e-4;        ///< relative accuracy of the analytic method if something stands between
+  int nusselt_rays = 1 << 18;    ///< rays of the Nusselt method, in 64 independent sets
+  int hemicube_points = 1024;    ///< points of the face that get a hemicube
+  int hemicube_resolution = 32;  ///< cells along a side of the hemicube's top; even
   std::uint64_t seed = 1;
 };
 
@@ -34,15 +35,17 @@ class FaceFormFactors {
   /// Requires: !find_fault(scene); at least one face that is not degenerate.
   FaceFormFactors(const Scene& scene, const FormFactorOptions& options);
 
-  /// Exact where nothing stands between (contour integral); else what is visible from a point is exact (Lambert's formula of the
-  /// parts that no shadow covers) and integrated over `from`. The bound is that of the quadrature.
+  /// Returns the contour integral if nothing stands between. Otherwise the factor from a point to the visible parts is exact
+  /// (Lambert's formula) and is integrated over `from` numerically. The error bound is that of the quadrature.
   MeasuredFormFactor analytic(std::uint32_t from, std::uint32_t to) const;
-  /// Nusselt analogy: cosine-distributed low-discrepancy rays. The bound is three standard errors, from independent sets.
+  /// Returns the form factor by cosine-distributed low-discrepancy rays (Nusselt analogy). The error bound is three standard
+  /// errors between independent sets of rays, plus 3 / rays.
   MeasuredFormFactor nusselt(std::uint32_t from, std::uint32_t to) const;
-  /// Hemicubes at stratified points, turned at random, one ray through each cell. The bound is three standard errors between
-  /// points.
+  /// Returns the form factor by hemicubes at stratified points, turned at random, one ray through each cell. The error bound is
+  /// three standard errors between points, plus 3 / points.
   MeasuredFormFactor hemicube(std::uint32_t from, std::uint32_t to) const;
-  /// First "auto": the analytic result, unless so much stands between that rays are cheaper; then one of each method.
+  /// Returns four results: "auto", then each method. "auto" is the analytic result, or the Nusselt result if more than 200
+  /// blockers lie between.
   std::vector<MeasuredFormFactor> by_all_methods(std::uint32_t from, std::uint32_t to) const;
 
   const FacePolygons& faces() const { return faces_; }

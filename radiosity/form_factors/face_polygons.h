@@ -8,13 +8,14 @@
 
 namespace alvor {
 
-/// Convex faces stay whole, whatever their number of corners up to 64; others are in the pieces that the base mesh cut them into.
-/// Numbered as in the scene; degenerate and duplicate faces have no pieces. Fronts only.
+/// The fronts of a scene's faces, each as one or more convex planar polygons (pieces). A convex face of up to 64 corners is one
+/// piece; others are the pieces that the base mesh cut them into. Numbered as in the scene; degenerate and duplicate faces have
+/// no pieces.
 class FacePolygons {
  public:
   /// Requires: `mesh` was built from `scene` without joining triangles, so that each root comes from one face.
   FacePolygons(const Scene& scene, const BaseMesh& mesh);
-  /// One convex planar polygon a face.
+  /// Makes a face of each polygon. Requires: planar and convex polygons.
   explicit FacePolygons(std::vector<std::vector<Vec3>> polygons);
 
   std::size_t face_count() const { return pieces_.size(); }

@@ -2,20 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <numbers>
 
 namespace alvor {
 
 namespace {
 
-/// A plane convex polygon of up to four corners has at most five above a horizon; seen edge on, where rounding bends it, six.
+/// The part of a polygon of up to four corners above a horizon. It has at most five corners; six if the polygon is seen edge on,
+/// where rounding bends it.
 struct ClippedPolygon {
   std::array<Vec3, 6> corner;
   int count = 0;
   void add(Vec3 p) { corner[count++] = p; }
 };
 
-/// Corners relative to the point; keeps what lies above the horizon.
+/// Returns the part of the polygon above the point's horizon, with corners relative to the point.
 ClippedPolygon above_horizon(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
   ClippedPolygon kept;
   Vec3 before = polygon.back() - point;
@@ -31,7 +33,7 @@ ClippedPolygon above_horizon(Vec3 point, Vec3 normal, std::span<const Vec3> poly
   return kept;
 }
 
-/// Lambert's sum over the edges of a polygon.
+/// Returns Lambert's sum over the edges of a polygon, clamped to [0, 1].
 double lambert_sum(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
   if (polygon.empty()) return 0;
   double sum = 0;
@@ -48,6 +50,7 @@ double lambert_sum(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
 }  // namespace
 
 double point_to_polygon(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
+  assert(polygon.size() == 3 || polygon.size() == 4);
   const ClippedPolygon seen = above_horizon(point, normal, polygon);
   return lambert_sum({}, normal, {seen.corner.data(), static_cast<std::size_t>(seen.count)});
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -17,10 +18,12 @@ namespace alvor {
 
 namespace {
 
-constexpr double flat_slack = 1e-12;  // of the size: closer to a plane is in it
+// Share of the sum of two polygons' radii: a corner closer to a plane than that lies in it. Chosen; not measured.
+constexpr double flat_slack = 1e-12;
+// Rows that are computed in parallel before they are handed out. Chosen; not measured.
 constexpr std::size_t rows_at_once = 16;
 
-/// Quadrature points of a polygon, as SIMD wants them; the weights sum to 1. The unused ones weigh nothing.
+/// Quadrature points of a polygon, as arrays for SIMD. The weights sum to 1; unused points have the weight 0.
 struct Points {
   static constexpr int most = 16;
   int count = 0;
@@ -31,13 +34,13 @@ struct Points {
     ++count;
   }
   Vec3 at(int n) const { return {x[n], y[n], z[n]}; }
-  /// A multiple of four, for loops without a rest; the points beyond `count` repeat the first.
+  /// Fills up to a multiple of four with copies of the first point, so that loops need no remainder.
   void fill_up() {
     for (int n = count; n % 4 != 0; ++n) x[n] = x[0], y[n] = y[0], z[n] = z[0];
   }
 };
 
-/// One convex piece of a face, with what every pair asks of it.
+/// One convex piece of a face, with the properties that every pair needs.
 struct Piece {
   std::uint32_t face = 0;
   double area = 0, radius = 0;
@@ -45,7 +48,7 @@ struct Piece {
   Plane plane;
   Box box;
   ConvexPolygon polygon;
-  Points points;  ///< degree 5; none if the polygon has too many corners
+  Points points;  ///< quadrature of degree 5; none if the polygon has more than four corners
 };
 
 bool is_parallelogram(std::span<const Vec3> p) {
@@ -83,11 +86,11 @@ Piece make_piece(std::uint32_t face, const std::vector<Vec3>& corners) {
 /// Maps a polygon to one of its equal parts.
 struct Part {
   Vec3 origin, offset;
-  double scale;  ///< negative: turned by half a circle
+  double scale;  ///< ratio of lengths; negative: turned by half a circle
   Vec3 place(Vec3 p) const { return origin + offset + scale * (p - origin); }
 };
 
-/// 4^level parts of a triangle or parallelogram; other polygons stay whole.
+/// Returns the maps to the 4^level equal parts of a triangle or parallelogram; other polygons stay whole.
 std::vector<Part> parts_of(std::span<const Vec3> corners, int level) {
   const bool is_triangle = corners.size() == 3;
   const int side = is_triangle || is_parallelogram(corners) ? 1 << level : 1;
@@ -114,7 +117,8 @@ Extent heights(const Piece& piece, const Plane& plane) {
   return extent;
 }
 
-/// Sum of the kernel over the points of both, where they lie in front of each other.
+/// Returns the form factor by the kernel at the quadrature points of both pieces; pairs of points that are not in front of each
+/// other add 0.
 double kernel_sum(const Piece& from, const Piece& to) {
   const Vec3 n = from.plane.normal, m = to.plane.normal;
   alignas(32) std::array<double, Points::most> sum{};
@@ -170,7 +174,7 @@ class FormFactorRows::Pairs {
   }
 
  private:
-  /// A pair whose light is partly blocked.
+  /// A pair with a partly blocked view.
   struct Shadowed {
     const Piece* to;
     ConvexPolygon front, seen;  // the parts of both that lie in front of each other
@@ -178,7 +182,7 @@ class FormFactorRows::Pairs {
     FormFactor found;
   };
 
-  /// The form factor, unless the pair is shadowed: then nothing is returned and the pair goes to `shadowed`.
+  /// Returns the form factor of a pair. If it is shadowed, returns nothing and appends it to `shadowed`.
   std::optional<FormFactor> without_shadow(const Piece& from, const Piece& to, std::vector<Shadowed>& shadowed) const {
     const double slack = flat_slack * (from.radius + to.radius);
     const Extent theirs = heights(to, from.plane), ours = heights(from, to.plane);
@@ -197,9 +201,10 @@ class FormFactorRows::Pairs {
     return std::nullopt;
   }
 
-  /// Few pairs: each shadow's edge is followed. Many: all of them from the same points of `from`, more until the errors are
-  /// small; where a shadow's edge crosses several faces, what one gets too much another gets too little, and their sum is right.
-  /// Only much smaller faces are looked from themselves: about them the light falls off between the points of `from`.
+  /// Computes the form factors of a row's shadowed pairs. Few pairs are integrated adaptively, one by one. Many pairs are all
+  /// sampled from the same points of `from`, with more points until the errors are small: at a shadow's edge the excess of one
+  /// face is the deficit of its neighbour, and their sum is right. Much smaller faces are sampled from their own points, because
+  /// the kernel varies too much between the points of `from`.
   void solve_shadowed(const Piece& from, std::vector<Shadowed>& pairs) const {
     if (from.points.count == 0 || (pairs.size() <= most_followed_ && worth_following(pairs))) {
       for (Shadowed& pair : pairs) pair.found = followed(from, pair);
@@ -222,7 +227,7 @@ class FormFactorRows::Pairs {
 
   static bool is_small(const Piece& to, const Piece& from) { return to.points.count > 0 && to.area < small_share * from.area; }
 
-  /// By reciprocity.
+  /// Returns the form factor of a pair from points of its target, by reciprocity.
   FormFactor from_target(const Piece& from, const Shadowed& pair) const {
     FormFactor found;
     const double ratio = pair.to->area / from.area;
@@ -235,7 +240,8 @@ class FormFactorRows::Pairs {
     return found;
   }
 
-  /// Following costs the product of blockers; among the furniture of a room the common points have to do.
+  /// Returns whether all pairs have few enough blockers to be integrated adaptively. The cost grows with the product of the
+  /// blockers, so the furniture of a room is sampled from common points.
   static bool worth_following(std::span<const Shadowed> pairs) {
     return std::ranges::all_of(pairs, [](const Shadowed& pair) { return pair.blockers.size() <= most_followed_blockers; });
   }
@@ -248,20 +254,20 @@ class FormFactorRows::Pairs {
     return {share * found.value, share * found.error_bound};
   }
 
-  /// A face that is looked from, and what is looked at past blockers.
+  /// A face with sample points, and the face that is seen from them past blockers.
   struct Look {
     const Piece& from;
     const Piece& to;
     const ConvexPolygon& seen;  ///< the part of `to` above the horizon
     std::span<const ConvexPolygon> blockers;
 
-    /// From a point of `from`. Points behind `to` see nothing of it.
+    /// Returns the form factor from a point of `from` to the visible part of `to`; 0 from points behind `to`.
     double visible_from(Vec3 p) const {
       return to.plane.height(p) > 0 ? point_to_visible(p, from.plane.normal, seen, blockers) : 0;
     }
   };
 
-  /// The points of `from` once for each of 4^level equal parts of it.
+  /// Returns the form factor from the points of `from`, placed in each of its equal `parts`.
   FormFactor from_points(const Look& look, std::span<const Part> parts) const {
     const Points& points = look.from.points;
     const double share = 1.0 / static_cast<double>(parts.size());
@@ -293,12 +299,13 @@ class FormFactorRows::Pairs {
     if (from.points.count == 0 || to.points.count == 0 || apart < 1.5)
       return polygon_form_factor(from.polygon, to.polygon, accuracy_ / 10);
     const double value = kernel_sum(from, to);
-    // Degree 5: the error falls with the sixth power of the distance; the factor is measured, with a margin.
+    // The quadrature has degree 5, so its error falls with the sixth power of the distance. far_error is the measured constant.
     const double error = far_error * value / (apart * apart * apart * apart * apart * apart) + 1e-14 * value;
     if (error > accuracy_) return polygon_form_factor(from.polygon, to.polygon, accuracy_ / 10);
     return {std::clamp(value, 0.0, 1.0), error};
   }
 
+  /// Scales the entries of a row so that their sum is at most 1.
   void keep_to_one(std::vector<MatrixEntry>& entries) const {
     double sum = 0;
     for (const MatrixEntry& entry : entries) sum += entry.value;
@@ -310,15 +317,28 @@ class FormFactorRows::Pairs {
     }
   }
 
+  // Relative accuracy of a shadowed pair that is integrated adaptively. Chosen; not measured.
   static constexpr double relative_accuracy = 1e-3;
-  static constexpr std::uint64_t most_points = 10'000;  // that a face is looked from for one shadow
-  static constexpr double far_error = 0.1;              // at most 0.03 was seen
-  static constexpr double shadow_error = 0.5;           // of the spread between points, where a shadow's edge passes between them
-  static constexpr double unseen_error = 0.15;          // of the unobstructed factor: a corner that no point saw
-  static constexpr double small_share = 0.25;           // of the area
-  static constexpr double shadow_accuracy = 1000;       // accuracies that a shadowed pair may be off
+  // Most sample points of a face for such a pair. Chosen; not measured.
+  static constexpr std::uint64_t most_points = 10'000;
+  // Error bound of a far pair as a share of its form factor, times the sixth power of the distance in radii. At most 0.03 was
+  // measured.
+  static constexpr double far_error = 0.1;
+  // Error bound as a share of the spread between sample points, if a shadow's edge passes between them. With 0.15 reciprocity was
+  // violated between faces of four scenes; with 0.5 the bounds hold (ARCHITECTURE.md, Form factors between faces).
+  static constexpr double shadow_error = 0.5;
+  // Error bound for a visible corner that no sample point saw, as a share of the unobstructed form factor. With 0.05 reciprocity
+  // was violated between faces of four scenes; with 0.15 the bounds hold.
+  static constexpr double unseen_error = 0.15;
+  // Share of the row's area below which a face is sampled from its own points. Without that the points of a floor missed two
+  // thirds of the light to a lamp's frame (ARCHITECTURE.md). The value is chosen; not measured.
+  static constexpr double small_share = 0.25;
+  // Multiple of the accuracy that the error bound of a shadowed pair may reach before more points are used. Chosen; not measured.
+  static constexpr double shadow_accuracy = 1000;
 
+  // Most blockers of a shadowed pair that is integrated adaptively. Chosen; not measured.
   static constexpr std::size_t most_followed_blockers = 16;
+  // Most times that a face is cut into four parts to get more sample points. Chosen; not measured.
   static constexpr int most_levels = 1;
 
   const FacePolygons& faces_;
@@ -330,7 +350,9 @@ class FormFactorRows::Pairs {
 };
 
 FormFactorRows::FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed)
-    : pairs_(std::make_unique<Pairs>(faces, blockers, accuracy, most_followed)) {}
+    : pairs_(std::make_unique<Pairs>(faces, blockers, accuracy, most_followed)) {
+  assert(accuracy > 0);
+}
 FormFactorRows::~FormFactorRows() = default;
 
 std::vector<MatrixEntry> FormFactorRows::row(std::uint32_t from) const { return pairs_->row(from); }

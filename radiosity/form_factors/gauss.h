@@ -7,18 +7,19 @@
 
 namespace alvor {
 
+/// A node of a quadrature on [0, 1].
 struct GaussNode {
   double at, weight;
 };
 
-/// Gauss-Legendre on [0, 1].
+/// Gauss-Legendre rules on [0, 1].
 inline constexpr std::array<GaussNode, 3> gauss_3{
     {{0.11270166537925831148, 5.0 / 18}, {0.5, 8.0 / 18}, {0.88729833462074168852, 5.0 / 18}}};
 extern const std::array<GaussNode, 4> gauss_4;
 extern const std::array<GaussNode, 6> gauss_6;
 extern const std::array<GaussNode, 16> gauss_16;
 
-/// A point corner0 + a (corner1 - corner0) + b (corner2 - corner0) of a triangle.
+/// A node of a quadrature on a triangle: the point corner0 + a (corner1 - corner0) + b (corner2 - corner0).
 struct TriangleNode {
   double a, b, weight;
 };
@@ -32,10 +33,10 @@ inline constexpr std::array<TriangleNode, 7> radon_7{{{1.0 / 3, 1.0 / 3, 0.225},
                                                       {0.79742698535308732240, 0.10128650732345633880, 0.12593918054482715260},
                                                       {0.10128650732345633880, 0.79742698535308732240, 0.12593918054482715260}}};
 
-/// A quadrature value, and by how much it may be wrong.
+/// An integral and its estimated error.
 struct Quadrature {
   double value = 0, error = 0;
-  double magnitude = 0;  ///< the same integral of the absolute value: what rounding is relative to
+  double magnitude = 0;  ///< integral of the absolute value, to which rounding is relative
 };
 
 /// Kronrod's 15 nodes on [-1, 1] (positive half), with the embedded 7-point Gauss rule; QUADPACK (Piessens et al. 1983).
@@ -53,7 +54,7 @@ inline constexpr std::array<double, 8> gauss_weight{
     0, 0.381830050505118944950369775488975, 0, 0.417959183673469387755102040816327};
 }  // namespace kronrod
 
-/// Integral of `f` over [a, b] by the 15-point rule; the error is its difference from the 7-point rule.
+/// Returns the integral of `f` over [a, b] by the 15-point rule. Its error is the difference from the 7-point rule.
 template <class Function>
 Quadrature kronrod_15(Function&& f, double a, double b) {
   const double middle = 0.5 * (a + b), half = 0.5 * (b - a), centre = f(middle);
@@ -67,11 +68,11 @@ Quadrature kronrod_15(Function&& f, double a, double b) {
   return {half * sum, half * std::abs(sum - gauss), half * magnitude};
 }
 
-/// The same, halving intervals until each is within its share of `tolerance`, rounding is all that is left, or `depth` halvings
-/// were made.
+/// Returns the integral of `f` over [a, b] by adaptive 15-point rules. Intervals are halved until the error of each is within its
+/// share of `tolerance` (absolute) or within rounding, or `depth` halvings were made.
 template <class Function>
 Quadrature integrate(Function&& f, double a, double b, double tolerance, int depth = 40) {
-  constexpr double rounding = 1e-14;
+  constexpr double rounding = 1e-14;  // share of the integral of |f|, some 45 machine epsilons. Chosen; not measured
   const Quadrature whole = kronrod_15(f, a, b);
   if (whole.error <= std::max(tolerance, rounding * whole.magnitude) || depth == 0) return whole;
   const double middle = 0.5 * (a + b);

@@ -2,6 +2,7 @@
 
 #include "radiosity/form_factors/gauss.h"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -10,10 +11,17 @@ namespace alvor {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double far_ratio = 6;     // of the distance to both radii together: beyond it six Gauss points a side leave 1e-9
-constexpr double rounding = 5e-16;  // of the product of perimeters, in the contour integral
-constexpr double safety = 10;  // of the contour integral's error estimate: where an edge crosses one that it nears, 5 was seen
-constexpr double flat_slack = 1e-12;  // of the size: a corner this close to a plane lies on it
+// Distance of two polygons, as a multiple of the sum of their radii, beyond which they are integrated over their areas by six
+// Gauss points a side. Measured: between unit squares at this distance six points err by 3e-15 and four by 4e-10.
+constexpr double far_ratio = 6;
+// Rounding error of the contour integral, as a share of the product of the perimeters: some two machine epsilons. Chosen; not
+// measured.
+constexpr double rounding = 5e-16;
+// Multiple of the contour integral's own error estimate that is taken as its bound. Errors of five times the estimate were
+// measured, where an edge nears another (ARCHITECTURE.md, Form factors between faces).
+constexpr double safety = 10;
+// Share of a polygon's radius and distance: a corner closer to a plane than that lies on it. Chosen; not measured.
+constexpr double flat_slack = 1e-12;
 
 struct Ball {
   Vec3 centre;
@@ -28,7 +36,7 @@ Ball ball_of(const ConvexPolygon& polygon) {
   return ball;
 }
 
-/// Calls body(point, weight) at Gauss points of the polygon's fan of triangles; the weights sum to its area.
+/// Calls body(point, weight) at the Gauss points of the polygon's fan of triangles. The weights sum to the polygon's area.
 template <class Rule, class Body>
 void for_each_point(const ConvexPolygon& polygon, const Rule& rule, Body&& body) {
   const auto corners = polygon.corners();
@@ -54,7 +62,7 @@ double area_integral(const ConvexPolygon& from, const ConvexPolygon& to, const R
   return sum / pi;
 }
 
-/// Antiderivative of ln sqrt(u2 + h2) - ln unit.
+/// Returns the antiderivative, with respect to u, of ln sqrt(u^2 + h^2) - log_unit.
 double log_distance_integral(double u, double h, double log_unit) {
   const double squared = u * u + h * h;
   if (squared == 0) return 0;
@@ -62,7 +70,7 @@ double log_distance_integral(double u, double h, double log_unit) {
   return u * (0.5 * std::log(squared) - 1 - log_unit) + angle;
 }
 
-/// Integral of ln |p - q| over the edge from a to b.
+/// Returns the integral of ln |p - q| - log_unit over points q of the edge that starts at `a`.
 double log_distance_to_edge(Vec3 p, Vec3 a, Vec3 direction, double edge_length, double log_unit) {
   const Vec3 d = p - a;
   const double along = dot(d, direction);
@@ -75,7 +83,7 @@ struct Edge {
   double length = 0;
 };
 
-/// The contour as edges; corners that coincide are skipped.
+/// The contour of a polygon as edges, without edges of length 0.
 struct Contour {
   Edge edges[ConvexPolygon::capacity];
   int count = 0;
@@ -95,7 +103,8 @@ struct Contour {
   std::span<const Edge> all() const { return {edges, static_cast<std::size_t>(count)}; }
 };
 
-// A constant added to ln r changes nothing: distances are measured in the one between the polygons, so that terms are small.
+// A constant added to ln r does not change the integral. Lengths are divided by `unit`, about the polygons' distance, so that the
+// terms are small.
 Quadrature contour_integral(const ConvexPolygon& from, const ConvexPolygon& to, double unit, double tolerance) {
   const Contour ours(from), theirs(to);
   const double log_unit = std::log(unit);
@@ -114,8 +123,8 @@ Quadrature contour_integral(const ConvexPolygon& from, const ConvexPolygon& to, 
     sum.value += part.value;
     sum.error += part.error;
   }
-  sum.magnitude =
-      perimeter * theirs.perimeter();  // neighbouring edges cancel within the integrand: its own magnitude tells too little
+  // Neighbouring edges cancel within the integrand, so the integral of its magnitude would understate the rounding.
+  sum.magnitude = perimeter * theirs.perimeter();
   return sum;
 }
 
@@ -141,6 +150,7 @@ void cut_to_fronts(ConvexPolygon& from, ConvexPolygon& to) {
 }
 
 FormFactor polygon_form_factor(const ConvexPolygon& from, const ConvexPolygon& to, double accuracy) {
+  assert(!from.is_empty() && !to.is_empty() && accuracy > 0);
   const double area = length(area_vector(from.corners()));
   ConvexPolygon a = from, b = to;
   cut_to_fronts(a, b);

@@ -4,6 +4,7 @@
 #include "radiosity/form_factors/gauss.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <queue>
 
@@ -11,8 +12,10 @@ namespace alvor {
 
 namespace {
 
-constexpr double flat_slack = 1e-12;  // of the size: closer to a plane is in it
-constexpr double no_angle = 1e-24;    // squared sine between directions that are one
+// Share of the size of two polygons: a corner closer to a plane than that lies in it. Chosen; not measured.
+constexpr double flat_slack = 1e-12;
+// Squared sine of the angle between two directions that count as one: flat_slack squared.
+constexpr double no_angle = 1e-24;
 
 double size_of(const ConvexPolygon& a, const ConvexPolygon& b) {
   double size = 0;
@@ -28,7 +31,8 @@ bool lies_below(const ConvexPolygon& polygon, const Plane& plane, double slack) 
   return std::ranges::all_of(polygon.corners(), [&](const Vec3& corner) { return plane.height(corner) <= slack; });
 }
 
-/// The planes of the convex hull's sides that hold an edge of `edges` and a corner of `corners`, hull above.
+/// Appends the planes of the convex hull's sides that hold an edge of `edges` and a corner of `corners`, with the hull above
+/// them.
 void add_sides(const ConvexPolygon& edges, const ConvexPolygon& corners, double slack, std::vector<Plane>& sides) {
   const auto ring = edges.corners();
   for (std::size_t c = 0; c < ring.size(); ++c) {
@@ -44,14 +48,14 @@ void add_sides(const ConvexPolygon& edges, const ConvexPolygon& corners, double 
   }
 }
 
-/// Both polygons lie on one side of the blocker's plane.
+/// Returns whether both polygons lie on one side of the blocker's plane.
 bool does_not_part(const ConvexPolygon& blocker, const ConvexPolygon& from, const ConvexPolygon& to) {
   const Vec3 normal = area_vector(blocker.corners());
   const Plane above{normal, dot(normal, blocker.corners()[0])}, below{-normal, -above.offset};
   return (lies_above(from, above, 0) && lies_above(to, above, 0)) || (lies_above(from, below, 0) && lies_above(to, below, 0));
 }
 
-/// Empty where the polygon only touches the inside, within `slack`.
+/// Returns the part of the polygon above all `sides`; empty if it reaches above one of them by no more than `slack`.
 ConvexPolygon part_inside(const ConvexPolygon& polygon, std::span<const Plane> sides, double slack) {
   ConvexPolygon inside = polygon;
   for (const Plane& side : sides) {
@@ -61,7 +65,7 @@ ConvexPolygon part_inside(const ConvexPolygon& polygon, std::span<const Plane> s
   return inside;
 }
 
-/// The cone of the rays from a point through a blocker.
+/// The shadow of a blocker, seen from a point: the cone of the rays from the point through the blocker.
 class Shadow {
  public:
   Shadow(Vec3 point, const ConvexPolygon& blocker) {
@@ -71,7 +75,7 @@ class Shadow {
     for (std::size_t c = 0; c < corners.size(); ++c) {
       const Vec3 here = corners[c] - point, next = corners[(c + 1) % corners.size()] - point, across = cross(here, next);
       if (dot(across, across) <= no_angle * dot(here, here) * dot(next, next))
-        continue;  // corners that rounding left on each other
+        continue;  // two corners that rounding put in one place
       const Vec3 inward = height > 0 ? across : -across;
       sides_[count_++] = {inward, dot(inward, point)};
     }
@@ -82,7 +86,7 @@ class Shadow {
            std::all_of(sides_.begin(), sides_.begin() + count_, [&](const Plane& side) { return lies_above(piece, side, 0); });
   }
 
-  /// Appends what lies outside the cone.
+  /// Appends to `lit` the parts of `piece` that lie outside the cone.
   void cut_from(const ConvexPolygon& piece, std::vector<ConvexPolygon>& lit) const {
     if (count_ == 0 || misses(piece)) {
       lit.push_back(piece);
@@ -101,23 +105,23 @@ class Shadow {
     return std::any_of(sides_.begin(), sides_.begin() + count_, [&](const Plane& side) { return lies_below(piece, side, 0); });
   }
 
-  std::array<Plane, ConvexPolygon::capacity> sides_;  // the cone is above all
+  std::array<Plane, ConvexPolygon::capacity> sides_;  // the cone lies above all of these planes
   int count_ = 0;
 };
 
-/// A triangle of the surface that is looked from.
+/// A triangle of the surface that is integrated over.
 struct Cell {
   std::array<Vec3, 3> corner;
   double value = 0, error = 0;
   friend bool operator<(const Cell& a, const Cell& b) { return a.error < b.error; }
 };
 
-/// The surface, cut along the lines where the outline of a blocker meets the outline of what is looked at: an edge of one, a
-/// corner of the other. Between them what is visible changes smoothly (events between edges of several blockers are left out),
-/// and a thin leak of light has cells of its own.
+/// Returns `from`, cut along the lines from which a corner of a blocker is seen on an edge of `to`, or a corner of `to` on an
+/// edge of a blocker. Within a cell the visible part changes smoothly, and a thin leak of light has cells of its own. Events
+/// between edges of several blockers are left out.
 std::vector<ConvexPolygon> cut_at_events(const ConvexPolygon& from, const ConvexPolygon& to,
                                          std::span<const ConvexPolygon> blockers) {
-  constexpr std::size_t most_cells = 400;
+  constexpr std::size_t most_cells = 400;  // cells after which no more cuts are made. Chosen; not measured
   std::vector<ConvexPolygon> cells{from}, next;
   const double slack = 1e-9 * size_of(from, from);
   const auto cut_all = [&](const ConvexPolygon& edges, const ConvexPolygon& corners) {
@@ -147,7 +151,7 @@ std::vector<ConvexPolygon> cut_at_events(const ConvexPolygon& from, const Convex
   return cells;
 }
 
-/// Adaptive integral over a polygon: always splits the cell with the largest error.
+/// The integral of point_to_visible() over a polygon, adaptive: the cell with the largest error is split first.
 class SurfaceIntegral {
  public:
   SurfaceIntegral(const ConvexPolygon& from, const ConvexPolygon& to, std::span<const ConvexPolygon> blockers)
@@ -169,7 +173,7 @@ class SurfaceIntegral {
     while (error_ > accuracy * value_ && error_ > negligible_ && points_ + 28 <= most_points) refine_worst();
   }
 
-  double value() const { return value_; }  ///< power per unit of radiance: not yet divided by the area
+  double value() const { return value_; }  ///< form factor times the area of `from`
   double error() const { return error_; }
   std::uint64_t points() const { return points_; }
 
@@ -191,8 +195,8 @@ class SurfaceIntegral {
     split(worst);
   }
 
-  // The four children share three times the difference from their parent as their error: pessimistic for smooth values; at
-  // shadow lines the difference alone was seen to be too small by half.
+  // The four children share three times their difference from the parent as their error. That is pessimistic for smooth values;
+  // at shadow lines the difference alone was measured to be too small by half.
   void split(const Cell& parent) {
     const auto [a, b, c] = parent.corner;
     const Vec3 ab = lerp(a, b, 0.5), bc = lerp(b, c, 0.5), ca = lerp(c, a, 0.5);
@@ -210,7 +214,7 @@ class SurfaceIntegral {
   Vec3 normal_;
   const ConvexPolygon& to_;
   std::span<const ConvexPolygon> blockers_;
-  double negligible_;  // error
+  double negligible_;  // error below which the integral is not refined
   std::priority_queue<Cell> cells_;
   double value_ = 0, error_ = 0;
   std::uint64_t points_ = 0;
@@ -219,6 +223,7 @@ class SurfaceIntegral {
 }  // namespace
 
 Obstruction::Obstruction(const ConvexPolygon& from, const ConvexPolygon& to, std::span<const ConvexPolygon* const> blockers) {
+  assert(!from.is_empty() && !to.is_empty());
   if (blockers.empty()) return;
   const double slack = flat_slack * size_of(from, to);
   std::vector<Plane> sides{plane_of(from.corners()), plane_of(to.corners())};
@@ -232,7 +237,7 @@ Obstruction::Obstruction(const ConvexPolygon& from, const ConvexPolygon& to, std
     const ConvexPolygon inside = part_inside(*blocker, sides, slack);
     if (inside.is_empty()) continue;
     parts_.push_back(inside);
-    // From a convex surface to a convex one past a convex blocker: if no corner sees a corner, no point sees a point.
+    // Both polygons and the blocker are convex, so if no corner sees a corner, no point sees a point.
     is_total_ =
         is_total_ || std::ranges::all_of(from.corners(), [&](const Vec3& corner) { return Shadow(corner, inside).covers(to); });
   }
@@ -270,6 +275,7 @@ VisibleFormFactor visible_form_factor(const ConvexPolygon& from, const ConvexPol
 
 VisibleFormFactor obstructed_form_factor(const ConvexPolygon& from, const ConvexPolygon& to,
                                          std::span<const ConvexPolygon> blockers, double accuracy, std::uint64_t most_points) {
+  assert(!from.is_empty() && !to.is_empty() && !blockers.empty());
   const double area = length(area_vector(from.corners()));
   SurfaceIntegral integral(from, to, blockers);
   integral.refine(accuracy, most_points);

@@ -9,10 +9,13 @@ namespace alvor {
 
 namespace {
 
-constexpr double flat_tolerance = 1e-9;  // of the extent: what is lower than this above a plane is on it
+// Share of the scene's extent: a point lower than this above a plane lies on it. It is the tolerance within which the mesh welds
+// vertices.
+constexpr double flat_tolerance = 1e-9;
 
-/// Each face belongs to the smallest room that it is in, and to those it is partly in; light goes where a face belongs to both.
-/// Zone 0 is outside of all rooms.
+/// Zones of the scene between which sealed rooms keep light from passing. Zone 0 is outside of all rooms. A face belongs to the
+/// smallest room that it is in, and to smaller rooms that it is partly in. A face that belongs to several zones joins them: light
+/// passes there.
 class Zones {
  public:
   explicit Zones(const BaseMesh& mesh)
@@ -50,11 +53,11 @@ class Zones {
 
   std::vector<SealedRoom> rooms_;      // smallest first
   std::vector<std::uint32_t> zone_;    // by root
-  std::vector<std::uint32_t> joined_;  // by zone: another one that light gets to from there, or itself
+  std::vector<std::uint32_t> joined_;  // by zone: another zone that light reaches from there, or itself (union-find)
   std::vector<bool> is_lit_;           // by zone
 };
 
-/// Of the face's lowest corner along its normal.
+/// Returns the height of the face's lowest corner along its normal, above `centre`.
 double height_of(const RootPatch& face, Vec3 centre) {
   double height = dot(face.normal, face.corners[0] - centre);
   for (int c = 1; c < face.corner_count; ++c) height = std::min(height, dot(face.normal, face.corners[c] - centre));

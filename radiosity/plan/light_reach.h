@@ -1,5 +1,5 @@
 #pragma once
-// Which faces no light can reach.
+// Finds the faces that no light can reach.
 
 #include "meshing/base_mesh.h"
 #include "radiosity/plan/point_tree.h"
@@ -9,13 +9,14 @@
 
 namespace alvor {
 
-/// Conservative: a face that any light reaches is never dark.
+/// The faces whose fronts no light can reach. A face that any light reaches is never counted as dark; a dark face may be missed.
 struct LightReach {
+  /// `corners` holds the corners of all roots, relative to the mesh's centre.
   LightReach(const BaseMesh& mesh, const PointTree& corners);
 
   std::vector<bool> is_dark;       ///< by root
-  std::size_t facing_nothing = 0;  ///< faces in front of which nothing is
-  std::size_t shut_off = 0;        ///< others, that sealed rooms keep the light of all emitters from
+  std::size_t facing_nothing = 0;  ///< faces with nothing in front of them
+  std::size_t shut_off = 0;        ///< other faces, which sealed rooms shut off from the light of all emitters
 };
 
 }  // namespace alvor

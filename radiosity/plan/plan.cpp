@@ -11,9 +11,15 @@ namespace alvor {
 
 namespace {
 
-constexpr double most_area_emits = 0.5;  // beyond this share rows find the emitters as well as shadow rays do
-constexpr double behind = 1e-7;          // of the extent: what is less far behind a plane no ray of ours could tell
-constexpr double plain_steps = 8;        // that conjugate residuals are not worth their memory for
+// Share of all area that emits, above which rows carry emission: they then find emitters as well as shadow rays do. Chosen; not
+// measured.
+constexpr double most_area_emits = 0.5;
+// Share of the scene's extent by which a point must lie behind a plane to count as behind it: three spacings of float32 at half
+// the extent (3e-8), closer than rays can tell.
+constexpr double behind = 1e-7;
+// Number of plain steps up to which conjugate residuals are not worth their memory. Chosen; not measured.
+constexpr double plain_steps = 8;
+// Share of the light that may be left after the plain steps, each of which leaves the largest reflectance. Chosen; not measured.
 constexpr double converged = 1e-6;
 
 template <class... Parts>
@@ -39,13 +45,13 @@ std::vector<Vec3> corners_about_centre(const BaseMesh& mesh, const std::vector<b
   return corners;
 }
 
-/// What stands where, from the places of all that may be lit.
+/// How faces stand to the points that may be lit.
 struct Standing {
-  std::uint32_t blocker = 0;    ///< a face that has lit points on both sides of its plane; the number of roots: there is none
+  std::uint32_t blocker = 0;    ///< first face with lit points on both sides of its plane; the number of roots: there is none
   bool backs_are_seen = false;  ///< a face has lit points behind its plane
 };
 
-/// Between points of one side of a plane nothing on that plane stands.
+/// Looks for a face that may stand between lit points: only one with lit points on both sides of its plane can.
 Standing look_from(const PointTree& lit, const BaseMesh& mesh) {
   Standing standing;
   for (; standing.blocker < mesh.roots().size(); ++standing.blocker) {
@@ -58,7 +64,7 @@ Standing look_from(const PointTree& lit, const BaseMesh& mesh) {
   return standing;
 }
 
-/// Decides feature by feature.
+/// Decides each feature for one scene.
 class Planner {
  public:
   Planner(const BaseMesh& mesh, const SolveOptions& options)
@@ -76,7 +82,8 @@ class Planner {
   }
 
   const SceneCensus& census() const { return census_; }
-  /// Faces that get no light because none is looked for; others must not be taken for them.
+  /// Returns the faces that the solver will leave dark: those that no light can reach, or none if Feature::dark_faces is forced
+  /// on.
   std::vector<bool> left_dark() const { return options_.forced_on.contains(Feature::dark_faces) ? nobody() : reach_.is_dark; }
   bool emission_by_rows() const { return emission_by_rows_; }
   bool backs_are_seen() const { return standing_.backs_are_seen; }

@@ -1,5 +1,5 @@
 #pragma once
-// What a scene is made of, in figures.
+// Counts of a scene's faces and materials.
 
 #include "meshing/base_mesh.h"
 
@@ -7,15 +7,15 @@
 
 namespace alvor {
 
-/// Counts over the faces of a mesh and the materials that they have.
+/// Counts of the faces of a mesh and of the materials that its faces use.
 struct SceneCensus {
   explicit SceneCensus(const BaseMesh& mesh);
 
-  std::size_t faces = 0, emitting_faces = 0, two_sided_faces = 0;  ///< two sides count once
+  std::size_t faces = 0, emitting_faces = 0, two_sided_faces = 0;  ///< a face with two sides counts once
   std::size_t materials = 0, grey_materials = 0, reflecting_materials = 0;
-  double largest_reflectance = 0;      ///< of any band
-  double emitting_share = 0;           ///< of all area
-  const Material* coloured = nullptr;  ///< the first that is not grey
+  double largest_reflectance = 0;      ///< largest reflectance of any material, in any band
+  double emitting_share = 0;           ///< share of the area of all sides that emits
+  const Material* coloured = nullptr;  ///< the first material that is not grey; null: all are grey
 
   bool is_lit() const { return emitting_faces > 0; }
 };

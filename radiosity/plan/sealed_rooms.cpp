@@ -8,15 +8,19 @@ namespace alvor {
 
 namespace {
 
-constexpr double flat_tolerance = 1e-9;  // of the extent, as welding
+// Share of the scene's extent: a point closer to a plane than this lies on it. It is the tolerance within which the mesh welds
+// vertices.
+constexpr double flat_tolerance = 1e-9;
+// Cosine of the angle between normals that count as one direction, 1.4e-6 radians. Chosen; not measured.
 constexpr double same_direction = 1 - 1e-12;
+// Most sealed rooms that are kept, and most planes of a room. Chosen; not measured.
 constexpr std::size_t most_rooms = 64, most_planes = 64;
 
 std::span<const Vec3> corners_of(const RootPatch& root) {
   return std::span(root.corners).first(static_cast<std::size_t>(root.corner_count));
 }
 
-/// Goes through the connected parts of a mesh.
+/// Finds the sealed rooms among the connected parts of a mesh.
 class RoomFinder {
  public:
   explicit RoomFinder(const BaseMesh& mesh) : mesh_(mesh), is_seen_(mesh.roots().size()) {}
@@ -32,7 +36,7 @@ class RoomFinder {
   }
 
  private:
-  /// The part of the mesh around `first`, if it is one.
+  /// Returns the connected part of the mesh around `first` if it is a sealed room.
   std::optional<SealedRoom> room_of(std::uint32_t first) {
     std::vector<std::uint32_t> part{first};
     is_seen_[first] = true;

@@ -17,8 +17,8 @@ namespace alvor {
 /// the scene or met a black back are counted but not stored. Each hit has the weight 1 / ray_count(), times its hit_weight.
 struct TransportRow {
   std::vector<PatchId> hits;  ///< ordered by round of rays, then by origin
-  /// Weight of each hit: 16 times the delta form factor of its hemicube cell, times the transmittance of the medium. Empty:
-  /// all 1.
+  /// Weight of each hit, per band: the transmittance of the medium, times 16 delta form factors of a hemicube's cell or the form
+  /// factor of an exact row. Empty: all weights are 1.
   std::vector<RgbF> hit_weight;
   /// Number of hits of each origin, origins_per_patch entries per round of rays; `not_sampled` for an origin that is hidden or
   /// that a small row left out. Empty if the row did not come from rays.

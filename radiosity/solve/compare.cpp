@@ -15,8 +15,8 @@ namespace alvor {
 
 namespace {
 
-// Share of the tolerance: a pass ends when the unshot power is below this share of it, as a share of the emitted power. Squares add,
-// so what is unshot adds 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
+// Share of the tolerance: a pass ends when the unshot power is below this share of it, as a share of the emitted power. Squares
+// add, so what is unshot adds 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
 constexpr double pass_unshot = 0.1;
 // Share of the emitted power that may be unshot in the solution that errors are measured against. Chosen; not measured.
 constexpr double converged_unshot = 1e-12;

@@ -11,7 +11,8 @@ namespace {
 
 // Most emitters that light the leaves one after the other; more are put into a LightTree. Chosen; not measured.
 constexpr std::size_t most_one_by_one = 12;
-// Parts in which the leaves get their direct light if there are more emitters, each followed by `after_each`. Chosen; not measured.
+// Parts in which the leaves get their direct light if there are more emitters, each followed by `after_each`. Chosen; not
+// measured.
 constexpr std::size_t parts_shown = 8;
 
 bool is_sound(const DirectLight& light) {

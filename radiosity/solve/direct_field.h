@@ -12,8 +12,8 @@
 
 namespace alvor {
 
-/// The direct light of all leaves. Light is in emission units, power in emission units times m2; indices are by leaf node. Borrows
-/// all that it is made with. Used by one thread at a time.
+/// The direct light of all leaves. Light is in emission units, power in emission units times m2; indices are by leaf node.
+/// Borrows all that it is made with. Used by one thread at a time.
 class DirectField {
  public:
   DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
@@ -33,9 +33,9 @@ class DirectField {
   /// Returns the share of the area of faces that light may reach which shows no direct light yet.
   double unlit_fraction() const;
 
-  /// Adds direct light to the leaves whose rows are traced. Up to twelve emitters light all of these leaves, one emitter after the
-  /// other; more emitters together light them in parts. `after_each` is called after each emitter or part. Returns early where the
-  /// ray budget is out.
+  /// Adds direct light to the leaves whose rows are traced. Up to twelve emitters light all of these leaves, one emitter after
+  /// the other; more emitters together light them in parts. `after_each` is called after each emitter or part. Returns early
+  /// where the ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
   /// Makes the next add_new() find the leaf's light again.
   void forget(NodeIndex leaf) { is_known_[leaf] = false; }

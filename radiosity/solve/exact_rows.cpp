@@ -14,9 +14,9 @@ namespace {
 
 // Absolute accuracy aimed at for single form factors. Shadowed ones err more, their sums less. Chosen; not measured.
 constexpr double accuracy = 1e-4;
-// Most rows of a scene, and most shadowed patches seen from one patch, for which the edges of shadows are followed. With few and large
-// patches common sample points err by percents (2 % around a block, tests/radiosity/known_boxes_test.cpp). With many, following takes
-// a hundred times as long. Chosen between these; not measured.
+// Most rows of a scene, and most shadowed patches seen from one patch, for which the edges of shadows are followed. With few and
+// large patches common sample points err by percents (2 % around a block, tests/radiosity/known_boxes_test.cpp). With many,
+// following takes a hundred times as long. Chosen between these; not measured.
 constexpr std::size_t most_rows_followed = 32, most_shadows_followed = 32;
 
 std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
@@ -24,8 +24,9 @@ std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {
   return {corners.begin(), corners.begin() + shape.corner_count};
 }
 
-/// Returns the factor by which a row's form factors are multiplied. If no ray escaped they then sum to 1. Otherwise they are averaged
-/// over the patch's visible part only, and sum to at most 1: if nearly all light is reflected, an excess of 1e-4 would never end.
+/// Returns the factor by which a row's form factors are multiplied. If no ray escaped they then sum to 1. Otherwise they are
+/// averaged over the patch's visible part only, and sum to at most 1: if nearly all light is reflected, an excess of 1e-4 would
+/// never end.
 double scale_to_closure(std::span<const MatrixEntry> entries, double visible_share, bool is_closed) {
   double sum = 0;
   for (const MatrixEntry& entry : entries) sum += entry.value;
@@ -35,8 +36,8 @@ double scale_to_closure(std::span<const MatrixEntry> entries, double visible_sha
 
 }  // namespace
 
-// The rows were traced before, so their hidden origins are known. A form factor to a patch is spread over the patch's leaves by area.
-// Exact rows have no origins and no noise.
+// The rows were traced before, so their hidden origins are known. A form factor to a patch is spread over the patch's leaves by
+// area. Exact rows have no origins and no noise.
 void TracedRows::make_exact() {
   const BaseMesh& mesh = forests_.mesh();
   const std::vector<NodeIndex> rows = forests_.rows().leaves();

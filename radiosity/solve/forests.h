@@ -11,9 +11,9 @@
 
 namespace alvor {
 
-/// The row forest, whose leaves have transport rows, and the leaf forest, whose leaves have direct light. Direct light is sharp and
-/// indirect light smooth, so the leaf forest is finer; every row's place is a node of it. A row node and a leaf node have one place
-/// if their ids are equal. Used by one thread at a time.
+/// The row forest, whose leaves have transport rows, and the leaf forest, whose leaves have direct light. Direct light is sharp
+/// and indirect light smooth, so the leaf forest is finer; every row's place is a node of it. A row node and a leaf node have one
+/// place if their ids are equal. Used by one thread at a time.
 class Forests {
  public:
   /// Splits the roots that light may reach as far as a solve needs before its first pass.
@@ -41,8 +41,8 @@ class Forests {
 
   bool may_split_leaf(NodeIndex leaf) const { return leaves_.may_split(leaf, limits_); }
   bool may_split_row(NodeIndex row) const;
-  /// Splits a leaf of the leaf forest, after the neighbours that must go first. Appends every node that was split to `split`. Returns
-  /// false if the limits forbid the split.
+  /// Splits a leaf of the leaf forest, after the neighbours that must go first. Appends every node that was split to `split`.
+  /// Returns false if the limits forbid the split.
   bool split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split);
   /// Splits a leaf of the row forest, as split_leaf() does in the leaf forest.
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);

@@ -26,9 +26,9 @@ class Pass {
  public:
   explicit Pass(SolveState& state) : state_(state) {}
 
-  /// Adds the rays that the previous pass asked for, and traces rows that are not traced: all of them, or a part that is spread over
-  /// the scene. Calls `after_each` between batches, when SolveState::save() may be called. Returns early if the ray budget is out;
-  /// called again, it goes on from there. Returns whether a part was traced and other rows are left.
+  /// Adds the rays that the previous pass asked for, and traces rows that are not traced: all of them, or a part that is spread
+  /// over the scene. Calls `after_each` between batches, when SolveState::save() may be called. Returns early if the ray budget
+  /// is out; called again, it goes on from there. Returns whether a part was traced and other rows are left.
   bool trace_rows(
       const std::function<void()>& after_each = [] {}, RowsToTrace which = RowsToTrace::all);
   /// Adds direct light to the leaves whose rows are traced, calling `after_each` as above.
@@ -37,8 +37,8 @@ class Pass {
   Exchange& begin_exchange();
   /// Fits the smooth field that is shown, finds candidates for refinement and returns the estimated error.
   ErrorEstimate estimate();
-  /// Splits patches and asks for rays where that removes most error per ray, which ends the pass. Returns false if nothing was done:
-  /// the limits forbid every split, and noise of rows is not the largest error.
+  /// Splits patches and asks for rays where that removes most error per ray, which ends the pass. Returns false if nothing was
+  /// done: the limits forbid every split, and noise of rows is not the largest error.
   bool refine();
 
   /// Takes the first three steps at once, for callers who do not show what comes in between.

@@ -15,8 +15,8 @@ bool Pass::rows_tell_what_is_lost() const {
   return true;
 }
 
-// The light that leaves a patch is lost in the share of directions in which its row finds no front. The part of a patch on which a
-// solid stands receives nothing, and its emission is lost. Without rows the lost power is taken to be what is not accounted for
+// The light that leaves a patch is lost in the share of directions in which its row finds no front. The part of a patch on which
+// a solid stands receives nothing, and its emission is lost. Without rows the lost power is taken to be what is not accounted for
 // otherwise.
 PowerBalance Pass::balance() const {
   const DirectField& direct = state_.direct;

@@ -18,18 +18,18 @@ constexpr double rays_per_leaf_split = 4 * 32;
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 // Rays above which a row gets no more. Chosen; not measured.
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-// Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show. Measured on
-// six scenes (ARCHITECTURE.md, Estimate, mark, refine).
+// Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show.
+// Measured on six scenes (ARCHITECTURE.md, Estimate, mark, refine).
 constexpr double unseen_detail = 2.5;
-// Share of the variance of a leaf's direct light that is seen in the display. Bilinear interpolation between vertices that average the
-// four leaves around them leaves (5/12)^2 = 0.17; the slopes by which the display mesh extrapolates are not in it. Chosen; not
-// measured.
+// Share of the variance of a leaf's direct light that is seen in the display. Bilinear interpolation between vertices that
+// average the four leaves around them leaves (5/12)^2 = 0.17; the slopes by which the display mesh extrapolates are not in it.
+// Chosen; not measured.
 constexpr double noise_in_display = 0.16;
-// Share of the variance of a leaf's direct light that noise adds to its squared interpolation error. Independent noise on a regular
-// grid adds 0.14 inside a surface and 0.30 at a crease (computed from interpolation_error); 0.25 lies between.
+// Share of the variance of a leaf's direct light that noise adds to its squared interpolation error. Independent noise on a
+// regular grid adds 0.14 inside a surface and 0.30 at a crease (computed from interpolation_error); 0.25 lies between.
 constexpr double noise_in_differences = 0.25;
-// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations above the
-// mean of sixteen squared normal deviations.
+// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations above
+// the mean of sixteen squared normal deviations.
 constexpr double noise_of_origins = 1.7;
 // Share of a window's squared misfit that its fit has at the centre: a guess. Chosen; not measured.
 constexpr double misfit_at_centre = 0.25;
@@ -111,8 +111,8 @@ void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patch
     if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
 }
 
-/// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2. Adds candidates that
-/// split rows or give them more rays.
+/// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2. Adds candidates
+/// that split rows or give them more rays.
 void Pass::estimate_rows(ErrorEstimate& error) {
   const auto patches = system_->patches();
   std::vector<double> errors(patches.size());
@@ -157,8 +157,8 @@ double Pass::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafS
   return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct.origin_variance);
 }
 
-/// Adds the errors of leaves to `error`, and candidates that split leaves, as estimate_rows() does for rows. Returns the power that
-/// arrives at all leaves, mean over bands, in emission units times m2.
+/// Adds the errors of leaves to `error`, and candidates that split leaves, as estimate_rows() does for rows. Returns the power
+/// that arrives at all leaves, mean over bands, in emission units times m2.
 double Pass::estimate_leaves(ErrorEstimate& error) {
   Forests& forests = state_.forests;
   const auto leaves = system_->leaves();

@@ -29,8 +29,8 @@ class PassSystem {
   std::unique_ptr<Exchange> begin_exchange() const;
   /// Returns the system with the shots that are recorded in the state (SolveState::shot).
   Shooting shooting() const;
-  /// Returns the radiosity of each leaf node that rows carry: emission (see DirectField::emission_by_rows), and reflection of direct
-  /// light and of the irradiance that its row received (SolveState::field).
+  /// Returns the radiosity of each leaf node that rows carry: emission (see DirectField::emission_by_rows), and reflection of
+  /// direct light and of the irradiance that its row received (SolveState::field).
   LightByLeaf radiosity() const;
 
  private:

@@ -23,8 +23,8 @@ class RowField {
 
   /// Makes the field constant over each of `rows`. Requires: as many values as rows; rows carry light.
   void set(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance);
-  /// Adds to the field of each row the difference between `irradiance` and the irradiance that the row had received before. Requires:
-  /// as many values as rows; rows carry light.
+  /// Adds to the field of each row the difference between `irradiance` and the irradiance that the row had received before.
+  /// Requires: as many values as rows; rows carry light.
   void move_to(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance);
   /// Replaces the field of each row by a fit; irradiance(row) does not change. Requires: as many fits as rows; rows carry light.
   void set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits);

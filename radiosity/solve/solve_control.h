@@ -10,7 +10,8 @@
 
 namespace alvor {
 
-/// Priority among the solves of a process. Worker threads go to the highest first; each solve has at least the thread that called it.
+/// Priority among the solves of a process. Worker threads go to the highest first; each solve has at least the thread that called
+/// it.
 enum class SolvePriority { low, normal, high };
 
 /// Requests to a solve and the functions that it calls, all on the thread that solves.

@@ -13,7 +13,8 @@ namespace {
 constexpr double held_by_floats = 1e37;
 
 /// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max rho). If every surface emitted and
-/// reflected like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth does not.
+/// reflected like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth does
+/// not.
 Rgb largest_irradiance(const BaseMesh& mesh) {
   Rgb emission, reflectance;
   for (const RootPatch& root : mesh.roots()) {

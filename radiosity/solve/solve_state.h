@@ -40,27 +40,27 @@ class SolveState {
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
   /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
   std::vector<LeafValue> leaf_values() const;
-  /// Returns the power that is not distributed yet if no exchange has begun: the emitters' waiting power and the reflection of direct
-  /// light. Summed over bands, in emission units times m2.
+  /// Returns the power that is not distributed yet if no exchange has begun: the emitters' waiting power and the reflection of
+  /// direct light. Summed over bands, in emission units times m2.
   double unshot_power() const;
 
-  /// Splits a leaf of the leaf forest, and its row too if the row is as fine and not traced, or a solid's outline crosses it. Returns
-  /// true if the leaf is split now, false if the limits forbid it.
+  /// Splits a leaf of the leaf forest, and its row too if the row is as fine and not traced, or a solid's outline crosses it.
+  /// Returns true if the leaf is split now, false if the limits forbid it.
   bool split_leaf(NodeIndex leaf);
-  /// Splits a row, and the leaf of its place if that is not split. Returns true if the row is split now, false if the limits forbid
-  /// it.
+  /// Splits a row, and the leaf of its place if that is not split. Returns true if the row is split now, false if the limits
+  /// forbid it.
   bool split_row(NodeIndex row);
-  /// Uses the hidden origins that tracing found for a row; to be called when it was traced. Direct light of the row's leaves is found
-  /// again without hidden points. A row that a solid's outline crosses is split as its leaves are, because only rows know which
-  /// points are hidden.
+  /// Uses the hidden origins that tracing found for a row; to be called when it was traced. Direct light of the row's leaves is
+  /// found again without hidden points. A row that a solid's outline crosses is split as its leaves are, because only rows know
+  /// which points are hidden.
   void heed_hidden_origins(NodeIndex row);
 
   static constexpr std::uint32_t saved_version = 3;  ///< since 3 rows are saved with TransportRow::is_closed
-  /// Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on; all else is computed
-  /// again.
+  /// Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on; all else is
+  /// computed again.
   void save(PlainWriter& out) const;
-  /// Reads what save() wrote, or the save() of version 2. Throws BadBytes; the state must not be used after that. Requires: no row was
-  /// traced and nothing split since construction.
+  /// Reads what save() wrote, or the save() of version 2. Throws BadBytes; the state must not be used after that. Requires: no
+  /// row was traced and nothing split since construction.
   void load(PlainReader& in, std::uint32_t version);
 
  private:

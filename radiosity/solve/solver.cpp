@@ -18,8 +18,8 @@ namespace alvor {
 
 namespace {
 
-// Share of the tolerance that Exchange::remaining_error() must fall below to end a pass. Squares add, so what is still to come adds
-// 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
+// Share of the tolerance that Exchange::remaining_error() must fall below to end a pass. Squares add, so what is still to come
+// adds 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
 constexpr double pass_remaining = 0.1;
 // Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; not measured.
 constexpr double final_remaining = 1e-6;
@@ -148,8 +148,8 @@ class Run {
     return true;
   }
 
-  /// Traces rows and adds direct light, in the first pass part by part, so that all of the scene soon shows some light. Returns false
-  /// if it was stopped.
+  /// Traces rows and adds direct light, in the first pass part by part, so that all of the scene soon shows some light. Returns
+  /// false if it was stopped.
   bool light() {
     bool is_more = true;
     while (is_more && !must_stop()) {
@@ -174,14 +174,15 @@ class Run {
     return is_stuck() ? StopReason::stalled : reason;
   }
 
-  /// Computes the power balance and adds its gap to the estimated error. The gap measures noise of rows that the whole scene has in
-  /// common: if nearly all light is reflected, a thousandth of each row is a large part of the solution.
+  /// Computes the power balance and adds its gap to the estimated error. The gap measures noise of rows that the whole scene has
+  /// in common: if nearly all light is reflected, a thousandth of each row is a large part of the solution.
   void account() {
     is_.balance = pass_->balance();
     is_.error.balance = std::abs(is_.balance.gap());
   }
 
-  /// Exchanges light until Exchange::remaining_error() is at most `remaining_error` or it stalls. Returns false if it was stopped.
+  /// Exchanges light until Exchange::remaining_error() is at most `remaining_error` or it stalls. Returns false if it was
+  /// stopped.
   bool exchange_down_to(double remaining_error) {
     Exchange& exchange = pass_->exchange();
     double published = exchange.unshot_power();
@@ -198,7 +199,8 @@ class Run {
     return end != Settling::stopped;
   }
 
-  /// Publishes a step that only shows progress, if it is one of the first twelve or publishing takes less than a tenth of the time.
+  /// Publishes a step that only shows progress, if it is one of the first twelve or publishing takes less than a tenth of the
+  /// time.
   void publish_if_due() {
     const bool is_early = log_.head() < always_published;
     if (is_early || clock_.elapsed_s() - published_at_ > publishing_s_ / publishing_share) publish();
@@ -264,8 +266,8 @@ class Run {
   bool may_be_last() const {
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || is_.error.total() < near_the_end * options_.tolerance);
   }
-  /// Returns whether to give up even in the middle of an exchange. A request to park does not count: a solve that went on from the
-  /// middle of an exchange would go on differently.
+  /// Returns whether to give up even in the middle of an exchange. A request to park does not count: a solve that went on from
+  /// the middle of an exchange would go on differently.
   bool must_break_off() const {
     return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() ||
            clock_.elapsed_s() > options_.time_limit_s;

@@ -12,8 +12,8 @@
 
 namespace alvor {
 
-/// Why a solve ended. `stalled`: the exchange of light converged too slowly, or rounding began too early, to meet the tolerance; the
-/// estimated error includes what is left. `parked`: SolveControl::park was obeyed.
+/// Why a solve ended. `stalled`: the exchange of light converged too slowly, or rounding began too early, to meet the tolerance;
+/// the estimated error includes what is left. `parked`: SolveControl::park was obeyed.
 enum class StopReason { tolerance, max_leaves, max_depth, time_limit, memory, cancelled, dark, stalled, parked };
 /// Returns the reason in words for people: "tolerance reached", "leaf limit reached", ...
 std::string_view text(StopReason reason);
@@ -26,9 +26,9 @@ struct SolveOutcome {
   PowerBalance balance;        ///< balance of the last pass whose exchange was finished; all 0 if there was none
 };
 
-/// Solves on the calling thread and its worker threads; publishes every step to `log`. The first step is published before any ray is
-/// traced. Throws BadBytes if the checkpoint cannot be of this mesh and these options.
-/// Requires: !mesh.roots().empty(), log.head() == 0 without a checkpoint; the plan is of this mesh and these options.
+/// Solves on the calling thread and its worker threads; publishes every step to `log`. The first step is published before any ray
+/// is traced. Throws BadBytes if the checkpoint cannot be of this mesh and these options. Requires: !mesh.roots().empty(),
+/// log.head() == 0 without a checkpoint; the plan is of this mesh and these options.
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control);
 /// Makes a plan, solves as solve_as_planned() does, and closes the log.

@@ -8,8 +8,8 @@ namespace alvor {
 
 namespace {
 
-// Share of the scene's area below which a root begins with a small row. Measured: a scene of 50 000 faces starts 1.5 times sooner than
-// with whole rows (docs/error-vs-time/tried.md).
+// Share of the scene's area below which a root begins with a small row. Measured: a scene of 50 000 faces starts 1.5 times sooner
+// than with whole rows (docs/error-vs-time/tried.md).
 constexpr double small_area = 2e-5;
 
 void save(const TransportRow& row, PlainWriter& out) {

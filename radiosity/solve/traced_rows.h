@@ -11,8 +11,8 @@
 
 namespace alvor {
 
-/// The transport rows of the row forest's leaves. Indices are row nodes. Borrows all that it is made with. Used by one thread at a
-/// time.
+/// The transport rows of the row forest's leaves. Indices are row nodes. Borrows all that it is made with. Used by one thread at
+/// a time.
 class TracedRows {
  public:
   TracedRows(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
@@ -30,8 +30,8 @@ class TracedRows {
 
   /// Traces the rows. Returns false, and changes nothing, if the ray budget ran out. Requires: leaves of the row forest.
   bool trace(std::span<const NodeIndex> rows);
-  /// Replaces the hits of all rows by exact form factors between patches (FormFactorMethod::analytic). Keeps the hidden origins and
-  /// is_closed that rays found.
+  /// Replaces the hits of all rows by exact form factors between patches (FormFactorMethod::analytic). Keeps the hidden origins
+  /// and is_closed that rays found.
   void make_exact();
 
   /// Asks for another round of rays for these rows.

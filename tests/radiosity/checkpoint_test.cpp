@@ -1,4 +1,4 @@
-// A solve that is interrupted and goes on later.
+// Checkpoints: a solve that is interrupted and goes on later gives the same bytes.
 
 #include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
@@ -20,7 +20,7 @@ struct Saved {
   Bytes state, log;
 };
 
-/// Solves until the `n`th place where it may be interrupted, or to its end.
+/// The outcome of a solve up to the `n`th place where it may be interrupted, or to its end.
 struct Interrupted {
   SolveOutcome outcome;
   Saved saved;
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Furnace", [] { return test::furnace(1, 0.9); }, {}}),
     [](const auto& one) { return one.param.name; });
 
-/// Each strategy with each way to find rows, in a closed room that takes several passes.
+/// Returns each strategy with each method to find rows, for a closed room that takes several passes.
 std::vector<Case> every_strategy_and_method() {
   const std::pair<const char*, Strategy> strategies[]{
       {"Automatic", Strategy::automatic}, {"Gather", Strategy::gather},          {"Shoot", Strategy::shoot},
@@ -186,7 +186,7 @@ TEST(SavedLog, IsRefusedWhenAnythingIsCutOffOrCannotBe) {
   EXPECT_NO_THROW(load(whole));
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_THROW(load(Bytes(whole.begin(), whole.begin() + size)), BadBytes);
-  // Every byte turned over is refused or makes a log that can be asked everything: nothing else may happen.
+  // A log with one byte inverted is either refused or can be read and asked without fault.
   for (std::size_t place = 0; place < whole.size(); ++place) {
     Bytes changed = whole;
     changed[place] ^= std::byte{0xff};

@@ -52,7 +52,7 @@ TEST(CoarseUnits, AncestorsAreAsDeepAsTheirNumberAllows) {
 }
 
 TEST(CoarseUnits, PairsJoinThoseThatSeeEachOtherAndNoOthers) {
-  // Even patches see even ones only, odd ones odd.
+  // Even patches see only even ones, and odd patches only odd ones.
   System system(1, 32);
   for (std::size_t p = 0, h = 0; p < system.patches.size(); ++p)
     for (const std::size_t end = h + system.rows[p].hits.size(); h < end; ++h)
@@ -79,13 +79,13 @@ TEST(CoarseGrid, OfAllPatchesIsTheSolution) {
   const Hits hits(system);
   std::vector<Rgb> emission;
   for (const ShootingLeaf& leaf : system.leaves) emission.push_back(leaf.unshot);
-  const auto residual = system.gathered(emission);  // where irradiance is zero
+  const auto residual = system.gathered(emission);  // the residual at zero irradiance
   auto step = residual;
   CoarseGrid(std::move(units), hits.of(system)).correct(residual, step);
   test::expect_near(step, system.gathered(system.solved()), 1e-9);
 }
 
-/// Rooms in a row: patches see their own room, one ray in 64 the next one.
+/// Returns rooms in a row: the patches of a room see each other, and one ray in 64 goes to the next room.
 System chain(std::uint32_t rooms, std::uint32_t patches_a_room, double reflectance) {
   System system = System::reciprocal(3, rooms * patches_a_room, reflectance, 1);
   for (std::uint32_t p = 0, h = 0; p < system.patches.size(); ++p) {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double emission = 100;
 
-/// A lamp of 1 m2, two metres above a floor patch; `blocker` hangs half way.
+/// Returns a lamp of 1 m2 two metres above a floor patch, and if `blocker` is true a screen half way between, from x = `x_from`
+/// on.
 Scene lamp_and_floor(bool blocker, double x_from = -5) {
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(emission, 0)};
@@ -35,14 +36,14 @@ DirectLight light_on_floor(const BaseMesh& mesh, std::uint64_t seed = 1) {
 
 TEST(DirectLight, UnblockedIsExact) {
   const BaseMesh mesh(lamp_and_floor(false));
-  double exact = 0;  // mean over the patch by a fine midpoint rule
+  double exact = 0;  // mean form factor over the patch, by a fine midpoint rule
   constexpr int n = 16;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       exact += point_to_polygon(mesh.roots()[0].at((i + 0.5) / n, (j + 0.5) / n), {0, 1, 0}, mesh.roots()[1].corners) / (n * n);
   const DirectLight light = light_on_floor(mesh);
   EXPECT_EQ(light.variance, 0);
-  // Four midpoints stand for the patch: their rule errs by about (size / distance)^2 / 10.
+  // The solver evaluates the form factor at four midpoints; that rule errs by about (size / distance)^2 / 10.
   EXPECT_NEAR(light.irradiance.g, emission * exact, 0.1 * 0.05 * 0.05 * emission * exact);
 }
 
@@ -67,7 +68,7 @@ TEST(DirectLight, HalfBlockedMatchesTheVisibleHalf) {
   EXPECT_NEAR(mean, exact, 3 * standard_error + 2e-3 * exact);
 }
 
-/// Light on the patches of one level of the floor, root 0, from a lamp that is root 1.
+/// Returns the light on the patches of one level of the floor (root 0) from the lamp (root 1).
 std::vector<DirectLight> light_on_divided_floor(const BaseMesh& mesh, int level, std::uint64_t seed) {
   std::vector<Receiver> receivers;
   for (int n = 0; n < 1 << 2 * level; ++n) {
@@ -83,14 +84,15 @@ std::vector<DirectLight> light_on_divided_floor(const BaseMesh& mesh, int level,
   return light;
 }
 
-/// The lamp over a floor of 4 x 4 m.
+/// Returns the lamp over a floor of 4 x 4 m.
 Scene lamp_and_wide_floor() {
   Scene scene = lamp_and_floor(false);
   scene.vertices[0] = {-2, 0, -2}, scene.vertices[1] = {-2, 0, 2}, scene.vertices[2] = {2, 0, 2}, scene.vertices[3] = {2, 0, -2};
   return scene;
 }
 
-/// What the patches say their deviation is, RMS over patches of a quarter metre, over what it is from seed to seed.
+/// Returns the ratio of the standard deviation that patches of a quarter metre report to the one between seeds, both RMS over
+/// patches.
 double predicted_over_actual_deviation(const BaseMesh& mesh) {
   constexpr int seeds = 32, level = 4;
   std::vector<double> sum(1 << 2 * level), squares(sum.size());
@@ -107,8 +109,8 @@ double predicted_over_actual_deviation(const BaseMesh& mesh) {
   return std::sqrt(predicted / actual);
 }
 
-// Stratified rays do better than independent ones, and how much depends on the edge: hence a factor of two. (Along an edge that
-// is parallel to the patches they do far better than that.)
+// Stratified rays have less noise than independent ones, by an amount that depends on the shadow's edge; hence the tolerance of a
+// factor of two. (Along an edge that is parallel to the patches they have far less noise than that.)
 TEST(DirectLight, VarianceIsTheSpreadOverSeedsWhereHalfTheFloorIsInShadow) {
   Scene scene = lamp_and_wide_floor();
   test::add_polygon(scene, {{-5, 1, -2}, {5, 1, 1}, {5, 1, 8}, {-5, 1, 8}});
@@ -140,7 +142,7 @@ TEST(DirectLight, OriginsAverageToTheIrradianceWhereNothingIsInShadow) {
 }
 
 TEST(DirectLight, OriginsTellWhichHalfIsDark) {
-  // A screen one millimetre above half of a patch of 10 cm: its shadow is sharp, half a millimetre wide.
+  // A screen hangs one millimetre above half of a patch of 10 cm, so that its penumbra is only half a millimetre wide.
   Scene scene = lamp_and_floor(false);
   test::add_polygon(scene, {{0.05, 1e-3, -5}, {5, 1e-3, -5}, {5, 1e-3, 5}, {0.05, 1e-3, 5}});
   const BaseMesh mesh(scene);

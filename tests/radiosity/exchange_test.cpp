@@ -17,7 +17,7 @@ constexpr Strategy all[]{Strategy::gather, Strategy::shoot, Strategy::sorted, St
 
 bool always(std::size_t) { return true; }
 
-/// RMS difference of the irradiance by rows from the solution, in the first band, over the mean radiosity.
+/// Returns the RMS error of the radiosity in the first band, over the mean radiosity.
 double true_error(const System& system, std::span<const Rgb> solution, const Exchange& exchange) {
   const auto irradiance = exchange.irradiance(), expected = system.gathered(solution);
   double squares = 0, power = 0, area = 0;
@@ -44,7 +44,7 @@ TEST(Exchange, RemainingErrorIsNeverLessThanTheErrorOfReciprocalRows) {
 }
 
 TEST(Exchange, ResidualOfAStiffSystemIsFarFromItsError) {
-  // One patch in sixty emits and nearly all is reflected: after a round trip of light a hundredth of it has come.
+  // One patch in sixty emits and 99 % is reflected, so one sweep brings only a hundredth of the light.
   const System system = System::reciprocal(3, 60, 0.99, 1);
   ShotExchange exchange(system.begun(), Strategy::shoot);
   EXPECT_EQ(settle(exchange, 1e-3, always), Settling::settled);

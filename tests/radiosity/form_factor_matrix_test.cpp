@@ -9,7 +9,7 @@
 namespace alvor {
 namespace {
 
-/// A box around a box, each face cut into nu x nv quads.
+/// Returns a box around a box, each face cut into nu x nv quads.
 Scene concentric_cubes(double inner_side, int nu, int nv) {
   Scene coarse, scene;
   coarse.materials.push_back(test::grey(0, 0.5));
@@ -61,7 +61,7 @@ TEST(FormFactorMatrix, RowsOfAClosedSceneSumToOneAndNeverMore) {
   }
 }
 
-/// Between all faces, both ways.
+/// Checks reciprocity between all pairs of faces, within the error bounds of both directions.
 void expect_reciprocity(const Scene& scene) {
   const Matrix matrix(scene);
   for (std::uint32_t i = 0; i < matrix.rows.size(); ++i)
@@ -75,7 +75,7 @@ void expect_reciprocity(const Scene& scene) {
 
 TEST(FormFactorMatrix, ReciprocityHoldsWithinTheBounds) {
   expect_reciprocity(concentric_cubes(0.5, 4, 3));
-  // Faces that cross each other's planes, large ones beside small, tilted ones.
+  // The scene has faces that cross each other's planes, large faces beside small ones, and tilted faces.
   Scene scene = test::room_with_contacts();
   for (int n = 0; n < 40; ++n) {
     const double x = 0.1 + 0.09 * n, y = 0.3 + 0.06 * (n % 7), z = 0.2 + 0.11 * (n * 17 % 40);

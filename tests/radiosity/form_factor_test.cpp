@@ -11,7 +11,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A rectangle a x b parallel to the receiver at height c, one corner above the point, its front down (Howell, catalogue B-3).
+/// Returns a rectangle a x b parallel to the receiver at height c, one corner above the point, its front down (Howell, catalogue
+/// B-3).
 double parallel_rectangle(double a, double b, double c) {
   const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2 * pi);
@@ -50,7 +51,7 @@ TEST(FormFactor, FacesOfAClosedRoomSumToOne) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-// Its corners lie above and below the horizon by turns, as rounding leaves them: six corners are above it when it is cut.
+// The quad's corners lie above and below the horizon by turns, as rounding leaves them. Cutting it leaves six corners.
 TEST(FormFactor, QuadSeenEdgeOnGivesNothing) {
   constexpr double h = 1e-17;
   const Vec3 edge_on[] = {{1, -1, h}, {2, -1, -h}, {2, 1, h}, {1, 1, -h}};

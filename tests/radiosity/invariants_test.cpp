@@ -1,4 +1,4 @@
-// What holds of every solution, on two scenes made by hand; tests/random looks for scenes in which it does not.
+// Invariants of every solution, checked on two scenes made by hand. tests/random looks for scenes that break them.
 
 #include "radiosity/solve/pass.h"
 #include "radiosity/solve/solver.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr SolveOptions options{.tolerance = 0.02, .max_leaves = 4000, .threads = 1};
 
-/// In the open: a lit plate with two sides above a block on a ground, in haze.
+/// Returns an open scene: a two-sided plate that emits, above a block and a ground, in an absorbing medium.
 Scene pavilion() {
   Scene scene;
   scene.materials = {test::grey(0, 0.5), {"plate", {3, 2, 1}, {0.2, 0.4, 0.6}, true}};
@@ -50,7 +50,7 @@ double mean_irradiance(const Scene& scene) {
   return power / area;
 }
 
-/// Of the band that fades least.
+/// Returns the sum of the row's weights over its rays, in the band that fades least.
 double row_sum(const ShootingPatch& patch) {
   return patch.row->is_hidden() ? 0 : patch.row->stored_weight().max() / patch.row->ray_count();
 }
@@ -76,7 +76,7 @@ TEST_P(Invariant, NothingIsBrighterThanIfAllWereLikeTheBrightest) {
     emission = upper(emission, material.emission);
     reflectance = upper(reflectance, material.reflectance);
   }
-  constexpr double rounding = 1e-6;  // of float32
+  constexpr double rounding = 1e-6;  // irradiance is published as float32, which rounds by 6e-8; the rest is margin
   for (const LeafValue& leaf : solution_of(mesh).leaves) {
     const Material& material = mesh.material_of(leaf.patch.root_face());
     const Rgb radiosity = material.emission + material.reflectance * widen(leaf.irradiance);
@@ -173,7 +173,7 @@ TEST(Invariants, EverythingPublishedIsFiniteWhateverTheEmission) {
   }
 }
 
-// All but the rim of the floor lies under a block: few of a patch's sixteen points tell what the rest of it sees.
+// All but the rim of the floor lies under a block, so that only few of a patch's sixteen origins are visible.
 TEST(Invariants, ExactRowsUnderABlockAreNoMoreThanAHemisphere) {
   Scene scene = test::furnace(1, 0.5);
   test::add_box(scene, {0.1, 0, 0.1}, {3, 1, 4}, false);
@@ -188,7 +188,7 @@ TEST(Invariants, ExactRowsUnderABlockAreNoMoreThanAHemisphere) {
   }
 }
 
-// Exact rows are made anew in each pass, for finer leaves.
+// Exact rows are computed again in each pass, for finer leaves.
 TEST(Invariants, ExactRowsFromWhichNoRayEscapedSumToOneInEveryPass) {
   const BaseMesh mesh(test::coloured_room());
   RayBudget budget([] { return false; });

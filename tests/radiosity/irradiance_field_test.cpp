@@ -10,11 +10,11 @@
 namespace alvor {
 namespace {
 
-constexpr double rays = 64;                 // of a quarter
-constexpr double size = 16;                 // of a floor of 16 x 16 rows, m: a row's edge is 1 m
-constexpr double narrow = 1.5, wide = 3.5;  // windows, in edges
+constexpr double rays = 64;                 // rays of each quarter of a row
+constexpr double size = 16;                 // edge of a floor of 16 x 16 rows, m; a row's edge is 1 m
+constexpr double narrow = 1.5, wide = 3.5;  // radii of the windows, in edges of a row
 
-/// The rows of a scene, all of one level.
+/// The rows of a scene, all of one level of the quadtree.
 struct Rows {
   BaseMesh mesh;
   PatchForest forest{mesh};
@@ -35,7 +35,7 @@ struct Rows {
   Vec3 centre(std::size_t n) const { return centre_of_node[nodes[n]]; }
   Vec3 quarter(std::size_t n, int k) const { return centre_of(mesh, forest.shape(nodes[n]).child(k)); }
 
-  /// What `irradiance` says at the centres of quarters, the same in all bands.
+  /// Returns samples whose irradiance is irradiance(centre of the quarter) in all bands.
   template <class Irradiance>
   std::vector<RowSamples> samples(Irradiance&& irradiance) const {
     std::vector<RowSamples> samples(size());
@@ -55,7 +55,7 @@ Rows floor_rows() {
   return {scene, 4};
 }
 
-/// No wide window about it reaches the floor's edge.
+/// Returns whether no wide window about the point reaches the floor's edge.
 bool is_inner(Vec3 p) { return std::min(std::min(p.x, size - p.x), std::min(p.z, size - p.z)) > wide; }
 
 template <class Irradiance>
@@ -97,7 +97,8 @@ TEST(IrradianceField, ConstantAndLinearIrradianceIsReproducedUpToTheEdges) {
 }
 
 TEST(IrradianceField, QuadraticIrradianceIsReproducedWhereMeansOverRowsAreItsValues) {
-  // Far rows count as a whole: the mean of four quarters' values is the centre's where the sum of second derivatives is zero.
+  // Far rows count as a whole. The mean of a row's four quarters is the value at its centre if the sum of second derivatives is
+  // 0.
   const Rows rows = floor_rows();
   const auto saddle = [](Vec3 p) { return 200 + p.x + 2 * p.z + p.x * p.z + 0.5 * (p.x * p.x - p.z * p.z); };
   const auto fits = rows.fit(rows.samples(saddle));
@@ -106,16 +107,17 @@ TEST(IrradianceField, QuadraticIrradianceIsReproducedWhereMeansOverRowsAreItsVal
 }
 
 TEST(IrradianceField, PlaneTakenForAParabolaErrsByItsMeanOverTheNarrowWindow) {
-  // Nothing looks like noise here, so no misfit of the wide window is explained by it. The mean of x2, weighed by (1 - r2 / R2)2
-  // over a disk of radius R, is R2 / 8; rows at the floor's edge have half a disk.
+  // The samples have no noise that could explain a misfit of the wide window. The mean of x^2 over a disk of radius R, weighted
+  // by (1 - r^2 / R^2)^2, is R^2 / 8. Rows at the floor's edge have half a disk.
   const Rows rows = floor_rows();
   const auto parabola = [](Vec3 p) { return 200 + p.x * p.x; };
   EXPECT_LT(worst_error_at_centres(rows, rows.fit(rows.samples(parabola)), parabola), 1.2 * narrow * narrow / 8);
 }
 
-/// Mean squares over the inner rows of a field under noise, over several draws of it.
+/// Mean squares over the inner rows of a field with noise, over ten draws of the noise.
 struct NoiseFigures {
-  double own_mean = 0, fit = 0, variance = 0;  ///< errors of the row's own mean and of its fit, and what that says of itself
+  double own_mean = 0, fit = 0;  ///< squared errors of the row's own mean and of its fit
+  double variance = 0;           ///< the fit's own estimate of the second
   double misfit = 0, squared_misfits = 0, count = 0;
 
   template <class Irradiance>
@@ -152,7 +154,7 @@ std::vector<NoiseFigures> flat_sloping_and_curved_under_noise() {
 
 TEST(IrradianceField, NoiseIsReducedAndKnown) {
   for (const NoiseFigures& figures : flat_sloping_and_curved_under_noise()) {
-    EXPECT_NEAR(figures.own_mean, 0.25, 0.03);  // of four samples; 640 rows
+    EXPECT_NEAR(figures.own_mean, 0.25, 0.03);  // variance of a mean of four samples, over some 600 rows
     EXPECT_LT(std::sqrt(figures.fit), 0.5 * std::sqrt(figures.own_mean));
     EXPECT_LT(std::sqrt(figures.fit), 2 * std::sqrt(figures.variance));
     EXPECT_GT(std::sqrt(figures.fit), 0.5 * std::sqrt(figures.variance));
@@ -170,7 +172,8 @@ TEST(IrradianceField, NoiseIsNoMisfit) {
   }
 }
 
-/// Under a step of a hundred noise levels across `normal . p = at`, rows further from it than `reach` edges know only their side.
+/// Expects that a step of a hundred noise levels across `normal . p = at` does not change fits further from it than `reach`
+/// edges.
 void expect_no_leak(Vec3 normal, double at, double reach) {
   const Rows rows = floor_rows();
   const auto step = [&](Vec3 p) { return dot(p, normal) < at ? 100.0 : 200.0; };
@@ -181,7 +184,7 @@ void expect_no_leak(Vec3 normal, double at, double reach) {
     const double distance = std::abs(dot(rows.centre(n), normal) - at);
     if (distance < 0.5) at_step = std::max(at_step, fits[n].squared_misfit);
     if (distance < reach) continue;
-    // Four standard deviations of a row's own mean; its four samples miss by 1, rarely by 3, each.
+    // The tolerance 2 is four standard deviations of a row's own mean. Each of its samples misses by 1, rarely by 3.
     EXPECT_NEAR(fits[n].at(rows.centre(n)).g, step(rows.centre(n)), 2) << "at " << distance;
     EXPECT_LT(fits[n].squared_misfit, 6) << "at " << distance;
   }

@@ -1,4 +1,4 @@
-// One unknown per face: the system of a box with exact form factors has six equations.
+// Boxes with one unknown per face: the system of a box with exact form factors has six equations.
 
 #include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
@@ -8,7 +8,7 @@
 namespace alvor {
 namespace {
 
-/// Radiosity of each face when none is split and rows are exact form factors.
+/// Returns the radiosity of each face, W/m2, solved without splits and with rows of exact form factors.
 std::vector<double> radiosity_by_face(const Scene& scene) {
   const BaseMesh mesh(scene);
   SolutionLog log;
@@ -21,7 +21,8 @@ std::vector<double> radiosity_by_face(const Scene& scene) {
   return radiosity;
 }
 
-/// A box on a square floor that emits 1, and the radiosity of floor, ceiling and walls: binary128, six by six.
+/// A box on a square floor that emits 1 W/m2, and the radiosity of its floor, ceiling and walls from the system of six equations,
+/// solved in binary128.
 struct KnownBox {
   double side, height, reflectance;
   std::array<double, 3> radiosity;
@@ -69,13 +70,13 @@ std::string name_of(const testing::TestParamInfo<KnownBox>& box) {
 }
 INSTANTIATE_TEST_SUITE_P(Boxes, BoxOfOneUnknownPerFace, testing::ValuesIn(known_boxes), name_of);
 
-// All faces emit 1 more, so that emission goes along the rows: that alone makes 1 / (1 - rho) everywhere.
+// All faces emit 1 more, so that rows carry the emission. That part alone makes the radiosity 1 / (1 - rho) everywhere.
 TEST_P(BoxOfOneUnknownPerFace, HasTheKnownRadiosity) {
   const auto& [side, height, reflectance, radiosity] = GetParam();
   Scene scene;
   scene.materials = {test::grey(1, reflectance), test::grey(2, reflectance)};
   test::add_box(scene, {0, 0, 0}, {side, height, side}, true, {1, 0, 0, 0, 0, 0});
-  // What float32 rounds away from a row's sum comes back with every reflection.
+  // Rounding of a row's sum to float32 adds up over reflections, so the tolerance grows with 1 / (1 - rho).
   const double furnace = 1 / (1 - reflectance), rounding = std::max(1e-6, 1e-7 * furnace);
   const std::vector<double> found = radiosity_by_face(scene);
   ASSERT_EQ(found.size(), 6u);
@@ -85,8 +86,8 @@ TEST_P(BoxOfOneUnknownPerFace, HasTheKnownRadiosity) {
   }
 }
 
-// Of what leaves the outer cube a share of its area goes to the inner one, of what leaves the inner one all goes to the outer:
-// emission made for any chosen radiosity gives that radiosity.
+// All light of the inner cube goes to the outer one; the share of the outer cube's light that goes to the inner one is the ratio
+// of their areas. So the emission that makes a chosen radiosity is known, and the solution must be that radiosity.
 TEST(ConcentricCubes, HaveTheRadiosityTheirEmissionWasMadeFor) {
   constexpr double inner_side = 0.5, outer = 3, inner = 2, outer_reflectance = 0.8, inner_reflectance = 0.3;
   constexpr double to_inner = inner_side * inner_side, low = (1 - inner_side) / 2, high = (1 + inner_side) / 2;

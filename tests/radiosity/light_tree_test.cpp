@@ -14,7 +14,7 @@
 namespace alvor {
 namespace {
 
-/// A point that receives, in local units.
+/// A receiving point and its normal, in local units.
 struct Place {
   Vec3 at, normal;
 };
@@ -37,7 +37,7 @@ void add_lamp(Scene& scene, Vec3 centre, Vec3 s, Vec3 t) {
   test::add_polygon(scene, {centre - s - t, centre + s - t, centre + s + t, centre - s + t}, 1);
 }
 
-/// A closed room with 200 small lamps that hang anyhow, and two blocks that stand between.
+/// Returns a closed room with 200 small lamps of random place and direction, and two blocks.
 Scene room_of_lamps() {
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(100, 0)};
@@ -53,7 +53,7 @@ Scene room_of_lamps() {
   return scene;
 }
 
-/// A scene of lamps with their tree.
+/// A scene of lamps with its light tree.
 struct Lamps {
   BaseMesh mesh;
   LocalScene scene{mesh};
@@ -69,7 +69,7 @@ struct Lamps {
         emitters.push_back({root, emission, emission.sum() * mesh.roots()[root].area});
     return emitters;
   }
-  /// Irradiance if nothing stood between, summed over bands.
+  /// Returns the unoccluded irradiance that the emitter brings to the place, summed over bands.
   double brings(std::uint32_t emitter, const Place& place) const {
     const std::uint32_t root = emitters[emitter].root;
     const auto corners = scene.corners(root);
@@ -103,7 +103,7 @@ TEST(LightTree, NoEmitterIsBothSingleAndInTheRest) {
 }
 
 TEST(LightTree, DrawsOverTheirProbabilityAddUpToAllThatTheRestBrings) {
-  // So each emitter that is not single and brings anything is drawn, as often as said, from one cluster only.
+  // If so, each emitter of the rest that brings light is drawn from one cluster only, with the probability that draw() returns.
   const Lamps lamps(room_of_lamps());
   Random random(3);
   RandomStream draws(2, PatchId::root(0));
@@ -122,7 +122,7 @@ TEST(LightTree, DrawsOverTheirProbabilityAddUpToAllThatTheRestBrings) {
     }
     deviations += (sum - lamps.rest_brings(choice, place)) / std::sqrt((squares - sum * sum) / count) / std::sqrt(places);
   }
-  EXPECT_LT(std::abs(deviations), 3);  // standard errors, of all places together
+  EXPECT_LT(std::abs(deviations), 3);  // in standard errors, of all places together
 }
 
 TEST(LightTree, AnEmitterIsDrawnAsOftenAsItsProbabilitySays) {
@@ -147,7 +147,8 @@ TEST(LightTree, AnEmitterIsDrawnAsOftenAsItsProbabilitySays) {
   for (const auto& [emitter, drawn] : seen) {
     sum += drawn.first;
     const double expected = count * drawn.first;
-    EXPECT_NEAR(drawn.second, expected, 4.5 * std::sqrt(expected) + 4) << "emitter " << emitter;  // of about 150, none beyond
+    // Of about 150 emitters none may deviate by more than 4.5 standard deviations.
+    EXPECT_NEAR(drawn.second, expected, 4.5 * std::sqrt(expected) + 4) << "emitter " << emitter;
   }
   // Emitters that were never drawn have less than 1e-3 of all the probability; the share of nothing has a standard error of 2e-3.
   EXPECT_NEAR(sum + nothing, 1, 0.01);
@@ -169,7 +170,8 @@ TEST(LightTree, EmittersBehindOrFacingAwayAreNeverChosen) {
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(100, 0)};
   const Vec3 x{0.1, 0, 0}, z{0, 0, 0.1};
-  for (int n = 0; n < 12; ++n) {  // four times one above that looks down, one above that looks up, one below that looks up
+  // Four times three lamps: one above the point that faces down, one above that faces up, and one below that faces up.
+  for (int n = 0; n < 12; ++n) {
     const Vec3 at{0.5 * n, n % 3 == 2 ? -1.0 : 1.0, 0.3 * (n % 4)};
     if (n % 3 == 0) add_lamp(scene, at, x, z);
     else add_lamp(scene, at, z, x);
@@ -193,7 +195,7 @@ TEST(LightTree, OfNoEmittersNothingIsChosen) {
   EXPECT_EQ(choice.rest_bound, 0);
 }
 
-/// The patches of one level of the floor.
+/// Returns the sixteen patches of level 2 of the floor.
 std::vector<Receiver> floor_patches(const BaseMesh& mesh) {
   std::vector<Receiver> receivers;
   for (int k = 0; k < 16; ++k) {

@@ -12,7 +12,7 @@
 namespace alvor {
 namespace {
 
-/// Mean irradiance over the area, and the irradiance of the leaf whose centre is nearest to a point.
+/// The mean irradiance over the area, and the irradiance of the leaf whose centre is nearest to a point, W/m2.
 struct Solved {
   Solved(const Scene& scene, const SolveOptions& options) : mesh(scene) {
     SolutionLog log;
@@ -33,7 +33,8 @@ struct Solved {
   std::vector<LeafValue> leaves;
 };
 
-/// Mean over the walls of a 3 x 2 x 4 room of exp(-a r) along cosine-distributed rays: H / E where nothing reflects.
+/// Returns the mean of exp(-a r) along cosine-distributed rays from the walls of a 3 x 2 x 4 m room. It is H / E if nothing
+/// reflects.
 double mean_transmittance(double absorption, int rays) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform;
@@ -94,7 +95,8 @@ TEST(Medium, LengthsAndAbsorptionScaleAgainstEachOther) {
   EXPECT_NEAR(metres.g, kilometres.g, 1e-4 * metres.g);
 }
 
-// Per band, x = 1 / (1 - rho t) if t were the same everywhere; it is not, but more absorption never brings more light.
+// If the transmittance t were the same everywhere, x = 1 / (1 - rho t) per band. It is not, but more absorption never brings more
+// light.
 TEST(Medium, MoreAbsorptionBringsLessLight) {
   Scene scene = test::furnace(1, 0.8);
   scene.absorption = {0, 0.05, 0.5};

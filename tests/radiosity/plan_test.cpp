@@ -20,7 +20,7 @@ bool says(const Plan& plan, Feature feature, const std::string& words) {
   return reason_for(plan, feature).find(words) != std::string::npos;
 }
 
-/// A grey room, empty, with a lamp of its own size in the ceiling.
+/// Returns an empty grey room whose whole ceiling is a lamp.
 Scene convex_room() {
   Scene scene;
   scene.materials = {test::grey(0, 0.6), test::grey(10, 0.2)};
@@ -34,7 +34,7 @@ Scene room_with_block() {
   return scene;
 }
 
-/// Two rooms wall to wall; only the first, x < 4, has light.
+/// Returns two rooms, `gap` metres apart. Only the first, x < 4, has light.
 Scene two_rooms(double gap = 0) {
   Scene scene = convex_room();
   test::add_box(scene, {4 + gap, 0, 0}, {7 + gap, 3, 5}, true);
@@ -176,7 +176,7 @@ TEST(Plan, RoomsBehindClosedWallsAreDark) {
 TEST(Plan, TwoSidedWallsAreClosedToo) {
   Scene scene = two_rooms(0.5);
   scene.materials[0].two_sided = true;
-  EXPECT_EQ(dark_count(scene), 5u + 12u);  // the backs of the first room, all of the other
+  EXPECT_EQ(dark_count(scene), 5u + 12u);  // five backs of the first room, and all faces of the other
 }
 
 TEST(Plan, FurnitureOfADarkRoomIsDarkToo) {
@@ -187,7 +187,7 @@ TEST(Plan, FurnitureOfADarkRoomIsDarkToo) {
 
 TEST(Plan, AnOpenWallLetsLightThrough) {
   Scene scene = two_rooms();
-  scene.faces.erase(scene.faces.begin() + 3);  // x high of the first room
+  scene.faces.erase(scene.faces.begin() + 3);  // the wall of the first room at its largest x
   EXPECT_EQ(dark_count(scene), 0u);
 }
 

@@ -12,7 +12,7 @@
 namespace alvor {
 namespace {
 
-/// What a refinement must keep: the leaves tile the roots, each place once.
+/// Fails unless the leaves tile the roots: they cover each place once, as every refinement must keep it.
 void expect_tiling(const BaseMesh& mesh, std::vector<LeafValue> leaves) {
   std::ranges::sort(leaves, {}, &LeafValue::patch);
   for (std::size_t n = 1; n < leaves.size(); ++n)
@@ -23,7 +23,7 @@ void expect_tiling(const BaseMesh& mesh, std::vector<LeafValue> leaves) {
   EXPECT_NEAR(covered, roots, 1e-9 * roots);
 }
 
-/// Takes the state through a pass. Returns whether it was refined.
+/// Takes the state through one pass. Returns whether it was refined.
 bool run_pass(SolveState& state) {
   Pass pass(state);
   pass.prepare();
@@ -61,7 +61,7 @@ TEST(SolveState, LimitsDoNotBreakTheTiling) {
   }
 }
 
-/// Storeys of side x side metres one above the other, each with its own lamps, in the order of storeys.
+/// Returns `count` storeys of side x side metres one above the other, each with its own lamps. Faces are in the order of storeys.
 Scene storeys(int count, int side) {
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(20, 0)};

@@ -19,7 +19,7 @@ std::vector<LeafValue> solved(const Scene& scene, const SolveOptions& options = 
   return log.leaves();
 }
 
-/// A room with a lamp in the ceiling and a block on the floor.
+/// Returns a room with a lamp in the ceiling and a block on the floor.
 Scene lit_room(double scale = 1) {
   Scene scene;
   scene.materials = {test::grey(0, 0.6), test::grey(50, 0)};
@@ -68,18 +68,19 @@ TEST(Solver, ExactFormFactorsAgreeWithRays) {
     squares += std::pow(sampled[n].irradiance.g - analytic[n].irradiance.g, 2) / static_cast<double>(sampled.size());
     mean += analytic[n].irradiance.g / static_cast<double>(sampled.size());
   }
-  // Rows of at most 4096 rays a patch are good to one percent; slopes and contacts, which differ by method, to a few.
+  // Rows of at most 4096 rays are accurate to one percent. Slopes and contacts, which differ by method, are accurate to a few
+  // percent.
   EXPECT_LT(std::sqrt(squares), 0.03 * mean);
 }
 
 TEST(Solver, FurnaceIsExactByExactFormFactorsToo) {
   for (const LeafValue& leaf :
        solved(test::furnace(1, 0.5), {.tolerance = 1e-9, .max_depth = 2, .form_factors = FormFactorMethod::analytic}))
-    EXPECT_NEAR(leaf.irradiance.g, 2, 2e-4);  // factors are asked for to 1e-4
+    EXPECT_NEAR(leaf.irradiance.g, 2, 2e-4);  // exact rows aim at an accuracy of 1e-4 per form factor
 }
 
 TEST(Solver, LuminousCeilingOfAConvexRoomSatisfiesTheMeanValueIdentity) {
-  // Uniform rho: the area mean of B is mean E / (1 - rho), whatever the emission (reciprocity and closure).
+  // With uniform rho the mean of B over the area is mean E / (1 - rho), whatever the emission (reciprocity and closure).
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(1, 0.5)};
   test::add_box(scene, {0, 0, 0}, {1, 1, 1}, true, {0, 1, 0, 0, 0, 0});

@@ -112,7 +112,7 @@ TEST(Strategies, AmbientAccountEqualsWhatIsUnshotAfterAnyNumberOfShots) {
 }
 
 TEST(Strategies, AmbientTermBalancesTheEnergyOfAUniformEnclosureAfterEveryShot) {
-  // Uniform rho and reciprocal rows: sum A (B + rho ambient) = sum A E / (1 - rho), where B is what is shot and unshot.
+  // With uniform rho and reciprocal rows, sum A (B + rho ambient) = sum A E / (1 - rho), where B is shot plus unshot radiosity.
   constexpr double rho = 0.8;
   const System system = System::reciprocal(1, 40, rho, 3);
   Rgb emitted;
@@ -135,7 +135,7 @@ TEST(Strategies, AmbientTermBalancesTheEnergyOfAUniformEnclosureAfterEveryShot) 
 }
 
 TEST(Strategies, GatheringDividesTheWholeSumWhereAPatchSeesItself) {
-  // One patch that sees nothing but itself: x = e / (1 - rho) in one step, also where it has two leaves.
+  // A single patch of two leaves sees nothing but itself, so one step must give x = e / (1 - rho).
   std::vector<TransportRow> rows(1);
   rows[0].hits.resize(64);
   rows[0].rays = 64;
@@ -176,7 +176,7 @@ TEST(Strategies, SortedShootsTheLargestUnshotPowerFirst) {
   }
 }
 
-/// Steps until the RMS error of what is displayed is below `error` of the solution's, on a cube-like system.
+/// Returns the number of steps until the RMS error of the displayed irradiance is at most `error` times the solution's RMS.
 int steps_to(double error, Strategy strategy, const System& system, std::span<const Rgb> solved) {
   Shooting shooting = system.begun();
   const auto stepper = make_stepper(strategy, shooting);
@@ -196,8 +196,8 @@ int steps_to(double error, Strategy strategy, const System& system, std::span<co
 }
 
 TEST(Strategies, ConvergeInTheOrderOfTheLiterature) {
-  // One of 200 patches emits, rho 0.8, as of references with exact form factors: gathering last, overshooting far ahead, and the
-  // ambient term ahead of all at first.
+  // One of 200 patches emits and rho is 0.8, as in published comparisons with exact form factors. There gathering is slowest,
+  // overshooting is far ahead, and the ambient term is ahead of all at first.
   const System system = System::reciprocal(2, 200, 0.8, 1);
   const auto solved = system.solved();
   const auto steps = [&](double error, Strategy strategy) { return steps_to(error, strategy, system, solved); };
@@ -209,7 +209,7 @@ TEST(Strategies, ConvergeInTheOrderOfTheLiterature) {
 }
 
 TEST(Strategies, OvershootingArrivesWhereTheAmbientTermIsWrong) {
-  // Two rooms that do not see each other: what is advanced in the dark one must all be taken back.
+  // Two rooms do not see each other, so all light that is advanced in the dark one must be taken back.
   System both = System::reciprocal(3, 20, 0.9, 1);
   const System dark = System::reciprocal(4, 20, 0.9, 0);
   for (ShootingPatch patch : dark.patches) {
@@ -226,7 +226,7 @@ TEST(Strategies, OvershootingArrivesWhereTheAmbientTermIsWrong) {
 }
 
 TEST(Strategies, OvershootingArrivesWhereItWouldGrowWithoutBounds) {
-  // Nearly white, and all patches look mostly at a quarter of them: what the few shoot comes back many times over.
+  // Patches are nearly white and look mostly at a quarter of them, so the light that these few shoot comes back many times.
   for (unsigned seed = 0; seed < 5; ++seed) {
     System system(seed, 40);
     std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// A feature that the plan switches off is forced on: the answer stays, and takes more work.
+// Forces on each feature that the plan switches off: the answer stays the same and takes more work.
 
 #include "radiosity/solve/solver.h"
 #include "tests/scenes.h"
@@ -12,7 +12,7 @@ namespace alvor {
 namespace {
 
 struct Solved {
-  std::vector<LeafValue> leaves;  ///< that receive light, in the order of ids
+  std::vector<LeafValue> leaves;  ///< leaves that receive light, in the order of their ids
   std::uint64_t rays = 0, all_leaves = 0;
 };
 
@@ -28,7 +28,7 @@ Solved solved(const Scene& scene, const SolveOptions& options) {
 
 struct Pair {
   Solved as_planned, forced;
-  /// Largest difference of irradiance, of the largest irradiance; 1 if the meshes differ.
+  /// Returns the largest difference of irradiance as a share of the largest irradiance; 1 if the meshes differ.
   double difference() const {
     if (!std::ranges::equal(as_planned.leaves, forced.leaves, {}, &LeafValue::patch, &LeafValue::patch)) return 1;
     double largest = 0, difference = 0;
@@ -41,7 +41,7 @@ struct Pair {
   }
 };
 
-/// Fails unless the plan switches the feature off.
+/// Solves as planned and with the feature forced on. Fails unless the plan switches the feature off.
 Pair solved_both_ways(const Scene& scene, Feature feature, SolveOptions options = {}) {
   options.threads = 1;
   EXPECT_FALSE(Plan(BaseMesh(scene), options).needs(feature)) << text(feature);
@@ -52,7 +52,7 @@ Pair solved_both_ways(const Scene& scene, Feature feature, SolveOptions options 
   return pair;
 }
 
-/// An empty room whose ceiling is a lamp.
+/// Returns an empty room whose ceiling is a lamp.
 Scene convex_room() {
   Scene scene;
   scene.materials = {test::grey(0, 0.6), test::grey(10, 0.2)};
@@ -60,7 +60,7 @@ Scene convex_room() {
   return scene;
 }
 
-constexpr double rounding = 1e-5;  // of float32, along some ten reflections
+constexpr double rounding = 1e-5;  // share of the largest irradiance; some ten reflections round to float32 (6e-8) each
 
 TEST(SwitchedOff, OcclusionInAConvexRoomSavesAllShadowRays) {
   const Pair pair = solved_both_ways(convex_room(), Feature::occlusion);
@@ -80,7 +80,7 @@ TEST(SwitchedOff, OcclusionUnderManyLampsSavesAllShadowRays) {
   Scene scene;
   scene.materials = {test::grey(0, 0.6), test::grey(10, 0)};
   test::add_box(scene, {0, 0, 0}, {8, 3, 8}, true);
-  scene.faces.erase(scene.faces.begin() + 1);  // the ceiling is tiles, every other one a lamp
+  scene.faces.erase(scene.faces.begin() + 1);  // the ceiling is replaced by tiles, every other one of which is a lamp
   for (int x = 0; x < 6; ++x)
     for (int z = 0; z < 6; ++z) {
       const double a = x * 8 / 6.0, c = z * 8 / 6.0, b = (x + 1) * 8 / 6.0, d = (z + 1) * 8 / 6.0;
@@ -174,7 +174,7 @@ TEST(SwitchedOff, NoLightMeansNoWork) {
   EXPECT_EQ(dark.all_leaves, 6u);
 }
 
-/// A lit room, and boxes of random size and place in and around it, shut and open, standing through walls or on the floor.
+/// Returns a lit room with boxes of random size and place in and around it, closed and open, through walls or on the floor.
 Scene boxes_about_a_room(unsigned seed) {
   std::mt19937 random(seed);
   const auto whole = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };

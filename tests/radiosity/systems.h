@@ -1,5 +1,5 @@
 #pragma once
-// Small linear systems of light that tests share.
+// Small linear systems of light exchange that tests share.
 
 #include "radiosity/exchange/shooting.h"
 #include "radiosity/exchange/strategies.h"
@@ -13,14 +13,14 @@
 
 namespace alvor::test {
 
-/// A closed system x = e + rho F x. Before anything is shot, `unshot` of its leaves is e.
+/// A closed system x = e + rho F x with nothing shot: `unshot` of its leaves is e.
 struct System {
   std::vector<TransportRow> rows;
   std::vector<ShootingPatch> patches;
   std::vector<ShootingLeaf> leaves;
   std::vector<std::uint32_t> hit_leaf;
 
-  /// Random: each patch of one to three leaves, each row of 64 hits, not reciprocal. Patches see themselves.
+  /// Makes a random system: patches of one to three leaves, rows of 64 hits, not reciprocal. Patches may see themselves.
   explicit System(unsigned seed, std::uint32_t count = 20) : rows(count) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0.1, 0.9);
@@ -33,13 +33,14 @@ struct System {
     for (std::size_t h = 0; h < 64u * count; ++h) hit_leaf.push_back(std::uint32_t(random() % leaves.size()));
   }
 
-  /// Reciprocal: A_i F_ij = A_j F_ji exactly, areas from 16 to 64, one leaf a patch, the same reflectance everywhere; the first
-  /// `emitting` patches emit. Patches see themselves.
+  /// Returns a random system whose rows are reciprocal, A_i F_ij = A_j F_ji exactly. Areas are from 16 to 64 m2, each patch has
+  /// one leaf, and all have one reflectance. The first `emitting` patches emit. Patches may see themselves.
   static System reciprocal(unsigned seed, std::uint32_t count, double reflectance, std::uint32_t emitting) {
     System system;
     system.rows.resize(count);
     std::mt19937 random(seed);
-    std::vector<std::uint32_t> ends;  // of exchanges: each patch has as many as it has area, and any two may meet
+    std::vector<std::uint32_t>
+        ends;  // patches at the ends of rays, each as often as its area; any two ends may be joined by a ray
     for (std::uint32_t p = 0; p < count; ++p) {
       const auto area = 16u << random() % 3;
       system.add_patch(p, area, {reflectance, reflectance, reflectance});
@@ -56,7 +57,7 @@ struct System {
     return system;
   }
 
-  /// Rows times x, by patch.
+  /// Returns the irradiance of each patch: its row times x.
   std::vector<Rgb> gathered(std::span<const Rgb> x) const {
     std::vector<Rgb> irradiance;
     for (std::size_t p = 0, h = 0; p < patches.size(); ++p) {
@@ -68,7 +69,7 @@ struct System {
     return irradiance;
   }
 
-  /// e + rho F x - x, by leaf.
+  /// Returns the residual e + rho F x - x of each leaf.
   std::vector<Rgb> residual(std::span<const Rgb> x) const {
     std::vector<Rgb> left;
     const auto irradiance = gathered(x);
@@ -78,7 +79,7 @@ struct System {
     return left;
   }
 
-  /// By many Jacobi iterations.
+  /// Returns the solution x of each leaf, by 2000 Jacobi iterations.
   std::vector<Rgb> solved() const {
     std::vector<Rgb> x(leaves.size());
     for (int n = 0; n < 2000; ++n) {
@@ -88,7 +89,7 @@ struct System {
     return x;
   }
 
-  /// With nothing shot, and what is unshot known. Borrows.
+  /// Returns the system as Shooting, with nothing shot and the unshot radiosity known. It borrows from this system.
   Shooting begun() const {
     Shooting shooting(patches, leaves, hit_leaf);
     shooting.find_unshot();

@@ -48,7 +48,7 @@ TEST(TransportRows, HitsFollowTheFormFactorsOfTheFaces) {
   const Traced traced = trace(mesh, 0);
   std::map<std::uint32_t, int> hits;
   for (const PatchId& hit : traced.rows[0].hits) ++hits[hit.root_face()];
-  // Rows sample uniformly over the floor: compare with the exact mean over a fine grid of its points.
+  // Rows sample the floor uniformly, so they are compared with the exact mean over a fine grid of its points.
   std::map<std::uint32_t, double> exact;
   constexpr int n = 20;
   for (int i = 0; i < n; ++i)
