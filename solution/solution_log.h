@@ -57,7 +57,7 @@ class SolutionLog {
   static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
   SolutionLog() = default;
-  /// As it was saved; it goes on from there. Throws BadBytes.
+  /// As it was saved, by this version of the program or an older one; it goes on from there. Throws BadBytes.
   explicit SolutionLog(PlainReader& saved);
   /// All there is, whether it is closed or not excepted. Not while publishing: the writer's thread may call it.
   void save(PlainWriter& out) const;
@@ -103,6 +103,8 @@ class SolutionLog {
     std::vector<std::uint32_t> shown;  ///< by coding_
     Tier display, exact;
   };
+  void load_unmarked(PlainReader& saved);
+  void load(PlainReader& saved, std::uint32_t version);
   void split_for(std::span<const LeafValue> changed);
   void make_room_for(std::span<const LeafValue> changed);
   /// Or is new.
