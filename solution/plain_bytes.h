@@ -1,7 +1,9 @@
 #pragma once
-// Writes plain values as bytes and reads them back, between runs of the same version of the program: no names, no types, host
-// byte order.
+// Writes numbers as bytes and reads them back, for what is kept on a disk: of fixed width, little-endian, without names and types. What
+// is kept begins with a version of its own, by which a later program knows how to read it.
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,8 +22,34 @@ struct BadBytes : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A fault that says which version was found and which is known.
+inline BadBytes other_version(std::uint64_t found, std::uint64_t newest_known) {
+  return BadBytes("is of version " + std::to_string(found) + ", and this program reads versions up to " +
+                  std::to_string(newest_known));
+}
+
+static_assert(std::endian::native == std::endian::little, "what is kept on disks is little-endian");
+
+/// Does not compile where T has padding: its bytes have no value.
 template <class T>
-concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
+consteval bool has_a_value_in_every_byte() {
+  std::size_t sum = 0;
+  for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof(T)>>(T{})) sum += byte;
+  return sum <= 255 * sizeof(T);
+}
+
+/// Numbers, but none whose width compilers choose.
+template <class T>
+concept PlainNumber = std::is_arithmetic_v<T> && !std::is_same_v<T, bool> && !std::is_same_v<T, long double>;
+
+/// Structs of numbers without padding and pointers. Other structs are written member by member.
+template <class T>
+concept PlainStruct = std::is_class_v<T> && std::is_trivially_copyable_v<T> && requires {
+  typename std::bool_constant<has_a_value_in_every_byte<T>()>;
+};
+
+template <class T>
+concept Plain = PlainNumber<T> || PlainStruct<T>;
 
 class PlainWriter {
  public:
@@ -56,8 +84,8 @@ inline std::vector<std::byte> plain_bytes(const std::function<void(PlainWriter&)
   return bytes;
 }
 
-/// Reads values in the order in which PlainWriter put them. Throws BadBytes. Never allocates more than the bytes that are left to
-/// read.
+/// Reads values in the order in which PlainWriter put them. A copy reads on from the same place. Throws BadBytes. Never allocates more
+/// than the bytes that are left to read.
 class PlainReader {
  public:
   explicit PlainReader(std::span<const std::byte> bytes) : left_(bytes) {}

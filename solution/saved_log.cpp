@@ -1,4 +1,5 @@
-// Saves a solution log as bytes and restores it.
+// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Logs that were saved before there were versions
+// begin with the number of their steps, which is never as large as the mark.
 
 #include "solution/solution_log.h"
 
@@ -9,6 +10,11 @@ namespace alvor {
 
 namespace {
 
+constexpr std::uint64_t mark = 0x676f'6c72'6f76'6c61;  // "alvorlog"
+constexpr std::uint32_t newest_version = 3;
+constexpr std::uint32_t oldest_marked = 3;
+// Version 2 was written before marks were. Version 1, older still, does not have Step::unlit_fraction.
+constexpr std::uint32_t unmarked_versions[] = {2, 1};
 constexpr int farthest_scale = 200;
 
 void check_tiling(std::span<const PatchId> patches) {
@@ -33,13 +39,68 @@ void check_steps(std::span<const Step> steps) {
   }
 }
 
+void put(const Rgb& value, PlainWriter& out) {
+  out.put(value.r);
+  out.put(value.g);
+  out.put(value.b);
+}
+
+Rgb get_rgb(PlainReader& in) {
+  Rgb value;
+  value.r = in.get<double>();
+  value.g = in.get<double>();
+  value.b = in.get<double>();
+  return value;
+}
+
+void put(const Step& step, PlainWriter& out) {
+  out.put(step.revision);
+  out.put(step.elapsed_s);
+  out.put(step.step);
+  out.put(step.shots);
+  out.put(step.rays);
+  out.put(step.leaves);
+  out.put(step.unshot_fraction);
+  out.put(step.estimated_error);
+  out.put(step.displayed_error);
+  out.put(step.unlit_fraction);
+  put(step.ambient_irradiance, out);
+}
+
+Step get_step(PlainReader& in, std::uint32_t version) {
+  Step step;
+  step.revision = in.get<std::uint64_t>();
+  step.elapsed_s = in.get<double>();
+  step.step = in.get<std::uint64_t>();
+  step.shots = in.get<std::uint64_t>();
+  step.rays = in.get<std::uint64_t>();
+  step.leaves = in.get<std::uint64_t>();
+  step.unshot_fraction = in.get<double>();
+  step.estimated_error = in.get<double>();
+  step.displayed_error = in.get<double>();
+  if (version >= 2) step.unlit_fraction = in.get<double>();
+  step.ambient_irradiance = get_rgb(in);
+  return step;
+}
+
+/// What is reserved is never more than what is left to read: the count may be anything.
+std::vector<Step> get_steps(PlainReader& in, std::uint32_t version) {
+  std::vector<Step> steps;
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) steps.push_back(get_step(in, version));
+  check_steps(steps);
+  return steps;
+}
+
 }  // namespace
 
 void SolutionLog::save(PlainWriter& out) const {
   std::scoped_lock hold(lock_);
-  out.put_all(steps_);
-  out.put(coding_.scale());
-  out.put(has_coding_);
+  out.put(mark);
+  out.put(newest_version);
+  out.put(std::uint64_t{steps_.size()});
+  for (const Step& step : steps_) put(step, out);
+  out.put(std::int32_t{coding_.scale()});
+  out.put(std::uint8_t{has_coding_});
   out.put_all(leaves_.patch);
   out.put_all(leaves_.irradiance);
   out.put_all(leaves_.shown);
@@ -48,11 +109,38 @@ void SolutionLog::save(PlainWriter& out) const {
 }
 
 SolutionLog::SolutionLog(PlainReader& saved) {
-  steps_ = saved.get_all<Step>();
-  check_steps(steps_);
+  PlainReader marked = saved;
+  if (marked.get<std::uint64_t>() != mark) {
+    load_unmarked(saved);
+    return;
+  }
+  const auto version = marked.get<std::uint32_t>();
+  if (version < oldest_marked || version > newest_version) throw other_version(version, newest_version);
+  load(marked, version);
+  saved = marked;
+}
+
+/// Only one of the versions fits: read as another, the bytes do not make a tiling.
+void SolutionLog::load_unmarked(PlainReader& saved) {
+  std::string fault;
+  for (const std::uint32_t version : unmarked_versions) {
+    try {
+      PlainReader in = saved;
+      load(in, version);
+      saved = in;
+      return;
+    } catch (const BadBytes& refusal) {
+      if (fault.empty()) fault = refusal.what();
+    }
+  }
+  throw BadBytes(fault);
+}
+
+void SolutionLog::load(PlainReader& saved, std::uint32_t version) {
+  steps_ = get_steps(saved, version);
   head_ = steps_.size();
-  const int scale = saved.get<int>();
-  if (std::abs(scale) > farthest_scale) throw BadBytes("scale: cannot be");
+  const auto scale = saved.get<std::int32_t>();
+  if (std::abs(std::int64_t{scale}) > farthest_scale) throw BadBytes("scale: cannot be");
   coding_ = SharedExponent(scale);
   has_coding_ = saved.get<std::uint8_t>() != 0;
   leaves_.patch = saved.get_all<PatchId>();

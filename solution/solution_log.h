@@ -57,7 +57,7 @@ class SolutionLog {
   static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
   SolutionLog() = default;
-  /// Restores a log that save() wrote; publishing continues from there. Throws BadBytes.
+  /// Restores a log that save() wrote, of this version of the program or an older one; publishing continues from there. Throws BadBytes.
   explicit SolutionLog(PlainReader& saved);
   /// Writes everything except whether the log is closed. Other calls wait until it has returned.
   void save(PlainWriter& out) const;
@@ -103,6 +103,8 @@ class SolutionLog {
     std::vector<std::uint32_t> shown;  ///< displayed values, packed by coding_
     Tier display, exact;
   };
+  void load_unmarked(PlainReader& saved);
+  void load(PlainReader& saved, std::uint32_t version);
   void split_for(std::span<const LeafValue> changed);
   void make_room_for(std::span<const LeafValue> changed);
   /// Returns whether `irradiance` differs from the held value, or the leaf is new in this revision.

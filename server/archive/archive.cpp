@@ -1,6 +1,7 @@
 #include "server/archive/archive.h"
 
 #include "proto/codec.h"
+#include "server/archive/migrations.h"
 #include "server/archive/pieces.h"
 #include "server/archive/rows.h"
 #include "server/base/random_id.h"
@@ -120,6 +121,13 @@ std::vector<std::string> Archive::take_faults() {
   return std::exchange(faults_, {});
 }
 
+std::string Archive::migration() const {
+  const int found = database_.version_found();
+  if (found == 0 || found == newest_tables || !database_.fault().empty()) return "";
+  return data_directory + "it was of version " + std::to_string(found) + " and is of version " + std::to_string(newest_tables) +
+         " from now on: older alvords cannot read it any more";
+}
+
 /// A row that cannot be read is left out, and told of.
 void Archive::for_each_row(const Rows& rows, const RowBody& body) {
   database_.read([&](SQLite::Database& database) {
@@ -156,7 +164,7 @@ std::uint64_t Archive::last_scene() { return last_number(scene_rows); }
 
 void Archive::add(const SceneRow& row, const Scene& content) {
   const std::string& sha256 = row.facts.content_sha256();
-  const std::string facts = row.facts.SerializeAsString();
+  const std::string facts = facts_of(row.facts);
   const auto put_scene = [&](SQLite::Database& database) {
     SQLite::Statement known(database, "INSERT OR IGNORE INTO contents VALUES(?)");
     known.bind(1, sha256);

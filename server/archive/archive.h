@@ -64,6 +64,9 @@ class Archive {
   /// Sentences about what is wrong with the directory or was left out by scenes() and solves(); each is told once.
   std::vector<std::string> take_faults();
 
+  /// A sentence about the older version whose tables were brought to this one's; empty where they were not.
+  std::string migration() const;
+
   /// In the order of their numbers. Damaged rows stay on the disk and are left out.
   std::vector<SceneRow> scenes();
   std::vector<SolveRow> solves();
@@ -86,6 +89,8 @@ class Archive {
   void remove_solve(std::uint64_t number);
   std::vector<std::byte> log(std::uint64_t solve);
   std::vector<std::byte> state(std::uint64_t solve);
+  /// The first piece of the state; empty where there is none.
+  std::vector<std::byte> begin_of_state(std::uint64_t solve);
 
   /// A kind of row ("scene" or "solve") and its table, index and columns in the database. For the archive's own functions.
   struct Rows {
@@ -103,7 +108,7 @@ class Archive {
   void note_kept(SQLite::Database& database, const SolveRow& row);
   void note_running(SQLite::Database& database, const SolveRow& row);
   std::optional<std::chrono::microseconds> work_lost(SQLite::Database& database, std::int64_t solve) const;
-  std::vector<std::byte> pieces(std::uint64_t solve, int kind);
+  std::vector<std::byte> pieces(std::uint64_t solve, int kind, int at_most = -1);
   void note_fault(std::string fault);
   void remove_pieces(const char* batch, const std::function<void(SQLite::Statement&)>& bind);
   void remove_pieces_of_content(const std::string& sha256);

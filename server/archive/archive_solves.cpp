@@ -67,7 +67,7 @@ std::vector<Archive::SolveRow> Archive::solves() {
 std::uint64_t Archive::last_solve() { return last_number(solve_rows); }
 
 void Archive::add(const SolveRow& row, std::uint64_t scene) {
-  const std::string facts = row.facts.SerializeAsString();
+  const std::string facts = facts_of(row.facts);
   const auto put_solve = [&](SQLite::Database& database) {
     SQLite::Statement put(database, "INSERT INTO solves VALUES(?, ?, ?, ?, ?)");
     put.bind(1, key(row.number));
@@ -81,7 +81,7 @@ void Archive::add(const SolveRow& row, std::uint64_t scene) {
 }
 
 void Archive::put_facts(SQLite::Database& database, const SolveRow& row) {
-  const std::string facts = row.facts.SerializeAsString();
+  const std::string facts = facts_of(row.facts);
   SQLite::Statement put(database, "UPDATE solves SET facts = ? WHERE number = ?");
   bind_bytes(put, 1, facts);
   put.bind(2, key(row.number));
@@ -159,12 +159,13 @@ void Archive::remove_solve(std::uint64_t number) {
   remove_leftovers();
 }
 
-std::vector<std::byte> Archive::pieces(std::uint64_t solve, int kind) {
+std::vector<std::byte> Archive::pieces(std::uint64_t solve, int kind, int at_most) {
   std::vector<std::byte> bytes;
   database_.read([&](SQLite::Database& database) {
-    SQLite::Statement each(database, "SELECT bytes FROM checkpoint_pieces WHERE solve = ? AND kind = ? ORDER BY n");
+    SQLite::Statement each(database, "SELECT bytes FROM checkpoint_pieces WHERE solve = ? AND kind = ? ORDER BY n LIMIT ?");
     each.bind(1, key(solve));
     each.bind(2, kind);
+    each.bind(3, at_most);  // -1: all
     try {
       while (each.executeStep()) append_piece(bytes_of(each.getColumn(0)), bytes);
     } catch (const BadBytes& fault) {
@@ -176,5 +177,6 @@ std::vector<std::byte> Archive::pieces(std::uint64_t solve, int kind) {
 
 std::vector<std::byte> Archive::log(std::uint64_t solve) { return pieces(solve, log_of); }
 std::vector<std::byte> Archive::state(std::uint64_t solve) { return pieces(solve, state_of); }
+std::vector<std::byte> Archive::begin_of_state(std::uint64_t solve) { return pieces(solve, state_of, 1); }
 
 }  // namespace alvor

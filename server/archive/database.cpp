@@ -1,5 +1,6 @@
 #include "server/archive/database.h"
 
+#include "server/archive/migrations.h"
 #include "server/base/failpoint.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -12,34 +13,9 @@ namespace alvor {
 
 namespace {
 
-constexpr int version = 2;
 // The journal of a call of remove() holds the pages that it replaces: of each row at most one of the table, one of each of two
 // indexes, and two lists of free pages (a row of 4 MB frees 1 025 pages, a list holds 1 022): 64 * 5 * 4 KB = 1.3 MB.
 constexpr std::int64_t bytes_of_ballast = 4 << 20;
-
-constexpr const char* schema = R"(
-  CREATE TABLE contents(sha256 TEXT PRIMARY KEY);
-  CREATE TABLE content_pieces(sha256 TEXT NOT NULL REFERENCES contents ON DELETE CASCADE, n INTEGER NOT NULL, bytes BLOB NOT NULL);
-  CREATE INDEX content_pieces_of ON content_pieces(sha256, n);
-  CREATE TABLE scenes(number INTEGER PRIMARY KEY, tenant TEXT NOT NULL, request_id TEXT NOT NULL,
-    sha256 TEXT NOT NULL REFERENCES contents, facts BLOB NOT NULL);
-  CREATE INDEX scenes_of ON scenes(sha256);
-  CREATE TABLE solves(number INTEGER PRIMARY KEY, scene INTEGER NOT NULL REFERENCES scenes, tenant TEXT NOT NULL,
-    request_id TEXT NOT NULL, facts BLOB NOT NULL);
-  CREATE INDEX solves_of ON solves(scene);
-  CREATE TABLE lineage(solve INTEGER NOT NULL REFERENCES solves ON DELETE CASCADE, epoch TEXT NOT NULL, revision INTEGER NOT NULL,
-    PRIMARY KEY(solve, epoch));
-  CREATE TABLE checkpoint_pieces(solve INTEGER NOT NULL REFERENCES solves ON DELETE CASCADE, kind INTEGER NOT NULL,
-    n INTEGER NOT NULL, bytes BLOB NOT NULL);
-  CREATE INDEX checkpoint_pieces_of ON checkpoint_pieces(solve, kind, n);
-)";
-
-// Tables that were added to version 2 of the schema; older servers of that version ignore them. `unkept` has the moment of a run,
-// in microseconds, since which the work of a running solve is in no checkpoint.
-constexpr const char* additions = R"(
-  CREATE TABLE IF NOT EXISTS unkept(solve INTEGER PRIMARY KEY REFERENCES solves ON DELETE CASCADE, run TEXT NOT NULL,
-    age INTEGER NOT NULL);
-)";
 
 // A lock for as long as the database is open: two servers must not resume the same solves. What is deleted is not written over:
 // that would take as much room as it had. Nothing of a change is in files elsewhere, whose disk may be full too.
@@ -62,9 +38,9 @@ std::unique_ptr<SQLite::Database> connect(const std::filesystem::path& file) {
 /// Returns 0 where there is no database yet. Reading it goes back from a change that a crash cut off.
 int version_of(SQLite::Database& connection) {
   const int found = connection.execAndGet("PRAGMA user_version").getInt();
-  if (found > version) throw std::invalid_argument("was written by a newer version of alvord");
-  if (found == 1)
-    throw std::invalid_argument("was written by an older alvord, whose solutions this one cannot read: use another directory");
+  if (found < 0 || found > newest_tables)
+    throw std::invalid_argument("was written by a newer version of alvord: it is of version " + std::to_string(found) +
+                                ", and this alvord reads versions up to " + std::to_string(newest_tables));
   return found;
 }
 
@@ -87,15 +63,9 @@ void leave_write_ahead_log(SQLite::Database& connection) {
   connection.exec("PRAGMA journal_mode = TRUNCATE");
 }
 
-/// Writes the version also where it is there, to find out whether anything can be written.
-void prepare(SQLite::Database& connection) {
-  const int found = version_of(connection);
+void prepare(SQLite::Database& connection, int version_found) {
   leave_write_ahead_log(connection);
-  SQLite::Transaction change(connection, SQLite::TransactionBehavior::EXCLUSIVE);
-  if (found == 0) connection.exec(schema);
-  connection.exec(additions);
-  connection.exec("PRAGMA user_version = " + std::to_string(version));
-  change.commit();
+  migrate(connection, version_found);
 }
 
 /// Quotas and limits on files' sizes are full disks too. Requires: `fault` is the connection's last.
@@ -139,7 +109,7 @@ Database::Database(const std::filesystem::path& directory) : ballast_(directory 
   } catch (const std::invalid_argument& fault) {
     throw std::invalid_argument(at + fault.what());
   }
-  is_complete_ = fault_.empty();
+  is_migrated_ = fault_.empty();
   ballast_.take_up();
 }
 
@@ -160,7 +130,8 @@ std::string Database::open_for_writing(const std::filesystem::path& file, bool& 
   connection_.reset();
   connection_ = connect(file);
   try {
-    prepare(*connection_);
+    version_found_ = version_of(*connection_);
+    prepare(*connection_, version_found_);
     return "";
   } catch (const SQLite::Exception& fault) {
     is_full = is_disk_full(*connection_, fault);
@@ -206,11 +177,11 @@ void Database::read(const Body& body) {
   attempt(body);
 }
 
-/// Makes the tables of `additions` if opening the database could not, for want of room. Requires: the lock.
-void Database::complete_schema() {
-  if (is_complete_) return;
-  attempt([](SQLite::Database& connection) { connection.exec(additions); });
-  is_complete_ = true;
+/// Brings the tables to the newest version if opening the database could not, for want of room. Requires: the lock.
+void Database::complete_migration() {
+  if (is_migrated_) return;
+  attempt([this](SQLite::Database& connection) { migrate(connection, version_found_); });
+  is_migrated_ = true;
 }
 
 /// Does not let the file grow, so that the ballast finds its room again. Requires: the lock.
@@ -220,7 +191,7 @@ void Database::in_free_pages(const Body& body) {
     ~WithoutBallast() { ballast.take_up(); }
     const Ballast& ballast;
   } without_ballast(ballast_);
-  complete_schema();
+  complete_migration();
   const struct FixedSize {
     explicit FixedSize(SQLite::Database& open)
         : connection(open), most(connection.execAndGet("PRAGMA max_page_count").getInt64()) {
@@ -238,7 +209,7 @@ void Database::in_free_pages(const Body& body) {
 void Database::write(const Body& body) {
   try {
     if (ballast_.take_up()) {
-      complete_schema();
+      complete_migration();
       return in_one(body);
     }
   } catch (const StatusError& refusal) {

@@ -31,13 +31,17 @@ class Database {
  public:
   using Body = std::function<void(SQLite::Database&)>;
 
-  /// Opens or makes `directory`/alvor.db and keeps other servers out of it. Throws std::invalid_argument saying why it cannot.
+  /// Opens or makes `directory`/alvor.db and keeps other servers out of it. Brings tables of an older version to the newest, at
+  /// the first change where there is no room before. Throws std::invalid_argument saying why it cannot, also where the database
+  /// is of a newer version.
   explicit Database(const std::filesystem::path& directory);
   ~Database();
 
   /// Returns why nothing could be written when it was opened, not even in the ballast's room, and what can be done all the same;
   /// empty where something could.
   const std::string& fault() const { return fault_; }
+  /// Returns the version that its tables had when it was opened; 0 where it had none.
+  int version_found() const { return version_found_; }
 
   void read(const Body& body);
   /// `step`, where there is one, is a failpoint. `body` is called again where it finds the disk full.
@@ -56,7 +60,7 @@ class Database {
   void open_for_reading(const std::filesystem::path& file, bool is_full);
   void attempt(const Body& body);
   void in_one(const Body& body);
-  void complete_schema();
+  void complete_migration();
   void in_free_pages(const Body& body);
   void write(const Body& body);
 
@@ -64,7 +68,8 @@ class Database {
   std::mutex lock_;
   std::unique_ptr<SQLite::Database> connection_;
   std::string fault_;
-  bool is_complete_ = false;  ///< the schema
+  int version_found_ = 0;     ///< of its tables, when it was opened
+  bool is_migrated_ = false;  ///< its tables are of the newest version
   bool keeps_log_ = false;    ///< of an older server: there is no room to leave it
 };
 

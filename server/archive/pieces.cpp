@@ -1,5 +1,6 @@
 #include "server/archive/pieces.h"
 
+#include "server/archive/versioned.h"
 #include "solution/plain_bytes.h"
 
 #include <zstd.h>
@@ -12,7 +13,8 @@ namespace alvor {
 
 namespace {
 
-constexpr int level = 1;  // checkpoints are written often and read seldom
+constexpr std::uint8_t piece_version = 1;  // a zstd frame that has a checksum and says its size
+constexpr int level = 1;                   // checkpoints are written often and read seldom
 
 }  // namespace
 
@@ -35,16 +37,19 @@ void PieceWriter::compress() {
   if (!context) throw std::bad_alloc();
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, level);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
-  std::string piece(ZSTD_compressBound(open_.size()), '\0');
-  const std::size_t size = ZSTD_compress2(context.get(), piece.data(), piece.size(), open_.data(), open_.size());
+  std::string piece = version_prefix(piece_version);
+  const std::size_t begin = piece.size();
+  piece.resize(begin + ZSTD_compressBound(open_.size()));
+  const std::size_t size = ZSTD_compress2(context.get(), piece.data() + begin, piece.size() - begin, open_.data(), open_.size());
   if (ZSTD_isError(size)) throw std::runtime_error(ZSTD_getErrorName(size));
-  piece.resize(size);
+  piece.resize(begin + size);
   piece.shrink_to_fit();
   pieces_.push_back(std::move(piece));
   open_.clear();
 }
 
-void append_piece(std::string_view piece, std::vector<std::byte>& bytes) {
+void append_piece(std::string_view blob, std::vector<std::byte>& bytes) {
+  const std::string_view piece = behind_version(blob, piece_version);
   const auto size = ZSTD_getFrameContentSize(piece.data(), piece.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > piece_bytes)
     throw BadBytes("a piece is not one that was written");

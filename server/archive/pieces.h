@@ -1,5 +1,5 @@
 #pragma once
-// Bytes of any length as pieces that a store can hold: compressed, each with a checksum.
+// Bytes of any length as pieces that a store can hold: compressed, each with a version and a checksum.
 
 #include <cstddef>
 #include <span>
@@ -25,7 +25,8 @@ class PieceWriter {
   std::vector<std::string> pieces_;
 };
 
-/// Appends what one piece holds. Throws BadBytes where the checksum, or anything else, says that it is not what was written.
-void append_piece(std::string_view piece, std::vector<std::byte>& bytes);
+/// Appends what one piece holds. Throws BadBytes where its version is not known, or the checksum, or anything else, says that it
+/// is not what was written.
+void append_piece(std::string_view blob, std::vector<std::byte>& bytes);
 
 }  // namespace alvor

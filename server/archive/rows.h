@@ -2,6 +2,7 @@
 // Between values and columns of SQLite.
 
 #include "server/archive/archive.h"
+#include "server/archive/versioned.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
@@ -22,11 +23,27 @@ inline std::string_view bytes_of(const SQLite::Column& column) {
   return {static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes())};
 }
 
+/// The messages of the API, as `facts` of scenes and solves.
+inline constexpr std::uint8_t facts_version = 1;
+
+template <class Message>
+std::string facts_of(const Message& message) {
+  std::string facts = version_prefix(facts_version);
+  message.AppendToString(&facts);
+  return facts;
+}
+
 /// Throws DATA_LOSS.
 template <class Message>
 Message parsed(const SQLite::Column& column) {
   Message message;
-  if (!message.ParseFromArray(column.getBlob(), column.getBytes())) throw data_loss("it is damaged");
+  std::string_view bytes;
+  try {
+    bytes = behind_version(bytes_of(column), facts_version);
+  } catch (const BadBytes& fault) {
+    throw data_loss(std::string("it ") + fault.what());
+  }
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) throw data_loss("it is damaged");
   return message;
 }
 

@@ -64,6 +64,7 @@ SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : op
 
 void SolveStore::restore(Archive& archive, const SceneStore& scenes) {
   std::scoped_lock hold(lock_);
+  if (const std::string migration = archive.migration(); !migration.empty()) options_.logger->info(migration);
   for (Archive::SolveRow& row : archive.solves()) {
     const std::uint64_t number = row.number;
     try {
@@ -77,8 +78,8 @@ void SolveStore::restore(Archive& archive, const SceneStore& scenes) {
   start_waiting();
 }
 
-/// Requires: the lock. A solve that must not go on any more is cancelled: the limits, or the machine, were larger when it was
-/// made.
+/// A solve that must not or cannot go on any more is ended: the limits, or the machine, were larger when it was made, or an older
+/// alvord kept what this one cannot read. Requires: the lock.
 void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
   const std::string name = row.facts.name();
   SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), row.tenant);
@@ -90,12 +91,17 @@ void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
     refusal = fault.what();
   }
   auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
-  if (!refusal.empty() && !solve->ended()) {
+  const auto complain = [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", name, fault); };
+  if (solve->ended()) {
+  } else if (!refusal.empty()) {
     options_.logger->error("solve {} cannot go on: {}", name, refusal);
-    solve->set_waiting_state(v1::Solve::CANCELLED);
-  }
-  if (!solve->ended())
+    solve->end_waiting(v1::Solve::CANCELLED, refusal, complain);
+  } else if (const std::string fault = solve->fault_of_state(); !fault.empty()) {
+    options_.logger->error("solve {} cannot go on: {}", name, fault);
+    solve->end_waiting(v1::Solve::FAILED, fault, complain);
+  } else {
     options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
+  }
   requests_.add(solve->creator, name);
   Entry& entry = solves_[name];
   entry.scene = std::move(scene);

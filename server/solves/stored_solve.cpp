@@ -8,6 +8,7 @@
 #include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace alvor {
@@ -18,6 +19,8 @@ namespace {
 
 constexpr int least_share = 20;                    // of the time between checkpoints goes into them
 constexpr std::uint64_t bytes_a_logged_leaf = 80;  // while it is loaded: 32 that stay, and the pieces it is read from
+// The first version of solves' states that the solver may go on from. Version 1 does not say which leaves have light.
+constexpr std::uint32_t oldest_state = 2;
 
 bool is_final(v1::Solve::State state) {
   return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
@@ -36,11 +39,13 @@ v1::PowerBalance encode(const PowerBalance& balance) {
   return message;
 }
 
-void cancel(v1::Solve& facts) {
-  facts.set_state(v1::Solve::CANCELLED);
-  facts.set_end_reason(std::string(text(StopReason::cancelled)));
+void end_now(v1::Solve& facts, v1::Solve::State state, std::string_view reason) {
+  facts.set_state(state);
+  facts.set_end_reason(std::string(reason));
   *facts.mutable_end_time() = TimeUtil::GetCurrentTime();
 }
+
+void cancel(v1::Solve& facts) { end_now(facts, v1::Solve::CANCELLED, text(StopReason::cancelled)); }
 
 std::vector<std::string> pieces_of(const SolveControl::Write& write) {
   PieceWriter pieces;
@@ -129,7 +134,7 @@ std::shared_ptr<SolutionLog> StoredSolve::log() const {
     if (ended()) loaded->close();
     log_ = loaded;
   } catch (const BadBytes& fault) {
-    throw data_loss("the solution of " + name + ": " + fault.what());
+    throw data_loss("the solution of " + name + " cannot be read: " + fault.what());
   }
   return log_;
 }
@@ -166,6 +171,8 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
                           : v1::Solve::QUEUED;
   } catch (const std::bad_alloc&) {
     reason = "out of memory";
+  } catch (const BadBytes& fault) {
+    reason = std::string("its checkpoint: ") + fault.what();
   } catch (const std::exception& fault) {
     reason = as_utf8(fault.what());
   }
@@ -293,6 +300,10 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
     keep_checkpoint({}, say_end);
     std::scoped_lock hold(log_lock_);
     is_log_kept_ = true;
+  } catch (const StatusError& fault) {
+    show_end();
+    if (fault.code == grpc::DATA_LOSS) keep_row();  // else it would fail anew whenever the server is started
+    throw;
   } catch (...) {
     show_end();
     throw;
@@ -319,25 +330,66 @@ void StoredSolve::keep_row() {
 }
 
 void StoredSolve::set_waiting_state(v1::Solve::State state) {
+  change_waiting([&](v1::Solve& facts) {
+    if (is_final(state)) return cancel(facts);
+    facts.set_state(state);
+    facts.clear_end_reason();  // a wish to cancel had it
+    facts.clear_end_time();
+  });
+  if (is_final(state)) settle_end();
+}
+
+void StoredSolve::end_waiting(v1::Solve::State state, const std::string& reason,
+                              const std::function<void(const std::string&)>& complain) {
+  const auto end = [&](v1::Solve& facts) { end_now(facts, state, reason); };
+  try {
+    change_waiting(end);
+  } catch (const StatusError& fault) {
+    complain(fault.what());
+    std::scoped_lock hold(lock_);
+    end(facts_);
+  }
+  settle_end();
+}
+
+/// Throws StatusError, and changes nothing, where the change cannot be kept.
+void StoredSolve::change_waiting(const std::function<void(v1::Solve&)>& change) {
   std::scoped_lock keep(keeping_lock_);
   Archive::SolveRow next = row();
-  if (is_final(state)) {
-    cancel(next.facts);
-  } else {
-    next.facts.set_state(state);
-    next.facts.clear_end_reason();  // a wish to cancel had it
-    next.facts.clear_end_time();
-  }
+  change(next.facts);
   if (keeping_.archive) keeping_.archive->update(next);
+  std::scoped_lock hold(lock_);
+  facts_ = next.facts;
+}
+
+/// What is left to do once a solve that was waiting has ended.
+void StoredSolve::settle_end() {
+  std::optional<std::uint64_t> kept_head;
   {
     std::scoped_lock hold(lock_);
-    facts_ = next.facts;
-    if (is_final(state)) state_in_memory_.clear();
+    state_in_memory_.clear();
+    if (const auto line = lineage_.find(keeping_.epoch); line != lineage_.end()) kept_head = line->second;
   }
-  if (!is_final(state)) return;
   close_log();
   std::scoped_lock hold(log_lock_);
-  is_log_kept_ = log_ && next.lineage.contains(keeping_.epoch) && next.lineage.at(keeping_.epoch) == log_->head();
+  is_log_kept_ = !log_ || kept_head == log_->head();
+}
+
+std::string StoredSolve::fault_of_state() const {
+  if (!keeping_.archive || !describe().has_checkpoint_time()) return "";
+  try {
+    const auto begin = keeping_.archive->begin_of_state(number);
+    if (begin.empty()) return "";
+    const auto version = PlainReader(begin).get<std::uint32_t>();
+    if (version >= oldest_state) return "";
+    return "its checkpoint is of version " + std::to_string(version) +
+           ", which an older alvord wrote; this one goes on from version " + std::to_string(oldest_state) +
+           " and later: solve the scene again";
+  } catch (const BadBytes& fault) {
+    return std::string("its checkpoint ") + fault.what();
+  } catch (const StatusError& fault) {
+    return fault.code == grpc::DATA_LOSS ? fault.what() : "";  // the solver will find out
+  }
 }
 
 v1::Solve::State StoredSolve::state() const {

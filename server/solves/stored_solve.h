@@ -73,6 +73,12 @@ class StoredSolve {
   /// Of one that is not running: from QUEUED to PAUSED and back, or to CANCELLED. Throws StatusError, and changes nothing, where
   /// that cannot be kept.
   void set_waiting_state(v1::Solve::State state);
+  /// Ends one that is not running; `state` is CANCELLED or FAILED. Where that cannot be kept `complain` is told, and it ends all
+  /// the same.
+  void end_waiting(v1::Solve::State state, const std::string& reason, const std::function<void(const std::string&)>& complain);
+  /// Returns why the checkpoint in the archive cannot be gone on from, as far as its beginning tells; empty where it can, or
+  /// there is none.
+  std::string fault_of_state() const;
   void note_running();
   /// Of one that runs: what it shall be when the server is started again before the run has ended: PAUSED, CANCELLED or RUNNING.
   /// Throws StatusError where that cannot be kept; it holds all the same once something else is.
@@ -94,6 +100,8 @@ class StoredSolve {
   void admit_log() const;
   void close_log();
   void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
+  void change_waiting(const std::function<void(v1::Solve&)>& change);
+  void settle_end();
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
   std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
   void save(const SolveControl::Write& write);

@@ -150,7 +150,9 @@ TEST_F(FullDiskTest, ServerThatWasKilledInTheMiddleOfAWriteStarts) {
 /// Ends the process like an older server: everything it wrote, slightly more than `megabytes`, is in a write-ahead log.
 [[noreturn]] void die_as_an_older_server(const fs::path& directory, int megabytes) {
   SQLite::Database older((directory / "alvor.db").string(), SQLite::OPEN_READWRITE);
-  older.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; DROP TABLE unkept;");
+  older.exec(
+      "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; DROP TABLE unkept; PRAGMA "
+      "user_version = 2");
   older.exec("UPDATE scenes SET tenant = 'ali'");
   for (int n = 0; n < megabytes; ++n) older.exec("INSERT INTO content_pieces VALUES('left over', 0, randomblob(1000000))");
   raise(SIGKILL);

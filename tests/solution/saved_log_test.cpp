@@ -1,0 +1,135 @@
+// What a saved log looks like on the disk, and the logs of older versions.
+
+#include "solution/plain_bytes.h"
+#include "solution/solution_log.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+
+namespace alvor {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+struct Padded {
+  std::uint32_t count = 0;
+  double area = 0;
+};
+struct Packed {
+  double area = 0;
+  std::uint32_t count = 0, depth = 0;
+};
+struct Pointing {
+  const int* place = nullptr;
+};
+static_assert(Plain<std::uint32_t> && Plain<double> && Plain<RgbF> && Plain<PatchId> && Plain<Packed>);
+static_assert(!Plain<Padded>, "its padding has no value");
+static_assert(!Plain<LeafValue>, "12 bytes of light after 8 of an id: 4 of padding");
+static_assert(!Plain<bool> && !Plain<long double>, "their width is the compiler's choice");
+static_assert(!Plain<Pointing> && !Plain<std::string>);
+
+/// Puts values down one after the other, without the help of what is tested.
+class Layout {
+ public:
+  template <class T>
+  Layout& operator<<(T value) {
+    const auto* begin = reinterpret_cast<const std::byte*>(&value);
+    bytes.insert(bytes.end(), begin, begin + sizeof(T));
+    return *this;
+  }
+  Bytes bytes;
+};
+
+using u8 = std::uint8_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+
+/// The two steps of `sample()`, as `version` has them.
+void put_steps(Layout& out, int version) {
+  out << u64{2};
+  for (u64 n = 0; n < 2; ++n) {
+    out << n + 1 << 0.5 << n << u64{10} << u64{1000} << u64{3} << 0.25 << 0.125 << 0.0;
+    if (version >= 2) out << 0.75;
+    out << 1.0 << 2.0 << 3.0;
+  }
+}
+
+/// Two leaves of face 0 and face 7, which were published with the steps.
+void put_leaves(Layout& out, const SolutionLog& like) {
+  const auto leaves = like.leaves();
+  const SharedExponent coding = SharedExponent::for_values_up_to(4);
+  out << std::int32_t{coding.scale()} << u8{1};
+  out << u64{2} << leaves[0].patch.bits() << leaves[1].patch.bits();
+  out << u64{2} << 1.0f << 2.0f << 4.0f << 0.5f << 0.25f << 0.125f;
+  out << u64{2} << coding.pack({1, 2, 4}) << coding.pack({0.5, 0.25, 0.125});
+  out << u64{2} << u32{1} << u32{2} << u64{2} << u32{1} << u32{2};
+}
+
+struct SavedLogTest : testing::Test {
+  SavedLogTest() {
+    Step step{.elapsed_s = 0.5, .shots = 10, .rays = 1000, .leaves = 3, .unshot_fraction = 0.25, .estimated_error = 0.125};
+    step.unlit_fraction = 0.75;
+    step.ambient_irradiance = {1, 2, 3};
+    log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 4}}}, step);
+    log.publish(std::vector<LeafValue>{{PatchId::root(7), {0.5, 0.25, 0.125}}}, step);
+  }
+  static std::unique_ptr<SolutionLog> loaded(const Bytes& bytes) {
+    PlainReader in(bytes);
+    auto log = std::make_unique<SolutionLog>(in);
+    in.expect_end();
+    return log;
+  }
+  static Bytes as_version(int version, const SolutionLog& like) {
+    Layout out;
+    put_steps(out, version);
+    put_leaves(out, like);
+    return out.bytes;
+  }
+  SolutionLog log;
+};
+
+TEST_F(SavedLogTest, IsAMarkAVersionAndNumbersOneAfterTheOther) {
+  Layout expected;
+  for (const char letter : {'a', 'l', 'v', 'o', 'r', 'l', 'o', 'g'}) expected << letter;
+  expected << u32{3};
+  put_steps(expected, 3);
+  put_leaves(expected, log);
+  EXPECT_EQ(plain_bytes([&](PlainWriter& out) { log.save(out); }), expected.bytes);
+}
+
+TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
+  for (const int version : {1, 2}) {
+    const auto again = loaded(as_version(version, log));
+    EXPECT_EQ(again->leaves(Detail::exact), log.leaves(Detail::exact)) << version;
+    EXPECT_EQ(again->leaves(Detail::display), log.leaves(Detail::display)) << version;
+    EXPECT_EQ(again->since({.base = 1}).values, log.since({.base = 1}).values) << version;
+    auto expected = log.steps();
+    if (version == 1)
+      for (Step& step : expected) step.unlit_fraction = 0;
+    EXPECT_EQ(again->steps(), expected) << version;
+  }
+}
+
+TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
+  for (const int version : {1, 2}) {
+    const Bytes whole = as_version(version, log);
+    for (std::size_t size = 0; size < whole.size(); ++size)
+      EXPECT_THROW(loaded(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), BadBytes) << size;
+  }
+}
+
+TEST_F(SavedLogTest, NewerVersionIsRefusedByItsNumber) {
+  Bytes bytes = plain_bytes([&](PlainWriter& out) { log.save(out); });
+  bytes[8] = std::byte{4};
+  try {
+    loaded(bytes);
+    FAIL() << "it was read";
+  } catch (const BadBytes& fault) {
+    EXPECT_STREQ(fault.what(), "is of version 4, and this program reads versions up to 3");
+  }
+}
+
+}  // namespace
+}  // namespace alvor
