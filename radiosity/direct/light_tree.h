@@ -1,5 +1,5 @@
 #pragma once
-// Which of many emitters matter to a receiver.
+// Chooses the emitters that matter to a receiver among many.
 
 #include "radiosity/direct/emitter.h"
 #include "radiosity/rays/local_scene.h"

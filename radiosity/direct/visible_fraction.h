@@ -1,5 +1,5 @@
 #pragma once
-// How much of an emitter a patch sees, from shadow rays.
+// The share of an emitter that a patch sees, by shadow rays.
 
 #include "radiosity/rays/sampling.h"
 #include "solution/rgb.h"

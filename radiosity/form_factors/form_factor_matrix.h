@@ -33,7 +33,8 @@ struct MatrixOptions {
 /// points, so that their errors cancel in the row's sum; much smaller faces use points of their own.
 class FormFactorRows {
  public:
-  /// If at most `most_followed` faces are partly shadowed as seen from one, each of them is integrated adaptively on its own.
+  /// If at most `most_followed` faces are partly shadowed as seen from one, each by at most 16 blockers, they are integrated
+  /// adaptively, one by one.
   /// Requires: accuracy > 0.
   FormFactorRows(const FacePolygons& faces, const Blockers& blockers, double accuracy, std::size_t most_followed = 32);
   ~FormFactorRows();

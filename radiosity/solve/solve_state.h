@@ -44,8 +44,8 @@ class SolveState {
   /// direct light. Summed over bands, in emission units times m2.
   double unshot_power() const;
 
-  /// Splits a leaf of the leaf forest, and its row too if the row is as fine and not traced, or a solid's outline crosses it.
-  /// Returns true if the leaf is split now, false if the limits forbid it.
+  /// Splits a leaf of the leaf forest. Also splits the row of the same place, if there is one and it is not traced or a solid's
+  /// outline crosses it. Returns true if the leaf is split now, false if the limits forbid it.
   bool split_leaf(NodeIndex leaf);
   /// Splits a row, and the leaf of its place if that is not split. Returns true if the row is split now, false if the limits
   /// forbid it.

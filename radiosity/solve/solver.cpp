@@ -18,8 +18,8 @@ namespace alvor {
 
 namespace {
 
-// Share of the tolerance that Exchange::remaining_error() must fall below to end a pass. Squares add, so what is still to come
-// adds 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
+// Exchange::remaining_error() that ends a pass, as a share of the tolerance. Squares add, so the light that is still to come adds
+// 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
 constexpr double pass_remaining = 0.1;
 // Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; not measured.
 constexpr double final_remaining = 1e-6;
@@ -164,7 +164,8 @@ class Run {
     return !must_stop();
   }
 
-  /// Exchanges light down to final_remaining, publishes, and returns the reason for the end: `reason`, or why it came to less.
+  /// Exchanges light down to final_remaining, publishes, and returns why the solve ends: `reason`, or that the exchange was
+  /// stopped or has stalled.
   StopReason converge(StopReason reason) {
     if (!exchange_down_to(final_remaining)) return stop_reason();
     pass_->show_what_came_since();

@@ -147,7 +147,7 @@ TEST(LightTree, AnEmitterIsDrawnAsOftenAsItsProbabilitySays) {
   for (const auto& [emitter, drawn] : seen) {
     sum += drawn.first;
     const double expected = count * drawn.first;
-    // Of about 150 emitters none may deviate by more than 4.5 standard deviations.
+    // None of about 150 emitters may deviate by more than 4.5 standard deviations.
     EXPECT_NEAR(drawn.second, expected, 4.5 * std::sqrt(expected) + 4) << "emitter " << emitter;
   }
   // Emitters that were never drawn have less than 1e-3 of all the probability; the share of nothing has a standard error of 2e-3.
