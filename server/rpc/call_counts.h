@@ -1,12 +1,13 @@
 #pragma once
 // How many calls ended how.
 
+#include "server/base/mutex.h"
+
 #include <grpcpp/support/server_interceptor.h>
 
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -30,9 +31,9 @@ class CallCounts {
 
  private:
   const std::function<void(const std::string&)> flooding_;
-  mutable std::mutex lock_;
-  Counts counts_;
-  std::unordered_map<std::string, int> under_way_;  ///< by peer
+  mutable Mutex lock_;
+  Counts counts_ ALVOR_GUARDED_BY(lock_);
+  std::unordered_map<std::string, int> under_way_ ALVOR_GUARDED_BY(lock_);  ///< by peer
 };
 
 /// Notes each call of a server when its status is sent; one that its client breaks off before that is not noted. `counts` must

@@ -17,7 +17,7 @@ bool FrameSource::has_news(const Cursor& cursor) const {
 std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Detail detail) {
   // Asked before the log is: once the solve has ended, what the log then gives is all there will be.
   const bool ended = solve_->ended();
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const std::uint64_t head = log_->head();
   for (const auto& weak : recent_) {
     const auto frame = weak.lock();
