@@ -99,7 +99,7 @@ void FrontDoor::run() {
     if (waited.front().revents != 0) return;
     for (const pollfd& listening : std::span(waited).subspan(1))
       if (count > 0 && listening.revents != 0 && !accept_round(listening.fd)) return died_();
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     look();
   }
 }
@@ -125,7 +125,7 @@ void FrontDoor::admit(Descriptor accepted, const sockaddr& peer) {
   const bool is_probe = peer.sa_family == AF_UNIX ? is_this_process(accepted.get()) : port_of(peer) == probe_port_;
   const std::string address = is_this_machine(peer) ? "" : network_of(peer);
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     if (!is_probe && !has_place_for(address)) {
       ++refused_;
       return;
@@ -184,7 +184,7 @@ Descriptor FrontDoor::connect_as_probe() {
 }
 
 bool FrontDoor::end_greediest(std::uint64_t least) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   forget_ended();
   auto greediest = connections_.end();
   for (auto each = connections_.begin(); each != connections_.end(); ++each) {
@@ -200,7 +200,7 @@ bool FrontDoor::end_greediest(std::uint64_t least) {
 }
 
 bool FrontDoor::end(const std::string& peer) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   forget_ended();
   const auto found = std::ranges::find(connections_, peer, [](const auto& each) { return each.second.peer; });
   if (peer.empty() || found == connections_.end()) return false;
@@ -219,7 +219,7 @@ void FrontDoor::look() {
 }
 
 FrontDoor::Counts FrontDoor::counts() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return {connections_.size(), refused_};
 }
 

@@ -2,6 +2,7 @@
 // Accepts the connections of a gRPC server. gRPC's own listener stops for good when descriptors run out, and has no limits.
 
 #include "server/access/listening_sockets.h"
+#include "server/base/mutex.h"
 
 #include <sys/socket.h>
 #include <sys/types.h>
@@ -11,7 +12,6 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -72,11 +72,11 @@ class FrontDoor {
   void run();
   bool accept_round(int listening);
   void admit(Descriptor accepted, const sockaddr& peer);
-  bool has_place_for(const std::string& address);
-  bool end_oldest_silent();
-  void forget_ended();
-  void forget(std::map<int, Connection>::iterator ended);
-  void look();
+  bool has_place_for(const std::string& address) ALVOR_REQUIRES(lock_);
+  bool end_oldest_silent() ALVOR_REQUIRES(lock_);
+  void forget_ended() ALVOR_REQUIRES(lock_);
+  void forget(std::map<int, Connection>::iterator ended) ALVOR_REQUIRES(lock_);
+  void look() ALVOR_REQUIRES(lock_);
 
   const ListeningSockets sockets_;
   const ConnectionLimits limits_;
@@ -84,11 +84,11 @@ class FrontDoor {
   std::function<void(int)> take_;
   std::function<void()> died_;
   std::atomic<int> probe_port_ = 0;
-  mutable std::mutex lock_;
-  std::map<int, Connection> connections_;  ///< by descriptor; some may have ended since the last look
-  std::map<std::string, std::size_t> by_address_;
-  std::uint64_t accepted_ = 0, refused_ = 0;
-  Clock::time_point last_look_, last_traffic_;
+  mutable Mutex lock_;
+  std::map<int, Connection> connections_ ALVOR_GUARDED_BY(lock_);  ///< by descriptor; some may have ended since the last look
+  std::map<std::string, std::size_t> by_address_ ALVOR_GUARDED_BY(lock_);
+  std::uint64_t accepted_ ALVOR_GUARDED_BY(lock_) = 0, refused_ ALVOR_GUARDED_BY(lock_) = 0;
+  Clock::time_point last_look_ ALVOR_GUARDED_BY(lock_), last_traffic_ ALVOR_GUARDED_BY(lock_);
   std::thread thread_;
 };
 

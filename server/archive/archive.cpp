@@ -112,12 +112,12 @@ void Archive::note_alive() {
 }
 
 void Archive::note_fault(std::string fault) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   faults_.push_back(std::move(fault));
 }
 
 std::vector<std::string> Archive::take_faults() {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return std::exchange(faults_, {});
 }
 

@@ -6,6 +6,7 @@
 #include "meshing/scene.h"
 #include "server/archive/alive_file.h"
 #include "server/archive/database.h"
+#include "server/base/mutex.h"
 #include "server/base/status_error.h"
 
 #include <atomic>
@@ -15,7 +16,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -122,8 +122,8 @@ class Archive {
   const RunClock clock_;
   const std::chrono::microseconds begun_;
   const std::string run_;
-  std::mutex lock_;  ///< of faults_
-  std::vector<std::string> faults_;
+  Mutex lock_;  ///< of faults_
+  std::vector<std::string> faults_ ALVOR_GUARDED_BY(lock_);
   std::atomic<bool> has_leftovers_ = true;  ///< pieces of what was removed
 };
 

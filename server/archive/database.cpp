@@ -154,7 +154,6 @@ void Database::open_for_reading(const std::filesystem::path& file, bool is_full)
                 : ": scenes and solves can be read and deleted; all else is refused until there is room";
 }
 
-/// Requires: the lock.
 void Database::attempt(const Body& body) {
   try {
     body(*connection_);
@@ -163,7 +162,6 @@ void Database::attempt(const Body& body) {
   }
 }
 
-/// Requires: the lock.
 void Database::in_one(const Body& body) {
   attempt([&](SQLite::Database& connection) {
     SQLite::Transaction change(connection, SQLite::TransactionBehavior::IMMEDIATE);
@@ -173,18 +171,18 @@ void Database::in_one(const Body& body) {
 }
 
 void Database::read(const Body& body) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   attempt(body);
 }
 
-/// Brings the tables to the newest version if opening the database could not, for want of room. Requires: the lock.
+/// Brings the tables to the newest version if opening the database could not, for want of room.
 void Database::complete_migration() {
   if (is_migrated_) return;
   attempt([this](SQLite::Database& connection) { migrate(connection, version_found_); });
   is_migrated_ = true;
 }
 
-/// Does not let the file grow, so that the ballast finds its room again. Requires: the lock.
+/// Does not let the file grow, so that the ballast finds its room again.
 void Database::in_free_pages(const Body& body) {
   const struct WithoutBallast {
     explicit WithoutBallast(const Ballast& held) : ballast(held) { ballast.drop(); }
@@ -205,7 +203,6 @@ void Database::in_free_pages(const Body& body) {
   in_one(body);
 }
 
-/// Requires: the lock.
 void Database::write(const Body& body) {
   try {
     if (ballast_.take_up()) {
@@ -219,7 +216,7 @@ void Database::write(const Body& body) {
 }
 
 void Database::change(const Body& body, const std::string& step) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (keeps_log_) throw disk_full();
   write([&](SQLite::Database& connection) {
     body(connection);
@@ -229,7 +226,7 @@ void Database::change(const Body& body, const std::string& step) {
 }
 
 void Database::remove(const Body& body) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const struct WithoutKeys {
     explicit WithoutKeys(SQLite::Database& open) : connection(open) { connection.tryExec("PRAGMA foreign_keys = OFF"); }
     ~WithoutKeys() { connection.tryExec("PRAGMA foreign_keys = ON"); }
@@ -239,8 +236,9 @@ void Database::remove(const Body& body) {
 }
 
 void Database::restore_ballast() {
-  const std::unique_lock hold(lock_, std::try_to_lock);
-  if (hold) ballast_.take_up();
+  if (!lock_.try_lock()) return;
+  const Lock hold(lock_, std::adopt_lock);
+  ballast_.take_up();
 }
 
 }  // namespace alvor

@@ -2,12 +2,12 @@
 // The SQLite database of a data directory, how it is opened, and what is done when the disk is full.
 
 #include "server/archive/ballast.h"
+#include "server/base/mutex.h"
 #include "server/base/status_error.h"
 
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace SQLite {
@@ -55,22 +55,22 @@ class Database {
   void restore_ballast();
 
  private:
-  void open_somehow(const std::filesystem::path& file);
-  std::string open_for_writing(const std::filesystem::path& file, bool& is_full);
-  void open_for_reading(const std::filesystem::path& file, bool is_full);
-  void attempt(const Body& body);
-  void in_one(const Body& body);
-  void complete_migration();
-  void in_free_pages(const Body& body);
-  void write(const Body& body);
+  void open_somehow(const std::filesystem::path& file) ALVOR_REQUIRES(lock_);
+  std::string open_for_writing(const std::filesystem::path& file, bool& is_full) ALVOR_REQUIRES(lock_);
+  void open_for_reading(const std::filesystem::path& file, bool is_full) ALVOR_REQUIRES(lock_);
+  void attempt(const Body& body) ALVOR_REQUIRES(lock_);
+  void in_one(const Body& body) ALVOR_REQUIRES(lock_);
+  void complete_migration() ALVOR_REQUIRES(lock_);
+  void in_free_pages(const Body& body) ALVOR_REQUIRES(lock_);
+  void write(const Body& body) ALVOR_REQUIRES(lock_);
 
   const Ballast ballast_;
-  std::mutex lock_;
-  std::unique_ptr<SQLite::Database> connection_;
+  Mutex lock_;
+  std::unique_ptr<SQLite::Database> connection_ ALVOR_GUARDED_BY(lock_);
   std::string fault_;
-  int version_found_ = 0;     ///< of its tables, when it was opened
-  bool is_migrated_ = false;  ///< its tables are of the newest version
-  bool keeps_log_ = false;    ///< of an older server: there is no room to leave it
+  int version_found_ = 0;                             ///< of its tables, when it was opened
+  bool is_migrated_ ALVOR_GUARDED_BY(lock_) = false;  ///< its tables are of the newest version
+  bool keeps_log_ ALVOR_GUARDED_BY(lock_) = false;    ///< of an older server: there is no room to leave it
 };
 
 }  // namespace alvor

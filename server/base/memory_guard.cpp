@@ -1,5 +1,6 @@
 #include "server/base/memory_guard.h"
 
+#include "server/base/mutex.h"
 #include "server/base/status_error.h"
 #include "server/base/task_queue.h"
 
@@ -12,7 +13,6 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <sstream>
 
 namespace alvor {
@@ -94,26 +94,27 @@ struct MemoryGuard::Relief {
   static constexpr std::chrono::seconds pause{1};
 
   std::shared_ptr<void> add(std::function<void()> way) {
-    std::scoped_lock hold(lock);
+    Lock hold(lock);
     const std::uint64_t number = next++;
     ways.emplace(number, std::move(way));
     return {this, [this, number](void*) {
-              std::scoped_lock hold_again(lock);
+              Lock hold_again(lock);
               ways.erase(number);
             }};
   }
   void give_back() {
-    const std::unique_lock hold(lock, std::try_to_lock);  // not held if another thread is doing it
-    if (!hold || Clock::now() < last + pause) return;
+    if (!lock.try_lock()) return;  // not held if another thread is doing it
+    const Lock hold(lock, std::adopt_lock);
+    if (Clock::now() < last + pause) return;
     for (const auto& [number, way] : ways) way();
     malloc_trim(0);  // memory limits count what the allocator keeps
     last = Clock::now();
   }
 
-  std::mutex lock;
-  std::map<std::uint64_t, std::function<void()>> ways;
-  std::uint64_t next = 0;
-  Clock::time_point last;
+  Mutex lock;
+  std::map<std::uint64_t, std::function<void()>> ways ALVOR_GUARDED_BY(lock);
+  std::uint64_t next ALVOR_GUARDED_BY(lock) = 0;
+  Clock::time_point last ALVOR_GUARDED_BY(lock);
 };
 
 MemoryGuard::MemoryGuard(std::uint64_t limit, std::uint64_t (*used)())

@@ -6,7 +6,7 @@ TaskQueue::TaskQueue() : thread_([this] { run(); }) {}
 
 TaskQueue::~TaskQueue() {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     stopping_ = true;
   }
   changed_.notify_one();
@@ -15,14 +15,14 @@ TaskQueue::~TaskQueue() {
 
 void TaskQueue::post_at(Clock::time_point due, std::function<void()> task) {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     tasks_.emplace(due, std::move(task));
   }
   changed_.notify_one();
 }
 
 void TaskQueue::run() {
-  std::unique_lock hold(lock_);
+  Lock hold(lock_);
   while (auto task = take_due(hold)) {
     hold.unlock();
     task();
@@ -32,7 +32,7 @@ void TaskQueue::run() {
 }
 
 // Waits for the next task and returns it; returns an empty function when the queue is stopping and no task is due.
-std::function<void()> TaskQueue::take_due(std::unique_lock<std::mutex>& hold) {
+std::function<void()> TaskQueue::take_due(Lock& hold) {
   for (;;) {
     const auto first = tasks_.begin();
     if (first != tasks_.end() && first->first <= Clock::now()) return std::move(tasks_.extract(first).mapped());

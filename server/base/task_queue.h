@@ -1,11 +1,11 @@
 #pragma once
 // Runs tasks that must not run on gRPC's or the solver's threads.
 
+#include "server/base/mutex.h"
+
 #include <chrono>
-#include <condition_variable>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <thread>
 
 namespace alvor {
@@ -26,12 +26,12 @@ class TaskQueue {
 
  private:
   void run();
-  std::function<void()> take_due(std::unique_lock<std::mutex>& hold);
+  std::function<void()> take_due(Lock& hold) ALVOR_REQUIRES(lock_);
 
-  std::mutex lock_;
-  std::condition_variable changed_;
-  std::multimap<Clock::time_point, std::function<void()>> tasks_;
-  bool stopping_ = false;
+  Mutex lock_;
+  Condition changed_;
+  std::multimap<Clock::time_point, std::function<void()>> tasks_ ALVOR_GUARDED_BY(lock_);
+  bool stopping_ ALVOR_GUARDED_BY(lock_) = false;
   std::thread thread_;
 };
 

@@ -13,7 +13,7 @@ const grpc::Status stopping{grpc::UNAVAILABLE, "the server is stopping"};
 
 void CallStop::stop(const grpc::Status& why) {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     if (why_.ok()) why_ = why;
   }
   source_.request_stop();
@@ -24,7 +24,7 @@ void CallStop::refuse_stopped() const {
 }
 
 grpc::Status CallStop::reason() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return why_;
 }
 
@@ -36,7 +36,7 @@ WorkPool::WorkPool(const WorkLimits& limits) : limits_(limits) {
 WorkPool::~WorkPool() {
   stop();
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     is_ending_ = true;
   }
   changed_.notify_all();
@@ -44,7 +44,7 @@ WorkPool::~WorkPool() {
 
 void WorkPool::post(const std::string& caller, std::shared_ptr<CallStop> stop, std::function<void()> task) {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     Queue& queue = queues_[caller];
     if (queue.waiting.size() >= limits_.waiting)
       throw StatusError(grpc::RESOURCE_EXHAUSTED,
@@ -56,7 +56,7 @@ void WorkPool::post(const std::string& caller, std::shared_ptr<CallStop> stop, s
 }
 
 void WorkPool::stop() {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   is_stopped_ = true;
   for (const auto& [caller, queue] : queues_)
     for (const Task& task : queue.waiting) task.stop->stop(stopping);
@@ -64,10 +64,11 @@ void WorkPool::stop() {
 }
 
 void WorkPool::run() {
-  std::unique_lock hold(lock_);
+  Lock hold(lock_);
   for (;;) {
     auto next = queues_.end();
-    changed_.wait(hold, [&] { return (next = next_queue()) != queues_.end() || (is_ending_ && queues_.empty()); });
+    changed_.wait(
+        hold, [&]() ALVOR_REQUIRES(lock_) { return (next = next_queue()) != queues_.end() || (is_ending_ && queues_.empty()); });
     if (next == queues_.end()) return;
     Task task = std::move(next->second.waiting.front());
     next->second.waiting.pop_front();
@@ -98,7 +99,7 @@ WorkPool::Queues::iterator WorkPool::next_queue() {
 void WorkPool::watch_time() {
   const auto now = Clock::now();
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(limits_.time).count();
     for (const Task* task : running_)
       if (now >= task->begun + limits_.time)

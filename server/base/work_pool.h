@@ -1,17 +1,16 @@
 #pragma once
 // Threads for calls that take long or wait for the disk; such work must not run on gRPC's threads.
 
+#include "server/base/mutex.h"
 #include "server/base/task_queue.h"
 
 #include <grpcpp/support/status.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -32,8 +31,8 @@ class CallStop {
 
  private:
   std::stop_source source_;
-  mutable std::mutex lock_;
-  grpc::Status why_;
+  mutable Mutex lock_;
+  grpc::Status why_ ALVOR_GUARDED_BY(lock_);
 };
 
 /// Limits of a WorkPool.
@@ -73,16 +72,16 @@ class WorkPool {
   using Queues = std::map<std::string, Queue>;
 
   void run();
-  Queues::iterator next_queue();
+  Queues::iterator next_queue() ALVOR_REQUIRES(lock_);
   void watch_time();
 
   const WorkLimits limits_;
-  std::mutex lock_;
-  std::condition_variable changed_;
-  Queues queues_;     ///< by caller; only those with tasks
-  std::string last_;  ///< the caller whose task began last
-  std::vector<const Task*> running_;
-  bool is_stopped_ = false, is_ending_ = false;
+  Mutex lock_;
+  Condition changed_;
+  Queues queues_ ALVOR_GUARDED_BY(lock_);     ///< by caller; only those with tasks
+  std::string last_ ALVOR_GUARDED_BY(lock_);  ///< the caller whose task began last
+  std::vector<const Task*> running_ ALVOR_GUARDED_BY(lock_);
+  bool is_stopped_ ALVOR_GUARDED_BY(lock_) = false, is_ending_ ALVOR_GUARDED_BY(lock_) = false;
   std::vector<std::jthread> threads_;
   TaskQueue watch_;  ///< uses all members above
 };

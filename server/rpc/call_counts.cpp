@@ -42,26 +42,26 @@ class Factory final : public grpc::experimental::ServerInterceptorFactoryInterfa
 }  // namespace
 
 void CallCounts::note(const std::string& method, grpc::StatusCode code) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   ++counts_[{method, code}];
 }
 
 void CallCounts::begin(const std::string& peer) {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     if (++under_way_[peer] <= most_of_connection || !peer.starts_with("ip")) return;  // other peers are proxies for many
   }
   flooding_(peer);
 }
 
 void CallCounts::end(const std::string& peer) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const auto found = under_way_.find(peer);
   if (--found->second == 0) under_way_.erase(found);
 }
 
 CallCounts::Counts CallCounts::counts() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return counts_;
 }
 

@@ -1,12 +1,13 @@
 #pragma once
 // Counts calls by method and status code.
 
+#include "server/base/mutex.h"
+
 #include <grpcpp/support/server_interceptor.h>
 
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -31,9 +32,9 @@ class CallCounts {
 
  private:
   const std::function<void(const std::string&)> flooding_;
-  mutable std::mutex lock_;
-  Counts counts_;
-  std::unordered_map<std::string, int> under_way_;  ///< open calls by peer
+  mutable Mutex lock_;
+  Counts counts_ ALVOR_GUARDED_BY(lock_);
+  std::unordered_map<std::string, int> under_way_ ALVOR_GUARDED_BY(lock_);  ///< open calls by peer
 };
 
 /// Returns an interceptor that counts each call when its status is sent. A call that its client cancels before that is not

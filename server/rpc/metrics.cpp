@@ -90,7 +90,7 @@ void Metrics::collect_solves(std::vector<MetricFamily>& families) const {
       family("alvor_solve_unshot_fraction", "Unshot power of a running solve, of the emitted.", MetricType::Gauge);
   MetricFamily error = family("alvor_solve_estimated_error", "Estimated nRMSE of a running solve.", MetricType::Gauge);
   double worst_gap = 0;
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   std::map<std::string, Seen> now;
   for (const auto& solve : solves_.all()) {
     const v1::Solve facts = solve->describe();

@@ -1,11 +1,12 @@
 #pragma once
 // Metrics of a running server for Prometheus.
 
+#include "server/base/mutex.h"
+
 #include <prometheus/collectable.h>
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,10 @@ class Metrics : public prometheus::Collectable {
   const CallCounts& calls_;
   const KeepingCounts& keeping_;
   const MemoryGuard& memory_;
-  mutable std::mutex lock_;
-  mutable std::map<std::string, Seen> seen_;
-  mutable std::uint64_t shots_ = 0, rays_ = 0;  ///< totals since the server was started, with deleted solves
+  mutable Mutex lock_;
+  mutable std::map<std::string, Seen> seen_ ALVOR_GUARDED_BY(lock_);
+  mutable std::uint64_t shots_ ALVOR_GUARDED_BY(lock_) = 0, rays_ ALVOR_GUARDED_BY(lock_) =
+                                                                0;  ///< totals since the server was started, with deleted solves
 };
 
 /// Collects the metrics of the connections at one listener, which must outlive it. Thread-safe.

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 
 namespace alvor {
@@ -25,13 +24,13 @@ class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
   void note_message() { last_ = Clock::now(); }
   /// Stops: `tell` is not called from now on.
   void end() {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     tell_ = nullptr;
   }
 
  private:
   void look() {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     if (!tell_) return;
     if (Clock::now() < last_.load() + patience_) wait();
     else tell_();
@@ -39,8 +38,8 @@ class IdleWatch : public std::enable_shared_from_this<IdleWatch> {
 
   TaskQueue& tasks_;
   const Clock::duration patience_;
-  std::mutex lock_;
-  std::function<void()> tell_;
+  Mutex lock_;
+  std::function<void()> tell_ ALVOR_GUARDED_BY(lock_);
   std::atomic<Clock::time_point> last_ = Clock::now();
 };
 

@@ -51,15 +51,15 @@ SelfProbe::~SelfProbe() {
 }
 
 void SelfProbe::stop() {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   is_stopped_ = true;
   stopped_.notify_one();
 }
 
 void SelfProbe::run(FrontDoor& door, bool with_tls) {
   bool was_answered = true;
-  std::unique_lock hold(lock_);
-  while (!stopped_.wait_for(hold, between_probes, [this] { return is_stopped_; })) {
+  Lock hold(lock_);
+  while (!stopped_.wait_for(hold, between_probes, [this]() ALVOR_REQUIRES(lock_) { return is_stopped_; })) {
     hold.unlock();
     const bool is_now = is_answered(door, with_tls);
     hold.lock();

@@ -2,10 +2,9 @@
 // Checks every few seconds whether a new connection is served, by connecting as a client would.
 
 #include "server/access/front_door.h"
+#include "server/base/mutex.h"
 
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <thread>
 
 namespace alvor {
@@ -27,9 +26,9 @@ class SelfProbe {
   void run(FrontDoor& door, bool with_tls);
 
   const std::function<void(bool)> tell_;
-  std::mutex lock_;
-  std::condition_variable stopped_;
-  bool is_stopped_ = false;
+  Mutex lock_;
+  Condition stopped_;
+  bool is_stopped_ ALVOR_GUARDED_BY(lock_) = false;
   std::thread thread_;
 };
 

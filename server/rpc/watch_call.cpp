@@ -65,7 +65,7 @@ void WatchCall::start(const std::shared_ptr<StoredSolve>& solve, const v1::Watch
 }
 
 void WatchCall::set_watch(const std::shared_ptr<Watch>& watch) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (const grpc::Status why = stop_->reason(); !why.ok()) watch->stop(why);
   watch_ = watch;
 }
@@ -87,7 +87,7 @@ void WatchCall::OnCancel() {
   stop_->stop(gone);
   std::shared_ptr<Watch> watch;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     watch = watch_;
   }
   if (!watch) return;

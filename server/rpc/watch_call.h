@@ -1,13 +1,13 @@
 #pragma once
 // A WatchSolve call: sends the frames of a Watch over the network.
 
+#include "server/base/mutex.h"
 #include "server/base/work_pool.h"
 #include "server/watch/watches.h"
 
 #include <grpcpp/grpcpp.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace spdlog {
@@ -50,7 +50,7 @@ class WatchCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, publi
   const std::shared_ptr<CallStop> stop_ = std::make_shared<CallStop>();
   std::shared_ptr<StoredSolve> solve_;
   std::shared_ptr<SolutionLog> log_;
-  std::mutex lock_;
+  Mutex lock_;
   std::shared_ptr<Watch> watch_;  ///< set when started; changed under the lock
   std::uint64_t listener_ = 0;
   grpc::ByteBuffer bytes_;

@@ -68,7 +68,7 @@ BaseMesh build(const Scene& scene, const CallStop& stop) {
 }  // namespace
 
 std::shared_ptr<const SceneContent> SceneContents::add(const std::string& sha256, Scene scene, BaseMesh mesh) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   std::weak_ptr<const SceneContent>& known = known_[sha256];
   auto content = known.lock();
   if (!content) known = content = std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
@@ -76,25 +76,25 @@ std::shared_ptr<const SceneContent> SceneContents::add(const std::string& sha256
 }
 
 std::shared_ptr<const SceneContent> SceneContents::known(const std::string& sha256) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   std::erase_if(known_, [](const auto& entry) { return entry.second.expired(); });
   const auto found = known_.find(sha256);
   return found == known_.end() ? nullptr : found->second.lock();
 }
 
-std::shared_ptr<std::mutex> SceneContents::loading(const std::string& sha256) {
-  std::scoped_lock hold(lock_);
+std::shared_ptr<Mutex> SceneContents::loading(const std::string& sha256) {
+  Lock hold(lock_);
   std::erase_if(loading_, [](const auto& entry) { return entry.second.expired(); });
-  std::weak_ptr<std::mutex>& entry = loading_[sha256];
+  std::weak_ptr<Mutex>& entry = loading_[sha256];
   auto turn = entry.lock();
-  if (!turn) entry = turn = std::make_shared<std::mutex>();
+  if (!turn) entry = turn = std::make_shared<Mutex>();
   return turn;
 }
 
 std::shared_ptr<const SceneContent> SceneContents::find(const std::string& sha256, const CallStop& stop) {
   if (auto content = known(sha256)) return content;
   const auto turn = loading(sha256);
-  std::scoped_lock alone(*turn);
+  Lock alone(*turn);
   if (auto content = known(sha256)) return content;
   stop.refuse_stopped();
   Scene scene = archive_->content(sha256);
@@ -123,7 +123,7 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
   v1::Scene facts = facts_of(scene, mesh, display_name);
   if (!clamped.empty()) facts.add_warnings(clamped);
 
-  std::scoped_lock one(adding_);
+  Lock one(adding_);
   if (auto known = repeated(caller, facts)) return known;
   check_quota(caller.tenant, facts.content_bytes());
   if (archive_) archive_->add({next_number_, caller.tenant, caller.request_id, facts}, scene);
@@ -135,7 +135,7 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
 }
 
 std::shared_ptr<const StoredScene> SceneStore::repeated(const Caller& caller, const v1::Scene& facts) const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const std::string name = requests_.find(caller);
   if (name.empty()) return nullptr;
   auto known = entry(name, caller.tenant).scene;
@@ -145,7 +145,7 @@ std::shared_ptr<const StoredScene> SceneStore::repeated(const Caller& caller, co
 }
 
 void SceneStore::check_quota(const std::string& tenant, std::uint64_t bytes) const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   std::uint64_t count = 1;
   for (const auto& [name, use] : scenes_) {
     if (use.scene->creator.tenant != tenant) continue;
@@ -160,7 +160,7 @@ void SceneStore::check_quota(const std::string& tenant, std::uint64_t bytes) con
 }
 
 void SceneStore::insert(std::shared_ptr<const StoredScene> scene) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   requests_.add(scene->creator, scene->facts.name());
   const std::string name = scene->facts.name();
   scenes_[name] = {std::move(scene), std::make_shared<const int>(0)};
@@ -173,19 +173,19 @@ const SceneUse& SceneStore::entry(const std::string& name, const std::string& te
 }
 
 std::shared_ptr<const StoredScene> SceneStore::find(const std::string& name, const std::string& tenant) const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return entry(name, tenant).scene;
 }
 
 SceneUse SceneStore::use(const std::string& name, const std::string& tenant) const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return entry(name, tenant);
 }
 
 Page<const StoredScene> SceneStore::list(const PageRequest& request, const std::string& tenant) const {
   std::vector<std::shared_ptr<const StoredScene>> all;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     for (const auto& [name, use] : scenes_)
       if (use.scene->creator.tenant == tenant) all.push_back(use.scene);
   }
@@ -194,7 +194,7 @@ Page<const StoredScene> SceneStore::list(const PageRequest& request, const std::
 
 void SceneStore::remove(const std::string& name, const std::string& tenant) {
   SceneUse removed;  // destroyed after the lock is released
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   // Other uses are only handed out under this lock, so a count of one cannot grow meanwhile.
   const SceneUse& use = entry(name, tenant);
   if (use.token.use_count() > 1) throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves: delete them first");
@@ -204,7 +204,7 @@ void SceneStore::remove(const std::string& name, const std::string& tenant) {
 }
 
 std::size_t SceneStore::count() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return scenes_.size();
 }
 

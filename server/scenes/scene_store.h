@@ -5,6 +5,7 @@
 #include "meshing/base_mesh.h"
 #include "server/archive/archive.h"
 #include "server/base/memory_guard.h"
+#include "server/base/mutex.h"
 #include "server/base/paging.h"
 #include "server/base/request_ids.h"
 #include "server/base/work_pool.h"
@@ -12,7 +13,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace alvor {
@@ -34,12 +34,12 @@ class SceneContents {
  private:
   std::shared_ptr<const SceneContent> known(const std::string& sha256);
   /// Returns the lock that is held while that content is loaded.
-  std::shared_ptr<std::mutex> loading(const std::string& sha256);
+  std::shared_ptr<Mutex> loading(const std::string& sha256);
 
   Archive* const archive_;
-  std::mutex lock_;
-  std::map<std::string, std::weak_ptr<std::mutex>> loading_;
-  std::map<std::string, std::weak_ptr<const SceneContent>> known_;
+  Mutex lock_;
+  std::map<std::string, std::weak_ptr<Mutex>> loading_ ALVOR_GUARDED_BY(lock_);
+  std::map<std::string, std::weak_ptr<const SceneContent>> known_ ALVOR_GUARDED_BY(lock_);
 };
 
 /// Immutable once stored; safe to read from any thread.
@@ -93,7 +93,7 @@ class SceneStore {
   std::size_t count() const;
 
  private:
-  const SceneUse& entry(const std::string& name, const std::string& tenant) const;
+  const SceneUse& entry(const std::string& name, const std::string& tenant) const ALVOR_REQUIRES(lock_);
   std::shared_ptr<const StoredScene> repeated(const Caller& caller, const v1::Scene& facts) const;
   void check_quota(const std::string& tenant, std::uint64_t bytes) const;
   void insert(std::shared_ptr<const StoredScene> scene);
@@ -102,11 +102,11 @@ class SceneStore {
   const Quota quota_;
   const MemoryGuard memory_;
   mutable SceneContents contents_;
-  std::mutex adding_;  ///< held while a scene is written: one at a time
-  mutable std::mutex lock_;
-  std::map<std::string, SceneUse> scenes_;
-  RequestIds requests_;
-  std::uint64_t next_number_ = 1;
+  Mutex adding_;  ///< held while a scene is written: one at a time
+  mutable Mutex lock_;
+  std::map<std::string, SceneUse> scenes_ ALVOR_GUARDED_BY(lock_);
+  RequestIds requests_ ALVOR_GUARDED_BY(lock_);
+  std::uint64_t next_number_ ALVOR_GUARDED_BY(adding_) = 1;
 };
 
 }  // namespace alvor

@@ -5,7 +5,7 @@
 namespace alvor {
 
 void Uploads::open(const std::string& tenant) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (open_[tenant] >= most_open)
     throw StatusError(grpc::RESOURCE_EXHAUSTED,
                       "uploads: " + std::to_string(most_open) + " are under way, as many as are allowed");
@@ -13,13 +13,13 @@ void Uploads::open(const std::string& tenant) {
 }
 
 void Uploads::close(const std::string& tenant) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (--open_[tenant] == 0) open_.erase(tenant);
 }
 
 void Uploads::put(const Caller& caller, std::unique_ptr<SceneUpload> upload) {
   if (caller.request_id.empty()) return;
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   drop_expired();
   waiting_[{caller.tenant, caller.request_id}] = {std::move(upload), Clock::now()};
   keep_tenant_within_limits(caller.tenant);
@@ -78,12 +78,12 @@ std::map<Uploads::Key, Uploads::Waiting>::iterator Uploads::find(const Caller& c
 }
 
 std::uint64_t Uploads::chunks(const Caller& caller) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return find(caller)->second.upload->chunks();
 }
 
 std::unique_ptr<SceneUpload> Uploads::take(const Caller& caller, std::uint64_t chunks) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const auto found = find(caller);
   if (found->second.upload->chunks() != chunks)
     throw not_found("upload '" + caller.request_id + "' after " + std::to_string(chunks) + " chunks");

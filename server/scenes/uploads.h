@@ -1,13 +1,13 @@
 #pragma once
 // Keeps uploads whose connection was lost, so that they can be resumed.
 
+#include "server/base/mutex.h"
 #include "server/base/request_ids.h"
 #include "server/scenes/scene_upload.h"
 
 #include <chrono>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 namespace alvor {
@@ -51,17 +51,17 @@ class Uploads {
     std::size_t count = 0;
     std::uint64_t bytes = 0;
   };
-  void drop_expired();
-  std::map<std::string, Sum> sums() const;
-  void drop_oldest(const std::string& tenant);
-  void keep_tenant_within_limits(const std::string& tenant);
-  void keep_all_within_limits();
-  std::map<Key, Waiting>::iterator find(const Caller& caller);
+  void drop_expired() ALVOR_REQUIRES(lock_);
+  std::map<std::string, Sum> sums() const ALVOR_REQUIRES(lock_);
+  void drop_oldest(const std::string& tenant) ALVOR_REQUIRES(lock_);
+  void keep_tenant_within_limits(const std::string& tenant) ALVOR_REQUIRES(lock_);
+  void keep_all_within_limits() ALVOR_REQUIRES(lock_);
+  std::map<Key, Waiting>::iterator find(const Caller& caller) ALVOR_REQUIRES(lock_);
 
   const WaitingLimits limits_;
-  std::mutex lock_;
-  std::map<Key, Waiting> waiting_;
-  std::map<std::string, std::size_t> open_;  ///< by tenant
+  Mutex lock_;
+  std::map<Key, Waiting> waiting_ ALVOR_GUARDED_BY(lock_);
+  std::map<std::string, std::size_t> open_ ALVOR_GUARDED_BY(lock_);  ///< by tenant
 };
 
 }  // namespace alvor

@@ -63,7 +63,7 @@ SolveStore::SolveStore(SolveStoreOptions options, const SceneStore& scenes) : op
 }
 
 void SolveStore::restore(Archive& archive, const SceneStore& scenes) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (const std::string migration = archive.migration(); !migration.empty()) options_.logger->info(migration);
   for (Archive::SolveRow& row : archive.solves()) {
     const std::uint64_t number = row.number;
@@ -79,7 +79,7 @@ void SolveStore::restore(Archive& archive, const SceneStore& scenes) {
 }
 
 /// A solve that must not or cannot go on any more is ended: the limits, or the machine, were larger when it was made, or an older
-/// alvord kept what this one cannot read. Requires: the lock.
+/// alvord kept what this one cannot read.
 void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
   const std::string name = row.facts.name();
   SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), row.tenant);
@@ -115,7 +115,7 @@ std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveS
   const SolveOptions how = options_of(spec, options_.limits);
   check_request_id(caller.request_id);
   options_.memory.make_room(least_memory(*scene.scene));  // takes the lock
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
   if (auto known = repeated(caller, scene.scene->facts.name(), spec)) return known;
   check_capacity(caller.tenant, how);
@@ -167,7 +167,7 @@ void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& n
            std::to_string(options_.quota.leaves) + " are allowed");
 }
 
-/// As many as may run do, by priority and age; beside others only where there is memory. Requires: the lock.
+/// As many as may run do, by priority and age; beside others only where there is memory.
 void SolveStore::start_waiting() {
   join_finished();
   while (!stopping_ && running_ < options_.max_running) {
@@ -200,7 +200,7 @@ void SolveStore::watch_memory() {
 /// room. Before that goes what nobody needs, and what else can.
 void SolveStore::relieve_memory() {
   if (options_.spare_solves()) return;
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const std::string tenant = hungriest_tenant();
   Entry* last = nullptr;
   for (auto& [name, entry] : solves_) {
@@ -243,7 +243,7 @@ void SolveStore::start(Entry& entry) {
 
 void SolveStore::run(Entry& entry) {
   const auto solve = [&] {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     return entry.solve;
   }();
   be_as_nice_as(solve->priority);
@@ -256,7 +256,7 @@ void SolveStore::run(Entry& entry) {
   const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),
                            abandon_.get_token()};
   const auto is_paused = [&] {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     return entry.shall_pause;
   };
   solve->run(solver, control, is_paused,
@@ -264,7 +264,7 @@ void SolveStore::run(Entry& entry) {
   solve->drop_log();
   trim_heap_soon();
   report_end(*options_.logger, solve->describe());
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   settle(entry);
   entry.is_running = false;
   --running_;
@@ -285,9 +285,9 @@ void SolveStore::settle(const Entry& entry) {
   }
 }
 
-/// Requires: the lock. All that a finished thread could still be at is to give the lock back, so this does not wait.
+/// All that a finished thread could still be at is to give the lock back, so this does not wait.
 void SolveStore::join_finished() {
-  std::erase_if(finished_, [this](std::thread::id id) {
+  std::erase_if(finished_, [this](std::thread::id id) ALVOR_REQUIRES(lock_) {
     if (id == std::this_thread::get_id()) return false;
     threads_.extract(id).mapped().join();
     return true;
@@ -301,7 +301,7 @@ SolveStore::Entry& SolveStore::entry(const std::string& name, const std::string&
 }
 
 std::shared_ptr<StoredSolve> SolveStore::find(const std::string& name, const std::string& tenant) const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return entry(name, tenant).solve;
 }
 
@@ -309,7 +309,7 @@ Page<const StoredSolve> SolveStore::list(const std::string& scene_name, const Pa
                                          const std::string& tenant) const {
   std::vector<std::shared_ptr<const StoredSolve>> all;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     for (const auto& [name, entry] : solves_)
       if (entry.solve->creator.tenant == tenant && (scene_name == "scenes/-" || name.starts_with(scene_name + "/solves/")))
         all.push_back(entry.solve);
@@ -319,13 +319,13 @@ Page<const StoredSolve> SolveStore::list(const std::string& scene_name, const Pa
 
 std::vector<std::shared_ptr<StoredSolve>> SolveStore::all() const {
   std::vector<std::shared_ptr<StoredSolve>> all;
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   for (const auto& [name, entry] : solves_) all.push_back(entry.solve);
   return all;
 }
 
 std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const std::string& tenant) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   Entry& cancelled = entry(name, tenant);
   cancelled.shall_cancel = true;  // also if it is just being parked
   if (cancelled.is_running) {
@@ -338,7 +338,7 @@ std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const s
 }
 
 std::shared_ptr<StoredSolve> SolveStore::pause(const std::string& name, const std::string& tenant) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   Entry& paused = entry(name, tenant);
   refuse_ended(*paused.solve);
   paused.shall_pause = true;
@@ -352,7 +352,7 @@ std::shared_ptr<StoredSolve> SolveStore::pause(const std::string& name, const st
 }
 
 std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const std::string& tenant) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   Entry& resumed = entry(name, tenant);
   refuse_ended(*resumed.solve);
   resumed.shall_pause = false;
@@ -364,9 +364,9 @@ std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const s
 
 void SolveStore::remove(const std::string& name, const std::string& tenant) {
   decltype(solves_)::node_type removed;  // freed after the lock is
-  std::unique_lock hold(lock_);
+  Lock hold(lock_);
   if (!entry(name, tenant).solve->ended()) throw StatusError(grpc::FAILED_PRECONDITION, name + " has not ended: cancel it first");
-  changed_.wait(hold, [&] { return !entry(name, tenant).is_running; });  // it is just ending
+  changed_.wait(hold, [&]() ALVOR_REQUIRES(lock_) { return !entry(name, tenant).is_running; });  // it is just ending
   const StoredSolve& old = *entry(name, tenant).solve;
   if (options_.keeping.archive) options_.keeping.archive->remove_solve(old.number);
   requests_.remove(old.creator);
@@ -375,13 +375,13 @@ void SolveStore::remove(const std::string& name, const std::string& tenant) {
 }
 
 void SolveStore::shut_down() {
-  std::unique_lock hold(lock_);
+  Lock hold(lock_);
   stopping_ = true;
-  const auto ask = [&](std::stop_source Entry::*what) {
+  const auto ask = [&](std::stop_source Entry::*what) ALVOR_REQUIRES(lock_) {
     for (auto& [name, entry] : solves_)
       if (entry.is_running) (entry.*what).request_stop();
   };
-  const auto nothing_runs = [this] { return running_ == 0; };
+  const auto nothing_runs = [this]() ALVOR_REQUIRES(lock_) { return running_ == 0; };
   if (options_.keeping.archive) {
     ask(&Entry::park);
     changed_.wait_for(hold, options_.patience, nothing_runs);

@@ -2,14 +2,13 @@
 // The solves that a server holds, and the threads they run on.
 
 #include "server/base/memory_guard.h"
+#include "server/base/mutex.h"
 #include "server/base/task_queue.h"
 #include "server/solves/solve_spec.h"
 #include "server/solves/stored_solve.h"
 
-#include <condition_variable>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -75,38 +74,39 @@ class SolveStore {
     bool is_running = false;
     bool shall_pause = false, shall_cancel = false;
   };
-  Entry& entry(const std::string& name, const std::string& tenant);
-  const Entry& entry(const std::string& name, const std::string& tenant) const {
+  Entry& entry(const std::string& name, const std::string& tenant) ALVOR_REQUIRES(lock_);
+  const Entry& entry(const std::string& name, const std::string& tenant) const ALVOR_REQUIRES(lock_) {
     return const_cast<SolveStore&>(*this).entry(name, tenant);
   }
   void restore(Archive& archive, const SceneStore& scenes);
-  void restore(Archive::SolveRow row, const SceneStore& scenes);
-  std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec);
-  void check_capacity(const std::string& tenant, const SolveOptions& next);
-  void start_waiting();
+  void restore(Archive::SolveRow row, const SceneStore& scenes) ALVOR_REQUIRES(lock_);
+  std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec)
+      ALVOR_REQUIRES(lock_);
+  void check_capacity(const std::string& tenant, const SolveOptions& next) ALVOR_REQUIRES(lock_);
+  void start_waiting() ALVOR_REQUIRES(lock_);
   void watch_memory();
   void relieve_memory();
-  std::string hungriest_tenant() const;
+  std::string hungriest_tenant() const ALVOR_REQUIRES(lock_);
   void drop_logs();
-  Entry* next_waiting();
-  void start(Entry& entry);
+  Entry* next_waiting() ALVOR_REQUIRES(lock_);
+  void start(Entry& entry) ALVOR_REQUIRES(lock_);
   void run(Entry& entry);
-  void settle(const Entry& entry);
-  void join_finished();
+  void settle(const Entry& entry) ALVOR_REQUIRES(lock_);
+  void join_finished() ALVOR_REQUIRES(lock_);
 
   const SolveStoreOptions options_;
-  mutable std::mutex lock_;
-  std::condition_variable changed_;
-  std::map<std::string, Entry> solves_;  ///< entries of running solves are not removed
-  RequestIds requests_;
-  std::uint64_t next_number_ = 1;
-  int running_ = 0;
-  bool stopping_ = false;
+  mutable Mutex lock_;
+  Condition changed_;
+  std::map<std::string, Entry> solves_ ALVOR_GUARDED_BY(lock_);  ///< entries of running solves are not removed
+  RequestIds requests_ ALVOR_GUARDED_BY(lock_);
+  std::uint64_t next_number_ ALVOR_GUARDED_BY(lock_) = 1;
+  int running_ ALVOR_GUARDED_BY(lock_) = 0;
+  bool stopping_ ALVOR_GUARDED_BY(lock_) = false;
   std::stop_source abandon_;
-  std::map<std::thread::id, std::thread> threads_;
-  std::vector<std::thread::id> finished_;       ///< have nothing left to do but to end
-  std::shared_ptr<void> relief_;                ///< registered with the memory guard
-  std::unique_ptr<TaskQueue> watching_memory_;  ///< uses all of the above; null without a limit
+  std::map<std::thread::id, std::thread> threads_ ALVOR_GUARDED_BY(lock_);
+  std::vector<std::thread::id> finished_ ALVOR_GUARDED_BY(lock_);  ///< have nothing left to do but to end
+  std::shared_ptr<void> relief_;                                   ///< registered with the memory guard
+  std::unique_ptr<TaskQueue> watching_memory_;                     ///< uses all of the above; null without a limit
 };
 
 }  // namespace alvor

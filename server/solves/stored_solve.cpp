@@ -100,7 +100,7 @@ void StoredSolve::keep() {
 }
 
 Archive::SolveRow StoredSolve::row() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   Archive::SolveRow row{number, creator.tenant, creator.request_id, facts_, lineage_};
   if (facts_.state() != v1::Solve::RUNNING) return row;
   if (wish_ == v1::Solve::CANCELLED) cancel(row.facts);
@@ -111,12 +111,12 @@ Archive::SolveRow StoredSolve::row() const {
 /// The guard may ask other solves to drop their logs, and this one: it must be called without log_lock_.
 void StoredSolve::admit_log() const {
   {
-    std::scoped_lock hold(log_lock_);
+    Lock hold(log_lock_);
     if (log_) return;
   }
   std::uint64_t leaves = 0;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     leaves = facts_.last_step().leaves();
   }
   keeping_.memory.admit("solution", bytes_a_logged_leaf * leaves);
@@ -124,7 +124,7 @@ void StoredSolve::admit_log() const {
 
 std::shared_ptr<SolutionLog> StoredSolve::log() const {
   admit_log();
-  std::scoped_lock hold(log_lock_);
+  Lock hold(log_lock_);
   if (log_) return log_;
   const auto bytes = keeping_.archive->log(number);
   try {
@@ -140,16 +140,17 @@ std::shared_ptr<SolutionLog> StoredSolve::log() const {
 }
 
 void StoredSolve::drop_log() {
-  std::shared_ptr<SolutionLog> dropped;                      // freed after the lock is
-  const std::unique_lock hold(log_lock_, std::try_to_lock);  // else somebody is loading it
-  if (!hold || !is_log_kept_ || !ended() || log_.use_count() != 1) return;
+  std::shared_ptr<SolutionLog> dropped;  // freed after the lock is
+  if (!log_lock_.try_lock()) return;     // somebody is loading it
+  const Lock hold(log_lock_, std::adopt_lock);
+  if (!is_log_kept_ || !ended() || log_.use_count() != 1) return;
   dropped = std::move(log_);
   trim_heap_soon();
 }
 
 std::vector<std::byte> StoredSolve::take_checkpoint() {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     if (!state_in_memory_.empty()) return std::exchange(state_in_memory_, {});
     if (!facts_.has_checkpoint_time()) return {};
   }
@@ -181,7 +182,7 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
     else set_waiting_state(state);
   } catch (const std::exception& fault) {
     complain(fault.what());
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     facts_.set_state(state);  // there is no thread any more; after a restart it is QUEUED in any case
   }
   if (is_final(state)) close_log();
@@ -189,7 +190,7 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
 
 /// One that is not loaded has no listeners, and is closed when it is.
 void StoredSolve::close_log() {
-  std::scoped_lock hold(log_lock_);
+  Lock hold(log_lock_);
   if (log_) log_->close();
 }
 
@@ -250,7 +251,7 @@ void StoredSolve::save(const SolveControl::Write& write) {
 
 void StoredSolve::save_in_memory(const SolveControl::Write& write) {
   std::vector<std::byte> bytes = plain_bytes(write);
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   state_in_memory_ = std::move(bytes);
 }
 
@@ -258,7 +259,7 @@ void StoredSolve::save_in_memory(const SolveControl::Write& write) {
 void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change) {
   const auto solution = log();
   const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution->save(out); }), std::move(state)};
-  std::scoped_lock keep(keeping_lock_);
+  Lock keep(keeping_lock_);
   Archive::SolveRow next = row();
   if (change) change(next.facts);
   next.lineage[keeping_.epoch] = solution->head();
@@ -268,7 +269,7 @@ void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::fun
   ++keeping_.counts->checkpoints;
   for (const auto* pieces : {&checkpoint.log, &checkpoint.state})
     for (const std::string& piece : *pieces) keeping_.counts->bytes += piece.size();
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   lineage_ = std::move(next.lineage);
   *facts_.mutable_last_step() = next.facts.last_step();
   *facts_.mutable_checkpoint_time() = next.facts.checkpoint_time();
@@ -276,7 +277,7 @@ void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::fun
 }
 
 void StoredSolve::show(const Plan& plan) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   *facts_.mutable_plan() = alvor::encode(plan.features());
 }
 
@@ -292,13 +293,13 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
     *facts.mutable_balance() = encode(outcome.balance);
   };
   const auto show_end = [&] {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     say_end(facts_);
   };
   if (!keeping_.archive) return show_end();
   try {
     keep_checkpoint({}, say_end);
-    std::scoped_lock hold(log_lock_);
+    Lock hold(log_lock_);
     is_log_kept_ = true;
   } catch (const StatusError& fault) {
     show_end();
@@ -311,21 +312,21 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
 }
 
 void StoredSolve::note_running() {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   facts_.set_state(v1::Solve::RUNNING);
   wish_ = v1::Solve::RUNNING;
 }
 
 void StoredSolve::keep_wish(v1::Solve::State state) {
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     if (std::exchange(wish_, state) == state || facts_.state() != v1::Solve::RUNNING) return;
   }
   keep_row();
 }
 
 void StoredSolve::keep_row() {
-  std::scoped_lock keep(keeping_lock_);
+  Lock keep(keeping_lock_);
   if (keeping_.archive) keeping_.archive->update(row());
 }
 
@@ -346,7 +347,7 @@ void StoredSolve::end_waiting(v1::Solve::State state, const std::string& reason,
     change_waiting(end);
   } catch (const StatusError& fault) {
     complain(fault.what());
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     end(facts_);
   }
   settle_end();
@@ -354,11 +355,11 @@ void StoredSolve::end_waiting(v1::Solve::State state, const std::string& reason,
 
 /// Throws StatusError, and changes nothing, where the change cannot be kept.
 void StoredSolve::change_waiting(const std::function<void(v1::Solve&)>& change) {
-  std::scoped_lock keep(keeping_lock_);
+  Lock keep(keeping_lock_);
   Archive::SolveRow next = row();
   change(next.facts);
   if (keeping_.archive) keeping_.archive->update(next);
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   facts_ = next.facts;
 }
 
@@ -366,12 +367,12 @@ void StoredSolve::change_waiting(const std::function<void(v1::Solve&)>& change) 
 void StoredSolve::settle_end() {
   std::optional<std::uint64_t> kept_head;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     state_in_memory_.clear();
     if (const auto line = lineage_.find(keeping_.epoch); line != lineage_.end()) kept_head = line->second;
   }
   close_log();
-  std::scoped_lock hold(log_lock_);
+  Lock hold(log_lock_);
   is_log_kept_ = !log_ || kept_head == log_->head();
 }
 
@@ -393,7 +394,7 @@ std::string StoredSolve::fault_of_state() const {
 }
 
 v1::Solve::State StoredSolve::state() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return facts_.state();
 }
 
@@ -402,11 +403,11 @@ bool StoredSolve::ended() const { return is_final(state()); }
 v1::Solve StoredSolve::describe() const {
   v1::Solve facts;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     facts = facts_;
   }
   // Asked after the state: a final state is never told with an older step than the last.
-  std::scoped_lock hold(log_lock_);
+  Lock hold(log_lock_);
   if (!log_) return facts;
   if (const Step step = log_->last_step(); step.revision > 0) *facts.mutable_last_step() = alvor::encode(step);
   return facts;
@@ -414,7 +415,7 @@ v1::Solve StoredSolve::describe() const {
 
 bool StoredSolve::knows(const std::string& epoch, std::uint64_t revision) const {
   if (epoch == keeping_.epoch) return revision <= log()->head();
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const auto line = lineage_.find(epoch);
   return line != lineage_.end() && revision <= line->second;
 }

@@ -5,13 +5,13 @@
 #include "radiosity/solve/solver.h"
 #include "server/archive/archive.h"
 #include "server/base/memory_guard.h"
+#include "server/base/mutex.h"
 #include "server/scenes/scene_store.h"
 
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <string>
 
@@ -113,15 +113,15 @@ class StoredSolve {
 
   const std::shared_ptr<const StoredScene> scene_;
   const Keeping keeping_;
-  mutable std::mutex log_lock_;
-  mutable std::shared_ptr<SolutionLog> log_;  ///< null: kept, and not loaded
-  bool is_log_kept_ = false;                  ///< all of it
-  std::mutex keeping_lock_;                   ///< what is kept is what was true last; before lock_
-  mutable std::mutex lock_;
-  v1::Solve facts_;  ///< its last step is that of the checkpoint
-  v1::Solve::State wish_ = v1::Solve::RUNNING;
-  std::map<std::string, std::uint64_t> lineage_;
-  std::vector<std::byte> state_in_memory_;  ///< of a paused solve where it is not in the archive
+  mutable Mutex log_lock_;
+  mutable std::shared_ptr<SolutionLog> log_ ALVOR_GUARDED_BY(log_lock_);  ///< null: kept, and not loaded
+  bool is_log_kept_ ALVOR_GUARDED_BY(log_lock_) = false;                  ///< all of it
+  Mutex keeping_lock_;                                                    ///< what is kept is what was true last; before lock_
+  mutable Mutex lock_;
+  v1::Solve facts_ ALVOR_GUARDED_BY(lock_);  ///< its last step is that of the checkpoint
+  v1::Solve::State wish_ ALVOR_GUARDED_BY(lock_) = v1::Solve::RUNNING;
+  std::map<std::string, std::uint64_t> lineage_ ALVOR_GUARDED_BY(lock_);
+  std::vector<std::byte> state_in_memory_ ALVOR_GUARDED_BY(lock_);  ///< of a paused solve where it is not in the archive
 };
 
 }  // namespace alvor

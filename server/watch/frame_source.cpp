@@ -17,7 +17,7 @@ bool FrameSource::has_news(const Cursor& cursor) const {
 std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Detail detail) {
   // Ask this before reading the log: if the solve has ended, the log then holds all there will ever be.
   const bool ended = solve_->ended();
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const std::uint64_t head = log_->head();
   for (const auto& weak : recent_) {
     const auto frame = weak.lock();

@@ -1,13 +1,13 @@
 #pragma once
 // Encodes the frames of one solve, each once for all its watchers.
 
+#include "server/base/mutex.h"
 #include "server/solves/stored_solve.h"
 
 #include <grpcpp/support/slice.h>
 
 #include <array>
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace alvor {
@@ -47,10 +47,10 @@ class FrameSource {
   const std::shared_ptr<SolutionLog> log_;
   const std::string epoch_;
   const std::size_t max_leaves_;
-  std::mutex lock_;
-  /// The newest frames. Watchers at the head share one frame; watchers that are behind need a few more.
-  std::array<std::weak_ptr<const Frame>, 4> recent_;
-  std::size_t oldest_ = 0;
+  Mutex lock_;
+  std::array<std::weak_ptr<const Frame>, 4> recent_
+      ALVOR_GUARDED_BY(lock_);  ///< watchers in step need one, pages and stragglers a few
+  std::size_t oldest_ ALVOR_GUARDED_BY(lock_) = 0;
 };
 
 }  // namespace alvor

@@ -16,7 +16,7 @@ Watch::Watch(std::shared_ptr<FrameSource> frames, const WatchPlan& plan, FrameSi
 
 std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) {
   turn_asked_ = false;  // reset first: events from here on ask for another turn
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (timer_ && now >= *timer_) timer_.reset();
   if (finished_) return std::nullopt;
   if (under_way_) return see_to_write(now);
@@ -88,7 +88,7 @@ void Watch::finish(const grpc::Status& status) {
 }
 
 void Watch::written(bool ok) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   under_way_.reset();
   if (ok) return;
   end_ = grpc::Status(grpc::CANCELLED, "the watcher has gone");
@@ -96,7 +96,7 @@ void Watch::written(bool ok) {
 }
 
 void Watch::acknowledge(std::uint64_t frame_count, std::uint64_t revision) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const auto refuse = [](const char* field, std::uint64_t got, std::uint64_t newest) {
     throw invalid_argument(std::string(field) + ": " + std::to_string(got) + " was not sent, the newest is " +
                            std::to_string(newest));
@@ -108,29 +108,29 @@ void Watch::acknowledge(std::uint64_t frame_count, std::uint64_t revision) {
 }
 
 void Watch::stop(const grpc::Status& reason) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (!end_) end_ = reason;
 }
 
 void Watch::close(const v1::Closing& closing) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (end_) return;
   closing_ = closing;
   end_ = grpc::Status(grpc::UNAVAILABLE, closing.reason());
 }
 
 std::uint64_t Watch::frames_sent() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return sent_;
 }
 
 std::uint64_t Watch::bytes_sent() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   return bytes_;
 }
 
 std::uint64_t Watch::revisions_behind() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const std::uint64_t head = frames_->head();
   return head - std::min(head, acknowledged_revision_);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // One watcher of a solve: decides when it gets its next frame. Does not use the network.
 
+#include "server/base/mutex.h"
 #include "server/watch/frame_source.h"
 
 #include <grpcpp/support/status.h>
@@ -9,7 +10,6 @@
 #include <chrono>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -72,31 +72,33 @@ class Watch {
   std::uint64_t revisions_behind() const;
 
  private:
-  std::optional<Clock::time_point> wait_until(Clock::time_point due);
-  std::optional<Clock::time_point> see_to_write(Clock::time_point now);
-  bool is_window_open() const { return sent_ - acknowledged_ < window; }
-  Clock::time_point next_due() const;
-  void send(Clock::time_point now);
-  void write(std::shared_ptr<const Frame> frame, Clock::time_point now);
-  void finish(const grpc::Status& status);
+  std::optional<Clock::time_point> wait_until(Clock::time_point due) ALVOR_REQUIRES(lock_);
+  std::optional<Clock::time_point> see_to_write(Clock::time_point now) ALVOR_REQUIRES(lock_);
+  bool is_window_open() const ALVOR_REQUIRES(lock_) { return sent_ - acknowledged_ < window; }
+  Clock::time_point next_due() const ALVOR_REQUIRES(lock_);
+  void send(Clock::time_point now) ALVOR_REQUIRES(lock_);
+  void write(std::shared_ptr<const Frame> frame, Clock::time_point now) ALVOR_REQUIRES(lock_);
+  void finish(const grpc::Status& status) ALVOR_REQUIRES(lock_);
 
   const std::shared_ptr<FrameSource> frames_;
   const WatchPlan plan_;
   FrameSink& sink_;
   std::atomic<bool> turn_asked_ = false;
 
-  mutable std::mutex lock_;
-  Cursor cursor_;
-  std::uint64_t sent_ = 0, acknowledged_ = 0, bytes_ = 0;
-  std::uint64_t acknowledged_revision_;
-  std::uint64_t sent_revision_;             ///< to_revision of the newest frame
-  std::shared_ptr<const Frame> under_way_;  ///< the frame being written, from write() to written()
-  std::optional<grpc::Status> end_;         ///< the status to finish with once no frame is being written
-  bool finished_ = false;
-  std::optional<v1::Closing> closing_;  ///< to be written before the end
-  Clock::time_point last_write_ = Clock::time_point::min(), next_frame_ = Clock::time_point::min();
-  std::optional<Clock::time_point> write_check_;  ///< when the newest turn was asked for that checks on the write
-  std::optional<Clock::time_point> timer_;        ///< when the turn is due that wait_until() asked for last
+  mutable Mutex lock_;
+  Cursor cursor_ ALVOR_GUARDED_BY(lock_);
+  std::uint64_t sent_ ALVOR_GUARDED_BY(lock_) = 0, acknowledged_ ALVOR_GUARDED_BY(lock_) = 0, bytes_ ALVOR_GUARDED_BY(lock_) = 0;
+  std::uint64_t acknowledged_revision_ ALVOR_GUARDED_BY(lock_);
+  std::uint64_t sent_revision_ ALVOR_GUARDED_BY(lock_);             ///< to_revision of the newest frame
+  std::shared_ptr<const Frame> under_way_ ALVOR_GUARDED_BY(lock_);  ///< the frame being written, from write() to written()
+  std::optional<grpc::Status> end_ ALVOR_GUARDED_BY(lock_);         ///< the status to finish with once no frame is being written
+  bool finished_ ALVOR_GUARDED_BY(lock_) = false;
+  std::optional<v1::Closing> closing_ ALVOR_GUARDED_BY(lock_);  ///< to be written before the end
+  Clock::time_point last_write_ ALVOR_GUARDED_BY(lock_) = Clock::time_point::min(), next_frame_ ALVOR_GUARDED_BY(lock_) =
+                                                                                        Clock::time_point::min();
+  std::optional<Clock::time_point> write_check_
+      ALVOR_GUARDED_BY(lock_);  ///< when the newest turn was asked for that checks on the write
+  std::optional<Clock::time_point> timer_ ALVOR_GUARDED_BY(lock_);  ///< when the turn is due that wait_until() asked for last
 };
 
 }  // namespace alvor

@@ -8,7 +8,7 @@
 namespace alvor {
 
 std::shared_ptr<FrameSource> Watches::frames_of(const std::shared_ptr<StoredSolve>& solve) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   std::erase_if(sources_, [](const auto& named) { return named.second.expired(); });
   std::weak_ptr<FrameSource>& known = sources_[solve->name];
   auto source = known.lock();
@@ -17,7 +17,7 @@ std::shared_ptr<FrameSource> Watches::frames_of(const std::shared_ptr<StoredSolv
 }
 
 void Watches::add(const std::string& id, const std::shared_ptr<Watch>& watch, const std::string& tenant) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
   const auto own = std::ranges::count_if(watches_, [&](const auto& named) { return named.second.tenant == tenant; });
   if (static_cast<std::uint64_t>(own) >= most_per_tenant_)
@@ -26,7 +26,7 @@ void Watches::add(const std::string& id, const std::shared_ptr<Watch>& watch, co
 }
 
 Watches::Traffic Watches::traffic() const {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   Traffic all{watches_.size(), frames_, bytes_, 0};
   for (const auto& [id, entry] : watches_) {
     all.frames += entry.watch->frames_sent();
@@ -37,7 +37,7 @@ Watches::Traffic Watches::traffic() const {
 }
 
 void Watches::remove(const std::string& id) {
-  std::scoped_lock hold(lock_);
+  Lock hold(lock_);
   const auto found = watches_.find(id);
   if (found == watches_.end()) return;
   frames_ += found->second.watch->frames_sent();
@@ -48,7 +48,7 @@ void Watches::remove(const std::string& id) {
 void Watches::acknowledge(const std::string& id, std::uint64_t frame_count, std::uint64_t revision, const std::string& tenant) {
   std::shared_ptr<Watch> watch;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     const auto found = watches_.find(id);
     if (found == watches_.end() || found->second.tenant != tenant) throw not_found("watch '" + id + "'");
     watch = found->second.watch;
@@ -60,7 +60,7 @@ void Watches::acknowledge(const std::string& id, std::uint64_t frame_count, std:
 void Watches::stop_all() {
   std::vector<std::shared_ptr<Watch>> all;
   {
-    std::scoped_lock hold(lock_);
+    Lock hold(lock_);
     stopping_ = true;
     for (const auto& [id, entry] : watches_) all.push_back(entry.watch);
   }

@@ -1,12 +1,12 @@
 #pragma once
 // All watches of the server: finds a watch by its id and runs the turns of all.
 
+#include "server/base/mutex.h"
 #include "server/base/task_queue.h"
 #include "server/watch/watch.h"
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace alvor {
@@ -54,11 +54,12 @@ class Watches {
   };
   const std::string epoch_;
   const std::uint64_t most_per_tenant_;
-  mutable std::mutex lock_;
-  std::map<std::string, Entry> watches_;
-  std::map<std::string, std::weak_ptr<FrameSource>> sources_;  ///< by the name of the solve
-  std::uint64_t frames_ = 0, bytes_ = 0;                       ///< sums over the watches that have ended
-  bool stopping_ = false;
+  mutable Mutex lock_;
+  std::map<std::string, Entry> watches_ ALVOR_GUARDED_BY(lock_);
+  std::map<std::string, std::weak_ptr<FrameSource>> sources_ ALVOR_GUARDED_BY(lock_);  ///< by the name of the solve
+  std::uint64_t frames_ ALVOR_GUARDED_BY(lock_) = 0, bytes_
+                                                     ALVOR_GUARDED_BY(lock_) = 0;  ///< sums over the watches that have ended
+  bool stopping_ ALVOR_GUARDED_BY(lock_) = false;
   TaskQueue turns_;
 };
 

@@ -8,7 +8,7 @@
 namespace alvor {
 
 bool WebAdmission::admit(const std::shared_ptr<WebConnection>& connection, const std::string& address) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (is_stopping_) return false;
   const auto count = by_address_.find(address);
   const bool is_crowded = !address.empty() && count != by_address_.end() && count->second >= limits_.connections_of_one_address;
@@ -21,30 +21,30 @@ bool WebAdmission::admit(const std::shared_ptr<WebConnection>& connection, const
 }
 
 void WebAdmission::leave(const WebConnection* connection) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (const auto found = by_connection_.find(connection); found != by_connection_.end()) erase(found->second);
   has_left_.notify_all();
 }
 
 void WebAdmission::make_room() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   evict_any();
 }
 
 void WebAdmission::stop() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   is_stopping_ = true;
   for (const Guest& guest : guests_)
     if (const auto connection = guest.connection.lock()) connection->stop();
 }
 
 void WebAdmission::wait_until_empty(WebLimits::Time patience) {
-  std::unique_lock lock(mutex_);
-  has_left_.wait_for(lock, patience, [this] { return guests_.empty(); });
+  Lock lock(mutex_);
+  has_left_.wait_for(lock, patience, [this]() ALVOR_REQUIRES(mutex_) { return guests_.empty(); });
 }
 
 void WebAdmission::close_all() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   for (const Guest& guest : guests_)
     if (const auto connection = guest.connection.lock()) connection->close();
 }
@@ -66,7 +66,7 @@ bool WebAdmission::evict_any() {
   std::vector<std::pair<std::size_t, std::string>> crowds;
   for (const auto& [address, count] : by_address_) crowds.emplace_back(count, address);
   std::ranges::sort(crowds, std::greater<>());
-  return std::ranges::any_of(crowds, [this](const auto& crowd) { return evict_from(crowd.second); });
+  return std::ranges::any_of(crowds, [this](const auto& crowd) ALVOR_REQUIRES(mutex_) { return evict_from(crowd.second); });
 }
 
 void WebAdmission::erase(Guests::iterator guest) {

@@ -1,14 +1,13 @@
 #pragma once
 // Limits the number of open browser connections.
 
+#include "server/base/mutex.h"
 #include "server/web/web_connection.h"
 
-#include <condition_variable>
 #include <cstddef>
 #include <list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace alvor {
@@ -38,17 +37,17 @@ class WebAdmission {
     std::string address;
   };
   using Guests = std::list<Guest>;  // the oldest first
-  bool evict_from(const std::string& address);
-  bool evict_any();
-  void erase(Guests::iterator guest);
+  bool evict_from(const std::string& address) ALVOR_REQUIRES(mutex_);
+  bool evict_any() ALVOR_REQUIRES(mutex_);
+  void erase(Guests::iterator guest) ALVOR_REQUIRES(mutex_);
 
   const WebLimits limits_;
-  std::mutex mutex_;
-  std::condition_variable has_left_;
-  Guests guests_;
-  std::map<const WebConnection*, Guests::iterator> by_connection_;
-  std::map<std::string, std::size_t> by_address_;
-  bool is_stopping_ = false;
+  Mutex mutex_;
+  Condition has_left_;
+  Guests guests_ ALVOR_GUARDED_BY(mutex_);
+  std::map<const WebConnection*, Guests::iterator> by_connection_ ALVOR_GUARDED_BY(mutex_);
+  std::map<std::string, std::size_t> by_address_ ALVOR_GUARDED_BY(mutex_);
+  bool is_stopping_ ALVOR_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace alvor

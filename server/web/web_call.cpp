@@ -13,7 +13,7 @@ WebCall::WebCall(const Options& options, std::shared_ptr<Listener> listener) : l
 
 template <class Begin>
 void WebCall::take(Step step, Begin begin) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (is_over_) return;  // has_ended() will be called
   step_ = step;
   begin();
@@ -32,7 +32,7 @@ void WebCall::read() {
 }
 
 void WebCall::cancel() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   context_.TryCancel();
   if (!std::exchange(is_over_, true) && step_ == Step::none) begin_finish();
 }
@@ -47,7 +47,7 @@ void WebCall::begin_finish() {
 void WebCall::step_done(bool ok) {
   Step done;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     done = std::exchange(step_, Step::none);
     if (done != Step::finish && (!ok || is_over_)) return begin_finish();
   }

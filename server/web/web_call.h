@@ -1,12 +1,13 @@
 #pragma once
 // Passes calls on to a gRPC server by method name.
 
+#include "server/base/mutex.h"
+
 #include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -46,15 +47,15 @@ class WebCall : public std::enable_shared_from_this<WebCall> {
   WebCall(const Options& options, std::shared_ptr<Listener> listener);
   template <class Begin>
   void take(Step step, Begin begin);
-  void begin_finish();
+  void begin_finish() ALVOR_REQUIRES(mutex_);
   void step_done(bool ok);
 
   grpc::ClientContext context_;
   std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;
   std::shared_ptr<Listener> listener_;
-  std::mutex mutex_;
-  Step step_ = Step::none;
-  bool is_over_ = false;  // only the last step is left
+  Mutex mutex_;
+  Step step_ ALVOR_GUARDED_BY(mutex_) = Step::none;
+  bool is_over_ ALVOR_GUARDED_BY(mutex_) = false;  // only the last step is left
   grpc::ByteBuffer message_;
   grpc::Status status_;
   std::shared_ptr<WebCall> self_;  // keeps the call alive until it has ended
