@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <ostream>
 
 namespace alvor::bench {
+
+void PrintTo(const Case& looked_at, std::ostream* out) { *out << looked_at.name << ", " << looked_at.condition; }
+
 namespace {
 
 std::vector<Case> quick_cases() {

@@ -41,12 +41,13 @@ def many_ended_solves(folder):
 def copy_solve(file):
   with sqlite3.connect(file) as database:
     number, scene, tenant, facts = database.execute("SELECT number, scene, tenant, facts FROM solves").fetchone()
+    version, facts = facts[:2], facts[2:]  # server/archive/versioned.h
     solve = solves.Solve.FromString(facts)
     parent = solve.name.split("/solves/")[0]
     for copy in range(number + 1, number + 1 + COPIES):
       solve.name = f"{parent}/solves/s{copy:016x}"
       database.execute("INSERT INTO solves(number, scene, tenant, request_id, facts) VALUES (?, ?, ?, '', ?)",
-                       (copy, scene, tenant, solve.SerializeToString()))
+                       (copy, scene, tenant, version + solve.SerializeToString()))
       database.execute("INSERT INTO checkpoint_pieces SELECT ?, kind, n, bytes FROM checkpoint_pieces WHERE solve = ?", (copy, number))
   database.close()
 
