@@ -162,10 +162,11 @@ def slowest(call):
 def copy_scene(file, scenes):
   with sqlite3.connect(file) as database:
     number, tenant, sha256, facts = database.execute("SELECT number, tenant, sha256, facts FROM scenes").fetchone()
+    version, facts = facts[:2], facts[2:]  # server/archive/versioned.h
     scene = scenes.Scene.FromString(facts)
     for copy in range(number + 1, number + SCENES):
       scene.name = f"scenes/s{copy:016x}"
-      database.execute("INSERT INTO scenes VALUES (?, ?, '', ?, ?)", (copy, tenant, sha256, scene.SerializeToString()))
+      database.execute("INSERT INTO scenes VALUES (?, ?, '', ?, ?)", (copy, tenant, sha256, version + scene.SerializeToString()))
   database.close()
 
 
