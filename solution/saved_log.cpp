@@ -1,5 +1,5 @@
-// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Logs that were saved before there were versions
-// begin with the number of their steps, which is never as large as the mark.
+// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Logs that were saved before there
+// were versions begin with the number of their steps, which is never as large as the mark.
 
 #include "solution/solution_log.h"
 
@@ -83,7 +83,7 @@ Step get_step(PlainReader& in, std::uint32_t version) {
   return step;
 }
 
-/// What is reserved is never more than what is left to read: the count may be anything.
+/// Reads a count and as many steps. The count is not believed: memory grows only with the steps that are really there.
 std::vector<Step> get_steps(PlainReader& in, std::uint32_t version) {
   std::vector<Step> steps;
   for (auto left = in.get<std::uint64_t>(); left > 0; --left) steps.push_back(get_step(in, version));

@@ -148,8 +148,8 @@ double DirectField::unlit_fraction() const {
 void DirectField::save_light(PlainWriter& out) const {
   const auto leaves = forests_.leaves().leaves();
   save_at(leaves, light_, out);
-  save_at(leaves, is_known_, out);
-  save_at(leaves, is_lit_, out);
+  save_flags(leaves, is_known_, out);
+  save_flags(leaves, is_lit_, out);
 }
 
 void DirectField::load_light(PlainReader& in) {

@@ -47,7 +47,6 @@ class Pass {
   // Between begin_exchange() and refine():
 
   Exchange& exchange() { return *exchange_; }
-  const PassSystem& system() const { return *system_; }
   /// Returns the system with nothing shot and direct light unshot on its receivers. Forgets the shots in the state. The system
   /// borrows from the pass. Requires: rows carry light (TracedRows::carry_light).
   Shooting unshot_system();

@@ -201,7 +201,7 @@ ErrorEstimate Pass::estimate() {
   double area = 0;
   const auto patches = system_->patches();
   for (std::size_t p = 0; p < patches.size(); ++p)
-    if (!patches[p].row->is_hidden() || !state_.may_be_lit(system_->rows()[p])) area += patches[p].area;
+    if (!patches[p].row->is_hidden() || !state_.rows.may_be_lit(system_->rows()[p])) area += patches[p].area;
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;

@@ -30,7 +30,8 @@ void load_at(std::span<const NodeIndex> nodes, std::vector<T>& by_node, PlainRea
   }
 }
 
-inline void save_at(std::span<const NodeIndex> nodes, const std::vector<bool>& by_node, PlainWriter& out) {
+/// Writes flags of nodes, for load_flags().
+inline void save_flags(std::span<const NodeIndex> nodes, const std::vector<bool>& by_node, PlainWriter& out) {
   std::vector<std::uint8_t> flags;
   for (const NodeIndex node : nodes) flags.push_back(by_node[node]);
   out.put_all(flags);

@@ -34,7 +34,6 @@ class SolveState {
   std::vector<Rgb> shot;  ///< by leaf node: radiosity that shots distributed so far, in emission units; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
-  bool may_be_lit(NodeIndex row) const { return rows.may_be_lit(row); }
   /// Returns the irradiance that rows bring to the centre of a leaf, in emission units.
   Rgb indirect(NodeIndex leaf) const { return field.at(forests.row_of(leaf), forests.leaf_centres()[leaf]); }
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
@@ -55,12 +54,11 @@ class SolveState {
   /// which points are hidden.
   void heed_hidden_origins(NodeIndex row);
 
-  static constexpr std::uint32_t saved_version = 3;  ///< since 3 rows are saved with TransportRow::is_closed
   /// Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on; all else is
   /// computed again.
   void save(PlainWriter& out) const;
-  /// Reads what save() wrote, or the save() of version 2. Throws BadBytes; the state must not be used after that. Requires: no
-  /// row was traced and nothing split since construction.
+  /// Reads what save() wrote in a checkpoint of `version`, see solve_control.h. Throws BadBytes; the state must not be used after
+  /// that. Requires: no row was traced and nothing split since construction.
   void load(PlainReader& in, std::uint32_t version);
 
  private:

@@ -237,7 +237,7 @@ class Run {
     now.traversal_s = budget_.traversal_s();
     now.rays = budget_.rays();
     control_.save([&](PlainWriter& out) {
-      out.put(SolveState::saved_version);
+      out.put(newest_checkpoint);
       out.put(now);
       state_.save(out);
     });
@@ -246,9 +246,9 @@ class Run {
   void load() {
     PlainReader in(control_.checkpoint);
     const auto version = in.get<std::uint32_t>();
-    if (version < 2 || version > SolveState::saved_version)
-      throw BadBytes("is of version " + std::to_string(version) + "; 2 to " + std::to_string(SolveState::saved_version) +
-                     " are known");
+    if (version < oldest_checkpoint || version > newest_checkpoint)
+      throw BadBytes("is of version " + std::to_string(version) + "; " + std::to_string(oldest_checkpoint) + " to " +
+                     std::to_string(newest_checkpoint) + " are known");
     is_ = in.get<Progress>();
     const double numbers[] = {is_.elapsed_s, is_.cpu_s, is_.traversal_s, is_.error.total(), is_.lowest_error, is_.balance.gap()};
     if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || is_.elapsed_s < 0)

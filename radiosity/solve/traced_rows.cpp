@@ -135,7 +135,7 @@ void TracedRows::find_hit_leaves(NodeIndex row) {
 void TracedRows::save_rows(PlainWriter& out) const {
   const auto rows = forests_.rows().leaves();
   for (const NodeIndex row : rows) save(rows_[row], out);
-  save_at(rows, is_traced_, out);
+  save_flags(rows, is_traced_, out);
 }
 
 void TracedRows::load_rows(PlainReader& in, std::uint32_t version) {

@@ -5,7 +5,6 @@
 #include "radiosity/rays/transport_rows.h"
 #include "radiosity/solve/forests.h"
 
-#include <functional>
 #include <span>
 #include <vector>
 

@@ -27,8 +27,8 @@ constexpr const char* first_tables = R"(
   CREATE INDEX checkpoint_pieces_of ON checkpoint_pieces(solve, kind, n);
 )";
 
-// What logs of solutions hold changed with version 2. They are converted where they are read, see SolutionLog: to write all of
-// them anew would take as much room and time as they have.
+// Version 2 changed the layout of saved logs, not the tables. SolutionLog converts old logs when it reads them: to write all of
+// them anew would take as much room again, and time at the start.
 constexpr const char* no_change_of_tables = "";
 
 // With version 3 blobs begin with a version (versioned.h); those that are there stay as they are. `unkept` has the moment of a

@@ -14,9 +14,9 @@
 #define ALVOR_THREAD_SAFETY(mark)
 #endif
 
-/// Of a member: it is used only by who holds the mutex.
+/// Marks a member that may be used only while the mutex is held.
 #define ALVOR_GUARDED_BY(mutex) ALVOR_THREAD_SAFETY(guarded_by(mutex))
-/// Of a function or a lambda: who calls it holds the mutex.
+/// Marks a function or lambda that may be called only while the mutex is held.
 #define ALVOR_REQUIRES(...) ALVOR_THREAD_SAFETY(requires_capability(__VA_ARGS__))
 
 namespace alvor {

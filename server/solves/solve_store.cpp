@@ -37,7 +37,7 @@ void report_end(spdlog::logger& logger, const v1::Solve& solve) {
              100 * solve.traversal_share());
 }
 
-/// Of the calling thread. Five steps are a factor of three in processor time.
+/// Sets the nice value of the calling thread. Five steps are a factor of three in processor time.
 void be_as_nice_as(v1::Priority priority) {
   const int nice = priority == v1::PRIORITY_HIGH ? 0 : priority == v1::PRIORITY_LOW ? 10 : 5;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);

@@ -19,8 +19,6 @@ namespace {
 
 constexpr int least_share = 20;                    // of the time between checkpoints goes into them
 constexpr std::uint64_t bytes_a_logged_leaf = 80;  // while it is loaded: 32 that stay, and the pieces it is read from
-// The first version of solves' states that the solver may go on from. Version 1 does not say which leaves have light.
-constexpr std::uint32_t oldest_state = 2;
 
 bool is_final(v1::Solve::State state) {
   return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
@@ -363,7 +361,7 @@ void StoredSolve::change_waiting(const std::function<void(v1::Solve&)>& change) 
   facts_ = next.facts;
 }
 
-/// What is left to do once a solve that was waiting has ended.
+/// Frees the checkpoint in memory and closes the log of a solve that ended while it waited; notes whether the log can be dropped.
 void StoredSolve::settle_end() {
   std::optional<std::uint64_t> kept_head;
   {
@@ -382,9 +380,9 @@ std::string StoredSolve::fault_of_state() const {
     const auto begin = keeping_.archive->begin_of_state(number);
     if (begin.empty()) return "";
     const auto version = PlainReader(begin).get<std::uint32_t>();
-    if (version >= oldest_state) return "";
+    if (version >= oldest_checkpoint) return "";
     return "its checkpoint is of version " + std::to_string(version) +
-           ", which an older alvord wrote; this one goes on from version " + std::to_string(oldest_state) +
+           ", which an older alvord wrote; this one goes on from version " + std::to_string(oldest_checkpoint) +
            " and later: solve the scene again";
   } catch (const BadBytes& fault) {
     return std::string("its checkpoint ") + fault.what();

@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a file defines at the level of a named namespace. clang-format keeps such lines at the first column, and ends each
-/// unnamed namespace with a comment that says so.
+/// Returns the types and functions that a file defines at the level of a named namespace. clang-format keeps such lines at the
+/// first column, and ends each unnamed namespace with a comment that says so.
 std::set<std::string> definitions(const fs::path& file) {
   const std::regex type(
       R"(^(?:template <.*> ?)?(?:struct|class|enum class|enum|union) (?:\[\[\w+\]\] |alignas\([^)]*\) )?(\w+)(?: final)?(?: : .*)? ?\{.*)");

@@ -360,53 +360,5 @@ TEST_F(KeepingTest, SceneThatDoesNotFitOnTheDiskIsRefusedAndLeavesNothing) {
   EXPECT_EQ(archive.scenes().size(), 1u);
 }
 
-struct KeptSolves {
-  explicit KeptSolves(const fs::path& directory) : archive(directory) {}
-  static SolveStoreOptions options_for(Archive& archive) {
-    SolveStoreOptions options;
-    options.keeping.archive = &archive;
-    options.keeping.epoch = "e";
-    return options;
-  }
-  Archive archive;
-  SceneStore scenes{&archive};
-  SolveStore solves{options_for(archive), scenes};
-  const std::string scene = scenes.add(test::room_with_contacts(), "")->facts.name();
-};
-
-TEST_F(KeepingTest, TheLogOfASolveThatIsCancelledWhilePausedCanBeDropped) {
-  KeptSolves kept(directory);
-  const auto solve = kept.solves.create(kept.scenes.use(kept.scene), slow_spec());
-  while (solve->log()->head() == 0) std::this_thread::yield();
-  kept.solves.pause(solve->name);
-  while (solve->state() != v1::Solve::PAUSED) std::this_thread::yield();
-  kept.solves.cancel(solve->name);
-  std::weak_ptr<SolutionLog> in_memory = solve->log();
-  const auto leaves = solve->log()->leaves();
-  while (!in_memory.expired()) solve->drop_log();
-  EXPECT_EQ(solve->log()->leaves(), leaves);
-}
-
-TEST_F(KeepingTest, TheLogOfAnEndedSolveIsInMemoryWhileSomebodyHoldsIt) {
-  KeptSolves kept(directory);
-  v1::SolveSpec spec;
-  spec.set_max_elements(300);
-  const auto solve = kept.solves.create(kept.scenes.use(kept.scene), spec);
-  while (!solve->ended()) std::this_thread::yield();
-  std::weak_ptr<SolutionLog> in_memory;
-  std::vector<LeafValue> leaves;
-  {
-    const auto log = solve->log();
-    in_memory = log;
-    leaves = log->leaves();
-    solve->drop_log();
-    EXPECT_EQ(solve->log(), log) << "somebody holds it";
-  }
-  // The solver's thread may be dropping the log at the same time.
-  while (!in_memory.expired()) solve->drop_log();
-  EXPECT_EQ(solve->log()->leaves(), leaves);
-  EXPECT_TRUE(solve->log()->closed());
-}
-
 }  // namespace
 }  // namespace alvor

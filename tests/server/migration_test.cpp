@@ -1,4 +1,4 @@
-// What a server makes of data directories that older versions wrote: tests/server/old_data.
+// Data directories that older versions wrote (tests/server/old_data) are opened, and their solves go on or say why not.
 
 #include "client/rpc/client.h"
 #include "server/scenes/scene_store.h"

@@ -1,4 +1,4 @@
-// What a saved log looks like on the disk, and the logs of older versions.
+// The bytes of a saved log, and reading the logs of older versions.
 
 #include "solution/plain_bytes.h"
 #include "solution/solution_log.h"
