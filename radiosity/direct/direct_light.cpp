@@ -2,7 +2,6 @@
 
 #include "radiosity/direct/quarter_plane.h"
 #include "radiosity/direct/visible_fraction.h"
-#include "radiosity/form_factors/form_factor.h"
 #include "radiosity/rays/medium.h"
 #include "radiosity/rays/ray_source.h"
 
@@ -11,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <numbers>
 
 namespace alvor {
 
@@ -19,15 +17,13 @@ namespace {
 
 // Receivers that one task lights, so that their rays are traced together. Chosen; not measured.
 constexpr std::size_t receivers_per_batch = 64;
-// Packets of 16 rays that a receiver sends: to an emitter whose first packet is partly blocked (packets_when_mixed, more), and to
-// all emitters that it only samples (packets_of_rest). Chosen; not measured. That packets_of_rest is fixed was measured: sending
+// Packets of 16 rays that a receiver sends: to a light whose first packet is partly blocked (packets_when_mixed, more), and to
+// all lights that it only samples (packets_of_rest). Chosen; not measured. That packets_of_rest is fixed was measured: sending
 // more only where some rays arrived lost half of the light behind a hole in a screen (docs/error-vs-time/tried.md).
 constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
-// Share of the receiver's irradiance, as the first packets find it: an emitter whose unblocked irradiance is below this share
+// Share of the receiver's irradiance, as the first packets find it: a light whose unblocked irradiance is below this share
 // gets no more rays. Chosen; not measured.
 constexpr double worth_a_closer_look = 0.1;
-// Share of the way to the emitter at which a shadow ray ends, so that it does not hit the emitter itself. Chosen; not measured.
-constexpr float short_of_emitter = 1 - 1e-4f;
 
 using Lanes = std::array<float, RayPacket::width>;
 
@@ -35,11 +31,11 @@ using Lanes = std::array<float, RayPacket::width>;
 template <bool occlusion, bool medium>
 class ShadowBatch {
  public:
-  ShadowBatch(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers, std::uint64_t seed,
+  ShadowBatch(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
               RayBudget& budget, std::span<DirectLight> light)
       : scene_(scene),
         medium_{scene.mesh().absorption()},
-        emitters_(emitters),
+        lights_(lights),
         receivers_(receivers),
         seed_(seed),
         budget_(budget),
@@ -48,7 +44,7 @@ class ShadowBatch {
   void add_all() {
     if (occlusion || medium) place_points();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
-      for (std::uint32_t e = 0; e < emitters_.size(); ++e) look_at(r, e);
+      for (std::uint32_t l = 0; l < lights_.size(); ++l) look_at(r, l);
     add_looked_at();
   }
 
@@ -60,7 +56,7 @@ class ShadowBatch {
       const Sphere sphere = around(receivers_[r].shape);
       choices[r] = tree.choose(sphere.centre, sphere.radius, normal_of(receivers_[r]));
       std::ranges::sort(choices[r].single);
-      for (const std::uint32_t e : choices[r].single) look_at(r, e);
+      for (const std::uint32_t l : choices[r].single) look_at(r, l);
     }
     add_looked_at();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
@@ -68,13 +64,13 @@ class ShadowBatch {
   }
 
  private:
-  /// A receiver and an emitter that face each other, and the visible fraction of the emitter.
+  /// A receiver and a light that may reach it, and the visible fraction of the light.
   struct Lit {
     std::size_t receiver;
-    std::uint32_t emitter;
-    std::array<double, 4> form_factor;  // by quarter
+    std::uint32_t light;
+    std::array<double, 4> unblocked;  // by quarter, see LightSource::unblocked
     VisibleFraction fraction;
-    double mean_form_factor() const { return (form_factor[0] + form_factor[1] + form_factor[2] + form_factor[3]) / 4; }
+    double mean_unblocked() const { return (unblocked[0] + unblocked[1] + unblocked[2] + unblocked[3]) / 4; }
   };
   struct Sphere {
     Vec3 centre;
@@ -99,18 +95,14 @@ class ShadowBatch {
     return sphere;
   }
 
-  void look_at(std::size_t r, std::uint32_t e) {
+  void look_at(std::size_t r, std::uint32_t l) {
     const PatchShape& shape = receivers_[r].shape;
-    const std::uint32_t root = emitters_[e].root;
-    if (shape.root == root || receivers_[r].hidden_origins == 0xffff) return;
-    const auto corners = scene_.corners(root);
-    const Vec3 normal = normal_of(receivers_[r]), front = scene_.mesh().roots()[root].normal;
-    Lit lit{r, e, {}, {}};
-    for (int k = 0; k < 4; ++k) {
-      const Vec3 at = local_point(shape.child(k).centre(), shape.root);
-      if (dot(at - corners[0], front) > 0) lit.form_factor[k] = point_to_polygon(at, normal, corners);
-    }
-    if (lit.mean_form_factor() > 0) lit_.push_back(lit);
+    const LightSource& light = *lights_[l];
+    if (!light.may_reach(shape.root) || receivers_[r].hidden_origins == 0xffff) return;
+    const Vec3 normal = normal_of(receivers_[r]);
+    Lit lit{r, l, {}, {}};
+    for (int k = 0; k < 4; ++k) lit.unblocked[k] = light.unblocked(local_point(shape.child(k).centre(), shape.root), normal);
+    if (lit.mean_unblocked() > 0) lit_.push_back(lit);
   }
 
   void add_looked_at() {
@@ -130,7 +122,7 @@ class ShadowBatch {
     trace(some, 1, packets_when_mixed);
     for (Lit& lit : lit_) lit.fraction.finish();
   }
-  double unblocked(const Lit& lit) const { return lit.mean_form_factor() * emitters_[lit.emitter].emission.mean(); }
+  double unblocked(const Lit& lit) const { return lit.mean_unblocked() * lights_[lit.light]->colour().mean(); }
   /// Returns each receiver's irradiance by the first packets, emission units, mean over bands.
   std::vector<double> brightness_of_receivers() {
     std::vector<double> brightness(receivers_.size());
@@ -143,13 +135,13 @@ class ShadowBatch {
 
   void add(const Lit& lit) const {
     DirectLight& light = light_[lit.receiver];
-    const Rgb& emission = emitters_[lit.emitter].emission;
-    const double form_factor = lit.mean_form_factor(), visible = form_factor * lit.fraction.value();
+    const Rgb& colour = lights_[lit.light]->colour();
+    const double mean = lit.mean_unblocked(), visible = mean * lit.fraction.value();
     if (visible <= 0) return;
-    const Rgb arriving = medium ? form_factor * (lit.fraction.dimmed() * emission) : visible * emission;
+    const Rgb arriving = medium ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
     light.irradiance += arriving;
-    const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / form_factor;
-    const QuarterPlane unblocked(lit.form_factor, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
+    const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / mean;
+    const QuarterPlane unblocked(lit.unblocked, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
     for (int o = 0; o < origins_per_patch; ++o)
       light.at_origin[o] += static_cast<float>(scale * unblocked.at_origin(o) * lit.fraction.value(o));
     light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());
@@ -162,7 +154,7 @@ class ShadowBatch {
     blocked_.resize(rays_.size());
     for (std::size_t n = 0; n < rays_.size(); ++n) {
       const Lit& pair = lit_[lit[n / rounds]];
-      aim(pair.receiver, emitters_[pair.emitter], first_round + static_cast<std::uint32_t>(n % rounds), n);
+      aim(pair.receiver, *lights_[pair.light], first_round + static_cast<std::uint32_t>(n % rounds), n);
     }
     if (rays_.empty()) return;
     find_blocked();
@@ -174,50 +166,28 @@ class ShadowBatch {
       budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
   }
 
-  /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the emitter. `round` counts the packets of
+  /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the light. `round` counts the packets of
   /// one pair.
-  void aim(std::size_t r, const Emitter& emitter, std::uint32_t round, std::size_t packet) {
-    const Receiver& receiver = receivers_[r];
-    const PatchPoints& from = points_[r];
+  void aim(std::size_t r, const LightSource& light, std::uint32_t round, std::size_t packet) {
     const std::uint64_t scramble =
-        mix_bits(seed_ ^ mix_bits(receiver.patch.bits()) ^ (emitter.root + 1ull) * 0x9e3779b97f4a7c15u);
+        mix_bits(seed_ ^ mix_bits(receivers_[r].patch.bits()) ^ (light.number() + 1ull) * 0x9e3779b97f4a7c15u);
     const std::uint32_t turn = static_cast<std::uint32_t>(scramble >> 60) ^ (round * 5);
-    for (std::uint32_t o = 0; o < origins_per_patch; ++o) {
-      const Uv target = sobol_point(16 * round + (o ^ turn), static_cast<std::uint32_t>(scramble),
-                                    static_cast<std::uint32_t>(mix_bits(scramble)));
-      set_ray(packet, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root, target);
-    }
-    hide(packet, receiver);
+    ShadowAim aim = aim_of(r, packet);
+    for (std::uint32_t o = 0; o < origins_per_patch; ++o)
+      aim.at[o] = sobol_point(16 * round + (o ^ turn), static_cast<std::uint32_t>(scramble),
+                              static_cast<std::uint32_t>(mix_bits(scramble)));
+    light.aim(aim, 0, RayPacket::width);
+    hide(packet, receivers_[r]);
   }
 
-  void set_ray(std::size_t packet, int o, Float3 from, std::uint32_t root, Uv target) {
-    const LocalRoot& to = scene_.root(root);
-    if (!to.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
-    const auto u = static_cast<float>(target.u), v = static_cast<float>(target.v);
-    const auto at = [&](float origin, float edge_u, float edge_v, float twist) {
-      return origin + u * edge_u + v * edge_v + u * v * twist;
-    };
-    RayPacket& rays = rays_[packet];
-    rays.origin_x[o] = from.x, rays.origin_y[o] = from.y, rays.origin_z[o] = from.z;
-    rays.direction_x[o] = at(to.origin.x, to.edge_u.x, to.edge_v.x, to.twist.x) - from.x;
-    rays.direction_y[o] = at(to.origin.y, to.edge_u.y, to.edge_v.y, to.twist.y) - from.y;
-    rays.direction_z[o] = at(to.origin.z, to.edge_u.z, to.edge_v.z, to.twist.z) - from.z;
-    rays.t_min[o] = 0;
-    rays.t_max[o] = short_of_emitter;
-    there_[o] = to.normal;
+  ShadowAim aim_of(std::size_t r, std::size_t packet) {
+    return {points_[r], scene_.root(receivers_[r].shape.root).normal, {}, rays_[packet], weights_[packet]};
   }
 
-  /// Sets each ray's weight to cos cos / r2; to 0 for hidden origins. Ray directions go from the patch to the emitter.
+  /// Sets the weights of hidden origins to 0.
   void hide(std::size_t packet, const Receiver& receiver) {
-    const Float3& n = scene_.root(receiver.shape.root).normal;
-    const RayPacket& rays = rays_[packet];
-    for (int o = 0; o < RayPacket::width; ++o) {
-      const Float3& m = there_[o];
-      const float x = rays.direction_x[o], y = rays.direction_y[o], z = rays.direction_z[o];
-      const float squared = x * x + y * y + z * z;
-      const float here = std::max(0.0f, x * n.x + y * n.y + z * n.z), there = std::max(0.0f, -(x * m.x + y * m.y + z * m.z));
-      weights_[packet][o] = receiver.hidden_origins >> o & 1 ? 0 : here * there / (squared * squared + 1e-30f);
-    }
+    for (int o = 0; o < RayPacket::width; ++o)
+      if (receiver.hidden_origins >> o & 1) weights_[packet][o] = 0;
   }
 
   void count(VisibleFraction& fraction, std::size_t packet) const {
@@ -237,8 +207,8 @@ class ShadowBatch {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
   }
 
-  /// Adds the light of the emitters that are sampled. The number of rays is fixed: if it depended on what the rays find, the mean
-  /// would be too dark.
+  /// Adds what the lights bring that are only sampled. The number of rays is fixed: if it depended on what the rays find, the
+  /// mean would be too dark.
   void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Samples samples = sample_rest(r, choice, tree);
     if (samples.count == 0) return;
@@ -254,22 +224,25 @@ class ShadowBatch {
   };
   Samples sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Receiver& receiver = receivers_[r];
-    const PatchPoints& from = points_[r];
     RandomStream random(seed_ + 1, receiver.patch);
     const Sphere sphere = around(receiver.shape);
     rays_.resize(packets_of_rest);
     weights_.resize(packets_of_rest);
     blocked_.resize(packets_of_rest);
     std::array<Rgb, packets_of_rest * RayPacket::width> brings{};
-    for (std::size_t n = 0; n < brings.size(); ++n) {
-      const auto o = n % RayPacket::width;
-      const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
-      const Emitter& emitter = emitters_[drawn.emitter];
-      const double scale = scene_.frame().metres_per_unit, area = scene_.mesh().roots()[emitter.root].area / (scale * scale);
-      set_ray(n / RayPacket::width, static_cast<int>(o), {from.x[o], from.y[o], from.z[o]}, emitter.root,
-              {random.next(), random.next()});
-      if (drawn.probability > 0) brings[n] = (area / (std::numbers::pi * drawn.probability)) * emitter.emission;
-      if (o + 1 == RayPacket::width) hide(n / RayPacket::width, receiver);
+    for (std::size_t packet = 0; packet < packets_of_rest; ++packet) {
+      ShadowAim aim = aim_of(r, packet);
+      for (int o = 0; o < RayPacket::width; ++o) {
+        const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
+        const LightSource& light = *lights_[drawn.light];
+        const double u = random.next(), v = random.next();
+        aim.at[static_cast<std::size_t>(o)] = {u, v};
+        light.aim(aim, o, o + 1);
+        if (drawn.probability > 0)
+          brings[packet * RayPacket::width + static_cast<std::size_t>(o)] =
+              light.sample_scale(drawn.probability) * light.colour();
+      }
+      hide(packet, receiver);
     }
     find_blocked();
     Samples samples;
@@ -288,7 +261,7 @@ class ShadowBatch {
 
   const LocalScene& scene_;
   Medium medium_;
-  std::span<const Emitter> emitters_;
+  LightSources lights_;
   std::span<const Receiver> receivers_;
   std::uint64_t seed_;
   RayBudget& budget_;
@@ -298,18 +271,17 @@ class ShadowBatch {
   std::vector<RayPacket> rays_;
   std::vector<Lanes> weights_;
   std::vector<std::uint16_t> blocked_;
-  std::array<Float3, RayPacket::width> there_;
 };
 
 /// Calls work(batch) for each batch of receivers, in parallel.
 template <bool occlusion, bool medium, class Work>
-void in_batches(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
-                std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, Work&& work) {
+void in_batches(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
+                RayBudget& budget, std::span<DirectLight> light, Work&& work) {
   const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
     const std::size_t first = batch * receivers_per_batch, count = std::min(receivers_per_batch, receivers.size() - first);
-    work(ShadowBatch<occlusion, medium>(scene, emitters, receivers.subspan(first, count), seed, budget,
+    work(ShadowBatch<occlusion, medium>(scene, lights, receivers.subspan(first, count), seed, budget,
                                         light.subspan(first, count)));
   });
 }
@@ -325,17 +297,16 @@ void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
 
 }  // namespace
 
-void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
-                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs) {
+void add_direct_light(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
+                      RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs) {
   assert(light.size() == receivers.size());
-  in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [](auto&& batch) { batch.add_all(); });
+  in_batches_for(needs, scene, lights, receivers, seed, budget, light, [](auto&& batch) { batch.add_all(); });
 }
 
-void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
-                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light,
-                      ShadowNeeds needs) {
+void add_direct_light(const LocalScene& scene, const LightTree& tree, std::span<const Receiver> receivers, std::uint64_t seed,
+                      RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs) {
   assert(light.size() == receivers.size());
-  in_batches_for(needs, scene, emitters, receivers, seed, budget, light, [&](auto&& batch) { batch.add_chosen(tree); });
+  in_batches_for(needs, scene, tree.lights(), receivers, seed, budget, light, [&](auto&& batch) { batch.add_chosen(tree); });
 }
 
 }  // namespace alvor

@@ -1,7 +1,7 @@
 #pragma once
-// Light that arrives straight from emitters.
+// Light that arrives straight from lights.
 
-#include "radiosity/direct/emitter.h"
+#include "radiosity/direct/light_source.h"
 #include "radiosity/direct/light_tree.h"
 #include "radiosity/rays/local_scene.h"
 #include "radiosity/rays/ray_budget.h"
@@ -13,7 +13,7 @@
 
 namespace alvor {
 
-/// The irradiance that a patch receives straight from emitters, averaged over the part of the patch that is not hidden. In
+/// The irradiance that a patch receives straight from lights, averaged over the part of the patch that is not hidden. In
 /// emission units (see EmissionUnit).
 struct DirectLight {
   Rgb irradiance;
@@ -31,25 +31,24 @@ struct Receiver {
   std::uint16_t hidden_origins = 0;
 };
 
-/// Which effects on the way from emitter to receiver are computed. An effect that is off takes no time.
+/// Which effects on the way from light to receiver are computed. An effect that is off takes no time.
 struct ShadowNeeds {
-  bool occlusion = true;  ///< false: nothing stands between any receiver and emitter, so no rays are sent
+  bool occlusion = true;  ///< false: nothing stands between any receiver and light, so no rays are sent
   bool medium = true;     ///< false: the medium is clear
 };
 
-/// Adds the light of every one of `emitters` to `light`: the exact form factor (Lambert's contour formula, mean over the four
-/// quarters of the patch) times the visible fraction. That fraction is the mean visibility of shadow rays between stratified
-/// points of patch and emitter, weighted by the kernel cos cos / r2. Sixteen rays are sent, and 48 more where they disagree on an
-/// emitter that brings a tenth of the light. In parallel; the result does not depend on the number of threads. Returns early
-/// where the budget is out. Requires: one entry of `light` per receiver.
-void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, std::span<const Receiver> receivers,
-                      std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs = {});
+/// Adds to `light` what every one of `lights` brings: its unblocked irradiance (mean over the four quarters of the patch) times
+/// its visible fraction. That fraction is the mean visibility of shadow rays between stratified points of patch and light,
+/// weighted by what each ray would bring (LightSource::aim). Sixteen rays are sent, and 48 more where they disagree on a light
+/// that brings a tenth of the irradiance. In parallel; the result does not depend on the number of threads. Returns early where
+/// the budget is out. Requires: one entry of `light` per receiver.
+void add_direct_light(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
+                      RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs = {});
 
-/// Adds the light of many emitters to `light`. The emitters that LightTree::choose calls single are treated one by one, as above;
-/// 32 rays go to emitters drawn from the rest in proportion to bounds on their light. No emitter is skipped, so there is no bias.
-/// Requires: one entry of `light` per receiver; `tree` was built of `emitters`.
-void add_direct_light(const LocalScene& scene, std::span<const Emitter> emitters, const LightTree& tree,
-                      std::span<const Receiver> receivers, std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light,
-                      ShadowNeeds needs = {});
+/// Adds to `light` what many lights bring. Those that LightTree::choose calls single are treated one by one, as above; 32 rays go
+/// to lights drawn from the rest in proportion to bounds on what they bring. No light is skipped, so there is no bias. Requires:
+/// one entry of `light` per receiver.
+void add_direct_light(const LocalScene& scene, const LightTree& tree, std::span<const Receiver> receivers, std::uint64_t seed,
+                      RayBudget& budget, std::span<DirectLight> light, ShadowNeeds needs = {});
 
 }  // namespace alvor

@@ -10,7 +10,7 @@ namespace {
 
 // A cluster whose bound is below this share of the sum of all bounds is sampled, not computed one by one. Chosen; not measured.
 constexpr double small_share = 0.02;
-// Most emitters that one receiver computes one by one. Chosen; not measured.
+// Most lights that one receiver computes one by one. Chosen; not measured.
 constexpr std::size_t most_single = 48;
 
 Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
@@ -26,52 +26,46 @@ double reach(Vec3 low, Vec3 high, Vec3 direction) {
 
 }  // namespace
 
-LightTree::LightTree(const LocalScene& scene, std::span<const Emitter> emitters) : scene_(scene), emitters_(emitters) {
-  std::vector<std::uint32_t> all(emitters.size());
-  for (std::uint32_t e = 0; e < all.size(); ++e) all[e] = e;
+LightTree::LightTree(LightSources lights) : lights_(lights) {
+  std::vector<std::uint32_t> all(lights.size());
+  std::vector<LightExtent> extents;
+  for (std::uint32_t l = 0; l < all.size(); ++l) {
+    all[l] = l;
+    assert(lights[l]->extent());
+    extents.push_back(*lights[l]->extent());
+  }
   nodes_.reserve(2 * all.size());
   nodes_.emplace_back();
-  if (!all.empty()) build(0, all);
+  if (!all.empty()) build(0, all, extents);
 }
 
-void LightTree::build(std::uint32_t node, std::span<std::uint32_t> emitters) {
-  if (emitters.size() > 1) return split(node, emitters);
-  const Emitter& emitter = emitters_[emitters[0]];
-  const auto corners = scene_.corners(emitter.root);
-  const double scale = scene_.frame().metres_per_unit;
-  Node leaf{
-      corners[0], corners[0], scene_.mesh().roots()[emitter.root].normal, emitter.power / (scale * scale), emitter.emission.sum(),
-      0,          emitters[0]};
-  for (const Vec3 corner : corners) leaf.low = lower(leaf.low, corner), leaf.high = upper(leaf.high, corner);
-  nodes_[node] = leaf;
+void LightTree::build(std::uint32_t node, std::span<std::uint32_t> lights, std::span<const LightExtent> extents) {
+  if (lights.size() > 1) return split(node, lights, extents);
+  nodes_[node] = {extents[lights[0]], 0, lights[0]};
 }
 
-void LightTree::split(std::uint32_t node, std::span<std::uint32_t> emitters) {
-  const auto place = [&](std::uint32_t e) { return scene_.corners(emitters_[e].root)[0]; };
-  Vec3 low = place(emitters[0]), high = low;
-  for (const std::uint32_t e : emitters) low = lower(low, place(e)), high = upper(high, place(e));
+void LightTree::split(std::uint32_t node, std::span<std::uint32_t> lights, std::span<const LightExtent> extents) {
+  Vec3 low = extents[lights[0]].place, high = low;
+  for (const std::uint32_t l : lights) low = lower(low, extents[l].place), high = upper(high, extents[l].place);
   const Vec3 size = high - low;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::size_t half = emitters.size() / 2;
-  std::ranges::nth_element(emitters, emitters.begin() + static_cast<std::ptrdiff_t>(half), {},
-                           [&](std::uint32_t e) { return along(place(e), axis); });
+  const std::size_t half = lights.size() / 2;
+  std::ranges::nth_element(lights, lights.begin() + static_cast<std::ptrdiff_t>(half), {},
+                           [&](std::uint32_t l) { return along(extents[l].place, axis); });
   const auto left = static_cast<std::uint32_t>(nodes_.size());
   nodes_.resize(nodes_.size() + 2);
-  build(left, emitters.first(half));
-  build(left + 1, emitters.subspan(half));
-  const Node &a = nodes_[left], &b = nodes_[left + 1];
+  build(left, lights.first(half), extents);
+  build(left + 1, lights.subspan(half), extents);
+  const LightExtent &a = nodes_[left].extent, &b = nodes_[left + 1].extent;
   const bool is_parallel = dot(a.normal, b.normal) > 1 - 1e-9;
-  nodes_[node] = {lower(a.low, b.low),
-                  upper(a.high, b.high),
-                  is_parallel ? a.normal : Vec3{},
-                  a.power + b.power,
-                  std::max(a.emission, b.emission),
+  nodes_[node] = {{a.place, lower(a.low, b.low), upper(a.high, b.high), is_parallel ? a.normal : Vec3{}, a.power + b.power,
+                   std::max(a.brightest, b.brightest)},
                   left,
                   0};
 }
 
 double LightTree::bound(std::uint32_t node, Vec3 centre, double radius, Vec3 normal) const {
-  const Node& n = nodes_[node];
+  const LightExtent& n = nodes_[node].extent;
   const double above = reach(n.low, n.high, normal) - dot(centre, normal) + radius;
   const double before = dot(centre, n.normal) + reach(n.low, n.high, -n.normal) + radius;
   const bool faces_away = dot(n.normal, n.normal) > 0 && before <= 0;
@@ -80,8 +74,8 @@ double LightTree::bound(std::uint32_t node, Vec3 centre, double radius, Vec3 nor
   const double distance = std::max(0.0, length(outside) - radius), squared = distance * distance;
   const double cosines = std::min(1.0, above / std::max(distance, 1e-12)) *
                          (dot(n.normal, n.normal) > 0 ? std::min(1.0, before / std::max(distance, 1e-12)) : 1);
-  return n.power * cosines < n.emission * std::numbers::pi * squared ? n.power * cosines / (std::numbers::pi * squared)
-                                                                     : n.emission;
+  return n.power * cosines < n.brightest * std::numbers::pi * squared ? n.power * cosines / (std::numbers::pi * squared)
+                                                                      : n.brightest;
 }
 
 LightChoice LightTree::choose(Vec3 centre, double radius, Vec3 normal) const {
@@ -107,7 +101,7 @@ LightChoice LightTree::choose(Vec3 centre, double radius, Vec3 normal) const {
       add(node.left);
       add(node.left + 1);
     } else {
-      choice.single.push_back(node.emitter);
+      choice.single.push_back(node.light);
       sum += top.bound;
     }
   }
@@ -131,7 +125,7 @@ LightTree::Drawn LightTree::draw(const LightChoice& choice, Vec3 centre, double 
     probability *= (goes_left ? a : b) / (a + b);
     node = goes_left ? left : left + 1;
   }
-  return {nodes_[node].emitter, probability};
+  return {nodes_[node].light, probability};
 }
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// The share of an emitter that a patch sees, by shadow rays.
+// The share of a light that a patch sees, by shadow rays.
 
 #include "radiosity/rays/sampling.h"
 #include "solution/rgb.h"
@@ -9,7 +9,7 @@
 
 namespace alvor {
 
-/// The share of an emitter that a patch sees: visibility weighted by the kernel cos cos / r2, and the light that a medium lets
+/// The share of a light that a patch sees: visibility weighted by what each ray would bring, and the light that a medium lets
 /// through, summed over shadow rays.
 struct VisibleFraction {
   std::array<float, origins_per_patch> weight{}, visible{};
@@ -17,7 +17,7 @@ struct VisibleFraction {
   Rgb arriving;  // sum over unblocked rays of weight times transmittance; zero in clear air
   bool any_blocked = false, any_visible = false;
 
-  /// Returns the fraction of an emitter that nothing hides.
+  /// Returns the fraction of a light that nothing hides.
   static VisibleFraction all() {
     VisibleFraction fraction;
     fraction.weight.fill(1);
@@ -29,9 +29,9 @@ struct VisibleFraction {
 
   /// Returns whether some rays are blocked and others are not.
   bool mixed() const { return any_blocked && any_visible; }
-  /// Returns the visible share of the emitter, in [0, 1], over all origins.
+  /// Returns the visible share of the light, in [0, 1], over all origins.
   double value() const { return all_ > 0 ? all_visible_ / all_ : 0; }
-  /// Returns the visible share of the emitter from origin `o`. It is value() where no ray of the origin has weight, and while
+  /// Returns the visible share of the light from origin `o`. It is value() where no ray of the origin has weight, and while
   /// origins have one ray each and these disagree.
   double value(int o) const {
     const bool tells = weight[o] > 0 && (rays_per_origin > 1 || !mixed());

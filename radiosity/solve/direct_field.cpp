@@ -1,5 +1,6 @@
 #include "radiosity/solve/direct_field.h"
 
+#include "radiosity/direct/face_light.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <algorithm>
@@ -9,9 +10,9 @@ namespace alvor {
 
 namespace {
 
-// Most emitters that light the leaves one after the other; more are put into a LightTree. Chosen; not measured.
+// Most lights that reach the leaves one after the other; more are put into a LightTree. Chosen; not measured.
 constexpr std::size_t most_one_by_one = 12;
-// Parts in which the leaves get their direct light if there are more emitters, each followed by `after_each`. Chosen; not
+// Parts in which the leaves get their direct light if there are more lights, each followed by `after_each`. Chosen; not
 // measured.
 constexpr std::size_t parts_shown = 8;
 
@@ -26,23 +27,24 @@ bool is_sound(const DirectLight& light) {
 DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene,
                          RayBudget& budget)
     : forests_(forests), plan_(plan), options_(options), scene_(scene), budget_(budget) {
-  choose_emitters();
+  choose_lights();
   fit_to_nodes();
 }
 
 // If most surfaces emit, as in a furnace, rows carry the emission, because a row that sums to 1 is exact and shadow rays are not.
-void DirectField::choose_emitters() {
+void DirectField::choose_lights() {
   const BaseMesh& mesh = forests_.mesh();
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
     const Rgb emission = emission_of(root);
     if (emission.is_zero()) continue;
-    emitters_.push_back({root, emission, emission.sum() * mesh.roots()[root].area});
-    emitted_power_ += emitters_.back().power;
+    auto light = std::make_unique<FaceLight>(scene_, root, emission);
+    emitted_power_ += light->power();
+    if (!plan_.emission_by_rows()) owned_lights_.push_back(std::move(light));
   }
-  if (plan_.emission_by_rows()) emitters_.clear();
-  std::ranges::stable_sort(emitters_, std::ranges::greater{}, &Emitter::power);
+  for (const auto& light : owned_lights_) lights_.push_back(light.get());
+  std::ranges::stable_sort(lights_, std::ranges::greater{}, [](const LightSource* light) { return light->power(); });
   waiting_power_ = emitted_power_;
-  if (emitters_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(scene_, emitters_);
+  if (lights_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(lights_);
 }
 
 void DirectField::fit_to_nodes() {
@@ -100,18 +102,18 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
     const std::size_t step = unlit / parts_shown + 1;
     for (std::size_t first = 0; first < receivers.size(); first += step) {
       const std::size_t count = std::min(step, receivers.size() - first);
-      add_direct_light(scene_, emitters_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
+      add_direct_light(scene_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
                        std::span(light).subspan(first, count), needs);
       if (budget_.is_out()) return;
       show_part(first, count, waiting, true);
     }
   } else {
-    for (const Emitter& emitter : emitters_) {
-      add_direct_light(scene_, {&emitter, 1}, receivers, options_.seed, budget_, light, needs);
+    for (const LightSource* const& next : lights_) {
+      add_direct_light(scene_, {&next, 1}, receivers, options_.seed, budget_, light, needs);
       if (budget_.is_out()) return;
-      show_part(0, leaves.size(), waiting * emitter.power / emitted_power_, &emitter == &emitters_.back());
+      show_part(0, leaves.size(), waiting * next->power() / emitted_power_, next == lights_.back());
     }
-    if (emitters_.empty()) show_part(0, leaves.size(), 0, true);
+    if (lights_.empty()) show_part(0, leaves.size(), 0, true);
   }
   if (leaves.size() == unlit) waiting_power_ = 0;
 }
@@ -165,7 +167,7 @@ void DirectField::save_waiting(PlainWriter& out) const { out.put(waiting_power_)
 void DirectField::load_waiting(PlainReader& in) {
   waiting_power_ = in.get<double>();
   if (!std::isfinite(waiting_power_)) throw BadBytes("waiting power: not a finite number");
-  // No leaf has the light of all emitters, so the first emitter is the next again.
+  // No leaf has the light of all lights, so the first light is the next again.
   if (std::ranges::none_of(forests_.leaves().leaves(), [this](NodeIndex leaf) { return is_known_[leaf]; }))
     waiting_power_ = emitted_power_;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The direct field of a solve: the irradiance of each leaf that comes straight from emitters.
+// The direct field of a solve: the irradiance of each leaf that comes straight from lights.
 
 #include "radiosity/direct/direct_light.h"
 #include "radiosity/direct/emission_unit.h"
@@ -33,8 +33,8 @@ class DirectField {
   /// Returns the share of the area of faces that light may reach which shows no direct light yet.
   double unlit_fraction() const;
 
-  /// Adds direct light to the leaves whose rows are traced. Up to twelve emitters light all of these leaves, one emitter after
-  /// the other; more emitters together light them in parts. `after_each` is called after each emitter or part. Returns early
+  /// Adds direct light to the leaves whose rows are traced. Up to twelve lights reach all of these leaves, one light after the
+  /// other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
   /// where the ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
   /// Makes the next add_new() find the leaf's light again.
@@ -53,7 +53,7 @@ class DirectField {
   void load_waiting(PlainReader& in);
 
  private:
-  void choose_emitters();
+  void choose_lights();
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
@@ -65,11 +65,12 @@ class DirectField {
   const LocalScene& scene_;
   RayBudget& budget_;
   const EmissionUnit unit_{forests_.mesh()};
-  std::vector<Emitter> emitters_;          ///< brightest first
-  std::unique_ptr<LightTree> light_tree_;  ///< null for up to twelve emitters
+  std::vector<std::unique_ptr<const LightSource>> owned_lights_;
+  std::vector<const LightSource*> lights_;  ///< strongest first
+  std::unique_ptr<LightTree> light_tree_;   ///< null for up to twelve lights
   double emitted_power_ = 0, waiting_power_ = 0;
   std::vector<DirectLight> light_;
-  std::vector<bool> is_known_;  ///< the leaf has its own light of all emitters
+  std::vector<bool> is_known_;  ///< the leaf has its own light of all lights
   std::vector<bool> is_lit_;    ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
 };
 

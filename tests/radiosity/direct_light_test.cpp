@@ -1,5 +1,6 @@
 #include "radiosity/direct/direct_light.h"
 
+#include "radiosity/direct/face_light.h"
 #include "radiosity/form_factors/form_factor.h"
 #include "tests/scenes.h"
 
@@ -29,8 +30,9 @@ DirectLight light_on_floor(const BaseMesh& mesh, std::uint64_t seed = 1) {
   RayBudget budget([] { return false; });
   const Receiver receiver{PatchId::root(0), shape_of(mesh, PatchId::root(0)), 0};
   DirectLight light;
-  const Emitter lamp{1, {emission, emission, emission}, 1};
-  add_direct_light(scene, {&lamp, 1}, {&receiver, 1}, seed, budget, {&light, 1});
+  const FaceLight lamp(scene, 1, {emission, emission, emission});
+  const LightSource* const lights[]{&lamp};
+  add_direct_light(scene, lights, {&receiver, 1}, seed, budget, {&light, 1});
   return light;
 }
 
@@ -78,9 +80,10 @@ std::vector<DirectLight> light_on_divided_floor(const BaseMesh& mesh, int level,
   }
   const LocalScene scene(mesh);
   RayBudget budget([] { return false; });
-  const Emitter lamp{1, {emission, emission, emission}, 1};
+  const FaceLight lamp(scene, 1, {emission, emission, emission});
+  const LightSource* const lights[]{&lamp};
   std::vector<DirectLight> light(receivers.size());
-  add_direct_light(scene, {&lamp, 1}, receivers, seed, budget, light);
+  add_direct_light(scene, lights, receivers, seed, budget, light);
   return light;
 }
 

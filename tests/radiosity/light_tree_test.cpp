@@ -1,6 +1,7 @@
 #include "radiosity/direct/light_tree.h"
 
 #include "radiosity/direct/direct_light.h"
+#include "radiosity/direct/face_light.h"
 #include "radiosity/form_factors/form_factor.h"
 #include "tests/scenes.h"
 
@@ -57,29 +58,35 @@ Scene room_of_lamps() {
 struct Lamps {
   BaseMesh mesh;
   LocalScene scene{mesh};
-  std::vector<Emitter> emitters;
-  LightTree tree;
+  std::vector<std::unique_ptr<FaceLight>> faces = faces_of(scene);
+  std::vector<const LightSource*> lights = borrowed(faces);
+  LightTree tree{lights};
 
-  explicit Lamps(const Scene& from) : mesh(from), emitters(emitters_of(mesh)), tree(scene, emitters) {}
+  explicit Lamps(const Scene& from) : mesh(from) {}
 
-  static std::vector<Emitter> emitters_of(const BaseMesh& mesh) {
-    std::vector<Emitter> emitters;
-    for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
-      if (const Rgb emission = mesh.material_of(root).emission; !emission.is_zero())
-        emitters.push_back({root, emission, emission.sum() * mesh.roots()[root].area});
-    return emitters;
+  static std::vector<std::unique_ptr<FaceLight>> faces_of(const LocalScene& scene) {
+    std::vector<std::unique_ptr<FaceLight>> faces;
+    for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root)
+      if (const Rgb emission = scene.mesh().material_of(root).emission; !emission.is_zero())
+        faces.push_back(std::make_unique<FaceLight>(scene, root, emission));
+    return faces;
+  }
+  static std::vector<const LightSource*> borrowed(const std::vector<std::unique_ptr<FaceLight>>& faces) {
+    std::vector<const LightSource*> lights;
+    for (const auto& face : faces) lights.push_back(face.get());
+    return lights;
   }
   /// Returns the unoccluded irradiance that the emitter brings to the place, summed over bands.
   double brings(std::uint32_t emitter, const Place& place) const {
-    const std::uint32_t root = emitters[emitter].root;
+    const std::uint32_t root = faces[emitter]->root();
     const auto corners = scene.corners(root);
     if (dot(place.at - corners[0], mesh.roots()[root].normal) <= 0) return 0;
-    return emitters[emitter].emission.sum() * point_to_polygon(place.at, place.normal, corners);
+    return lights[emitter]->colour().sum() * point_to_polygon(place.at, place.normal, corners);
   }
   double rest_brings(const LightChoice& choice, const Place& place) const {
     const std::set single(choice.single.begin(), choice.single.end());
     double sum = 0;
-    for (std::uint32_t e = 0; e < emitters.size(); ++e)
+    for (std::uint32_t e = 0; e < lights.size(); ++e)
       if (!single.contains(e)) sum += brings(e, place);
     return sum;
   }
@@ -97,7 +104,7 @@ TEST(LightTree, NoEmitterIsBothSingleAndInTheRest) {
     EXPECT_EQ(single.size(), choice.single.size());
     for (int d = 0; d < 500 && choice.rest_bound > 0; ++d) {
       const auto drawn = lamps.tree.draw(choice, place.at, 0, place.normal, draws);
-      EXPECT_FALSE(drawn.probability > 0 && single.contains(drawn.emitter));
+      EXPECT_FALSE(drawn.probability > 0 && single.contains(drawn.light));
     }
   }
 }
@@ -116,7 +123,7 @@ TEST(LightTree, DrawsOverTheirProbabilityAddUpToAllThatTheRestBrings) {
     double sum = 0, squares = 0;
     for (int d = 0; d < count; ++d) {
       const auto drawn = lamps.tree.draw(choice, place.at, 0, place.normal, draws);
-      const double brought = drawn.probability > 0 ? lamps.brings(drawn.emitter, place) / drawn.probability : 0;
+      const double brought = drawn.probability > 0 ? lamps.brings(drawn.light, place) / drawn.probability : 0;
       sum += brought / count;
       squares += brought * brought / count;
     }
@@ -139,7 +146,7 @@ TEST(LightTree, AnEmitterIsDrawnAsOftenAsItsProbabilitySays) {
       nothing += 1.0 / count;
       continue;
     }
-    auto& [probability, times] = seen.try_emplace(drawn.emitter, drawn.probability, 0).first->second;
+    auto& [probability, times] = seen.try_emplace(drawn.light, drawn.probability, 0).first->second;
     EXPECT_EQ(probability, drawn.probability) << "an emitter has one place in the tree";
     ++times;
   }
@@ -183,8 +190,7 @@ TEST(LightTree, EmittersBehindOrFacingAwayAreNeverChosen) {
   std::set<std::uint32_t> chosen(choice.single.begin(), choice.single.end());
   RandomStream draws(4, PatchId::root(0));
   for (int d = 0; d < 1000 && choice.rest_bound > 0; ++d)
-    if (const auto drawn = lamps.tree.draw(choice, at, 1e-3, {0, 1, 0}, draws); drawn.probability > 0)
-      chosen.insert(drawn.emitter);
+    if (const auto drawn = lamps.tree.draw(choice, at, 1e-3, {0, 1, 0}, draws); drawn.probability > 0) chosen.insert(drawn.light);
   EXPECT_EQ(chosen, (std::set<std::uint32_t>{0, 3, 6, 9}));
 }
 
@@ -219,8 +225,8 @@ TEST(LightTree, ManyLightsByTheTreeAreAsBrightAsOneByOneForATenthOfTheRays) {
   constexpr int seeds = 64;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     std::vector<DirectLight> one_by_one(receivers.size()), by_tree(receivers.size());
-    add_direct_light(lamps.scene, lamps.emitters, receivers, seed, all, one_by_one);
-    add_direct_light(lamps.scene, lamps.emitters, lamps.tree, receivers, seed, few, by_tree);
+    add_direct_light(lamps.scene, lamps.lights, receivers, seed, all, one_by_one);
+    add_direct_light(lamps.scene, lamps.tree, receivers, seed, few, by_tree);
     const double more = mean_irradiance(by_tree) - mean_irradiance(one_by_one);
     difference += more / seeds;
     squares += more * more / seeds;

@@ -1,0 +1,68 @@
+#include "radiosity/direct/face_light.h"
+
+#include "radiosity/form_factors/form_factor.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+// Share of the way to the face at which a shadow ray ends, so that it does not hit the face itself. Chosen; not measured.
+constexpr float short_of_face = 1 - 1e-4f;
+
+Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+
+}  // namespace
+
+FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const Rgb& emission)
+    : LightSource(root, emission, emission.sum() * scene.mesh().roots()[root].area), scene_(scene) {}
+
+double FaceLight::unblocked(Vec3 at, Vec3 normal) const {
+  const auto corners = scene_.corners(root());
+  return dot(at - corners[0], scene_.mesh().roots()[root()].normal) > 0 ? point_to_polygon(at, normal, corners) : 0;
+}
+
+void FaceLight::aim(const ShadowAim& aim, int first, int last) const {
+  const LocalRoot& to = scene_.root(root());
+  RayPacket& rays = aim.rays;
+  for (int o = first; o < last; ++o) {
+    Uv target = aim.at[static_cast<std::size_t>(o)];
+    if (!to.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
+    const auto u = static_cast<float>(target.u), v = static_cast<float>(target.v);
+    const auto at = [&](float origin, float edge_u, float edge_v, float twist) {
+      return origin + u * edge_u + v * edge_v + u * v * twist;
+    };
+    rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
+    rays.direction_x[o] = at(to.origin.x, to.edge_u.x, to.edge_v.x, to.twist.x) - aim.from.x[o];
+    rays.direction_y[o] = at(to.origin.y, to.edge_u.y, to.edge_v.y, to.twist.y) - aim.from.y[o];
+    rays.direction_z[o] = at(to.origin.z, to.edge_u.z, to.edge_v.z, to.twist.z) - aim.from.z[o];
+    rays.t_min[o] = 0;
+    rays.t_max[o] = short_of_face;
+  }
+  const Float3 &n = aim.normal, &m = to.normal;
+  for (int o = first; o < last; ++o) {
+    const float x = rays.direction_x[o], y = rays.direction_y[o], z = rays.direction_z[o];
+    const float squared = x * x + y * y + z * z;
+    const float here = std::max(0.0f, x * n.x + y * n.y + z * n.z), there = std::max(0.0f, -(x * m.x + y * m.y + z * m.z));
+    aim.weights[static_cast<std::size_t>(o)] = here * there / (squared * squared + 1e-30f);
+  }
+}
+
+double FaceLight::sample_scale(double probability) const {
+  const double scale = scene_.frame().metres_per_unit, area = scene_.mesh().roots()[root()].area / (scale * scale);
+  return area / (std::numbers::pi * probability);
+}
+
+std::optional<LightExtent> FaceLight::extent() const {
+  const auto corners = scene_.corners(root());
+  const double scale = scene_.frame().metres_per_unit;
+  LightExtent extent{corners[0],    corners[0], corners[0], scene_.mesh().roots()[root()].normal, power() / (scale * scale),
+                     colour().sum()};
+  for (const Vec3 corner : corners) extent.low = lower(extent.low, corner), extent.high = upper(extent.high, corner);
+  return extent;
+}
+
+}  // namespace alvor

@@ -1,0 +1,27 @@
+#pragma once
+// The light of an emitting face.
+
+#include "radiosity/direct/light_source.h"
+#include "radiosity/rays/local_scene.h"
+
+namespace alvor {
+
+/// A root patch that emits diffusely from its front. Unblocked irradiance is Lambert's contour formula; shadow rays go to points
+/// that are uniform in the root's coordinates, with the weight cos cos / r2.
+class FaceLight final : public LightSource {
+ public:
+  /// `emission` is E of the root patch, emission units.
+  FaceLight(const LocalScene& scene, std::uint32_t root, const Rgb& emission);
+
+  std::uint32_t root() const { return number(); }
+  bool may_reach(std::uint32_t receiver) const override { return receiver != root(); }
+  double unblocked(Vec3 at, Vec3 normal) const override;
+  void aim(const ShadowAim& aim, int first, int last) const override;
+  double sample_scale(double probability) const override;
+  std::optional<LightExtent> extent() const override;
+
+ private:
+  const LocalScene& scene_;
+};
+
+}  // namespace alvor
