@@ -2,6 +2,7 @@
 
 #include "import/gltf_accessor.h"
 #include "import/gltf_file.h"
+#include "import/gltf_lights.h"
 #include "import/gltf_material.h"
 #include "import/import_error.h"
 #include "import/placement.h"
@@ -103,13 +104,15 @@ bool draws_no_surface(int mode) { return mode >= TINYGLTF_MODE_POINTS && mode <=
 /// Reads the default scene of one model.
 class GltfReader {
  public:
-  explicit GltfReader(const tinygltf::Model& model) : model_(model), seen_(model.nodes.size()) {}
+  explicit GltfReader(const tinygltf::Model& model) : model_(model), seen_(model.nodes.size()), lights_(model) {}
 
   SceneFile read() {
     file_.scene.materials = read_gltf_materials(model_, file_.warnings);
     add_tree(root_nodes());
     count_unsupported_materials();
     unsupported_.append_warnings(file_.warnings);
+    lights_.append_warnings(file_.warnings);
+    file_.scene.quantity = Quantity::photometric;
     return std::move(file_);
   }
 
@@ -146,7 +149,7 @@ class GltfReader {
       stack.pop_back();
       const auto [node, placement] = enter(next);
       if (node->mesh >= 0) add_mesh(node->mesh, placement);
-      count_light(*node);
+      lights_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
       push(node->children, placement);
     }
   }
@@ -215,18 +218,6 @@ class GltfReader {
     return *default_material_;
   }
 
-  /// Counts a light of the extension KHR_lights_punctual.
-  void count_light(const tinygltf::Node& node) {
-    const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end()) return;
-    const int light = extension->second.Has("light") ? extension->second.Get("light").GetNumberAsInt() : -1;
-    const std::string type = element(model_.lights, light, "light", "scene").type;
-    if (type == "point") ++unsupported_.point_lights;
-    else if (type == "spot") ++unsupported_.spot_lights;
-    else if (type == "directional") ++unsupported_.directional_lights;
-    else ++unsupported_.other_lights;
-  }
-
   void count_unsupported_materials() {
     const std::vector<bool> used = used_materials(file_.scene);
     for (std::size_t m = 0; m < model_.materials.size(); ++m) {
@@ -244,6 +235,7 @@ class GltfReader {
 
   const tinygltf::Model& model_;
   std::vector<bool> seen_;
+  GltfLights lights_;
   Unsupported unsupported_;
   SceneFile file_;
   std::optional<std::uint32_t> default_material_;

@@ -81,7 +81,9 @@ class BaseMesh {
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
   const Rgb& absorption() const { return absorption_; }  ///< absorption coefficient of the medium, see Scene
+  std::span<const Light> lights() const { return lights_; }  ///< those that are not faces
   UpAxis up() const { return up_; }
+  Quantity quantity() const { return quantity_; }
   const WeldReport& weld_report() const { return report_; }
 
   Vec3 centre() const { return centre_; }    ///< centre of the bounding box of the roots, metres
@@ -96,7 +98,9 @@ class BaseMesh {
   std::vector<RootPatch> roots_;
   std::vector<Material> materials_;
   Rgb absorption_;
+  std::vector<Light> lights_;
   UpAxis up_;
+  Quantity quantity_;
   std::vector<std::array<std::optional<Neighbour>, 4>> neighbours_;
   WeldReport report_;
   Vec3 centre_;

@@ -72,6 +72,9 @@ std::optional<Fault> find_fault(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (auto reason = fault_in(scene.materials[i]))
       return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (auto reason = fault_in(scene.lights[i]))
+      return Fault{"light " + std::to_string(i) + " '" + scene.lights[i].name + "'", *reason};
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)
     if (auto reason = fault_in(scene.vertices[i])) return Fault{"vertex " + std::to_string(i), *reason};
   for (std::size_t i = 0; i < scene.faces.size(); ++i)

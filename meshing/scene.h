@@ -1,6 +1,7 @@
 #pragma once
 // A scene as it was submitted: faces and materials, before welding and any other processing.
 
+#include "meshing/light.h"
 #include "meshing/vec3.h"
 #include "solution/rgb.h"
 
@@ -30,6 +31,10 @@ struct Face {
   std::uint32_t material = 0;
 };
 
+/// What numbers of light mean: watts of radiation, or lumens of light as eyes weigh it. In a photometric scene all that is said in W,
+/// W/m2, W/sr and W/m2 sr is lm, lx, cd and cd/m2 per band; the luminous value is 0.2126 r + 0.7152 g + 0.0722 b (Rec. 709).
+enum class Quantity : std::uint8_t { radiometric, photometric };
+
 /// The axis that points up. It does not affect the light; it orients pictures and solution files.
 enum class UpAxis : std::uint8_t { y, z };
 
@@ -41,7 +46,9 @@ struct Scene {
   /// Absorption coefficient of the medium that fills the scene, 1/m per band, >= 0. Light fades by exp(-absorption r); 0 means no
   /// medium.
   Rgb absorption;
+  std::vector<Light> lights;  ///< those that are not faces
   UpAxis up = UpAxis::y;
+  Quantity quantity = Quantity::radiometric;
 
   std::span<const std::uint32_t> corners_of(const Face& face) const {
     return std::span(corners).subspan(face.first_corner, face.corner_count);
@@ -62,7 +69,7 @@ struct Fault {
   std::string text() const { return place + ": " + reason; }
 };
 
-/// Returns the first fault of the scene; looks at counts, then materials, vertices and faces in order. Linear in the size of the
+/// Returns the first fault of the scene; looks at counts, then materials, lights, vertices and faces in order. Linear in the size of the
 /// scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face, finite coordinates
 /// within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite absorption >= 0 and
 /// reflectance in [0, 1). Degenerate faces are no fault.

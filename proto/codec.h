@@ -27,6 +27,7 @@ double decode_seconds(const google::protobuf::Duration& duration);
 v1::Rgb encode(const Rgb& value);
 Rgb decode(const v1::Rgb& message);
 v1::Material encode(const Material& material);
+v1::Light encode(const Light& light);
 v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
 
@@ -58,7 +59,7 @@ class SceneAssembler {
   std::uint64_t chunks_ = 0;
 };
 
-/// Cuts a scene into chunks: materials, then vertices, then faces. The scene must outlive it.
+/// Cuts a scene into chunks: materials, lights, then vertices, then faces. The scene must outlive it.
 class SceneSlicer {
  public:
   /// Each chunk stays below `max_bytes` (256 or more), but holds at least one item and never cuts a face.
@@ -68,12 +69,13 @@ class SceneSlicer {
 
  private:
   void take_materials(v1::GeometryChunk& chunk, std::int64_t& budget);
+  void take_lights(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_faces(v1::GeometryChunk& chunk, std::int64_t& budget);
 
   const Scene& scene_;
   std::int64_t max_bytes_;
-  std::size_t material_ = 0, vertex_ = 0, face_ = 0;
+  std::size_t material_ = 0, light_ = 0, vertex_ = 0, face_ = 0;
 };
 
 }  // namespace alvor

@@ -10,7 +10,7 @@ namespace alvor {
 
 namespace {
 
-std::array<Vec3, 3> corners_of(const Light& light) {
+std::array<Vec3, 3> corners_of(const EmittingTriangle& light) {
   return {light.corner, light.corner + light.side_u, light.corner + light.side_v};
 }
 
@@ -29,13 +29,13 @@ struct Box {
   }
 };
 
-bool faces(const Light& light, Vec3 point) { return light.two_sided || dot(light.normal, point - light.corner) > 0; }
+bool faces(const EmittingTriangle& light, Vec3 point) { return light.two_sided || dot(light.normal, point - light.corner) > 0; }
 
-double power_of(const Light& light) { return light.area * light.emission.sum() * (light.two_sided ? 2 : 1); }
+double power_of(const EmittingTriangle& light) { return light.area * light.emission.sum() * (light.two_sided ? 2 : 1); }
 
 }  // namespace
 
-EmitterTree::EmitterTree(std::vector<Light> lights) : lights_(std::move(lights)), leaf_of_(lights_.size()) {
+EmitterTree::EmitterTree(std::vector<EmittingTriangle> lights) : lights_(std::move(lights)), leaf_of_(lights_.size()) {
   if (lights_.empty()) return;
   std::vector<std::uint32_t> order(lights_.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -11,7 +11,7 @@
 namespace alvor {
 
 /// An emitting triangle: corner, corner + side_u, corner + side_v. Any unit of length.
-struct Light {
+struct EmittingTriangle {
   Vec3 corner, side_u, side_v;
   Vec3 normal;  ///< unit; points to the front
   double area = 0;
@@ -24,10 +24,10 @@ struct Light {
 /// something may be chosen; lights below the point's horizon or facing away are seldom chosen. Immutable; safe from any thread.
 class EmitterTree {
  public:
-  explicit EmitterTree(std::vector<Light> lights);
+  explicit EmitterTree(std::vector<EmittingTriangle> lights);
 
   bool empty() const { return lights_.empty(); }
-  const Light& operator[](std::uint32_t light) const { return lights_[light]; }
+  const EmittingTriangle& operator[](std::uint32_t light) const { return lights_[light]; }
 
   struct Choice {
     std::uint32_t light = 0;
@@ -55,7 +55,7 @@ class EmitterTree {
   /// Returns the probability of the first of two siblings; negative if neither can send anything.
   double first_share(std::uint32_t first_child, Vec3 point, Vec3 normal) const;
 
-  std::vector<Light> lights_;
+  std::vector<EmittingTriangle> lights_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> leaf_of_;  ///< by light
 };

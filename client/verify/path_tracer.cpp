@@ -22,7 +22,7 @@ constexpr double off_surface = 1e-6;
 constexpr double dim = 0.5;
 
 /// Returns a place uniform by area on a light.
-Vec3 place_on(const Light& light, UnitPair at) {
+Vec3 place_on(const EmittingTriangle& light, UnitPair at) {
   const double edge = std::sqrt(at.u);
   return light.corner + edge * (1 - at.v) * light.side_u + edge * at.v * light.side_v;
 }
@@ -36,6 +36,7 @@ double share_of(double density, double other_density) { return density / (densit
 PathTracer::PathTracer(const Scene& scene) : clear_(scene.absorption.is_zero()) {
   const std::vector<Facet> facets = facets_of(scene);
   extent_ = extent_of(facets);
+  lamps_ = Lamps(scene, extent_);
   absorption_ = scene.absorption * extent_.longest_side;
   add_surfaces(scene, facets);
   std::vector<Vec3> corners;
@@ -52,7 +53,7 @@ PathTracer::~PathTracer() = default;
 
 void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets) {
   const double scale = 1 / extent_.longest_side;
-  std::vector<Light> lights;
+  std::vector<EmittingTriangle> lights;
   for (const Facet& facet : facets) {
     const Material& material = scene.materials[scene.faces[facet.face].material];
     const auto& [a, b, c] = facet.corners;
@@ -66,7 +67,7 @@ void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets)
 }
 
 Rgb PathTracer::irradiance(const SurfacePoint& point, std::uint32_t paths, PathRandom random) const {
-  if (lights_.empty()) return {};
+  if (lights_.empty() && lamps_.empty()) return {};
   const Bend start = start_at(point);
   const EvenPairs lights(random), directions(random);
   Rgb sum;
@@ -99,6 +100,7 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
   Rgb arriving, throughput{1, 1, 1};
   for (;;) {
     arriving += throughput * from_chosen_light(bend, choices.light);
+    if (!lamps_.empty()) arriving += throughput * from_lamps(bend, random);
     const Vec3 direction = cosine_direction(bend.normal, choices.direction);
     const Met met = meet(bend, direction);
     if (!met.surface) return arriving;
@@ -113,13 +115,19 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
   }
 }
 
+Rgb PathTracer::from_lamps(const Bend& bend, PathRandom& random) const {
+  const auto sample = lamps_.sample(bend.place, bend.normal, random.number(), random.pair());
+  if (!sample || caster_->is_blocked(bend.place, bend.place + sample->way)) return {};
+  return clear_ ? sample->irradiance : sample->irradiance * transmittance(sample->distance);
+}
+
 // `height / (distance pi)` is the density of directions by cosine, `light_density` that of choosing a place on a light. A sample
 // of the latter is emission / pi * cosine / light_density times its weight; this equals the emission times the weight of the
 // other way.
 Rgb PathTracer::from_chosen_light(const Bend& bend, UnitPair choice) const {
   const auto chosen = lights_.choose(bend.place, bend.normal, choice.u);
   if (!chosen) return {};
-  const Light& light = lights_[chosen->light];
+  const EmittingTriangle& light = lights_[chosen->light];
   const Vec3 on_light = place_on(light, {chosen->rest, choice.v});
   const double seen_side = dot(light.normal, bend.place - on_light) >= 0 ? 1 : -1;
   if (seen_side < 0 && !light.two_sided) return {};

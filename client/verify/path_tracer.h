@@ -4,6 +4,7 @@
 
 #include "client/verify/emitter_tree.h"
 #include "client/verify/facets.h"
+#include "client/verify/lamps.h"
 #include "client/verify/path_random.h"
 #include "meshing/scene.h"
 
@@ -26,7 +27,8 @@ struct SurfacePoint {
 /// Estimates irradiance without bias: the expectation is the solution of the scene's rendering equation (Kajiya 1986), with
 /// media. Paths continue in cosine-distributed directions until Russian roulette ends them. At each bend, emitted light is
 /// sampled in two ways: by choosing a place on an emitter, and by following the path. They are weighted by the balance heuristic
-/// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. One systematic error
+/// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. Lamps and distant lights are
+/// sampled one at a time, chosen by what they bring unblocked. One systematic error
 /// remains: rays start 1e-6 of the scene's extent above their surface, so that they do not hit it. Immutable; safe from any
 /// thread.
 class PathTracer {
@@ -74,6 +76,7 @@ class PathTracer {
   void add_surfaces(const Scene& scene, std::span<const Facet> facets);
   Rgb path(Bend bend, Choices choices, PathRandom& random) const;
   Rgb from_chosen_light(const Bend& bend, UnitPair choice) const;
+  Rgb from_lamps(const Bend& bend, PathRandom& random) const;
   Rgb from_met_light(const Bend& bend, Vec3 direction, const Met& met) const;
   Met meet(const Bend& bend, Vec3 direction) const;
   Rgb transmittance(double distance) const;
@@ -83,6 +86,7 @@ class PathTracer {
   bool clear_ = true;
   std::vector<Surface> surfaces_;
   EmitterTree lights_{{}};
+  Lamps lamps_;
   std::unique_ptr<const TriangleCaster> caster_;
 };
 

@@ -9,7 +9,7 @@
 namespace alvor {
 
 /// Converts between W/m2 and emission units. One emission unit is the brightest emission of the scene in any band, W/m2; 1 W/m2
-/// if nothing emits. Inside direct, exchange and solve all light and power are multiples of it, so that squares stay within the
+/// if nothing emits. A lamp counts by its irradiance at a distance of the scene's extent. Inside direct, exchange and solve all light and power are multiples of it, so that squares stay within the
 /// range of numbers however bright or dim a scene is.
 class EmissionUnit {
  public:
@@ -17,6 +17,10 @@ class EmissionUnit {
     double brightest = 0;
     for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
       brightest = std::max(brightest, mesh.material_of(root).emission.max());
+    for (const Light& light : mesh.lights()) {
+      const double squared = light.is_distant() ? 1 : mesh.extent() * mesh.extent();
+      brightest = std::max(brightest, light.intensity.max() / squared);
+    }
     if (brightest > 0) watts_per_m2_ = brightest;
   }
 

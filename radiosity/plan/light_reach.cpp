@@ -3,6 +3,7 @@
 #include "radiosity/plan/sealed_rooms.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace alvor {
@@ -25,6 +26,7 @@ class Zones {
     for (std::uint32_t root = 0; root < zone_.size(); ++root) zone_[root] = place(mesh.roots()[root]);
     for (std::uint32_t root = 0; root < zone_.size(); ++root)
       if (!mesh.material_of(root).emission.is_zero()) is_lit_[find(zone_[root])] = true;
+    for (const Light& light : mesh.lights()) light_zones_of(light);
   }
 
   bool may_be_lit(std::uint32_t root) const { return rooms_.empty() || is_lit_[find(zone_[root])]; }
@@ -46,6 +48,17 @@ class Zones {
     add(0);
     return zone;
   }
+  /// Marks the zones that a light may be in. Distant light comes from outside of all rooms. A lamp in a room within a room counts
+  /// for both, which is safe.
+  void light_zones_of(const Light& light) {
+    bool is_inside = false;
+    for (std::uint32_t room = 0; room < rooms_.size() && !light.is_distant(); ++room) {
+      if (!rooms_[room].holds(light.position)) continue;
+      is_lit_[find(room + 1)] = true;
+      is_inside = true;
+    }
+    if (!is_inside) is_lit_[find(0)] = true;
+  }
   std::uint32_t find(std::uint32_t zone) const {
     while (joined_[zone] != zone) zone = joined_[zone];
     return zone;
@@ -64,6 +77,12 @@ double height_of(const RootPatch& face, Vec3 centre) {
   return height;
 }
 
+bool faces_distant_light(const BaseMesh& mesh, Vec3 normal) {
+  return std::ranges::any_of(mesh.lights(), [&](const Light& light) {
+    return light.is_distant() && dot(normal, light.direction) < std::sin(light.angular_diameter / 2);
+  });
+}
+
 }  // namespace
 
 LightReach::LightReach(const BaseMesh& mesh, const PointTree& corners) : is_dark(mesh.roots().size()) {
@@ -71,7 +90,8 @@ LightReach::LightReach(const BaseMesh& mesh, const PointTree& corners) : is_dark
   for (std::uint32_t root = 0; root < is_dark.size(); ++root) {
     const RootPatch& face = mesh.roots()[root];
     const double height = height_of(face, mesh.centre());
-    const bool faces_nothing = !corners.any_above(face.normal, height + flat_tolerance * mesh.extent());
+    const bool faces_nothing = !corners.any_above(face.normal, height + flat_tolerance * mesh.extent()) &&
+                               !faces_distant_light(mesh, face.normal);
     const bool is_shut_off = !faces_nothing && !zones.may_be_lit(root);
     facing_nothing += faces_nothing;
     shut_off += is_shut_off;

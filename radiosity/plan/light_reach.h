@@ -11,7 +11,7 @@ namespace alvor {
 
 /// The faces whose fronts no light can reach. A face that any light reaches is never counted as dark; a dark face may be missed.
 struct LightReach {
-  /// `corners` holds the corners of all roots, relative to the mesh's centre.
+  /// `corners` holds the corners of all roots and the places of all lamps, relative to the mesh's centre.
   LightReach(const BaseMesh& mesh, const PointTree& corners);
 
   std::vector<bool> is_dark;       ///< by root

@@ -37,11 +37,19 @@ std::string faces(std::size_t count) { return counted(count, "face", "faces"); }
 std::string materials(std::size_t count) { return counted(count, "material", "materials"); }
 std::string bands(const Rgb& value) { return sentence(value.r, ' ', value.g, ' ', value.b); }
 
+/// Returns the corners of all faces but those left out, and of boxes about the lamps, relative to the mesh's centre.
 std::vector<Vec3> corners_about_centre(const BaseMesh& mesh, const std::vector<bool>& left_out) {
   std::vector<Vec3> corners;
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
     for (int c = 0; c < mesh.roots()[root].corner_count && !left_out[root]; ++c)
       corners.push_back(mesh.roots()[root].corners[c] - mesh.centre());
+  for (const Light& light : mesh.lights()) {
+    if (light.is_distant()) continue;
+    const double r = light.radius;
+    for (const Vec3 side : {Vec3{r, r, r}, Vec3{r, r, -r}, Vec3{r, -r, r}, Vec3{r, -r, -r}, Vec3{-r, r, r}, Vec3{-r, r, -r},
+                            Vec3{-r, -r, r}, Vec3{-r, -r, -r}})
+      corners.push_back(light.position + side - mesh.centre());
+  }
   return corners;
 }
 
@@ -71,6 +79,7 @@ class Planner {
       : mesh_(mesh), options_(options), census_(mesh), reach_(mesh, PointTree(corners_about_centre(mesh, nobody()))) {
     emission_by_rows_ = census_.emitting_share > most_area_emits;
     if (census_.is_lit()) standing_ = look_from(PointTree(corners_about_centre(mesh, left_dark())), mesh);
+    standing_.backs_are_seen |= census_.has_distant_light;  // it looks from beyond all faces
   }
 
   PlannedFeature decide(Feature feature) const {
@@ -117,12 +126,15 @@ class Planner {
     if (census_.coloured)
       return on(sentence("material '", census_.coloured->name, "' is not grey: it emits ", bands(census_.coloured->emission),
                          " and reflects ", bands(census_.coloured->reflectance)));
+    if (const Light* light = census_.coloured_light)
+      return on(sentence("light '", light->name, "' is not grey: it sends ", bands(light->intensity)));
     if (!mesh_.absorption().is_grey()) return on(sentence("the medium absorbs ", bands(mesh_.absorption()), " per metre"));
     return off(sentence("all ", materials(census_.materials), " are grey"));
   }
 
   PlannedFeature occlusion() const {
-    if (emission_by_rows_) return off(sentence(by_rows(), ", so no shadow rays are sent"));
+    if (emission_by_rows_ && census_.lights == 0) return off(sentence(by_rows(), ", so no shadow rays are sent"));
+    if (census_.has_distant_light) return on("a distant light shines from beyond all faces");
     if (standing_.blocker < mesh_.roots().size())
       return on(sentence("face ", mesh_.roots()[standing_.blocker].input.first, " has lit faces before and behind it, of ",
                          faces(census_.faces)));

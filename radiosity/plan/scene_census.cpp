@@ -25,6 +25,12 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     emitting_faces += emits;
     two_sided_faces += root.twin != RootPatch::no_twin;
   }
+  for (const Light& light : mesh.lights()) {
+    if (light.intensity.is_zero()) continue;
+    ++lights;
+    has_distant_light |= light.is_distant();
+    if (!light.intensity.is_grey() && !coloured_light) coloured_light = &light;
+  }
   emitting_share = area > 0 ? emitting_area / area : 0;
   for (std::size_t m = 0; m < is_used.size(); ++m) {
     if (!is_used[m]) continue;

@@ -16,8 +16,11 @@ struct SceneCensus {
   double largest_reflectance = 0;      ///< largest reflectance of any material, in any band
   double emitting_share = 0;           ///< share of the area of all sides that emits
   const Material* coloured = nullptr;  ///< the first material that is not grey; null: all are grey
+  std::size_t lights = 0;              ///< lights that are not faces and not black
+  const Light* coloured_light = nullptr;  ///< the first of these that is not grey; null: all are grey
+  bool has_distant_light = false;
 
-  bool is_lit() const { return emitting_faces > 0; }
+  bool is_lit() const { return emitting_faces + lights > 0; }
 };
 
 }  // namespace alvor

@@ -1,10 +1,10 @@
 #include "radiosity/solve/direct_field.h"
 
-#include "radiosity/direct/face_light.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace alvor {
 
@@ -33,23 +33,33 @@ DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOp
 
 // If most surfaces emit, as in a furnace, rows carry the emission, because a row that sums to 1 is exact and shadow rays are not.
 void DirectField::choose_lights() {
-  const BaseMesh& mesh = forests_.mesh();
-  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
-    const Rgb emission = emission_of(root);
-    if (emission.is_zero()) continue;
-    auto light = std::make_unique<FaceLight>(scene_, root, emission);
-    emitted_power_ += light->power();
-    if (!plan_.emission_by_rows()) owned_lights_.push_back(std::move(light));
-  }
-  for (const auto& light : owned_lights_) lights_.push_back(light.get());
+  OwnedLights faces = lights_of_faces(scene_, unit_), others = lights_beside_faces(scene_, unit_);
+  for (const auto* list : {&faces, &others})
+    for (const auto& light : *list) {
+      power_ += light->power();
+      if (light->extent()) near_power_ += light->power();
+    }
+  if (!plan_.emission_by_rows()) owned_lights_ = std::move(faces);
+  std::ranges::move(others, std::back_inserter(owned_lights_));
+  for (const auto& light : owned_lights_) (light->extent() ? tree_lights_ : lights_).push_back(light.get());
+  has_distant_lights_ = !lights_.empty();
+  if (tree_lights_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(tree_lights_);
+  else lights_.insert(lights_.end(), tree_lights_.begin(), tree_lights_.end());
   std::ranges::stable_sort(lights_, std::ranges::greater{}, [](const LightSource* light) { return light->power(); });
-  waiting_power_ = emitted_power_;
-  if (lights_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(lights_);
+  waiting_power_ = power_;
+}
+
+double DirectField::emitted_power() const {
+  if (!has_distant_lights_ || waiting_power_ > 0) return power_;
+  double power = near_power_;
+  for (const NodeIndex leaf : forests_.leaves().leaves()) power += forests_.leaf_area(leaf) * from_afar_[leaf];
+  return power;
 }
 
 void DirectField::fit_to_nodes() {
   const std::size_t count = forests_.leaves().node_count();
   light_.resize(count);
+  if (has_distant_lights_) from_afar_.resize(count);
   is_known_.resize(count);
   is_lit_.resize(count);
 }
@@ -58,6 +68,7 @@ void DirectField::hand_down(NodeIndex split_leaf) {
   for (int k = 0; k < 4; ++k) {
     const NodeIndex child = forests_.leaves().child(split_leaf, k);
     light_[child] = light_[split_leaf];
+    if (has_distant_lights_) from_afar_[child] = from_afar_[split_leaf];
     is_lit_[child] = is_lit_[split_leaf];
   }
 }
@@ -90,7 +101,8 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
   spread_out(forests_.leaves(), leaves);
   const std::vector<Receiver> receivers = receivers_of(leaves, rows);
   std::vector<DirectLight> light(leaves.size());
-  const ShadowNeeds needs{plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)};
+  if (has_distant_lights_)
+    for (const NodeIndex leaf : leaves) from_afar_[leaf] = 0;
   const auto show_part = [&](std::size_t first, std::size_t count, double power, bool is_of_all) {
     show(std::span(leaves).subspan(first, count), std::span(light).subspan(first, count), is_of_all);
     const double share = unlit > 0 ? static_cast<double>(count) / static_cast<double>(unlit) : 1;
@@ -102,20 +114,36 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
     const std::size_t step = unlit / parts_shown + 1;
     for (std::size_t first = 0; first < receivers.size(); first += step) {
       const std::size_t count = std::min(step, receivers.size() - first);
-      add_direct_light(scene_, *light_tree_, std::span(receivers).subspan(first, count), options_.seed, budget_,
-                       std::span(light).subspan(first, count), needs);
+      const auto part = std::span(receivers).subspan(first, count);
+      const auto part_light = std::span(light).subspan(first, count);
+      for (const LightSource* next : lights_) add_one(*next, part, std::span(leaves).subspan(first, count), part_light);
+      add_direct_light(scene_, *light_tree_, part, options_.seed, budget_, part_light, shadow_needs());
       if (budget_.is_out()) return;
       show_part(first, count, waiting, true);
     }
   } else {
-    for (const LightSource* const& next : lights_) {
-      add_direct_light(scene_, {&next, 1}, receivers, options_.seed, budget_, light, needs);
+    for (const LightSource* next : lights_) {
+      add_one(*next, receivers, leaves, light);
       if (budget_.is_out()) return;
-      show_part(0, leaves.size(), waiting * next->power() / emitted_power_, next == lights_.back());
+      show_part(0, leaves.size(), waiting * next->power() / power_, next == lights_.back());
     }
     if (lights_.empty()) show_part(0, leaves.size(), 0, true);
   }
   if (leaves.size() == unlit) waiting_power_ = 0;
+}
+
+ShadowNeeds DirectField::shadow_needs() const { return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)}; }
+
+/// Adds one light to the light of `receivers`, which are these leaves.
+void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
+                          std::span<DirectLight> light) {
+  const LightSource* const lights[]{&next};
+  const bool is_distant = !next.extent();
+  if (is_distant)
+    for (std::size_t n = 0; n < leaves.size(); ++n) from_afar_[leaves[n]] -= static_cast<float>(light[n].irradiance.sum());
+  add_direct_light(scene_, lights, receivers, options_.seed, budget_, light, shadow_needs());
+  if (is_distant)
+    for (std::size_t n = 0; n < leaves.size(); ++n) from_afar_[leaves[n]] += static_cast<float>(light[n].irradiance.sum());
 }
 
 void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {
@@ -133,6 +161,7 @@ void DirectField::show_on_whole_face(NodeIndex leaf) {
   for (const NodeIndex other : leaves) {
     if (is_lit_[other]) continue;
     light_[other] = light_[leaf];
+    if (has_distant_lights_) from_afar_[other] = from_afar_[leaf];
     is_lit_[other] = true;
   }
 }
@@ -150,6 +179,7 @@ double DirectField::unlit_fraction() const {
 void DirectField::save_light(PlainWriter& out) const {
   const auto leaves = forests_.leaves().leaves();
   save_at(leaves, light_, out);
+  if (has_distant_lights_) save_at(leaves, from_afar_, out);
   save_flags(leaves, is_known_, out);
   save_flags(leaves, is_lit_, out);
 }
@@ -158,6 +188,8 @@ void DirectField::load_light(PlainReader& in) {
   fit_to_nodes();
   const auto leaves = forests_.leaves().leaves();
   load_at(leaves, light_, in, "direct light", [](const DirectLight& light) { return is_sound(light); });
+  if (has_distant_lights_)
+    load_at(leaves, from_afar_, in, "light from afar", [](float light) { return std::isfinite(light); });
   load_flags(leaves, is_known_, in);
   load_flags(leaves, is_lit_, in);
 }
@@ -169,7 +201,7 @@ void DirectField::load_waiting(PlainReader& in) {
   if (!std::isfinite(waiting_power_)) throw BadBytes("waiting power: not a finite number");
   // No leaf has the light of all lights, so the first light is the next again.
   if (std::ranges::none_of(forests_.leaves().leaves(), [this](NodeIndex leaf) { return is_known_[leaf]; }))
-    waiting_power_ = emitted_power_;
+    waiting_power_ = power_;
 }
 
 }  // namespace alvor

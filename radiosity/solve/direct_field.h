@@ -3,6 +3,7 @@
 
 #include "radiosity/direct/direct_light.h"
 #include "radiosity/direct/emission_unit.h"
+#include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/solve/traced_rows.h"
 
 #include <functional>
@@ -23,8 +24,9 @@ class DirectField {
   Rgb emission_of(std::uint32_t root) const { return unit_.from_watts_per_m2(forests_.mesh().material_of(root).emission); }
   /// Returns the part of emission_of(root) that rows bring to receivers: all of it if most surfaces emit, else none.
   Rgb emission_by_rows(std::uint32_t root) const { return plan_.emission_by_rows() ? emission_of(root) : Rgb{}; }
-  /// Returns the power that all root patches emit, summed over bands, in emission units times m2.
-  double emitted_power() const { return emitted_power_; }
+  /// Returns the power that all root patches and lamps emit, and what of distant lights first arrives on leaves (a rough
+  /// estimate of it while light is waiting). Summed over bands, in emission units times m2.
+  double emitted_power() const;
   /// Returns the part of the emitted power whose light has not been added to leaves yet, in emission units times m2.
   double waiting_power() const { return waiting_power_; }
 
@@ -54,6 +56,9 @@ class DirectField {
 
  private:
   void choose_lights();
+  ShadowNeeds shadow_needs() const;
+  void add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
+               std::span<DirectLight> light);
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
@@ -65,11 +70,15 @@ class DirectField {
   const LocalScene& scene_;
   RayBudget& budget_;
   const EmissionUnit unit_{forests_.mesh()};
-  std::vector<std::unique_ptr<const LightSource>> owned_lights_;
-  std::vector<const LightSource*> lights_;  ///< strongest first
-  std::unique_ptr<LightTree> light_tree_;   ///< null for up to twelve lights
-  double emitted_power_ = 0, waiting_power_ = 0;
+  OwnedLights owned_lights_;
+  std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first
+  std::vector<const LightSource*> tree_lights_;  ///< the others
+  std::unique_ptr<LightTree> light_tree_;        ///< null if there are no others
+  bool has_distant_lights_ = false;
+  double near_power_ = 0;                        ///< of faces and lamps
+  double power_ = 0, waiting_power_ = 0;         ///< of all lights
   std::vector<DirectLight> light_;
+  std::vector<float> from_afar_;  ///< irradiance from distant lights, sum of bands; empty if there are none
   std::vector<bool> is_known_;  ///< the leaf has its own light of all lights
   std::vector<bool> is_lit_;    ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
 };

@@ -16,13 +16,13 @@ constexpr std::size_t longest_display_name = 256;
 constexpr std::uint64_t bytes_a_corner = 250;
 
 bool emits(const BaseMesh& mesh) {
-  return std::ranges::any_of(mesh.roots(),
+  return !mesh.lights().empty() || std::ranges::any_of(mesh.roots(),
                              [&](const RootPatch& root) { return !mesh.materials()[root.material].emission.is_zero(); });
 }
 
 void describe_mesh(const BaseMesh& mesh, v1::Scene& facts) {
   for (std::string& warning : warnings_of(mesh.weld_report())) facts.add_warnings(std::move(warning));
-  if (!emits(mesh)) facts.add_warnings("No face emits light: the solution will be dark.");
+  if (!emits(mesh)) facts.add_warnings("No face emits light, and there are no lamps: the solution will be dark.");
 }
 
 /// Replaces each reflectance of exactly 1 by clamped_reflectance. Returns a sentence about it, or "" if there was none.

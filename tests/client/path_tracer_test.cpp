@@ -121,6 +121,63 @@ TEST(PathTracer, AMediumDimsReflectedLightOnBothLegs) {
   EXPECT_NEAR(estimate.mean().b / clear, std::exp(-2), 0.003);
 }
 
+Light lamp_at(Vec3 place, LightKind kind, double intensity) {
+  Light lamp;
+  lamp.kind = kind;
+  lamp.intensity = {intensity, intensity, intensity};
+  lamp.position = place;
+  return lamp;
+}
+
+TEST(PathTracer, LampsBringWhatTheirFormulasSay) {
+  Scene scene;
+  add_black_floor(scene, 10);
+  const SurfacePoint point{{0, 0, 0}, {0, 0, 1}};
+  const auto expect = [&](const Light& lamp, double irradiance, double tolerance) {
+    scene.lights = {lamp};
+    EXPECT_NEAR(traced(scene, point).mean().mean(), irradiance, tolerance * irradiance) << static_cast<int>(lamp.kind);
+  };
+  const Vec3 way{1, 1, 2};
+  expect(lamp_at(way, LightKind::point, 100), 100 * 2 / std::pow(6, 1.5), 1e-6);
+  Light sphere = lamp_at(way, LightKind::point, 100);
+  sphere.radius = 0.5;
+  expect(sphere, 100 * 2 / std::pow(6, 1.5), 1e-3);
+  Light spot = lamp_at(way, LightKind::spot, 100);
+  spot.direction = -1 / length(way) * way;
+  expect(spot, 100 * 2 / std::pow(6, 1.5), 1e-6);
+  Light sun = lamp_at({}, LightKind::directional, 100);
+  sun.direction = {0.6, 0, -0.8};
+  expect(sun, 80, 1e-6);
+  sun.angular_diameter = 0.2;
+  expect(sun, 80, 5e-3);
+}
+
+TEST(PathTracer, AllLampsTogetherBringTheirSum) {
+  Scene scene;
+  add_black_floor(scene, 10);
+  scene.lights = {lamp_at({0, 0, 2}, LightKind::point, 10), lamp_at({0, 0, 3}, LightKind::point, 90), lamp_at({0, 0, -1}, LightKind::point, 50)};
+  const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}});
+  EXPECT_NEAR(estimate.mean().mean(), 10 / 4.0 + 90 / 9.0, sure * error_of(estimate) + 1e-9);
+}
+
+TEST(PathTracer, ALampInACubeHasTheKnownMeanIlluminance) {
+  // CIE 171:2006, test 5.8: Phi / (S (1 - rho)); here over the mean of points of one wall, which all walls equal.
+  Scene scene;
+  scene.materials = {grey(0, 0.8)};
+  test::add_box(scene, {0, 0, 0}, {4, 4, 4}, true);
+  scene.lights = {lamp_at({2, 2, 2}, LightKind::point, 1000)};
+  double mean = 0, variance = 0;
+  constexpr int n = 8;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const auto estimate = traced(scene, {{(i + 0.5) * 4 / n, 0, (j + 0.5) * 4 / n}, {0, 1, 0}}, 1024);
+      mean += estimate.mean().mean() / (n * n);
+      variance += estimate.variance_of_band_mean() / (n * n * n * n);
+    }
+  const double expected = 4 * std::numbers::pi * 1000 / (96 * 0.2);
+  EXPECT_NEAR(mean, expected, sure * std::sqrt(variance) + 1e-3 * expected);
+}
+
 TEST(PathTracer, BacksAreBlackAndBlockUnlessTwoSided) {
   const SurfacePoint below{{0, 0, 0}, {0, 0, 1}};
   for (const bool two_sided : {false, true}) {

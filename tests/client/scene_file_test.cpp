@@ -288,6 +288,53 @@ TEST(SceneFile, StripsAndFansFaceTheSameWayAsTheirTriangles) {
   expect_near(scene.materials.at(scene.faces[0].material).reflectance, {0.5, 0.5, 0.5});
 }
 
+/// Returns the JSON of a file with one light, which hangs from a node that turns -z to -x and moves.
+std::string with_light(const std::string& light) {
+  return R"("scene": 0, "scenes": [{"nodes": [0, 1]}], "extensionsUsed": ["KHR_lights_punctual"],
+            "extensions": {"KHR_lights_punctual": {"lights": [)" +
+         light + R"(]}},
+            "nodes": [{"mesh": 0}, {"name": "lamp.001", "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476],
+                       "translation": [1, 2, 3], "extensions": {"KHR_lights_punctual": {"light": 0}}}], )" +
+         lamp_material + ", " + square_mesh;
+}
+
+TEST(SceneFile, LightsOfAGlbStandWhereTheirNodesAre) {
+  const SceneFile file = read_scene_file(GlbFile(with_light(R"({"type": "spot", "color": [1, 0.5, 0.25], "intensity": 8,
+      "range": 10, "extras": {"radius": 0.25}, "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.4}})"), square_bytes()));
+  ASSERT_EQ(file.scene.lights.size(), 1u);
+  const Light& spot = file.scene.lights[0];
+  EXPECT_EQ(spot.name, "lamp.001");
+  EXPECT_EQ(spot.kind, LightKind::spot);
+  expect_near(spot.intensity, {8, 4, 2});
+  EXPECT_NEAR(length(spot.position - Vec3{1, 2, 3}), 0, 1e-12);
+  EXPECT_NEAR(length(spot.direction - Vec3{-1, 0, 0}), 0, 1e-12);
+  EXPECT_EQ(spot.inner_cone, 0.1);
+  EXPECT_EQ(spot.outer_cone, 0.4);
+  EXPECT_EQ(spot.radius, 0.25);
+  EXPECT_EQ(file.scene.quantity, Quantity::photometric);
+  EXPECT_EQ(file.warnings,
+            std::vector<std::string>{"1 light has a range, which is ignored: light fades with the square of the distance only"});
+}
+
+TEST(SceneFile, HostileLightsAreRefusedByName) {
+  const auto refusal_of = [&](const std::string& light) { return refusal(GlbFile(with_light(light), square_bytes())); };
+  EXPECT_EQ(refusal_of(R"({"type": "candle"})"), "node 1: its light is of the unknown type 'candle'");
+  EXPECT_EQ(refusal_of(""), "node 1: light 0 is not in the file");
+  EXPECT_EQ(refusal_of(R"({"type": "point", "intensity": 1e38})"), "light 0 'lamp.001': intensity 1e+38 is outside [0, 1e30]");
+  EXPECT_EQ(refusal_of(R"({"type": "spot", "spot": {"outerConeAngle": 0}})"),
+            "light 0 'lamp.001': outer cone angle 0 is outside (0, pi]");
+  EXPECT_EQ(refusal_of(R"({"type": "spot", "spot": {"outerConeAngle": 7}})"),
+            "light 0 'lamp.001': outer cone angle 7 is outside (0, pi]");
+  EXPECT_EQ(refusal_of(R"({"type": "spot", "spot": {"innerConeAngle": -1}})"),
+            "light 0 'lamp.001': inner cone angle -1 is outside [0, outer cone angle]");
+}
+
+TEST(SceneFile, ALightOfNegativeIntensityIsLeftOutAndSaidSo) {
+  const SceneFile file = read_scene_file(GlbFile(with_light(R"({"type": "point", "intensity": -3})"), square_bytes()));
+  EXPECT_TRUE(file.scene.lights.empty());
+  EXPECT_EQ(file.warnings, std::vector<std::string>{"1 light of negative intensity is left out"});
+}
+
 TEST(SceneFile, HostileGltfIsRefusedByTheItemAtFault) {
   const auto refusal_of = [&](const std::string& json) { return refusal(GlbFile(json, square_bytes())); };
   const auto with = [](std::string text, const std::string& old, const std::string& by) {

@@ -167,10 +167,18 @@ TEST(BlenderMaterials, AreTheSameInFbxAndCollada) {
 
 TEST(BlenderWarnings, CountWhatIsNotSupportedYet) {
   const auto warnings = read_scene_file(files / "room.glb").warnings;
-  for (const char* said : {"1 point light is ignored", "1 spot light is ignored", "1 directional light is ignored",
-                           "2 materials with alpha are taken for opaque", "1 metallic material is taken for diffuse",
+  for (const char* said : {"2 materials with alpha are taken for opaque", "1 metallic material is taken for diffuse",
                            "1 transmissive material is taken for opaque"})
     EXPECT_EQ(std::ranges::count(warnings, said), 1) << said;
+}
+
+TEST(BlenderLights, ShineWhereBlenderHasThem) {
+  const SceneFile file = read_scene_file(files / "room.glb");
+  std::vector<LightKind> kinds;
+  for (const Light& light : file.scene.lights) kinds.push_back(light.kind);
+  std::ranges::sort(kinds);
+  EXPECT_EQ(kinds, (std::vector{LightKind::point, LightKind::spot, LightKind::directional}));
+  EXPECT_TRUE(std::ranges::any_of(file.warnings, [](const std::string& said) { return said.find("683 times") != said.npos; }));
 }
 
 }  // namespace

@@ -62,6 +62,19 @@ Scene room_with_many_lamps() {
   return scene;
 }
 
+/// Returns a room with a sphere lamp and a spot, into which the sun shines through the missing ceiling.
+Scene room_with_lamps_and_sun() {
+  Scene scene = test::coloured_room();
+  scene.faces.erase(scene.faces.begin() + 1);
+  Light lamp{"bulb", LightKind::point, {9, 8, 7}, {3, 2, 4}}, spot{"spot", LightKind::spot, {50, 50, 20}, {0.5, 2.5, 0.5}, {0, -1, 0}};
+  lamp.radius = 0.1;
+  Light sun{"sun", LightKind::directional, {60, 60, 50}};
+  sun.direction = normalized(Vec3{0.5, -1, 0.2});
+  sun.angular_diameter = 0.0093;
+  scene.lights = {lamp, spot, sun};
+  return scene;
+}
+
 Scene black_room() { return test::black(test::room_with_contacts()); }
 
 Scene hazy_room() {
@@ -85,6 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Shooting", test::coloured_room, {.tolerance = 0.04, .strategy = Strategy::sorted}},
                     Case{"NothingReflects", black_room, {.tolerance = 0.03, .max_leaves = 6000}},
                     Case{"HemicubesInHaze", hazy_room, {.tolerance = 0.05, .form_factors = FormFactorMethod::hemicube}},
+                    Case{"LampsAndSun", room_with_lamps_and_sun, {.tolerance = 0.03, .max_leaves = 5000}},
                     Case{"Furnace", [] { return test::furnace(1, 0.9); }, {}}),
     [](const auto& one) { return one.param.name; });
 

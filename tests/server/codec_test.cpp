@@ -33,6 +33,38 @@ TEST(SceneCodec, EncodeDecodeEncodeGivesTheSameBytes) {
   EXPECT_EQ(once[0].SerializeAsString(), twice[0].SerializeAsString());
 }
 
+/// Returns a scene with a light of each kind, all of whose fields that count differ from their defaults.
+Scene scene_with_lights() {
+  Scene scene = squares(3);
+  scene.quantity = Quantity::photometric;
+  Light bulb{"bulb", LightKind::point, {1, 2, 3}, {4, 5, 6}}, spot{"spot", LightKind::spot, {7, 8, 9}, {1, 2, 3}, {0, 1, 0}, 0.2, 0.7},
+      sun{"sun", LightKind::directional, {10, 20, 30}};
+  bulb.radius = 0.5;
+  sun.direction = {1, 0, 0};
+  sun.angular_diameter = 0.01;
+  scene.lights = {bulb, spot, sun};
+  return scene;
+}
+
+TEST(SceneCodec, LightsAndTheQuantityArrive) {
+  for (const std::size_t bytes : {256u, 1u << 20}) {
+    const Scene arrived = assemble(slice(scene_with_lights(), bytes));
+    EXPECT_EQ(arrived.quantity, Quantity::photometric);
+    ASSERT_EQ(arrived.lights.size(), 3u);
+    EXPECT_EQ(arrived.lights, scene_with_lights().lights);
+  }
+}
+
+TEST(SceneCodec, ALightOfNoKnownKindIsRefusedByName) {
+  for (const int kind : {0, 77}) {
+    v1::GeometryChunk chunk = slice(scene_with_lights(), 1 << 20)[0];
+    chunk.mutable_lights(1)->set_kind(static_cast<v1::Light::Kind>(kind));
+    const auto fault = SceneAssembler().add(chunk);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->text(), "light 1 'spot': its kind " + std::to_string(kind) + " is not known");
+  }
+}
+
 TEST(MeshCodec, MessagesWithLongNamesStayBelowGrpcsLimit) {
   Scene scene = squares(3);
   for (int n = 0; n < 9000; ++n) scene.materials.push_back({std::string(1000, 'x'), {}, {}, false});

@@ -19,7 +19,7 @@ TEST(SceneStore, TellsWhatIsOdd) {
   EXPECT_EQ(facts.face_count(), 3u);
   ASSERT_EQ(facts.warnings_size(), 2);
   EXPECT_EQ(facts.warnings(0), "1 degenerate faces (no area) were left out.");
-  EXPECT_EQ(facts.warnings(1), "No face emits light: the solution will be dark.");
+  EXPECT_EQ(facts.warnings(1), "No face emits light, and there are no lamps: the solution will be dark.");
 }
 
 TEST(SceneStore, TakesAReflectanceOfOneForAsMuchAsSurfacesHaveAndSaysSo) {

@@ -1,0 +1,110 @@
+#include "client/verify/lamps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+// Share of the way to a lamp that must be free.
+constexpr double nearly_there = 1 - 1e-4;
+// Smallest distance from which a lamp is looked at, local units.
+constexpr double nearest_place = 1e-5;
+
+/// Returns a direction uniform by solid angle in a cone about `axis` (unit).
+Vec3 direction_in_cone(Vec3 axis, double cosine, UnitPair at) {
+  const Vec3 side = normalized(cross(axis, std::abs(axis.y) < 0.7 ? Vec3{0, 1, 0} : Vec3{0, 0, 1})), up = cross(axis, side);
+  const double z = 1 - at.u * (1 - cosine), r = std::sqrt(std::max(0.0, 1 - z * z)), turn = 2 * std::numbers::pi * at.v;
+  return z * axis + r * std::cos(turn) * side + r * std::sin(turn) * up;
+}
+
+}  // namespace
+
+Lamps::Lamps(const Scene& scene, const Extent& extent) {
+  const double inf = std::numeric_limits<double>::infinity();
+  low_ = {inf, inf, inf}, high_ = {-inf, -inf, -inf};
+  for (const Vec3& vertex : scene.vertices) {
+    const Vec3 p = (vertex - extent.centre) / extent.longest_side;
+    low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
+    high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
+  }
+  for (Light lamp : scene.lights) {
+    if (lamp.intensity.is_zero()) continue;
+    lamp.position = (lamp.position - extent.centre) / extent.longest_side;
+    lamp.radius /= extent.longest_side;
+    if (!lamp.is_distant()) lamp.intensity *= 1 / (extent.longest_side * extent.longest_side);
+    lamps_.push_back(lamp);
+  }
+}
+
+// A sphere that is partly below the horizon brings light although its middle does not: its top counts here.
+Rgb Lamps::unblocked(const Light& lamp, Vec3 point, Vec3 normal) const {
+  if (lamp.is_distant()) {
+    const double cosine = dot(normal, -lamp.direction) + std::sin(lamp.angular_diameter / 2);
+    return std::max(0.0, cosine) * lamp.intensity;
+  }
+  const Vec3 way = lamp.position - point;
+  const double distance = std::max({length(way), lamp.radius, nearest_place});
+  const double height = dot(way, normal) + lamp.radius;
+  if (height <= 0) return {};
+  const double share = lamp.kind == LightKind::spot ? spot_share(lamp, dot(-way, lamp.direction) / distance) : 1;
+  return share * std::min(1.0, height / distance) / (distance * distance) * lamp.intensity;
+}
+
+std::optional<Lamps::Sample> Lamps::sample(Vec3 point, Vec3 normal, double choice, UnitPair at) const {
+  double all = 0;
+  for (const Light& lamp : lamps_) all += unblocked(lamp, point, normal).sum();
+  if (all <= 0) return std::nullopt;
+  double left = choice * all, share = 0;
+  const Light* chosen = nullptr;
+  for (const Light& lamp : lamps_) {
+    const double brings = unblocked(lamp, point, normal).sum();
+    if (brings <= 0) continue;
+    chosen = &lamp, share = brings / all;
+    if (left < brings) break;
+    left -= brings;
+  }
+  Sample sample = sample_of(*chosen, point, normal, at);
+  sample.irradiance *= 1 / share;
+  if (sample.irradiance.is_zero()) return std::nullopt;
+  return sample;
+}
+
+Lamps::Sample Lamps::sample_of(const Light& lamp, Vec3 point, Vec3 normal, UnitPair at) const {
+  if (lamp.is_distant()) {
+    const Vec3 direction = lamp.angular_diameter > 0
+                               ? direction_in_cone(-lamp.direction, std::cos(lamp.angular_diameter / 2), at)
+                               : -lamp.direction;
+    const double out = way_out(point, direction);
+    return {std::max(0.0, dot(normal, direction)) * lamp.intensity, (out + 0.01) * direction, out};
+  }
+  const Vec3 way = lamp.position - point;
+  const double distance = std::max(length(way), nearest_place);
+  const double share = lamp.kind == LightKind::spot ? spot_share(lamp, dot(-way, lamp.direction) / distance) : 1;
+  if (lamp.radius == 0 || distance <= lamp.radius) {
+    const double most = std::max(distance, lamp.radius);
+    return {share * std::max(0.0, dot(way, normal) / distance) / (most * most) * lamp.intensity, nearly_there * way, distance};
+  }
+  const double sine = lamp.radius / distance, cosine = std::sqrt(1 - sine * sine);
+  const Vec3 direction = direction_in_cone(way / distance, cosine, at);
+  // Radiance I / (pi r2) times the solid angle of the cone, 2 pi (1 - cosine).
+  const double scale = 2 * (1 - cosine) / (lamp.radius * lamp.radius) * share * std::max(0.0, dot(direction, normal));
+  // The way ends in the sphere's middle plane: what lies in the sphere before that would hide it.
+  return {scale * lamp.intensity, nearly_there * distance * direction, distance};
+}
+
+double Lamps::way_out(Vec3 point, Vec3 direction) const {
+  double out = std::numeric_limits<double>::infinity();
+  const auto leave = [&](double at, double step, double low, double high) {
+    if (step != 0) out = std::min(out, ((step > 0 ? high : low) - at) / step);
+  };
+  leave(point.x, direction.x, low_.x, high_.x);
+  leave(point.y, direction.y, low_.y, high_.y);
+  leave(point.z, direction.z, low_.z, high_.z);
+  return std::max(0.0, out);
+}
+
+}  // namespace alvor

@@ -1,0 +1,41 @@
+#pragma once
+// The lamps and distant lights of a scene, for the path tracer. Written apart from the solver's (radiosity/direct), so that an error
+// in one is seen.
+
+#include "client/verify/facets.h"
+#include "client/verify/path_random.h"
+#include "meshing/scene.h"
+
+#include <optional>
+#include <vector>
+
+namespace alvor {
+
+/// Samples the irradiance from lamps and distant lights in local coordinates (centred, longest side 1). A lamp with a radius is a
+/// sphere that looks equally bright from everywhere; one of its points is sampled in the cone in which it is seen. Immutable.
+class Lamps {
+ public:
+  Lamps() = default;
+  Lamps(const Scene& scene, const Extent& extent);
+
+  bool empty() const { return lamps_.empty(); }
+
+  /// One lamp's light at a point, over the probability of having chosen this lamp; W/m2 per band.
+  struct Sample {
+    Rgb irradiance;
+    Vec3 way;             ///< from the point to where the light comes from, or out of the scene
+    double distance = 0;  ///< length of that way in which a medium can absorb
+  };
+  /// Returns an unbiased sample of the irradiance at a point; nothing if no lamp can bring any. `choice` and `at` are uniform.
+  std::optional<Sample> sample(Vec3 point, Vec3 normal, double choice, UnitPair at) const;
+
+ private:
+  Rgb unblocked(const Light& lamp, Vec3 point, Vec3 normal) const;
+  Sample sample_of(const Light& lamp, Vec3 point, Vec3 normal, UnitPair at) const;
+  double way_out(Vec3 point, Vec3 direction) const;
+
+  std::vector<Light> lamps_;  ///< places and radii in local units; intensity so that E = I cos / d2 holds in them
+  Vec3 low_, high_;           ///< bounding box of the scene
+};
+
+}  // namespace alvor

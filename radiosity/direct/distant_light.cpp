@@ -1,0 +1,89 @@
+#include "radiosity/direct/distant_light.h"
+
+#include "radiosity/direct/disk_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace alvor {
+
+namespace {
+
+// A shadow ray ends this far outside of the scene's bounding box, local units, so that it meets what lies on the box.
+constexpr double beyond_box = 1e-3;
+// Packets of rays that estimate how much of a distant light meets fronts. The estimate orders lights and the shown progress only.
+constexpr std::uint32_t trial_packets = 256;
+// Radius of a sphere about the local origin that holds the scene: half the diagonal of the unit cube, rounded up.
+constexpr double scene_radius = 0.867;
+
+/// Returns the area, m2, across which parallel light from `towards` meets fronts first; never 0.
+double area_met(const LocalScene& scene, Vec3 towards) {
+  std::vector<RayPacket> rays(trial_packets);
+  std::vector<HitPacket> hits(trial_packets);
+  for (std::uint32_t n = 0; n < trial_packets * RayPacket::width; ++n) {
+    const Vec3 from = scene_radius * (towards + disk_point(towards, sobol_point(n, 0, 0)));
+    RayPacket& packet = rays[n / RayPacket::width];
+    const auto lane = n % RayPacket::width;
+    packet.origin_x[lane] = static_cast<float>(from.x), packet.direction_x[lane] = static_cast<float>(-towards.x);
+    packet.origin_y[lane] = static_cast<float>(from.y), packet.direction_y[lane] = static_cast<float>(-towards.y);
+    packet.origin_z[lane] = static_cast<float>(from.z), packet.direction_z[lane] = static_cast<float>(-towards.z);
+    packet.t_min[lane] = 0, packet.t_max[lane] = 4;
+  }
+  scene.visibility().closest_hits(rays, hits);
+  double fronts = 0.5;
+  for (const HitPacket& packet : hits)
+    for (const std::uint32_t root : packet.root)
+      fronts += root != HitPacket::nothing && dot(scene.mesh().roots()[root].normal, towards) > 0;
+  const double radius = scene_radius * scene.frame().metres_per_unit;
+  return std::numbers::pi * radius * radius * fronts / (trial_packets * RayPacket::width);
+}
+
+}  // namespace
+
+DistantLight::DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const EmissionUnit& unit)
+    : LightSource(number, unit.from_watts_per_m2(light.intensity),
+                  unit.from_watts_per_m2(light.intensity).sum() * area_met(scene, -light.direction)),
+      towards_(-light.direction),
+      half_width_(std::tan(light.angular_diameter / 2)) {
+  for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root)
+    for (const Vec3& corner : scene.corners(root)) {
+      low_ = {std::min(low_.x, corner.x), std::min(low_.y, corner.y), std::min(low_.z, corner.z)};
+      high_ = {std::max(high_.x, corner.x), std::max(high_.y, corner.y), std::max(high_.z, corner.z)};
+    }
+}
+
+double DistantLight::unblocked(Vec3, Vec3 normal) const { return std::max(0.0, dot(towards_, normal)); }
+
+double DistantLight::exit_distance(Vec3 from, Vec3 direction) const {
+  double distance = 4 * scene_radius;
+  const auto leave = [&](double at, double step, double low, double high) {
+    if (step != 0) distance = std::min(distance, ((step > 0 ? high : low) - at) / step);
+  };
+  leave(from.x, direction.x, low_.x, high_.x);
+  leave(from.y, direction.y, low_.y, high_.y);
+  leave(from.z, direction.z, low_.z, high_.z);
+  return std::max(0.0, distance) + beyond_box;
+}
+
+void DistantLight::aim(const ShadowAim& aim, int first, int last) const {
+  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
+  for (int o = first; o < last; ++o) {
+    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
+    Vec3 direction = towards_;
+    if (half_width_ > 0)
+      direction = normalized(towards_ + half_width_ * disk_point(towards_, aim.at[static_cast<std::size_t>(o)]));
+    const Vec3 way = exit_distance(from, direction) * direction;
+    RayPacket& rays = aim.rays;
+    rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
+    rays.direction_x[o] = static_cast<float>(way.x);
+    rays.direction_y[o] = static_cast<float>(way.y);
+    rays.direction_z[o] = static_cast<float>(way.z);
+    rays.t_min[o] = 0;
+    rays.t_max[o] = 1;
+    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(std::max(0.0, dot(direction, normal)));
+  }
+}
+
+}  // namespace alvor

@@ -1,0 +1,73 @@
+#include "radiosity/direct/lamp_light.h"
+
+#include "radiosity/direct/disk_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+// Share of the way to the lamp at which a shadow ray ends, so that a lamp on a ceiling is not in the ceiling's shadow.
+constexpr float short_of_lamp = 1 - 1e-4f;
+// Smallest distance from which a lamp is looked at, local units: closer, its light would grow without bound.
+constexpr double nearest_lamp = 1e-5;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit)
+    : LightSource(number, unit.from_watts_per_m2((1 / squared(scene.frame().metres_per_unit)) * lamp.intensity),
+                  unit.from_watts_per_m2(radiated_power(lamp)).sum()),
+      lamp_(lamp),
+      place_(scene.frame().to_local(lamp.position)),
+      radius_(lamp.radius / scene.frame().metres_per_unit),
+      nearest_(std::max(radius_, nearest_lamp)) {}
+
+double LampLight::share_over_distance_squared(Vec3 from_lamp, double distance_squared) const {
+  const double share =
+      lamp_.kind == LightKind::spot ? spot_share(lamp_, dot(from_lamp, lamp_.direction) / std::sqrt(distance_squared)) : 1;
+  return share / std::max(distance_squared, nearest_ * nearest_);
+}
+
+double LampLight::unblocked(Vec3 at, Vec3 normal) const {
+  const Vec3 way = place_ - at;
+  const double height = dot(way, normal), distance_squared = dot(way, way);
+  if (height <= 0) return 0;
+  return height / std::sqrt(distance_squared) * share_over_distance_squared(-way, distance_squared);
+}
+
+void LampLight::aim(const ShadowAim& aim, int first, int last) const {
+  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
+  for (int o = first; o < last; ++o) {
+    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]}, way = place_ - from;
+    const double distance_squared = std::max(dot(way, way), 1e-30), distance = std::sqrt(distance_squared);
+    Vec3 target = way;
+    if (radius_ > 0) {
+      // The disk is as wide as the cone in which the sphere is seen.
+      const double sine = std::min(0.99, radius_ / distance), edge = distance * sine / std::sqrt(1 - sine * sine);
+      target += edge * disk_point(way / distance, aim.at[static_cast<std::size_t>(o)]);
+    }
+    RayPacket& rays = aim.rays;
+    rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
+    rays.direction_x[o] = static_cast<float>(target.x);
+    rays.direction_y[o] = static_cast<float>(target.y);
+    rays.direction_z[o] = static_cast<float>(target.z);
+    rays.t_min[o] = 0;
+    rays.t_max[o] = short_of_lamp;
+    const double cosine = std::max(0.0, dot(target, normal) / distance);
+    aim.weights[static_cast<std::size_t>(o)] =
+        static_cast<float>(cosine * share_over_distance_squared(-way, distance_squared));
+  }
+}
+
+std::optional<LightExtent> LampLight::extent() const {
+  const Vec3 around{radius_, radius_, radius_};
+  const double intensity = colour().sum();
+  return LightExtent{place_, place_ - around, place_ + around, {}, std::numbers::pi * intensity, intensity / squared(nearest_)};
+}
+
+}  // namespace alvor

@@ -1,0 +1,32 @@
+#pragma once
+// Point and spot lamps.
+
+#include "meshing/light.h"
+#include "radiosity/direct/emission_unit.h"
+#include "radiosity/direct/light_source.h"
+#include "radiosity/rays/local_scene.h"
+
+namespace alvor {
+
+/// A point or spot lamp. Unblocked irradiance is I cos / d2. Shadow rays go to the lamp's middle, or to a disk of its radius that
+/// faces the receiver: a sphere of even radiance sends I / d2 too, however near (Lambert's law), while all of it is above the
+/// horizon. Closer than the radius, or than 1e-5 of the scene's extent, d is that distance.
+class LampLight final : public LightSource {
+ public:
+  /// Requires: `lamp` is not distant; !fault_in(lamp).
+  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit);
+
+  double unblocked(Vec3 at, Vec3 normal) const override;
+  void aim(const ShadowAim& aim, int first, int last) const override;
+  double sample_scale(double probability) const override { return 1 / probability; }
+  std::optional<LightExtent> extent() const override;
+
+ private:
+  double share_over_distance_squared(Vec3 from_lamp, double squared) const;
+
+  const Light lamp_;
+  const Vec3 place_;  // local units, as all lengths below
+  const double radius_, nearest_;
+};
+
+}  // namespace alvor

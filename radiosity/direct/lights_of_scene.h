@@ -1,0 +1,21 @@
+#pragma once
+// Makes the light sources of a scene. Nothing else asks of what kind a light is.
+
+#include "radiosity/direct/emission_unit.h"
+#include "radiosity/direct/light_source.h"
+#include "radiosity/rays/local_scene.h"
+
+#include <memory>
+#include <vector>
+
+namespace alvor {
+
+using OwnedLights = std::vector<std::unique_ptr<const LightSource>>;
+
+/// Returns a light for each root patch that emits, in the order of the roots.
+OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit);
+
+/// Returns the lights of the mesh that are not faces and not black, in their order. Their numbers follow those of the roots.
+OwnedLights lights_beside_faces(const LocalScene& scene, const EmissionUnit& unit);
+
+}  // namespace alvor

@@ -1,0 +1,258 @@
+// Lamps and distant lights, against closed forms.
+
+#include "radiosity/direct/direct_light.h"
+#include "radiosity/direct/face_light.h"
+#include "radiosity/direct/lights_of_scene.h"
+#include "radiosity/plan/plan.h"
+#include "radiosity/solve/solver.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace alvor {
+namespace {
+
+using std::numbers::pi;
+
+Light point_lamp(Vec3 place, double intensity) {
+  Light lamp;
+  lamp.name = "bulb";
+  lamp.intensity = {intensity, intensity, intensity};
+  lamp.position = place;
+  return lamp;
+}
+
+Light spot_lamp(Vec3 place, Vec3 direction, double inner, double outer) {
+  Light lamp = point_lamp(place, 100);
+  lamp.kind = LightKind::spot;
+  lamp.direction = normalized(direction);
+  lamp.inner_cone = inner, lamp.outer_cone = outer;
+  return lamp;
+}
+
+Light sun(Vec3 direction, double irradiance, double angular_diameter = 0) {
+  Light light = point_lamp({}, irradiance);
+  light.kind = LightKind::directional;
+  light.direction = normalized(direction);
+  light.angular_diameter = angular_diameter;
+  return light;
+}
+
+/// Returns a black floor of 8 x 8 m at height 0.
+Scene floor_under(const Light& light) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0)};
+  test::add_polygon(scene, {{-4, 0, -4}, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4}});
+  scene.lights = {light};
+  return scene;
+}
+
+std::vector<LeafValue> solved(const BaseMesh& mesh, SolveOptions options) {
+  SolutionLog log;
+  solve(mesh, options, log, {});
+  return log.leaves();
+}
+
+/// Returns the mean irradiance over the area of all leaves, mean of the bands.
+double mean_irradiance(const BaseMesh& mesh, const std::vector<LeafValue>& leaves) {
+  double sum = 0, all = 0;
+  for (const LeafValue& leaf : leaves) {
+    const double area = area_of(mesh, shape_of(mesh, leaf.patch));
+    sum += area * widen(leaf.irradiance).mean();
+    all += area;
+  }
+  return sum / all;
+}
+
+/// Compares the irradiance of each leaf of a fine mesh with what `expected` says for the leaf's centre; NaN: not compared.
+template <class Expected>
+void expect_on_leaves(const Scene& scene, int depth, double tolerance, Expected&& expected) {
+  const BaseMesh mesh(scene);
+  std::size_t compared = 0;
+  for (const LeafValue& leaf : solved(mesh, {.tolerance = 1e-5, .max_depth = depth})) {
+    const double there = expected(centre_of(mesh, shape_of(mesh, leaf.patch)));
+    if (std::isnan(there)) continue;
+    EXPECT_NEAR(leaf.irradiance.g, there, tolerance);
+    ++compared;
+  }
+  EXPECT_GT(compared, 50u);
+}
+
+TEST(PointLamp, BringsIntensityTimesCosineOverSquaredDistance) {
+  expect_on_leaves(floor_under(point_lamp({0.5, 2, 0.3}, 100)), 6, 0.02, [](Vec3 p) {
+    const Vec3 way = Vec3{0.5, 2, 0.3} - p;
+    return 100 * way.y / std::pow(length(way), 3);
+  });
+}
+
+TEST(SpotLamp, IsFullInTheInnerConeAndDarkOutsideTheOuter) {
+  const Light spot = spot_lamp({0, 2, 0}, {0, -1, 0}, 0.3, 0.6);
+  expect_on_leaves(floor_under(spot), 6, 0.05, [](Vec3 p) {
+    const Vec3 way = Vec3{0, 2, 0} - p;
+    const double angle = std::acos(way.y / length(way)), full = 100 * way.y / std::pow(length(way), 3);
+    // Leaves that the edge of a cone may cross are not compared: a leaf is 0.125 m wide, 0.06 radians.
+    return angle < 0.24 ? full : angle > 0.66 ? 0 : std::nan("");
+  });
+}
+
+TEST(SpotLamp, RadiatesTheIntegralOfItsIntensity) {
+  for (const auto& [inner, outer] : {std::pair{0.0, pi / 4}, {0.3, 0.6}, {0.5, 0.5}, {0.0, 0.01}, {0.2, pi}}) {
+    const Light spot = spot_lamp({}, {0, 0, 1}, inner, outer);
+    double sum = 0;  // over the cosine, from the edge of the light to the axis
+    const double range = 1 - std::cos(outer);
+    constexpr int n = 200'000;
+    for (int k = 0; k < n; ++k) sum += spot_share(spot, 1 - (k + 0.5) / n * range) * range / n;
+    EXPECT_NEAR(radiated_power(spot).g, 2 * pi * 100 * sum, 1e-3 * radiated_power(spot).g) << inner << ' ' << outer;
+  }
+  EXPECT_NEAR(radiated_power(point_lamp({}, 100)).g, 4 * pi * 100, 1e-9);
+}
+
+TEST(Sun, BringsItsIrradianceTimesTheCosine) {
+  const Vec3 direction = normalized(Vec3{1, -2, 0.5});
+  expect_on_leaves(floor_under(sun(direction, 1000)), 4, 1e-2, [&](Vec3) { return -1000 * direction.y; });
+}
+
+TEST(Sun, ThrowsAHalfShadowOfTheWidthOfItsDisk) {
+  // A screen 4 m above the floor ends at x = 0; its half shadow is 4 m times the angular diameter wide.
+  constexpr double angle = 0.2, height = 4;
+  Scene scene = floor_under(sun({0, -1, 0}, 1000, angle));
+  test::add_polygon(scene, {{-4, height, -4}, {0, height, -4}, {0, height, 4}, {-4, height, 4}});
+  const double half_width = height * std::tan(angle / 2);
+  expect_on_leaves(scene, 6, 120, [&](Vec3 p) {
+    if (p.y > 0 || std::abs(p.z) > 3 || p.x > 3 || p.x < -3) return std::nan("");
+    // The share of a disk on one side of a line at the distance s of its middle.
+    const double s = std::clamp(p.x / half_width, -1.0, 1.0);
+    return 1000 * (0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / pi);
+  });
+}
+
+/// CIE 171:2006, test 5.8: the mean illuminance of a cube around an isotropic lamp is Phi / (S (1 - rho)).
+class LampInACube : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Reflectances, LampInACube, testing::Values(0.0, 0.2, 0.5, 0.8, 0.9, 0.95),
+                         [](const auto& rho) { return "PerMille" + std::to_string(std::lround(1000 * rho.param)); });
+
+TEST_P(LampInACube, HasTheKnownMeanIlluminance) {
+  Scene scene;
+  scene.materials = {test::grey(0, GetParam())};
+  test::add_box(scene, {0, 0, 0}, {4, 4, 4}, true);
+  scene.lights = {point_lamp({2, 2, 2}, 10'000 / (4 * pi))};
+  const BaseMesh mesh(scene);
+  const double expected = 10'000 / (96 * (1 - GetParam()));
+  EXPECT_NEAR(mean_irradiance(mesh, solved(mesh, {.tolerance = 0.01})), expected, 0.005 * expected);
+}
+
+/// Returns each kind of light that there is, over the floor of a room with two blocks.
+OwnedLights all_kinds(const LocalScene& scene) {
+  OwnedLights lights = lights_beside_faces(scene, EmissionUnit(scene.mesh()));
+  for (auto& face : lights_of_faces(scene, EmissionUnit(scene.mesh()))) lights.push_back(std::move(face));
+  return lights;
+}
+
+Scene room_with_all_kinds() {
+  Scene scene = test::coloured_room();
+  scene.lights = {point_lamp({2, 2, 2}, 10), spot_lamp({1, 2.5, 1}, {0.2, -1, 0.3}, 0.2, 0.8), sun({0.3, -1, 0.2}, 50),
+                  sun({-0.3, -1, 0.2}, 50, 0.1), point_lamp({3, 1.5, 4}, 20)};
+  scene.lights.back().radius = 0.3;
+  return scene;
+}
+
+// This is what lets the solver use a light without knowing of what kind it is.
+TEST(EveryLight, BringsAsMuchByItsRaysAsByItsFormula) {
+  const BaseMesh mesh(room_with_all_kinds());
+  const LocalScene scene(mesh);
+  const PatchId floor = PatchId::root(0);
+  RandomStream random(1, floor);
+  const PatchPoints points = sample_points(scene, shape_of(mesh, floor), random);
+  const Vec3 normal = mesh.roots()[0].normal;
+  for (const auto& light : all_kinds(scene)) {
+    RayPacket rays;
+    std::array<float, RayPacket::width> weights;
+    std::array<double, RayPacket::width> mean{};
+    constexpr int rounds = 4096;
+    ShadowAim aim{points, scene.root(0).normal, {}, rays, weights};
+    for (std::uint32_t n = 0; n < rounds; ++n) {
+      aim.at.fill(sobol_point(n, 0, 0));
+      light->aim(aim, 0, RayPacket::width);
+      for (std::size_t o = 0; o < mean.size(); ++o) mean[o] += weights[o] / double(rounds);
+    }
+    for (std::size_t o = 0; o < mean.size(); ++o) {
+      const double formula = light->unblocked({points.x[o], points.y[o], points.z[o]}, normal);
+      EXPECT_NEAR(light->sample_scale(1) * mean[o], formula, 0.01 * formula + 1e-9) << "light " << light->number();
+      EXPECT_NEAR(light->sample_scale(0.25) * mean[o], 4 * formula, 0.04 * formula + 1e-9) << "light " << light->number();
+    }
+  }
+}
+
+TEST(EveryLight, BringsNoMoreThanItsExtentAllows) {
+  const BaseMesh mesh(room_with_all_kinds());
+  const LocalScene scene(mesh);
+  RandomStream random(1, PatchId::root(0));
+  const auto place = [&] { return Vec3{random.next() - 0.5, random.next() - 0.5, random.next() - 0.5}; };
+  for (const auto& light : all_kinds(scene)) {
+    const auto extent = light->extent();
+    if (!extent) continue;
+    for (int n = 0; n < 2000; ++n) {
+      const Vec3 at = place(), away = place();
+      const auto outside = [](double x, double low, double high) { return std::max({low - x, x - high, 0.0}); };
+      const Vec3 gap{outside(at.x, extent->low.x, extent->high.x), outside(at.y, extent->low.y, extent->high.y),
+                     outside(at.z, extent->low.z, extent->high.z)};
+      const double brings = light->unblocked(at, normalized(away)) * light->colour().sum();
+      EXPECT_LE(brings, extent->brightest * (1 + 1e-9));
+      EXPECT_LE(brings * pi * dot(gap, gap), extent->power * (1 + 1e-9)) << "light " << light->number();
+    }
+  }
+}
+
+TEST(ManyLamps, AreAsBrightByTheTreeAsOneByOne) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0)};
+  test::add_box(scene, {0, 0, 0}, {8, 3, 8}, true);
+  for (int n = 0; n < 64; ++n) scene.lights.push_back(point_lamp({0.5 + n % 8, 2.7, 0.5 + n / 8}, 10));
+  scene.lights.push_back(sun({0.1, -1, 0}, 30));  // shut out by the ceiling's back
+  const BaseMesh mesh(scene);
+  // All light of the lamps meets the walls; none is reflected.
+  const double expected = 64 * 4 * pi * 10 / (2 * 64 + 4 * 24);
+  EXPECT_NEAR(mean_irradiance(mesh, solved(mesh, {.tolerance = 0.02})), expected, 0.01 * expected);
+}
+
+TEST(PlanOfLamps, LightsTheRoomThatTheLampIsInAndNoOther) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5)};
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true);
+  test::add_box(scene, {5, 0, 0}, {7, 2, 2}, true);
+  scene.lights = {point_lamp({1, 1, 1}, 10)};
+  const auto lit_rooms = [](const Scene& of) {
+    const BaseMesh mesh(of);
+    const Plan plan(mesh, {});
+    return std::pair(plan.may_be_lit(0), plan.may_be_lit(6));
+  };
+  EXPECT_EQ(lit_rooms(scene), std::pair(true, false));
+  scene.lights[0].position = {6, 1, 1};
+  EXPECT_EQ(lit_rooms(scene), std::pair(false, true));
+  scene.lights = {sun({0, -1, 0}, 10)};
+  EXPECT_EQ(lit_rooms(scene), std::pair(false, false));
+}
+
+TEST(PlanOfLamps, AFloorWithNothingAboveButTheSunIsLit) {
+  const BaseMesh mesh(floor_under(sun({0, -1, 0}, 10)));
+  EXPECT_TRUE(Plan(mesh, {}).may_be_lit(0));
+  const BaseMesh below(floor_under(sun({0, 1, 0}, 10)));
+  EXPECT_FALSE(Plan(below, {}).may_be_lit(0));
+}
+
+TEST(PowerBalance, OfTheSunCountsWhatFirstArrives) {
+  Scene scene = floor_under(sun({0, -1, 0}, 10));
+  scene.materials[0].reflectance = {0.5, 0.5, 0.5};
+  const BaseMesh mesh(scene);
+  SolutionLog log;
+  const SolveOutcome outcome = solve(mesh, {}, log, {});
+  EXPECT_NEAR(outcome.balance.emitted, 3 * 10 * 64, 1);  // three bands, 64 m2
+  EXPECT_NEAR(outcome.balance.absorbed, 0.5 * outcome.balance.emitted, 1);
+  EXPECT_NEAR(outcome.balance.lost, 0.5 * outcome.balance.emitted, 1);
+}
+
+}  // namespace
+}  // namespace alvor
