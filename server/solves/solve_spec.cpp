@@ -78,8 +78,8 @@ SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
   options.step_pause_s = seconds_of(spec.step_pause(), "step_pause");
   if (options.step_pause_s > 60) refuse("step_pause", options.step_pause_s, "s is more than a minute");
 
-  options.threads = spec.threads() == 0 ? limits.threads : spec.threads();
-  if (options.threads < 0 || (spec.threads() != 0 && options.threads > most_threads(limits)))
+  options.threads = spec.threads() == 0 ? most_threads(limits) : spec.threads();
+  if (options.threads < 0 || options.threads > most_threads(limits))
     refuse("threads", options.threads, "is outside [0, " + std::to_string(most_threads(limits)) + "]");
 
   if (spec.has_seed()) options.seed = spec.seed();
@@ -87,6 +87,17 @@ SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits) {
   options.strategy = strategy_of(spec.strategy());
   options.form_factors = form_factors_of(spec.form_factors());
   return options;
+}
+
+v1::SolveSpec effective_spec(v1::SolveSpec spec, const SolveOptions& options) {
+  spec.set_tolerance(options.tolerance);
+  spec.set_max_depth(options.max_depth);
+  spec.set_max_elements(options.max_leaves);
+  spec.set_threads(options.threads);
+  spec.set_seed(options.seed);
+  if (spec.form_factors() == v1::FORM_FACTORS_UNSPECIFIED) spec.set_form_factors(v1::FORM_FACTORS_NUSSELT);
+  if (spec.priority() == v1::PRIORITY_UNSPECIFIED) spec.set_priority(v1::PRIORITY_NORMAL);
+  return spec;
 }
 
 }  // namespace alvor

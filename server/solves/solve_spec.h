@@ -14,5 +14,8 @@ struct SolveLimits {
 
 /// Fields left at 0 get the defaults of SolveOptions. Throws StatusError INVALID_ARGUMENT that names the field.
 SolveOptions options_of(const v1::SolveSpec& spec, const SolveLimits& limits);
+/// Returns `spec` with the values of `options` for the fields that were left at their defaults, as Solve.effective_spec tells
+/// them. Requires: options_of made `options` of `spec`.
+v1::SolveSpec effective_spec(v1::SolveSpec spec, const SolveOptions& options);
 
 }  // namespace alvor

@@ -87,6 +87,9 @@ void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
   std::string refusal;
   try {
     how = options_of(row.facts.spec(), options_.limits);
+    // A solve that has ended keeps the limits that it had; rows of older versions do not tell them.
+    if (!row.facts.has_end_time() || !row.facts.has_effective_spec())
+      *row.facts.mutable_effective_spec() = effective_spec(row.facts.spec(), how);
   } catch (const StatusError& fault) {
     refusal = fault.what();
   }

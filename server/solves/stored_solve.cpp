@@ -4,6 +4,7 @@
 #include "server/archive/pieces.h"
 #include "server/base/random_id.h"
 #include "server/base/status_error.h"
+#include "server/solves/solve_spec.h"
 
 #include <google/protobuf/util/time_util.h>
 
@@ -66,6 +67,7 @@ StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const Store
       log_(std::make_shared<SolutionLog>()) {
   facts_.set_name(name);
   *facts_.mutable_spec() = spec;
+  *facts_.mutable_effective_spec() = effective_spec(spec, options);
   facts_.set_state(v1::Solve::QUEUED);
   *facts_.mutable_create_time() = TimeUtil::GetCurrentTime();
 }

@@ -1,5 +1,6 @@
 #include "server/solves/solve_store.h"
 
+#include "tests/server/kept_directory.h"
 #include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
@@ -278,6 +279,40 @@ TEST(SolveSpec, ZeroMeansTheDefault) {
   zeros.set_seed(0);
   EXPECT_EQ(options_of(zeros, {}).max_depth, 0);
   EXPECT_EQ(options_of(zeros, {}).seed, 0u);
+}
+
+TEST(SolveSpec, WhatIsAskedIsEffective) {
+  v1::SolveSpec asked;
+  asked.set_tolerance(0.5);
+  asked.set_max_depth(0);
+  asked.set_max_elements(7);
+  asked.set_min_edge_meters(0.1);
+  asked.mutable_time_limit()->set_seconds(2);
+  asked.set_threads(1);
+  asked.set_seed(0);
+  asked.set_strategy(v1::STRATEGY_SHOOT);
+  asked.set_form_factors(v1::FORM_FACTORS_HEMICUBE);
+  asked.mutable_step_pause()->set_nanos(1000);
+  asked.set_priority(v1::PRIORITY_LOW);
+  EXPECT_EQ(effective_spec(asked, options_of(asked, {})).ShortDebugString(), asked.ShortDebugString());
+}
+
+TEST_F(KeptDirectoryTest, EndedSolveTellsTheLimitsThatItHad) {
+  Archive archive{directory};
+  SceneStore scenes{&archive};
+  SolveStoreOptions options;
+  options.keeping.archive = &archive;
+  options.solver = [](auto&&...) { return SolveOutcome(); };
+  options.limits.leaves = 1000;
+  const auto told = [](const SolveStore& solves) { return solves.all().at(0)->describe().effective_spec().max_elements(); };
+  {
+    SolveStore solves{options, scenes};
+    const auto solve = solves.create(scenes.use(scenes.add(squares(2), "")->facts.name()), {});
+    while (!solve->ended()) std::this_thread::yield();
+    EXPECT_EQ(told(solves), 1000u);
+  }
+  options.limits.leaves = 500;
+  EXPECT_EQ(told(SolveStore(options, scenes)), 1000u);
 }
 
 TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
