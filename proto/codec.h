@@ -1,5 +1,5 @@
 #pragma once
-// Converts between the messages of the API and the domain types; no other file knows both.
+// Converts between the messages of the API and the domain types of solution/ and meshing/.
 
 #include "alvor/v1/scene_service.pb.h"
 #include "alvor/v1/solve_service.pb.h"

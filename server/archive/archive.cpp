@@ -1,11 +1,11 @@
 #include "server/archive/archive.h"
 
-#include "proto/codec.h"
+#include "server/archive/content.h"
 #include "server/archive/migrations.h"
 #include "server/archive/pieces.h"
+#include "server/archive/record_codec.h"
 #include "server/archive/rows.h"
 #include "server/base/random_id.h"
-#include "server/base/sha256.h"
 #include "solution/plain_bytes.h"
 
 #include <utility>
@@ -16,28 +16,15 @@ namespace {
 
 constexpr Archive::Rows scene_rows{"scene", "scenes", "scenes_of", "tenant, request_id, sha256, facts"};
 
-/// chunk(bytes) for each chunk of the scene.
-template <class Body>
-void for_each_chunk(const Scene& scene, Body&& body) {
-  SceneSlicer slicer(scene);
-  for (v1::GeometryChunk chunk; slicer.next(chunk);) body(chunk.SerializeAsString());
-}
-
-/// Chunks are told apart: what is stored must be found by the same sum that it was stored under.
-void add_chunk(std::string_view chunk, Sha256& sum) {
-  sum.add(std::to_string(chunk.size()) + ":");
-  sum.add(chunk);
-}
-
 void put_content(SQLite::Database& database, const std::string& sha256, const Scene& content) {
   SQLite::Statement clear(database, "DELETE FROM content_pieces WHERE sha256 = ?");  // leftovers
   clear.bind(1, sha256);
   clear.exec();
   SQLite::Statement put(database, "INSERT INTO content_pieces VALUES(?, ?, ?)");
   int n = 0;
-  for_each_chunk(content, [&](const std::string& chunk) {
+  for_each_chunk(content, [&](std::span<const std::byte> chunk) {
     PieceWriter writer;
-    writer.add(std::as_bytes(std::span(chunk)));
+    writer.add(chunk);
     for (const std::string& piece : writer.finish()) {
       put.bind(1, sha256);
       put.bind(2, n++);
@@ -50,8 +37,8 @@ void put_content(SQLite::Database& database, const std::string& sha256, const Sc
 
 Archive::SceneRow scene_row(SQLite::Statement& get, std::int64_t number) {
   Archive::SceneRow row{static_cast<std::uint64_t>(number), get.getColumn(0).getString(), get.getColumn(1).getString(),
-                        parsed<v1::Scene>(get.getColumn(3))};
-  const bool is_sound = row.facts.name().starts_with("scenes/") && row.facts.content_sha256() == get.getColumn(2).getString();
+                        scene_of(bytes_of(get.getColumn(3)))};
+  const bool is_sound = row.facts.name.starts_with("scenes/") && row.facts.content_sha256 == get.getColumn(2).getString();
   if (!is_sound) throw data_loss("it is damaged");
   return row;
 }
@@ -79,18 +66,6 @@ std::string remove_scene_row(SQLite::Database& database, std::int64_t number) {
 }
 
 }  // namespace
-
-StatusError data_loss(const std::string& what) { return {grpc::DATA_LOSS, data_directory + what}; }
-
-SceneBytes measure(const Scene& scene) {
-  Sha256 sum;
-  std::uint64_t bytes = 0;
-  for_each_chunk(scene, [&](const std::string& chunk) {
-    add_chunk(chunk, sum);
-    bytes += chunk.size();
-  });
-  return {sum.digits(), bytes};
-}
 
 Archive::Archive(const std::filesystem::path& directory, RunClock clock)
     : database_(directory),
@@ -163,7 +138,7 @@ std::vector<Archive::SceneRow> Archive::scenes() {
 std::uint64_t Archive::last_scene() { return last_number(scene_rows); }
 
 void Archive::add(const SceneRow& row, const Scene& content) {
-  const std::string& sha256 = row.facts.content_sha256();
+  const std::string& sha256 = row.facts.content_sha256;
   const std::string facts = facts_of(row.facts);
   const auto put_scene = [&](SQLite::Database& database) {
     SQLite::Statement known(database, "INSERT OR IGNORE INTO contents VALUES(?)");
@@ -181,28 +156,21 @@ void Archive::add(const SceneRow& row, const Scene& content) {
 }
 
 Scene Archive::content(const std::string& sha256) {
-  SceneAssembler assembler;
-  const auto refuse = [](const std::string& why) { throw data_loss("a scene's content: " + why); };
+  ContentReader content;
   database_.read([&](SQLite::Database& database) {
     SQLite::Statement each(database, "SELECT bytes FROM content_pieces WHERE sha256 = ? ORDER BY n");
     each.bind(1, sha256);
-    Sha256 sum;
     try {
       while (each.executeStep()) {
-        std::vector<std::byte> bytes;
-        append_piece(bytes_of(each.getColumn(0)), bytes);
-        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        add_chunk(text, sum);
-        v1::GeometryChunk chunk;
-        if (!chunk.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) refuse("is damaged");
-        if (const auto fault = assembler.add(chunk)) refuse(fault->text());
+        std::vector<std::byte> chunk;
+        append_piece(bytes_of(each.getColumn(0)), chunk);
+        content.add(chunk);
       }
     } catch (const BadBytes& fault) {
-      refuse(fault.what());
+      throw damaged_content(fault.what());
     }
-    if (sum.digits() != sha256) refuse("is not what was stored");
   });
-  return assembler.take();
+  return content.take(sha256);
 }
 
 void Archive::remove_scene(std::uint64_t number) {

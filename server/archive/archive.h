@@ -1,11 +1,11 @@
 #pragma once
 // What outlives the server: scenes, solves and their checkpoints, in an SQLite database.
 
-#include "alvor/v1/scene_service.pb.h"
-#include "alvor/v1/solve_service.pb.h"
 #include "meshing/scene.h"
 #include "server/archive/alive_file.h"
 #include "server/archive/database.h"
+#include "server/archive/scene_record.h"
+#include "server/archive/solve_record.h"
 #include "server/base/mutex.h"
 #include "server/base/status_error.h"
 
@@ -27,9 +27,6 @@ class Statement;
 
 namespace alvor {
 
-/// What was read is not what was written: DATA_LOSS.
-StatusError data_loss(const std::string& what);
-
 /// Thread-safe. What a call changed is on the disk when it returns, all of it; when it throws, none of it. Throws StatusError:
 /// RESOURCE_EXHAUSTED when the disk is full, UNAVAILABLE when it cannot be written or read, DATA_LOSS when what was read is
 /// damaged.
@@ -44,12 +41,12 @@ class Archive {
   struct SceneRow {
     std::uint64_t number = 0;
     std::string tenant, request_id;
-    v1::Scene facts;
+    SceneRecord facts;
   };
   struct SolveRow {
     std::uint64_t number = 0;
     std::string tenant, request_id;
-    v1::Solve facts;
+    SolveRecord facts;
     /// Of each epoch, the last revision that later ones go on from.
     std::map<std::string, std::uint64_t> lineage;
     /// Set by solves(): how long the last run of the server worked at it since its newest checkpoint. Unset unless it was
@@ -126,12 +123,5 @@ class Archive {
   std::vector<std::string> faults_ ALVOR_GUARDED_BY(lock_);
   std::atomic<bool> has_leftovers_ = true;  ///< pieces of what was removed
 };
-
-/// How the geometry and materials of a scene are written down: the chunks of the API, one after the other.
-struct SceneBytes {
-  std::string sha256;
-  std::uint64_t bytes = 0;
-};
-SceneBytes measure(const Scene& scene);
 
 }  // namespace alvor

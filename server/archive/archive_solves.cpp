@@ -2,6 +2,7 @@
 
 #include "server/archive/archive.h"
 #include "server/archive/pieces.h"
+#include "server/archive/record_codec.h"
 #include "server/archive/rows.h"
 #include "solution/plain_bytes.h"
 
@@ -18,9 +19,9 @@ Archive::SolveRow solve_row(SQLite::Database& database, SQLite::Statement& get, 
   Archive::SolveRow row{static_cast<std::uint64_t>(number),
                         get.getColumn(0).getString(),
                         get.getColumn(1).getString(),
-                        parsed<v1::Solve>(get.getColumn(2)),
+                        solve_of(bytes_of(get.getColumn(2))),
                         {}};
-  const std::string& name = row.facts.name();
+  const std::string& name = row.facts.name;
   if (!name.starts_with("scenes/") || name.find("/solves/") == std::string::npos) throw data_loss("it is damaged");
   SQLite::Statement lineage(database, "SELECT epoch, revision FROM lineage WHERE solve = ?");
   lineage.bind(1, number);
@@ -58,7 +59,7 @@ std::vector<Archive::SolveRow> Archive::solves() {
   std::vector<SolveRow> rows;
   for_each_row(solve_rows, [&](SQLite::Database& database, SQLite::Statement& get, std::int64_t number) {
     SolveRow row = solve_row(database, get, number);
-    if (row.facts.state() == v1::Solve::RUNNING) row.work_lost = work_lost(database, number);
+    if (row.facts.status == SolveStatus::running) row.work_lost = work_lost(database, number);
     rows.push_back(std::move(row));
   });
   return rows;
@@ -106,7 +107,7 @@ void Archive::note_kept(SQLite::Database& database, const SolveRow& row) {
 
 /// Work that is not kept begins now unless it began before in this run.
 void Archive::note_running(SQLite::Database& database, const SolveRow& row) {
-  const bool is_running = row.facts.state() == v1::Solve::RUNNING;
+  const bool is_running = row.facts.status == SolveStatus::running;
   SQLite::Statement clear(database, "DELETE FROM unkept WHERE solve = ? AND (run <> ? OR NOT ?)");
   clear.bind(1, key(row.number));
   clear.bind(2, run_);

@@ -2,7 +2,6 @@
 // Between values and columns of SQLite.
 
 #include "server/archive/archive.h"
-#include "server/archive/versioned.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
@@ -21,30 +20,6 @@ inline void bind_bytes(SQLite::Statement& statement, int index, const std::strin
 /// They live until the next step of the statement.
 inline std::string_view bytes_of(const SQLite::Column& column) {
   return {static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes())};
-}
-
-/// The messages of the API, as `facts` of scenes and solves.
-inline constexpr std::uint8_t facts_version = 1;
-
-template <class Message>
-std::string facts_of(const Message& message) {
-  std::string facts = version_prefix(facts_version);
-  message.AppendToString(&facts);
-  return facts;
-}
-
-/// Throws DATA_LOSS.
-template <class Message>
-Message parsed(const SQLite::Column& column) {
-  Message message;
-  std::string_view bytes;
-  try {
-    bytes = behind_version(bytes_of(column), facts_version);
-  } catch (const BadBytes& fault) {
-    throw data_loss(std::string("it ") + fault.what());
-  }
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) throw data_loss("it is damaged");
-  return message;
 }
 
 /// Returns the numbers of all rows, also of those that cannot be read: where pages of the table are damaged, its index knows

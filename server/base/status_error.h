@@ -3,6 +3,7 @@
 
 #include <grpcpp/support/status.h>
 
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -20,5 +21,12 @@ inline StatusError not_found(const std::string& name) {
   return {grpc::NOT_FOUND, name.empty() ? "the name is empty" : name + " does not exist"};
 }
 inline StatusError invalid_argument(const std::string& text) { return {grpc::INVALID_ARGUMENT, text}; }
+/// Returns the refusal of a request whose `field` has this value.
+template <class Value>
+StatusError invalid_field(const std::string& field, const Value& value, const std::string& reason) {
+  std::ostringstream text;
+  text << field << ": " << value << " " << reason;
+  return invalid_argument(text.str());
+}
 
 }  // namespace alvor

@@ -1,8 +1,8 @@
 #include "server/rpc/metrics.h"
 
-#include "proto/codec.h"
 #include "proto/status_name.h"
 #include "server/access/front_door.h"
+#include "server/archive/record_codec.h"
 #include "server/base/memory_guard.h"
 #include "server/rpc/call_counts.h"
 #include "server/solves/solve_store.h"
@@ -42,6 +42,9 @@ MetricFamily one(const char* name, const char* help, MetricType type, double val
   add(made, value);
   return made;
 }
+
+// What is told of a solve before its first step.
+constexpr Step nothing_known{.unshot_fraction = 0, .estimated_error = 0};
 
 double cpu_seconds() {
   timespec time{};
@@ -83,8 +86,8 @@ std::vector<MetricFamily> Metrics::Collect() const {
 }
 
 void Metrics::collect_solves(std::vector<MetricFamily>& families) const {
-  std::map<v1::Solve::State, int> count{{v1::Solve::QUEUED, 0},    {v1::Solve::RUNNING, 0},   {v1::Solve::PAUSED, 0},
-                                        {v1::Solve::SUCCEEDED, 0}, {v1::Solve::CANCELLED, 0}, {v1::Solve::FAILED, 0}};
+  std::map<SolveStatus, int> count;
+  for (const SolveStatus status : all_statuses) count[status] = 0;
   MetricFamily leaves = family("alvor_solve_leaves", "Leaves of a running solve.", MetricType::Gauge);
   MetricFamily unshot =
       family("alvor_solve_unshot_fraction", "Unshot power of a running solve, of the emitted.", MetricType::Gauge);
@@ -93,30 +96,27 @@ void Metrics::collect_solves(std::vector<MetricFamily>& families) const {
   Lock hold(lock_);
   std::map<std::string, Seen> now;
   for (const auto& solve : solves_.all()) {
-    const v1::Solve facts = solve->describe();
-    ++count[facts.state()];
-    const v1::Step& step = facts.last_step();
+    const SolveRecord facts = solve->describe();
+    ++count[facts.status];
+    const Step step = facts.last_step.value_or(nothing_known);
     // Work that an earlier run of the server did does not count for this run.
-    const auto before = seen_.find(facts.name());
+    const auto before = seen_.find(facts.name);
     const Seen since = before != seen_.end() ? before->second : Seen{};
-    if (before != seen_.end() || facts.restarts() == 0) {
-      shots_ += step.shots() - std::min<std::uint64_t>(step.shots(), since.shots);
-      rays_ += step.rays() - std::min<std::uint64_t>(step.rays(), since.rays);
+    if (before != seen_.end() || facts.restarts == 0) {
+      shots_ += step.shots - std::min<std::uint64_t>(step.shots, since.shots);
+      rays_ += step.rays - std::min<std::uint64_t>(step.rays, since.rays);
     }
-    now[facts.name()] = {step.shots(), step.rays()};
-    if (const v1::PowerBalance& power = facts.balance(); power.emitted_watts() > 0)
-      worst_gap = std::max(worst_gap,
-                           std::abs(power.emitted_watts() - power.absorbed_watts() - power.lost_watts() - power.unshot_watts()) /
-                               power.emitted_watts());
-    if (facts.state() != v1::Solve::RUNNING) continue;
-    const std::vector<ClientMetric::Label> labels{{"solve", facts.name()}};
-    add(leaves, static_cast<double>(step.leaves()), labels);
-    add(unshot, step.unshot_fraction(), labels);
-    add(error, step.estimated_error(), labels);
+    now[facts.name] = {step.shots, step.rays};
+    if (facts.balance) worst_gap = std::max(worst_gap, std::abs(facts.balance->gap()));
+    if (facts.status != SolveStatus::running) continue;
+    const std::vector<ClientMetric::Label> labels{{"solve", facts.name}};
+    add(leaves, static_cast<double>(step.leaves), labels);
+    add(unshot, step.unshot_fraction, labels);
+    add(error, step.estimated_error, labels);
   }
   seen_ = std::move(now);
   MetricFamily states = family("alvor_solves", "Solves by state; those QUEUED wait for their turn.", MetricType::Gauge);
-  for (const auto& [state, solves] : count) add(states, solves, {{"state", v1::Solve::State_Name(state)}});
+  for (const auto& [status, solves] : count) add(states, solves, {{"state", std::string(text(status))}});
   for (MetricFamily* each : {&states, &leaves, &unshot, &error}) families.push_back(std::move(*each));
   families.push_back(one("alvor_worst_balance_gap",
                          "Of the emitted power, what a solve that has ended does not account for, at most.", MetricType::Gauge,

@@ -1,6 +1,7 @@
 #include "server/rpc/scene_service.h"
 
 #include "proto/mesh_codec.h"
+#include "server/archive/record_codec.h"
 #include "server/rpc/answer.h"
 
 #include <atomic>
@@ -108,9 +109,9 @@ class CreateSceneCall final : public grpc::ServerReadReactor<v1::CreateSceneRequ
 
   void store() {
     const auto stored = upload_->finish(scenes_, caller_, *stop_);
-    answer_ = stored->facts;
-    logger_.info("scene {} '{}' stored: {} faces, {} bytes received", answer_.name(), one_line(answer_.display_name()),
-                 answer_.face_count(), upload_->bytes());
+    answer_ = encode(stored->facts);
+    logger_.info("scene {} '{}' stored: {} faces, {} bytes received", stored->facts.name, one_line(stored->facts.display_name),
+                 stored->facts.face_count, upload_->bytes());
   }
 
   void OnDone() override {
@@ -208,15 +209,16 @@ SceneService::Reactor* SceneService::GetUpload(Context* context, const v1::GetUp
 }
 
 SceneService::Reactor* SceneService::GetScene(Context* context, const v1::GetSceneRequest* request, v1::Scene* scene) {
-  return keep(context, "GetScene",
-              [this, request, scene](const std::string& tenant) { *scene = scenes_.find(request->name(), tenant)->facts; });
+  return keep(context, "GetScene", [this, request, scene](const std::string& tenant) {
+    *scene = encode(scenes_.find(request->name(), tenant)->facts);
+  });
 }
 
 SceneService::Reactor* SceneService::ListScenes(Context* context, const v1::ListScenesRequest* request,
                                                 v1::ListScenesResponse* response) {
   return keep(context, "ListScenes", [this, request, response](const std::string& tenant) {
     const auto page = scenes_.list(tokens_.request(request->page_size(), request->page_token()), tenant);
-    for (const auto& stored : page.items) *response->add_scenes() = stored->facts;
+    for (const auto& stored : page.items) *response->add_scenes() = encode(stored->facts);
     response->set_next_page_token(tokens_.token(page.next_before));
   });
 }
@@ -233,7 +235,7 @@ grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const ch
   if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(refusal);
   const auto load = [this, scene, tenant](const CallStop& stop) {
     const auto stored = scenes_.find(scene, tenant);
-    limits_.memory.admit("scene", 2 * stored->facts.content_bytes());
+    limits_.memory.admit("scene", 2 * stored->facts.content_bytes);
     return stored->content(stop);
   };
   return new SendCall<Message, Slicer, Part>(context, pools_, limits_.patience, turn_of(tenant, context), logger_, call, part,

@@ -1,5 +1,6 @@
 #include "server/rpc/solve_service.h"
 
+#include "server/archive/record_codec.h"
 #include "server/rpc/answer.h"
 #include "server/rpc/watch_call.h"
 
@@ -25,13 +26,14 @@ SolveService::Reactor* SolveService::CreateSolve(Context* context, const v1::Cre
   return keep(context, "CreateSolve", [this, request, solve](const std::string& tenant) {
     const Caller caller{tenant, request->request_id()};
     SceneUse scene = scenes_.use(request->parent(), tenant);
-    *solve = solves_.create(std::move(scene), request->solve().spec(), caller)->describe();
+    *solve = encode(solves_.create(std::move(scene), decode(request->solve().spec()), caller)->describe());
   });
 }
 
 SolveService::Reactor* SolveService::GetSolve(Context* context, const v1::GetSolveRequest* request, v1::Solve* solve) {
-  return keep(context, "GetSolve",
-              [this, request, solve](const std::string& tenant) { *solve = solves_.find(request->name(), tenant)->describe(); });
+  return keep(context, "GetSolve", [this, request, solve](const std::string& tenant) {
+    *solve = encode(solves_.find(request->name(), tenant)->describe());
+  });
 }
 
 SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::ListSolvesRequest* request,
@@ -39,25 +41,26 @@ SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::List
   return keep(context, "ListSolves", [this, request, response](const std::string& tenant) {
     if (request->parent() != "scenes/-") scenes_.find(request->parent(), tenant);
     const auto page = solves_.list(request->parent(), tokens_.request(request->page_size(), request->page_token()), tenant);
-    for (const auto& solve : page.items) *response->add_solves() = solve->describe();
+    for (const auto& solve : page.items) *response->add_solves() = encode(solve->describe());
     response->set_next_page_token(tokens_.token(page.next_before));
   });
 }
 
 SolveService::Reactor* SolveService::CancelSolve(Context* context, const v1::CancelSolveRequest* request, v1::Solve* solve) {
   return keep(context, "CancelSolve", [this, request, solve](const std::string& tenant) {
-    *solve = solves_.cancel(request->name(), tenant)->describe();
+    *solve = encode(solves_.cancel(request->name(), tenant)->describe());
   });
 }
 
 SolveService::Reactor* SolveService::PauseSolve(Context* context, const v1::PauseSolveRequest* request, v1::Solve* solve) {
-  return keep(context, "PauseSolve",
-              [this, request, solve](const std::string& tenant) { *solve = solves_.pause(request->name(), tenant)->describe(); });
+  return keep(context, "PauseSolve", [this, request, solve](const std::string& tenant) {
+    *solve = encode(solves_.pause(request->name(), tenant)->describe());
+  });
 }
 
 SolveService::Reactor* SolveService::ResumeSolve(Context* context, const v1::ResumeSolveRequest* request, v1::Solve* solve) {
   return keep(context, "ResumeSolve", [this, request, solve](const std::string& tenant) {
-    *solve = solves_.resume(request->name(), tenant)->describe();
+    *solve = encode(solves_.resume(request->name(), tenant)->describe());
   });
 }
 

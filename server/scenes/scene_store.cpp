@@ -1,9 +1,8 @@
 #include "server/scenes/scene_store.h"
 
+#include "server/archive/content.h"
 #include "server/base/random_id.h"
 #include "server/base/status_error.h"
-
-#include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
 
@@ -20,9 +19,10 @@ bool emits(const BaseMesh& mesh) {
                              [&](const RootPatch& root) { return !mesh.materials()[root.material].emission.is_zero(); });
 }
 
-void describe_mesh(const BaseMesh& mesh, v1::Scene& facts) {
-  for (std::string& warning : warnings_of(mesh.weld_report())) facts.add_warnings(std::move(warning));
-  if (!emits(mesh)) facts.add_warnings("No face emits light, and there are no lamps: the solution will be dark.");
+std::vector<std::string> warnings_about(const BaseMesh& mesh) {
+  std::vector<std::string> warnings = warnings_of(mesh.weld_report());
+  if (!emits(mesh)) warnings.emplace_back("No face emits light, and there are no lamps: the solution will be dark.");
+  return warnings;
 }
 
 /// Replaces each reflectance of exactly 1 by clamped_reflectance. Returns a sentence about it, or "" if there was none.
@@ -40,19 +40,17 @@ std::string clamp_reflectance_of_one(Scene& scene) {
   return std::to_string(count) + " materials have a reflectance of 1, which is taken for 0.95: the first is '" + first + "'.";
 }
 
-v1::Scene facts_of(const Scene& scene, const BaseMesh& mesh, const std::string& display_name) {
-  v1::Scene facts;
-  facts.set_name("scenes/" + random_id('s'));
-  facts.set_display_name(display_name);
-  *facts.mutable_create_time() = google::protobuf::util::TimeUtil::GetCurrentTime();
-  facts.set_vertex_count(scene.vertices.size());
-  facts.set_face_count(scene.faces.size());
-  facts.set_material_count(scene.materials.size());
-  describe_mesh(mesh, facts);
+SceneRecord describe(const Scene& scene, const BaseMesh& mesh, const std::string& display_name) {
   const SceneBytes content = measure(scene);
-  facts.set_content_sha256(content.sha256);
-  facts.set_content_bytes(content.bytes);
-  return facts;
+  return {.name = "scenes/" + random_id('s'),
+          .display_name = display_name,
+          .create_time = std::chrono::system_clock::now(),
+          .vertex_count = scene.vertices.size(),
+          .face_count = scene.faces.size(),
+          .material_count = scene.materials.size(),
+          .warnings = warnings_about(mesh),
+          .content_sha256 = content.sha256,
+          .content_bytes = content.bytes};
 }
 
 /// Builds the mesh. Throws StatusError if `stop` ended it.
@@ -120,26 +118,26 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
   stop.refuse_stopped();
   BaseMesh mesh = build(scene, stop);
   if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");
-  v1::Scene facts = facts_of(scene, mesh, display_name);
-  if (!clamped.empty()) facts.add_warnings(clamped);
+  SceneRecord facts = describe(scene, mesh, display_name);
+  if (!clamped.empty()) facts.warnings.push_back(clamped);
 
   Lock one(adding_);
   if (auto known = repeated(caller, facts)) return known;
-  check_quota(caller.tenant, facts.content_bytes());
+  check_quota(caller.tenant, facts.content_bytes);
   if (archive_) archive_->add({next_number_, caller.tenant, caller.request_id, facts}, scene);
-  auto content = contents_.add(facts.content_sha256(), std::move(scene), std::move(mesh));
+  auto content = contents_.add(facts.content_sha256, std::move(scene), std::move(mesh));
   auto stored = std::make_shared<const StoredScene>(next_number_++, caller, std::move(facts), contents_,
                                                     archive_ ? nullptr : std::move(content));
   insert(stored);
   return stored;
 }
 
-std::shared_ptr<const StoredScene> SceneStore::repeated(const Caller& caller, const v1::Scene& facts) const {
+std::shared_ptr<const StoredScene> SceneStore::repeated(const Caller& caller, const SceneRecord& facts) const {
   Lock hold(lock_);
   const std::string name = requests_.find(caller);
   if (name.empty()) return nullptr;
   auto known = entry(name, caller.tenant).scene;
-  if (known->facts.content_sha256() != facts.content_sha256() || known->facts.display_name() != facts.display_name())
+  if (known->facts.content_sha256 != facts.content_sha256 || known->facts.display_name != facts.display_name)
     throw other_request(caller.request_id);
   return known;
 }
@@ -150,7 +148,7 @@ void SceneStore::check_quota(const std::string& tenant, std::uint64_t bytes) con
   for (const auto& [name, use] : scenes_) {
     if (use.scene->creator.tenant != tenant) continue;
     ++count;
-    bytes += use.scene->facts.content_bytes();
+    bytes += use.scene->facts.content_bytes;
   }
   if (count > quota_.scenes)
     throw StatusError(grpc::RESOURCE_EXHAUSTED, "scenes: " + std::to_string(quota_.scenes) + " exist, as many as are allowed");
@@ -161,8 +159,8 @@ void SceneStore::check_quota(const std::string& tenant, std::uint64_t bytes) con
 
 void SceneStore::insert(std::shared_ptr<const StoredScene> scene) {
   Lock hold(lock_);
-  requests_.add(scene->creator, scene->facts.name());
-  const std::string name = scene->facts.name();
+  requests_.add(scene->creator, scene->facts.name);
+  const std::string name = scene->facts.name;
   scenes_[name] = {std::move(scene), std::make_shared<const int>(0)};
 }
 

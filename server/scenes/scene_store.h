@@ -1,7 +1,6 @@
 #pragma once
 // The scenes that a server holds, by name, and their content.
 
-#include "alvor/v1/scene_service.pb.h"
 #include "meshing/base_mesh.h"
 #include "server/archive/archive.h"
 #include "server/base/memory_guard.h"
@@ -45,7 +44,7 @@ class SceneContents {
 /// Immutable once stored; safe to read from any thread.
 class StoredScene {
  public:
-  StoredScene(std::uint64_t scene_number, Caller caller, v1::Scene scene_facts, SceneContents& contents,
+  StoredScene(std::uint64_t scene_number, Caller caller, SceneRecord scene_facts, SceneContents& contents,
               std::shared_ptr<const SceneContent> kept)
       : number(scene_number),
         creator(std::move(caller)),
@@ -55,11 +54,11 @@ class StoredScene {
 
   const std::uint64_t number;
   const Caller creator;
-  const v1::Scene facts;  ///< the message that the API returns
+  const SceneRecord facts;
 
   /// Returns the scene's content. Throws StatusError if it must be loaded and cannot be, or for the reason of `stop`.
   std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const {
-    return kept_ ? kept_ : contents_.find(facts.content_sha256(), stop);
+    return kept_ ? kept_ : contents_.find(facts.content_sha256, stop);
   }
 
  private:
@@ -94,7 +93,7 @@ class SceneStore {
 
  private:
   const SceneUse& entry(const std::string& name, const std::string& tenant) const ALVOR_REQUIRES(lock_);
-  std::shared_ptr<const StoredScene> repeated(const Caller& caller, const v1::Scene& facts) const;
+  std::shared_ptr<const StoredScene> repeated(const Caller& caller, const SceneRecord& facts) const;
   void check_quota(const std::string& tenant, std::uint64_t bytes) const;
   void insert(std::shared_ptr<const StoredScene> scene);
 

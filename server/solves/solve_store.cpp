@@ -1,12 +1,11 @@
 #include "server/solves/solve_store.h"
 
-#include "proto/codec.h"
+#include "server/archive/record_codec.h"
 #include "server/base/status_error.h"
 
 #include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
 
-#include <google/protobuf/util/message_differencer.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <algorithm>
@@ -23,23 +22,22 @@ constexpr std::uint64_t bytes_a_face =
 constexpr std::uint64_t bytes_a_leaf = 2400;  // of a running solve; docs/deploy.md: 2.1 to 2.7 KB
 constexpr auto between_looks = 50ms;          // at the memory, which grows by less than 1 MB/ms
 
-std::uint64_t least_memory(const StoredScene& scene) { return bytes_a_face * scene.facts.face_count(); }
+std::uint64_t least_memory(const StoredScene& scene) { return bytes_a_face * scene.facts.face_count; }
 
 bool goes_before(const StoredSolve& a, const StoredSolve& b) {
   return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
 }
 
-void report_end(spdlog::logger& logger, const v1::Solve& solve) {
-  const Step step = decode(solve.last_step());
-  const auto level = solve.state() == v1::Solve::FAILED ? spdlog::level::err : spdlog::level::info;
-  logger.log(level, "solve {} {}: {}, {:.2f} s, {} leaves, {} rays, traversal {:.0f} %", solve.name(),
-             v1::Solve::State_Name(solve.state()), solve.end_reason(), step.elapsed_s, step.leaves, step.rays,
-             100 * solve.traversal_share());
+void report_end(spdlog::logger& logger, const SolveRecord& solve) {
+  const Step step = solve.last_step.value_or(Step());
+  const auto level = solve.status == SolveStatus::failed ? spdlog::level::err : spdlog::level::info;
+  logger.log(level, "solve {} {}: {}, {:.2f} s, {} leaves, {} rays, traversal {:.0f} %", solve.name, text(solve.status),
+             solve.end_reason, step.elapsed_s, step.leaves, step.rays, 100 * solve.traversal_share);
 }
 
 /// Sets the nice value of the calling thread. Five steps are a factor of three in processor time.
-void be_as_nice_as(v1::Priority priority) {
-  const int nice = priority == v1::PRIORITY_HIGH ? 0 : priority == v1::PRIORITY_LOW ? 10 : 5;
+void be_as_nice_as(SolvePriority priority) {
+  const int nice = priority == SolvePriority::high ? 0 : priority == SolvePriority::low ? 10 : 5;
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
 }
 
@@ -81,12 +79,14 @@ void SolveStore::restore(Archive& archive, const SceneStore& scenes) {
 /// A solve that must not or cannot go on any more is ended: the limits, or the machine, were larger when it was made, or an older
 /// alvord kept what this one cannot read.
 void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
-  const std::string name = row.facts.name();
+  const std::string name = row.facts.name;
   SceneUse scene = scenes.use(name.substr(0, name.find("/solves/")), row.tenant);
   SolveOptions how;
   std::string refusal;
   try {
-    how = options_of(row.facts.spec(), options_.limits);
+    how = options_of(row.facts.spec, options_.limits);
+    // A solve that has ended keeps the limits that it had; rows of older versions do not tell them.
+    if (!is_final(row.facts.status) || !row.facts.effective_spec) row.facts.effective_spec = effective_spec(row.facts.spec, how);
   } catch (const StatusError& fault) {
     refusal = fault.what();
   }
@@ -95,29 +95,29 @@ void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
   if (solve->ended()) {
   } else if (!refusal.empty()) {
     options_.logger->error("solve {} cannot go on: {}", name, refusal);
-    solve->end_waiting(v1::Solve::CANCELLED, refusal, complain);
+    solve->end_waiting(SolveStatus::cancelled, refusal, complain);
   } else if (const std::string fault = solve->fault_of_state(); !fault.empty()) {
     options_.logger->error("solve {} cannot go on: {}", name, fault);
-    solve->end_waiting(v1::Solve::FAILED, fault, complain);
+    solve->end_waiting(SolveStatus::failed, fault, complain);
   } else {
-    options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision());
+    options_.logger->info("solve {} goes on from revision {}", name, solve->describe().resumed_from_revision);
   }
   requests_.add(solve->creator, name);
   Entry& entry = solves_[name];
   entry.scene = std::move(scene);
-  entry.shall_pause = solve->state() == v1::Solve::PAUSED;
+  entry.shall_pause = solve->status() == SolveStatus::paused;
   entry.solve = std::move(solve);
 }
 
 SolveStore::~SolveStore() { shut_down(); }
 
-std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveSpec& spec, const Caller& caller) {
+std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const SolveSpec& spec, const Caller& caller) {
   const SolveOptions how = options_of(spec, options_.limits);
   check_request_id(caller.request_id);
   options_.memory.make_room(least_memory(*scene.scene));  // takes the lock
   Lock hold(lock_);
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
-  if (auto known = repeated(caller, scene.scene->facts.name(), spec)) return known;
+  if (auto known = repeated(caller, scene.scene->facts.name, spec)) return known;
   check_capacity(caller.tenant, how);
   options_.memory.refuse_without_room("solve", least_memory(*scene.scene));
   auto solve = std::make_shared<StoredSolve>(next_number_, scene.scene, caller, spec, how, options_.keeping);
@@ -131,13 +131,11 @@ std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const v1::SolveS
   return solve;
 }
 
-std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec) {
+std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const std::string& scene, const SolveSpec& spec) {
   const std::string name = requests_.find(caller);
   if (name.empty()) return nullptr;
   auto known = entry(name, caller.tenant).solve;
-  const bool is_same =
-      name.starts_with(scene + "/") && google::protobuf::util::MessageDifferencer::Equals(known->describe().spec(), spec);
-  if (!is_same) throw other_request(caller.request_id);
+  if (!name.starts_with(scene + "/") || known->describe().spec != spec) throw other_request(caller.request_id);
   return known;
 }
 
@@ -185,7 +183,7 @@ void SolveStore::start_waiting() {
 SolveStore::Entry* SolveStore::next_waiting() {
   Entry* first = nullptr;
   for (auto& [name, entry] : solves_)
-    if (!entry.is_running && entry.solve->state() == v1::Solve::QUEUED && (!first || goes_before(*entry.solve, *first->solve)))
+    if (!entry.is_running && entry.solve->status() == SolveStatus::queued && (!first || goes_before(*entry.solve, *first->solve)))
       first = &entry;
   return first;
 }
@@ -219,7 +217,7 @@ std::string SolveStore::hungriest_tenant() const {
   for (const auto& [name, entry] : solves_)
     if (entry.is_running)
       bytes[entry.solve->creator.tenant] +=
-          least_memory(*entry.scene.scene) + bytes_a_leaf * entry.solve->describe().last_step().leaves();
+          least_memory(*entry.scene.scene) + bytes_a_leaf * entry.solve->describe().last_step.value_or(Step()).leaves;
   const auto most = std::ranges::max_element(bytes, {}, [](const auto& each) { return each.second; });
   return most == bytes.end() ? "" : most->first;
 }
@@ -275,11 +273,11 @@ void SolveStore::run(Entry& entry) {
 
 /// What it shall do may have been said otherwise while it was about to pause.
 void SolveStore::settle(const Entry& entry) {
-  const auto state = entry.solve->state();
-  const auto wanted = entry.shall_cancel ? v1::Solve::CANCELLED : entry.shall_pause ? v1::Solve::PAUSED : v1::Solve::QUEUED;
-  if (entry.solve->ended() || state == wanted) return;
+  const auto status = entry.solve->status();
+  const auto wanted = entry.shall_cancel ? SolveStatus::cancelled : entry.shall_pause ? SolveStatus::paused : SolveStatus::queued;
+  if (entry.solve->ended() || status == wanted) return;
   try {
-    entry.solve->set_waiting_state(wanted);
+    entry.solve->set_waiting_status(wanted);
   } catch (const StatusError& fault) {
     options_.logger->error("solve {} cannot be kept: {}", entry.solve->name, fault.what());
   }
@@ -330,9 +328,9 @@ std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const s
   cancelled.shall_cancel = true;  // also if it is just being parked
   if (cancelled.is_running) {
     cancelled.cancel.request_stop();
-    cancelled.solve->keep_wish(v1::Solve::CANCELLED);
+    cancelled.solve->keep_wish(SolveStatus::cancelled);
   } else if (!cancelled.solve->ended()) {
-    cancelled.solve->set_waiting_state(v1::Solve::CANCELLED);
+    cancelled.solve->set_waiting_status(SolveStatus::cancelled);
   }
   return cancelled.solve;
 }
@@ -344,9 +342,9 @@ std::shared_ptr<StoredSolve> SolveStore::pause(const std::string& name, const st
   paused.shall_pause = true;
   if (paused.is_running) {
     paused.park.request_stop();
-    if (!paused.shall_cancel) paused.solve->keep_wish(v1::Solve::PAUSED);
+    if (!paused.shall_cancel) paused.solve->keep_wish(SolveStatus::paused);
   } else {
-    paused.solve->set_waiting_state(v1::Solve::PAUSED);
+    paused.solve->set_waiting_status(SolveStatus::paused);
   }
   return paused.solve;
 }
@@ -356,8 +354,9 @@ std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const s
   Entry& resumed = entry(name, tenant);
   refuse_ended(*resumed.solve);
   resumed.shall_pause = false;
-  if (resumed.is_running && !resumed.shall_cancel) resumed.solve->keep_wish(v1::Solve::RUNNING);
-  if (resumed.solve->state() == v1::Solve::PAUSED && !resumed.is_running) resumed.solve->set_waiting_state(v1::Solve::QUEUED);
+  if (resumed.is_running && !resumed.shall_cancel) resumed.solve->keep_wish(SolveStatus::running);
+  if (resumed.solve->status() == SolveStatus::paused && !resumed.is_running)
+    resumed.solve->set_waiting_status(SolveStatus::queued);
   start_waiting();
   return resumed.solve;
 }

@@ -47,7 +47,7 @@ class SolveStore {
 
   /// Starts at once on a thread of its own, or waits. RESOURCE_EXHAUSTED when too many wait or memory is short, INVALID_ARGUMENT
   /// names the field of the spec. The same request again gets the same solve. When it returns the solve is kept.
-  std::shared_ptr<StoredSolve> create(SceneUse scene, const v1::SolveSpec& spec, const Caller& caller = {});
+  std::shared_ptr<StoredSolve> create(SceneUse scene, const SolveSpec& spec, const Caller& caller = {});
   /// NOT_FOUND.
   std::shared_ptr<StoredSolve> find(const std::string& name, const std::string& tenant = {}) const;
   /// Of one scene, or of all when `scene_name` is "scenes/-".
@@ -80,7 +80,7 @@ class SolveStore {
   }
   void restore(Archive& archive, const SceneStore& scenes);
   void restore(Archive::SolveRow row, const SceneStore& scenes) ALVOR_REQUIRES(lock_);
-  std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const v1::SolveSpec& spec)
+  std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const SolveSpec& spec)
       ALVOR_REQUIRES(lock_);
   void check_capacity(const std::string& tenant, const SolveOptions& next) ALVOR_REQUIRES(lock_);
   void start_waiting() ALVOR_REQUIRES(lock_);

@@ -1,11 +1,9 @@
 #include "server/solves/stored_solve.h"
 
-#include "proto/codec.h"
 #include "server/archive/pieces.h"
 #include "server/base/random_id.h"
 #include "server/base/status_error.h"
-
-#include <google/protobuf/util/time_util.h>
+#include "server/solves/solve_spec.h"
 
 #include <algorithm>
 #include <optional>
@@ -13,37 +11,20 @@
 
 namespace alvor {
 
-using google::protobuf::util::TimeUtil;
-
 namespace {
 
 constexpr int least_share = 20;                    // of the time between checkpoints goes into them
 constexpr std::uint64_t bytes_a_logged_leaf = 80;  // while it is loaded: 32 that stay, and the pieces it is read from
 
-bool is_final(v1::Solve::State state) {
-  return state == v1::Solve::SUCCEEDED || state == v1::Solve::CANCELLED || state == v1::Solve::FAILED;
+SolveRecord::Time now() { return std::chrono::system_clock::now(); }
+
+void end_now(SolveRecord& facts, SolveStatus status, std::string_view reason) {
+  facts.status = status;
+  facts.end_reason = reason;
+  facts.end_time = now();
 }
 
-v1::Priority priority_of(const v1::SolveSpec& spec) {
-  return spec.priority() == v1::PRIORITY_UNSPECIFIED ? v1::PRIORITY_NORMAL : spec.priority();
-}
-
-v1::PowerBalance encode(const PowerBalance& balance) {
-  v1::PowerBalance message;
-  message.set_emitted_watts(balance.emitted);
-  message.set_absorbed_watts(balance.absorbed);
-  message.set_lost_watts(balance.lost);
-  message.set_unshot_watts(balance.unshot);
-  return message;
-}
-
-void end_now(v1::Solve& facts, v1::Solve::State state, std::string_view reason) {
-  facts.set_state(state);
-  facts.set_end_reason(std::string(reason));
-  *facts.mutable_end_time() = TimeUtil::GetCurrentTime();
-}
-
-void cancel(v1::Solve& facts) { end_now(facts, v1::Solve::CANCELLED, text(StopReason::cancelled)); }
+void cancel(SolveRecord& facts) { end_now(facts, SolveStatus::cancelled, text(StopReason::cancelled)); }
 
 std::vector<std::string> pieces_of(const SolveControl::Write& write) {
   PieceWriter pieces;
@@ -55,42 +36,39 @@ std::vector<std::string> pieces_of(const SolveControl::Write& write) {
 }  // namespace
 
 StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller,
-                         const v1::SolveSpec& spec, const SolveOptions& solve_options, Keeping keeping)
+                         const SolveSpec& spec, const SolveOptions& solve_options, Keeping keeping)
     : number(solve_number),
-      name(scene->facts.name() + "/solves/" + random_id('s')),
+      name(scene->facts.name + "/solves/" + random_id('s')),
       creator(std::move(caller)),
       options(solve_options),
       priority(priority_of(spec)),
       scene_(std::move(scene)),
       keeping_(std::move(keeping)),
       log_(std::make_shared<SolutionLog>()) {
-  facts_.set_name(name);
-  *facts_.mutable_spec() = spec;
-  facts_.set_state(v1::Solve::QUEUED);
-  *facts_.mutable_create_time() = TimeUtil::GetCurrentTime();
+  facts_.name = name;
+  facts_.spec = spec;
+  facts_.effective_spec = effective_spec(spec, options);
+  facts_.create_time = now();
 }
 
 StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& solve_options,
                          Keeping keeping)
     : number(row.number),
-      name(row.facts.name()),
+      name(row.facts.name),
       creator{std::move(row.tenant), std::move(row.request_id)},
       options(solve_options),
-      priority(priority_of(row.facts.spec())),
+      priority(priority_of(row.facts.spec)),
       scene_(std::move(scene)),
       keeping_(std::move(keeping)),
       facts_(std::move(row.facts)),
       lineage_(std::move(row.lineage)) {
-  const bool has_checkpoint = facts_.has_checkpoint_time();
-  if (!has_checkpoint) log_ = std::make_shared<SolutionLog>();
-  is_log_kept_ = has_checkpoint && is_final(facts_.state());
-  if (is_final(facts_.state())) return;
-  facts_.set_restarts(facts_.restarts() + 1);
-  facts_.clear_work_lost();
-  facts_.set_resumed_from_revision(facts_.last_step().revision());
-  if (facts_.state() != v1::Solve::RUNNING) return;
-  if (row.work_lost) *facts_.mutable_work_lost() = encode_seconds(1e-6 * static_cast<double>(row.work_lost->count()));
-  facts_.set_state(v1::Solve::QUEUED);
+  if (!facts_.checkpoint_time) log_ = std::make_shared<SolutionLog>();
+  is_log_kept_ = facts_.checkpoint_time && is_final(facts_.status);
+  if (is_final(facts_.status)) return;
+  ++facts_.restarts;
+  facts_.work_lost = row.work_lost;
+  facts_.resumed_from_revision = facts_.last_step.value_or(Step()).revision;
+  if (facts_.status == SolveStatus::running) facts_.status = SolveStatus::queued;
 }
 
 void StoredSolve::keep() {
@@ -100,9 +78,9 @@ void StoredSolve::keep() {
 Archive::SolveRow StoredSolve::row() const {
   Lock hold(lock_);
   Archive::SolveRow row{number, creator.tenant, creator.request_id, facts_, lineage_};
-  if (facts_.state() != v1::Solve::RUNNING) return row;
-  if (wish_ == v1::Solve::CANCELLED) cancel(row.facts);
-  else row.facts.set_state(wish_);
+  if (facts_.status != SolveStatus::running) return row;
+  if (wish_ == SolveStatus::cancelled) cancel(row.facts);
+  else row.facts.status = wish_;
   return row;
 }
 
@@ -115,7 +93,7 @@ void StoredSolve::admit_log() const {
   std::uint64_t leaves = 0;
   {
     Lock hold(lock_);
-    leaves = facts_.last_step().leaves();
+    leaves = facts_.last_step.value_or(Step()).leaves;
   }
   keeping_.memory.admit("solution", bytes_a_logged_leaf * leaves);
 }
@@ -150,14 +128,14 @@ std::vector<std::byte> StoredSolve::take_checkpoint() {
   {
     Lock hold(lock_);
     if (!state_in_memory_.empty()) return std::exchange(state_in_memory_, {});
-    if (!facts_.has_checkpoint_time()) return {};
+    if (!facts_.checkpoint_time) return {};
   }
   return keeping_.archive->state(number);
 }
 
 void StoredSolve::run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
                       const std::function<void(const std::string&)>& complain) {
-  v1::Solve::State state = v1::Solve::FAILED;
+  SolveStatus status = SolveStatus::failed;
   std::string reason;
   SolveOutcome outcome;
   try {
@@ -165,25 +143,25 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
     reason = text(outcome.reason);
     const bool is_cancelled = outcome.reason == StopReason::cancelled;
     const bool goes_on = outcome.reason == StopReason::parked || (is_cancelled && control.abandon.stop_requested());
-    state = !goes_on      ? is_cancelled ? v1::Solve::CANCELLED : v1::Solve::SUCCEEDED
-            : is_paused() ? v1::Solve::PAUSED
-                          : v1::Solve::QUEUED;
+    status = !goes_on      ? is_cancelled ? SolveStatus::cancelled : SolveStatus::succeeded
+             : is_paused() ? SolveStatus::paused
+                           : SolveStatus::queued;
   } catch (const std::bad_alloc&) {
     reason = "out of memory";
   } catch (const BadBytes& fault) {
     reason = std::string("its checkpoint: ") + fault.what();
   } catch (const std::exception& fault) {
-    reason = as_utf8(fault.what());
+    reason = fault.what();
   }
   try {
-    if (is_final(state)) end(state, reason, outcome);
-    else set_waiting_state(state);
+    if (is_final(status)) end(status, reason, outcome);
+    else set_waiting_status(status);
   } catch (const std::exception& fault) {
     complain(fault.what());
     Lock hold(lock_);
-    facts_.set_state(state);  // there is no thread any more; after a restart it is QUEUED in any case
+    facts_.status = status;  // there is no thread any more; after a restart it is queued in any case
   }
-  if (is_final(state)) close_log();
+  if (is_final(status)) close_log();
 }
 
 /// One that is not loaded has no listeners, and is closed when it is.
@@ -222,9 +200,7 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   control.short_of_memory = run.short_of_memory;
   control.park = run.park;
   control.checkpoint = from;
-  control.priority = priority == v1::PRIORITY_LOW    ? SolvePriority::low
-                     : priority == v1::PRIORITY_HIGH ? SolvePriority::high
-                                                     : SolvePriority::normal;
+  control.priority = priority;
   if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
   control.save = [&](const SolveControl::Write& write) {
     const auto begun = Clock::now();
@@ -254,41 +230,41 @@ void StoredSolve::save_in_memory(const SolveControl::Write& write) {
 }
 
 /// `state` is empty once the solve has ended, as `change` then says.
-void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change) {
+void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change) {
   const auto solution = log();
   const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution->save(out); }), std::move(state)};
   Lock keep(keeping_lock_);
   Archive::SolveRow next = row();
   if (change) change(next.facts);
   next.lineage[keeping_.epoch] = solution->head();
-  *next.facts.mutable_last_step() = alvor::encode(solution->last_step());
-  *next.facts.mutable_checkpoint_time() = TimeUtil::GetCurrentTime();
+  next.facts.last_step = solution->last_step();
+  next.facts.checkpoint_time = now();
   keeping_.archive->update(next, checkpoint);
   ++keeping_.counts->checkpoints;
   for (const auto* pieces : {&checkpoint.log, &checkpoint.state})
     for (const std::string& piece : *pieces) keeping_.counts->bytes += piece.size();
   Lock hold(lock_);
   lineage_ = std::move(next.lineage);
-  *facts_.mutable_last_step() = next.facts.last_step();
-  *facts_.mutable_checkpoint_time() = next.facts.checkpoint_time();
+  facts_.last_step = next.facts.last_step;
+  facts_.checkpoint_time = next.facts.checkpoint_time;
   if (change) change(facts_);  // before another can keep what was true until now
 }
 
 void StoredSolve::show(const Plan& plan) {
   Lock hold(lock_);
-  *facts_.mutable_plan() = alvor::encode(plan.features());
+  facts_.plan.assign(plan.features().begin(), plan.features().end());
 }
 
 /// Others see the end once it is kept, or could not be.
-void StoredSolve::end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome) {
-  const auto end_time = TimeUtil::GetCurrentTime();
-  const auto say_end = [&](v1::Solve& facts) {
-    facts.set_state(state);
-    facts.set_end_reason(reason);
-    *facts.mutable_end_time() = end_time;
-    *facts.mutable_cpu_time() = encode_seconds(outcome.cpu_s);
-    facts.set_traversal_share(outcome.traversal_share);
-    *facts.mutable_balance() = encode(outcome.balance);
+void StoredSolve::end(SolveStatus status, const std::string& reason, const SolveOutcome& outcome) {
+  const auto end_time = now();
+  const auto say_end = [&](SolveRecord& facts) {
+    facts.status = status;
+    facts.end_reason = reason;
+    facts.end_time = end_time;
+    facts.cpu_s = outcome.cpu_s;
+    facts.traversal_share = outcome.traversal_share;
+    facts.balance = outcome.balance;
   };
   const auto show_end = [&] {
     Lock hold(lock_);
@@ -311,14 +287,13 @@ void StoredSolve::end(v1::Solve::State state, const std::string& reason, const S
 
 void StoredSolve::note_running() {
   Lock hold(lock_);
-  facts_.set_state(v1::Solve::RUNNING);
-  wish_ = v1::Solve::RUNNING;
+  facts_.status = wish_ = SolveStatus::running;
 }
 
-void StoredSolve::keep_wish(v1::Solve::State state) {
+void StoredSolve::keep_wish(SolveStatus status) {
   {
     Lock hold(lock_);
-    if (std::exchange(wish_, state) == state || facts_.state() != v1::Solve::RUNNING) return;
+    if (std::exchange(wish_, status) == status || facts_.status != SolveStatus::running) return;
   }
   keep_row();
 }
@@ -328,19 +303,19 @@ void StoredSolve::keep_row() {
   if (keeping_.archive) keeping_.archive->update(row());
 }
 
-void StoredSolve::set_waiting_state(v1::Solve::State state) {
-  change_waiting([&](v1::Solve& facts) {
-    if (is_final(state)) return cancel(facts);
-    facts.set_state(state);
-    facts.clear_end_reason();  // a wish to cancel had it
-    facts.clear_end_time();
+void StoredSolve::set_waiting_status(SolveStatus status) {
+  change_waiting([&](SolveRecord& facts) {
+    if (is_final(status)) return cancel(facts);
+    facts.status = status;
+    facts.end_reason.clear();  // a wish to cancel had it
+    facts.end_time.reset();
   });
-  if (is_final(state)) settle_end();
+  if (is_final(status)) settle_end();
 }
 
-void StoredSolve::end_waiting(v1::Solve::State state, const std::string& reason,
+void StoredSolve::end_waiting(SolveStatus status, const std::string& reason,
                               const std::function<void(const std::string&)>& complain) {
-  const auto end = [&](v1::Solve& facts) { end_now(facts, state, reason); };
+  const auto end = [&](SolveRecord& facts) { end_now(facts, status, reason); };
   try {
     change_waiting(end);
   } catch (const StatusError& fault) {
@@ -352,7 +327,7 @@ void StoredSolve::end_waiting(v1::Solve::State state, const std::string& reason,
 }
 
 /// Throws StatusError, and changes nothing, where the change cannot be kept.
-void StoredSolve::change_waiting(const std::function<void(v1::Solve&)>& change) {
+void StoredSolve::change_waiting(const std::function<void(SolveRecord&)>& change) {
   Lock keep(keeping_lock_);
   Archive::SolveRow next = row();
   change(next.facts);
@@ -375,7 +350,7 @@ void StoredSolve::settle_end() {
 }
 
 std::string StoredSolve::fault_of_state() const {
-  if (!keeping_.archive || !describe().has_checkpoint_time()) return "";
+  if (!keeping_.archive || !describe().checkpoint_time) return "";
   try {
     const auto begin = keeping_.archive->begin_of_state(number);
     if (begin.empty()) return "";
@@ -391,15 +366,15 @@ std::string StoredSolve::fault_of_state() const {
   }
 }
 
-v1::Solve::State StoredSolve::state() const {
+SolveStatus StoredSolve::status() const {
   Lock hold(lock_);
-  return facts_.state();
+  return facts_.status;
 }
 
-bool StoredSolve::ended() const { return is_final(state()); }
+bool StoredSolve::ended() const { return is_final(status()); }
 
-v1::Solve StoredSolve::describe() const {
-  v1::Solve facts;
+SolveRecord StoredSolve::describe() const {
+  SolveRecord facts;
   {
     Lock hold(lock_);
     facts = facts_;
@@ -407,7 +382,7 @@ v1::Solve StoredSolve::describe() const {
   // Asked after the state: a final state is never told with an older step than the last.
   Lock hold(log_lock_);
   if (!log_) return facts;
-  if (const Step step = log_->last_step(); step.revision > 0) *facts.mutable_last_step() = alvor::encode(step);
+  if (const Step step = log_->last_step(); step.revision > 0) facts.last_step = step;
   return facts;
 }
 

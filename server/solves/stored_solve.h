@@ -1,7 +1,6 @@
 #pragma once
 // One solve: what was asked, the log it fills, how it ended, and what is kept of it.
 
-#include "alvor/v1/solve_service.pb.h"
 #include "radiosity/solve/solver.h"
 #include "server/archive/archive.h"
 #include "server/base/memory_guard.h"
@@ -47,7 +46,7 @@ struct RunControl {
 class StoredSolve {
  public:
   /// QUEUED. Nothing is kept of it before keep() is called.
-  StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller, const v1::SolveSpec& spec,
+  StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller, const SolveSpec& spec,
               const SolveOptions& options, Keeping keeping);
   /// As the archive has it. One that was running is QUEUED again.
   StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& options, Keeping keeping);
@@ -56,7 +55,7 @@ class StoredSolve {
   const std::string name;
   const Caller creator;
   const SolveOptions options;
-  const v1::Priority priority;
+  const SolvePriority priority;
 
   /// Makes it known to the archive. Throws StatusError.
   void keep();
@@ -72,25 +71,25 @@ class StoredSolve {
            const std::function<void(const std::string&)>& complain);
   /// Of one that is not running: from QUEUED to PAUSED and back, or to CANCELLED. Throws StatusError, and changes nothing, where
   /// that cannot be kept.
-  void set_waiting_state(v1::Solve::State state);
-  /// Ends one that is not running; `state` is CANCELLED or FAILED. Where that cannot be kept `complain` is told, and it ends all
+  void set_waiting_status(SolveStatus status);
+  /// Ends one that is not running; `status` is CANCELLED or FAILED. Where that cannot be kept `complain` is told, and it ends all
   /// the same.
-  void end_waiting(v1::Solve::State state, const std::string& reason, const std::function<void(const std::string&)>& complain);
+  void end_waiting(SolveStatus status, const std::string& reason, const std::function<void(const std::string&)>& complain);
   /// Returns why the checkpoint in the archive cannot be gone on from, as far as its beginning tells; empty where it can, or
   /// there is none.
   std::string fault_of_state() const;
   void note_running();
   /// Of one that runs: what it shall be when the server is started again before the run has ended: PAUSED, CANCELLED or RUNNING.
   /// Throws StatusError where that cannot be kept; it holds all the same once something else is.
-  void keep_wish(v1::Solve::State state);
+  void keep_wish(SolveStatus status);
 
-  v1::Solve::State state() const;
-  /// The state will not change and the log will not grow. Listeners of the log are woken after this became true.
+  SolveStatus status() const;
+  /// The status will not change and the log will not grow. Listeners of the log are woken after this became true.
   bool ended() const;
   /// Gives back the memory of the log where the solve has ended, the log is kept and nobody else holds it; log() loads it again.
   void drop_log();
-  /// As the API tells it.
-  v1::Solve describe() const;
+  /// With the newest step of the log.
+  SolveRecord describe() const;
   /// Whether a mirror that is complete up to `revision` of `epoch` can go on.
   bool knows(const std::string& epoch, std::uint64_t revision) const;
 
@@ -99,14 +98,14 @@ class StoredSolve {
   void show(const Plan& plan);
   void admit_log() const;
   void close_log();
-  void end(v1::Solve::State state, const std::string& reason, const SolveOutcome& outcome);
-  void change_waiting(const std::function<void(v1::Solve&)>& change);
+  void end(SolveStatus status, const std::string& reason, const SolveOutcome& outcome);
+  void change_waiting(const std::function<void(SolveRecord&)>& change);
   void settle_end();
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
   std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
   void save(const SolveControl::Write& write);
   void save_in_memory(const SolveControl::Write& write);
-  void keep_checkpoint(std::vector<std::string> state, const std::function<void(v1::Solve&)>& change = {});
+  void keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change = {});
   std::vector<std::byte> take_checkpoint();
   void keep_row();
   Archive::SolveRow row() const;
@@ -118,8 +117,8 @@ class StoredSolve {
   bool is_log_kept_ ALVOR_GUARDED_BY(log_lock_) = false;                  ///< all of it
   Mutex keeping_lock_;                                                    ///< what is kept is what was true last; before lock_
   mutable Mutex lock_;
-  v1::Solve facts_ ALVOR_GUARDED_BY(lock_);  ///< its last step is that of the checkpoint
-  v1::Solve::State wish_ ALVOR_GUARDED_BY(lock_) = v1::Solve::RUNNING;
+  SolveRecord facts_ ALVOR_GUARDED_BY(lock_);  ///< its last step is that of the checkpoint
+  SolveStatus wish_ ALVOR_GUARDED_BY(lock_) = SolveStatus::running;
   std::map<std::string, std::uint64_t> lineage_ ALVOR_GUARDED_BY(lock_);
   std::vector<std::byte> state_in_memory_ ALVOR_GUARDED_BY(lock_);  ///< of a paused solve where it is not in the archive
 };

@@ -2,6 +2,7 @@
 
 #include "proto/codec.h"
 #include "proto/leaf_codec.h"
+#include "server/archive/record_codec.h"
 
 #include <algorithm>
 
@@ -37,7 +38,7 @@ std::shared_ptr<const Frame> FrameSource::encode_frame(const Cursor& cursor, Det
   encode(delta, message);
   const bool last = ended && delta.whole();
   message.set_ended(last);
-  if (last) *message.mutable_solve() = solve_->describe();
+  if (last) *message.mutable_solve() = encode(solve_->describe());
   return std::make_shared<const Frame>(
       Frame{grpc::Slice(message.SerializeAsString()), detail, cursor, delta.next, delta.to_revision, delta.head, last});
 }

@@ -1,10 +1,12 @@
 // Tests of `alvor`'s messages about wrong command lines.
 
+#include "radiosity/plan/solve_options.h"
 #include "tests/command_line.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 namespace alvor {
@@ -20,6 +22,18 @@ TEST_F(Usage, TheVersionIsOneLine) {
   const Ran ran = run("--version");
   EXPECT_EQ(ran.status, 0);
   EXPECT_EQ(ran.out, "alvor " ALVOR_VERSION "\n");
+}
+
+TEST_F(Usage, HelpTellsTheDefaultsOfTheServer) {
+  const SolveOptions defaults;
+  const std::string help = run("solve --help").out;
+  std::ostringstream tolerance;
+  tolerance << defaults.tolerance;
+  for (const std::string& told :
+       {"error is this small (" + tolerance.str() + ")", "no refinement (" + std::to_string(defaults.max_depth) + ")",
+        "this many leaves (" + std::to_string(defaults.max_leaves) + ")",
+        "same solution (" + std::to_string(defaults.seed) + ")"})
+    EXPECT_NE(help.find(told), std::string::npos) << told;
 }
 
 TEST_F(Usage, MisspeltCommandsAreSetRight) {

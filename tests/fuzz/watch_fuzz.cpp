@@ -43,7 +43,7 @@ struct Client final : FrameSink {
 void run(fuzz::Input input) {
   SceneStore scenes;
   const auto solve =
-      std::make_shared<StoredSolve>(1, scenes.add(squares(4), ""), Caller{}, v1::SolveSpec{}, SolveOptions{}, Keeping{});
+      std::make_shared<StoredSolve>(1, scenes.add(squares(4), ""), Caller{}, SolveSpec{}, SolveOptions{}, Keeping{});
   Client client;
   WatchPlan plan;
   plan.detail = input.byte() % 2 ? Detail::display : Detail::exact;

@@ -220,6 +220,29 @@ TEST(Api, DarkSceneIsSolvedByTheRealSolver) {
   EXPECT_EQ(watch.mirror.leaf_count(), 2u);
 }
 
+TEST(Api, SolvesTellTheSpecThatIsCarriedOut) {
+  StagedSolver stage;
+  ServiceOptions options = staged(stage);
+  options.solves.limits = {.leaves = 1000, .threads = 1};
+  TestServer server(options);
+  Client client(server.channel());
+  v1::SolveSpec asked;
+  asked.set_max_depth(3);
+  const v1::Solve created = client.create_solve(client.create_scene(squares(1), "").name(), asked);
+  const SolveOptions defaults;
+  v1::SolveSpec effective = asked;
+  effective.set_tolerance(defaults.tolerance);
+  effective.set_max_elements(1000);
+  effective.set_threads(1);
+  effective.set_seed(defaults.seed);
+  effective.set_form_factors(v1::FORM_FACTORS_NUSSELT);
+  effective.set_priority(v1::PRIORITY_NORMAL);
+  for (const v1::Solve& told : {created, client.get_solve(created.name()), client.list_solves("scenes/-").at(0)}) {
+    EXPECT_EQ(told.effective_spec().ShortDebugString(), effective.ShortDebugString());
+    EXPECT_EQ(told.spec().ShortDebugString(), asked.ShortDebugString());
+  }
+}
+
 TEST(Api, SolvesTellWhatTheirSceneNeeds) {
   TestServer server;
   Client client(server.channel());

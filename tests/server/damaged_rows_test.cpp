@@ -20,7 +20,7 @@ class DamagedRowsTest : public KeptDirectoryTest {
     Archive archive(directory);
     for (std::uint64_t n = 1; n <= 3; ++n) {
       archive.add(scene_row(n, squares(1)), squares(1));
-      archive.add(solve_row(n, n, v1::Solve::SUCCEEDED), n);
+      archive.add(solve_row(n, n, SolveStatus::succeeded), n);
     }
   }
   /// A server's stores on the directory.
@@ -87,7 +87,7 @@ TEST_F(DamagedRowsTest, NumbersOfDamagedRowsAreNotGivenAgain) {
     Stores stores(directory);
     const auto scene = stores.scenes.add(squares(2), "");
     EXPECT_EQ(scene->number, 4u);
-    EXPECT_EQ(stores.solves.create(stores.scenes.use(scene->facts.name()), {})->number, 4u);
+    EXPECT_EQ(stores.solves.create(stores.scenes.use(scene->facts.name), {})->number, 4u);
   }
   EXPECT_EQ(count("scenes"), 4) << "the damaged one too";
   EXPECT_EQ(count("solves"), 4);

@@ -60,7 +60,7 @@ class FullDiskTest : public KeptDirectoryTest {
   static std::vector<std::string> add_scenes_until_full(SceneStore& scenes) {
     std::vector<std::string> names;
     for (unsigned n = 0;; ++n) try {
-        names.push_back(scenes.add(noise(n), "")->facts.name());
+        names.push_back(scenes.add(noise(n), "")->facts.name);
       } catch (const StatusError& refusal) {
         EXPECT_EQ(refusal.code, grpc::RESOURCE_EXHAUSTED) << refusal.what();
         EXPECT_STREQ(refusal.what(), "the server's data directory: the disk is full");
@@ -90,7 +90,7 @@ TEST_F(FullDiskTest, EveryDeleteSucceedsAndGivesRoom) {
 TEST_F(FullDiskTest, JournalStaysSmallHoweverLargeTheCheckpoints) {
   Archive archive(directory);
   archive.add(scene_row(1, squares(1)), squares(1));
-  const Archive::SolveRow solve = solve_row(1, 1, v1::Solve::RUNNING);
+  const Archive::SolveRow solve = solve_row(1, 1, SolveStatus::running);
   archive.add(solve, 1);
   Archive::Checkpoint checkpoint;
   checkpoint.log.assign(4, std::string(1 << 20, 'x'));
@@ -134,7 +134,7 @@ TEST_F(FullDiskTest, ServerThatWasKilledInTheMiddleOfAWriteStarts) {
   std::string name;
   {
     Archive archive(directory);
-    name = SceneStore(&archive).add(noise(0), "")->facts.name();
+    name = SceneStore(&archive).add(noise(0), "")->facts.name;
   }
   const auto size = fs::file_size(directory / "alvor.db");
   EXPECT_EXIT(die_in_a_large_change(directory), testing::KilledBySignal(SIGKILL), "");
@@ -174,7 +174,7 @@ TEST_F(FullDiskTest, LogOfAnOlderServerThatWasKilledIsRead) {
     ASSERT_EQ(kept.size(), 3u) << "as the log says";
     EXPECT_EQ(archive.take_faults().size(), megabytes == 1 ? 0u : 1u);
     for (const auto& scene : kept)
-      EXPECT_EQ(refusal_of(grpc::OK, [&] { scenes.remove(scene->facts.name(), "ali"); }), "") << megabytes << " MB";
+      EXPECT_EQ(refusal_of(grpc::OK, [&] { scenes.remove(scene->facts.name, "ali"); }), "") << megabytes << " MB";
     EXPECT_EQ(scenes.count(), 0u);
     fs::remove(directory / "filler");
   }
@@ -237,7 +237,7 @@ TEST_F(KeptDirectoryTest, DirectoryThatCannotBeWrittenIsServedAndSaysSo) {
   std::string name;
   {
     Archive archive(directory);
-    name = SceneStore(&archive).add(noise(0), "")->facts.name();
+    name = SceneStore(&archive).add(noise(0), "")->facts.name;
   }
   for (const auto& file : fs::directory_iterator(directory)) fs::permissions(file.path(), fs::perms(0444));
   fs::permissions(directory, fs::perms(0555));

@@ -274,10 +274,10 @@ TEST_F(KeepingTest, ScenesOfEqualContentAreKeptOnce) {
   Archive archive(directory);
   SceneStore scenes(&archive);
   const auto one = scenes.add(test::coloured_room(), "one"), two = scenes.add(test::coloured_room(), "two");
-  EXPECT_NE(one->facts.name(), two->facts.name());
-  EXPECT_EQ(one->facts.content_sha256(), two->facts.content_sha256());
+  EXPECT_NE(one->facts.name, two->facts.name);
+  EXPECT_EQ(one->facts.content_sha256, two->facts.content_sha256);
   EXPECT_EQ(one->content(), two->content());
-  scenes.remove(one->facts.name());
+  scenes.remove(one->facts.name);
   EXPECT_EQ(two->content()->scene.vertices, test::coloured_room().vertices);
 }
 
@@ -287,8 +287,8 @@ TEST_F(KeepingTest, SameRequestMakesOneSceneAlsoAfterARestart) {
     Archive archive(directory);
     SceneStore scenes(&archive);
     const auto scene = scenes.add(test::coloured_room(), "one", {"ada", "once"});
-    if (run == 0) name = scene->facts.name();
-    EXPECT_EQ(scene->facts.name(), name);
+    if (run == 0) name = scene->facts.name;
+    EXPECT_EQ(scene->facts.name, name);
     EXPECT_EQ(scenes.count(), 1u);
     EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT,
                          [&] {
@@ -323,7 +323,7 @@ TEST_F(KeepingTest, DamagedContentIsNotTakenForWhatWasStored) {
   {
     Archive archive(directory);
     SceneStore scenes(&archive);
-    sha256 = scenes.add(test::coloured_room(), "")->facts.content_sha256();
+    sha256 = scenes.add(test::coloured_room(), "")->facts.content_sha256;
   }
   const std::string command =
       "python3 -c \"import sqlite3; c = sqlite3.connect('" + (directory / "alvor.db").string() +

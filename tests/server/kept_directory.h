@@ -2,6 +2,7 @@
 // A data directory for a test, and direct access to its database.
 
 #include "server/archive/archive.h"
+#include "server/archive/content.h"
 #include "tests/server/sample_scenes.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -29,14 +30,14 @@ class KeptDirectoryTest : public testing::Test {
   }
   static Archive::SceneRow scene_row(std::uint64_t number, const Scene& content) {
     Archive::SceneRow row{number, "", "", {}};
-    row.facts.set_name("scenes/s" + std::to_string(number));
-    row.facts.set_content_sha256(measure(content).sha256);
+    row.facts.name = "scenes/s" + std::to_string(number);
+    row.facts.content_sha256 = measure(content).sha256;
     return row;
   }
-  static Archive::SolveRow solve_row(std::uint64_t number, std::uint64_t scene, v1::Solve::State state) {
+  static Archive::SolveRow solve_row(std::uint64_t number, std::uint64_t scene, SolveStatus status) {
     Archive::SolveRow row{number, "", "", {}, {}};
-    row.facts.set_name("scenes/s" + std::to_string(scene) + "/solves/s" + std::to_string(number));
-    row.facts.set_state(state);
+    row.facts.name = "scenes/s" + std::to_string(scene) + "/solves/s" + std::to_string(number);
+    row.facts.status = status;
     return row;
   }
 

@@ -1,6 +1,5 @@
 // The log of a kept solve leaves memory when nobody holds it, and is loaded again when it is asked for.
 
-#include "proto/codec.h"
 #include "server/solves/solve_store.h"
 #include "tests/scenes.h"
 #include "tests/server/kept_directory.h"
@@ -21,18 +20,15 @@ class KeptLogTest : public KeptDirectoryTest {
   Archive archive{directory};
   SceneStore scenes{&archive};
   SolveStore solves{options_for(archive), scenes};
-  const std::string scene = scenes.add(test::room_with_contacts(), "")->facts.name();
+  const std::string scene = scenes.add(test::room_with_contacts(), "")->facts.name;
 };
 
 TEST_F(KeptLogTest, OfASolveThatIsCancelledWhilePausedCanBeDropped) {
-  v1::SolveSpec slow;
-  slow.set_tolerance(0.02);
-  slow.set_max_elements(4000);
-  *slow.mutable_step_pause() = encode_seconds(0.05);
+  const SolveSpec slow{.tolerance = 0.02, .max_elements = 4000, .step_pause_s = 0.05};
   const auto solve = solves.create(scenes.use(scene), slow);
   while (solve->log()->head() == 0) std::this_thread::yield();
   solves.pause(solve->name);
-  while (solve->state() != v1::Solve::PAUSED) std::this_thread::yield();
+  while (solve->status() != SolveStatus::paused) std::this_thread::yield();
   solves.cancel(solve->name);
   std::weak_ptr<SolutionLog> in_memory = solve->log();
   const auto leaves = solve->log()->leaves();
@@ -41,9 +37,7 @@ TEST_F(KeptLogTest, OfASolveThatIsCancelledWhilePausedCanBeDropped) {
 }
 
 TEST_F(KeptLogTest, OfAnEndedSolveIsInMemoryWhileSomebodyHoldsIt) {
-  v1::SolveSpec spec;
-  spec.set_max_elements(300);
-  const auto solve = solves.create(scenes.use(scene), spec);
+  const auto solve = solves.create(scenes.use(scene), {.max_elements = 300});
   while (!solve->ended()) std::this_thread::yield();
   std::weak_ptr<SolutionLog> in_memory;
   std::vector<LeafValue> leaves;

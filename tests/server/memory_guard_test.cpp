@@ -64,42 +64,37 @@ class ShortMemoryTest : public testing::Test {
     return options;
   }
   static void SetUpTestSuite() { used = 0; }
-  std::shared_ptr<StoredSolve> create(v1::Priority priority) {
-    v1::SolveSpec spec;
-    spec.set_priority(priority);
-    return solves.create(scenes.use(scene), spec);
-  }
+  std::shared_ptr<StoredSolve> create(SolvePriority priority) { return solves.create(scenes.use(scene), {.priority = priority}); }
 
   SceneStore scenes;
-  std::string scene = scenes.add(squares(2), "")->facts.name();
+  std::string scene = scenes.add(squares(2), "")->facts.name;
   SolveStore solves{options(), scenes};
 };
 
 TEST_F(ShortMemoryTest, LastAndLeastSolveEndsWithWhatItHas) {
-  const auto low = create(v1::PRIORITY_LOW), first = create(v1::PRIORITY_NORMAL), last = create(v1::PRIORITY_NORMAL);
+  const auto low = create(SolvePriority::low), first = create(SolvePriority::normal), last = create(SolvePriority::normal);
   for (const auto& solve : {low, first, last})
     while (solve->log()->head() == 0) std::this_thread::yield();
   used = 790 * mebibyte;
   while (!low->ended()) std::this_thread::yield();
-  EXPECT_EQ(low->describe().end_reason(), "memory limit reached");
-  EXPECT_EQ(low->describe().state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(low->describe().end_reason, "memory limit reached");
+  EXPECT_EQ(low->status(), SolveStatus::succeeded);
   EXPECT_EQ(low->log()->head(), 1u);
   EXPECT_FALSE(last->ended());
   used = 790 * mebibyte;
   while (!last->ended()) std::this_thread::yield();
   EXPECT_FALSE(first->ended());
   used = 650 * mebibyte;
-  EXPECT_NE(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(v1::PRIORITY_HIGH); }).find("of memory"), std::string::npos);
+  EXPECT_NE(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(SolvePriority::high); }).find("of memory"), std::string::npos);
   used = 0;
-  EXPECT_EQ(create(v1::PRIORITY_HIGH)->state(), v1::Solve::RUNNING);
+  EXPECT_EQ(create(SolvePriority::high)->status(), SolveStatus::running);
 }
 
 TEST_F(ShortMemoryTest, OfTheTenantWhoTakesMostASolveEndsFirst) {
-  v1::SolveSpec spec;
-  const std::string bobs = scenes.add(squares(2), "", {"bob", ""})->facts.name();
-  const auto of_one = solves.create(scenes.use(bobs, "bob"), spec, {"bob", ""});
-  const auto first = create(v1::PRIORITY_NORMAL), second = create(v1::PRIORITY_NORMAL);
-  const auto last = solves.create(scenes.use(bobs, "bob"), spec, {"bob", ""});
+  const std::string bobs = scenes.add(squares(2), "", {"bob", ""})->facts.name;
+  const auto of_one = solves.create(scenes.use(bobs, "bob"), {}, {"bob", ""});
+  const auto first = create(SolvePriority::normal), second = create(SolvePriority::normal);
+  const auto last = solves.create(scenes.use(bobs, "bob"), {}, {"bob", ""});
   solves.cancel(last->name, "bob");
   for (const auto& solve : {of_one, first, second})
     while (solve->log()->head() == 0) std::this_thread::yield();
@@ -128,7 +123,7 @@ TEST(MemoryGuard, WhatNobodyNeedsIsGivenBackBeforeAnythingIsRefused) {
 TEST(MemoryGuard, SomethingElseEndsBeforeASolve) {
   used = 0;
   SceneStore scenes;
-  const std::string scene = scenes.add(squares(2), "")->facts.name();
+  const std::string scene = scenes.add(squares(2), "")->facts.name;
   SolveStoreOptions options;
   options.solver = wait_for_end;
   options.memory = MemoryGuard(800 * mebibyte, used_memory);

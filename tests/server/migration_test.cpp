@@ -1,6 +1,9 @@
 // Data directories that older versions wrote (tests/server/old_data) are opened, and their solves go on or say why not.
 
 #include "client/rpc/client.h"
+#include "server/archive/record_codec.h"
+#include "server/archive/rows.h"
+#include "server/archive/versioned.h"
 #include "server/scenes/scene_store.h"
 #include "server/solves/solve_store.h"
 #include "tests/server/alvord_process.h"
@@ -44,9 +47,9 @@ class MigrationTest : public KeptDirectoryTest {
         if (solve->number == number) return solve;
       throw std::out_of_range("no solve " + std::to_string(number));
     }
-    v1::Solve ended(std::uint64_t number) {
+    SolveRecord ended(std::uint64_t number) {
       const auto last = solve(number);
-      if (last->state() == v1::Solve::PAUSED) solves.resume(last->name);
+      if (last->status() == SolveStatus::paused) solves.resume(last->name);
       while (!last->ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
       return last->describe();
     }
@@ -62,8 +65,8 @@ class MigrationTest : public KeptDirectoryTest {
   /// All rows, as the API tells them.
   static std::string told(Stores& stores) {
     std::string all;
-    for (const auto& scene : stores.scenes.list({.size = 100}).items) all += scene->facts.ShortDebugString() + "\n";
-    for (const auto& solve : stores.solves.all()) all += solve->describe().ShortDebugString() + "\n";
+    for (const auto& scene : stores.scenes.list({.size = 100}).items) all += encode(scene->facts).ShortDebugString() + "\n";
+    for (const auto& solve : stores.solves.all()) all += encode(solve->describe()).ShortDebugString() + "\n";
     return all;
   }
   /// Leaves of the solve 1, as they were in the old bytes.
@@ -84,10 +87,29 @@ TEST_F(MigrationTest, ScenesAreTheSame) {
     ASSERT_EQ(scenes.size(), 4u);
     std::map<std::string, int> names;
     for (const auto& scene : scenes) {
-      ++names[scene->facts.display_name()];
-      EXPECT_EQ(scene->content()->scene.faces.size(), scene->facts.face_count()) << "its sum is checked where it is read";
+      ++names[scene->facts.display_name];
+      EXPECT_EQ(scene->content()->scene.faces.size(), scene->facts.face_count) << "its sum is checked where it is read";
     }
     EXPECT_EQ(names, (std::map<std::string, int>{{"room.obj", 3}, {"triangles.obj", 1}})) << version;
+  }
+}
+
+TEST_F(MigrationTest, FactsAreWrittenAsTheyWere) {
+  for (const int version : {1, 2}) {
+    copy(version);
+    const SQLite::Database open((directory / "alvor.db").string(), SQLite::OPEN_READWRITE);
+    const auto expect_same = [&](const std::string& table, auto&& rewritten) {
+      SQLite::Statement each(open, "SELECT facts FROM " + table);
+      int rows = 0;
+      for (; each.executeStep(); ++rows) {
+        const std::string_view facts = bytes_of(each.getColumn(0));
+        const std::string again = rewritten(facts);
+        EXPECT_EQ(behind_version(again, 1), behind_version(facts, 1)) << table << " of version " << version;
+      }
+      EXPECT_EQ(rows, 4);
+    };
+    expect_same("scenes", [](std::string_view facts) { return facts_of(scene_of(facts)); });
+    expect_same("solves", [](std::string_view facts) { return facts_of(solve_of(facts)); });
   }
 }
 
@@ -96,8 +118,8 @@ TEST_F(MigrationTest, SolutionsAreRead) {
     copy(version);
     Stores stores(directory);
     const auto solve = stores.solve(1);
-    EXPECT_EQ(solve->state(), v1::Solve::SUCCEEDED);
-    EXPECT_EQ(solve->describe().end_reason(), "leaf limit reached");
+    EXPECT_EQ(solve->status(), SolveStatus::succeeded);
+    EXPECT_EQ(solve->describe().end_reason, "leaf limit reached");
     EXPECT_EQ(solve->log()->leaves(), leaves_of_the_room()) << version;
     EXPECT_EQ(solve->log()->head(), 5u);
     EXPECT_EQ(solve->log()->last_step().leaves, 58u);
@@ -120,12 +142,12 @@ TEST_F(MigrationTest, LeavesOfOldSolutionsBelongToTheMeshOfToday) {
 TEST_F(MigrationTest, SolvesGoOnWhereTheirStatesCanBeRead) {
   copy(2);
   Stores stores(directory);
-  EXPECT_EQ(stores.solve(2)->state(), v1::Solve::PAUSED);
+  EXPECT_EQ(stores.solve(2)->status(), SolveStatus::paused);
   for (const std::uint64_t number : {2, 3, 4}) {
-    const v1::Solve solve = stores.ended(number);
-    EXPECT_EQ(solve.state(), v1::Solve::SUCCEEDED) << number << ": " << solve.end_reason();
-    EXPECT_EQ(solve.restarts(), 1);
-    EXPECT_EQ(solve.resumed_from_revision() > 0, number != 4) << "4 had not begun";
+    const SolveRecord solve = stores.ended(number);
+    EXPECT_EQ(solve.status, SolveStatus::succeeded) << number << ": " << solve.end_reason;
+    EXPECT_EQ(solve.restarts, 1);
+    EXPECT_EQ(solve.resumed_from_revision > 0, number != 4) << "4 had not begun";
   }
   EXPECT_TRUE(stores.has_logged("it was of version 2 and is of version 3 from now on")) << stores.text.str();
 }
@@ -137,16 +159,16 @@ TEST_F(MigrationTest, SolvesWhoseStatesAreTooOldSayWhyTheyEndAndStay) {
   for (int start = 0; start < 2; ++start) {
     Stores stores(directory);
     for (const std::uint64_t number : {2, 3}) {
-      const v1::Solve solve = stores.solve(number)->describe();
-      EXPECT_EQ(solve.state(), v1::Solve::FAILED) << number;
-      EXPECT_TRUE(solve.end_reason().starts_with(why)) << solve.end_reason();
-      EXPECT_TRUE(solve.has_end_time());
-      EXPECT_EQ(stores.solve(number)->log()->leaves().size(), solve.last_step().leaves()) << "what it found is there";
-      EXPECT_GT(solve.last_step().leaves(), 0u);
+      const SolveRecord solve = stores.solve(number)->describe();
+      EXPECT_EQ(solve.status, SolveStatus::failed) << number;
+      EXPECT_TRUE(solve.end_reason.starts_with(why)) << solve.end_reason;
+      EXPECT_TRUE(solve.end_time);
+      EXPECT_EQ(stores.solve(number)->log()->leaves().size(), solve.last_step->leaves) << "what it found is there";
+      EXPECT_GT(solve.last_step->leaves, 0u);
       if (start == 0) continue;
-      EXPECT_EQ(refusal_of(grpc::OK, [&] { stores.solves.remove(solve.name()); }), "");
+      EXPECT_EQ(refusal_of(grpc::OK, [&] { stores.solves.remove(solve.name); }), "");
     }
-    EXPECT_EQ(stores.ended(4).state(), v1::Solve::SUCCEEDED) << "it had no state";
+    EXPECT_EQ(stores.ended(4).status, SolveStatus::succeeded) << "it had no state";
     EXPECT_EQ(stores.has_logged("cannot go on: " + why), start == 0) << stores.text.str();
   }
   EXPECT_EQ(count("solves"), 2);
@@ -157,7 +179,7 @@ TEST_F(MigrationTest, LateDatabasesOfVersion1HaveStatesThatCanBeRead) {
   alter("DROP TABLE unkept; PRAGMA user_version = 1");
   Stores stores(directory);
   EXPECT_EQ(stores.solve(1)->log()->leaves(), leaves_of_the_room());
-  for (const std::uint64_t number : {2, 3, 4}) EXPECT_EQ(stores.ended(number).state(), v1::Solve::SUCCEEDED) << number;
+  for (const std::uint64_t number : {2, 3, 4}) EXPECT_EQ(stores.ended(number).status, SolveStatus::succeeded) << number;
 }
 
 TEST_F(MigrationTest, OpeningTwiceChangesNothing) {
@@ -215,13 +237,13 @@ TEST_F(MigrationTest, SolveWhoseLogCannotBeReadFailsOnceAndSaysWhy) {
   std::string first;
   {
     Stores stores(directory);
-    const v1::Solve solve = stores.ended(3);
-    EXPECT_EQ(solve.state(), v1::Solve::FAILED);
-    EXPECT_NE(solve.end_reason().find("is of version 7"), std::string::npos) << solve.end_reason();
-    first = solve.ShortDebugString();
+    const SolveRecord solve = stores.ended(3);
+    EXPECT_EQ(solve.status, SolveStatus::failed);
+    EXPECT_NE(solve.end_reason.find("is of version 7"), std::string::npos) << solve.end_reason;
+    first = encode(solve).ShortDebugString();
   }
   const Stores stores(directory);
-  EXPECT_EQ(stores.solve(3)->describe().ShortDebugString(), first) << "it does not begin again at each start";
+  EXPECT_EQ(encode(stores.solve(3)->describe()).ShortDebugString(), first) << "it does not begin again at each start";
 }
 
 TEST_F(MigrationTest, ServerIsStartedOnOldDirectories) {
@@ -266,9 +288,7 @@ TEST_F(MigrationTest, DirectoryThatCannotBeWrittenIsReadAsItIs) {
   {
     SQLite::Database open((directory / "alvor.db").string(), SQLite::OPEN_READWRITE);
     const std::string facts = open.execAndGet("SELECT facts FROM solves WHERE number = 1").getString();
-    v1::Solve solve;
-    ASSERT_TRUE(solve.ParseFromString(facts));
-    name = solve.name();
+    name = solve_of(facts).name;
   }
   for (const auto& file : fs::directory_iterator(directory)) fs::permissions(file.path(), fs::perms(0444));
   fs::permissions(directory, fs::perms(0555));

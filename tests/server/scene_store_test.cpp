@@ -15,11 +15,11 @@ TEST(SceneStore, TellsWhatIsOdd) {
   scene.materials[0].emission = {};
   scene.add_face(std::array<std::uint32_t, 3>{0, 0, 1}, 0);
   const auto facts = store.add(scene, "dim")->facts;
-  EXPECT_EQ(facts.display_name(), "dim");
-  EXPECT_EQ(facts.face_count(), 3u);
-  ASSERT_EQ(facts.warnings_size(), 2);
-  EXPECT_EQ(facts.warnings(0), "1 degenerate faces (no area) were left out.");
-  EXPECT_EQ(facts.warnings(1), "No face emits light, and there are no lamps: the solution will be dark.");
+  EXPECT_EQ(facts.display_name, "dim");
+  EXPECT_EQ(facts.face_count, 3u);
+  ASSERT_EQ(facts.warnings.size(), 2u);
+  EXPECT_EQ(facts.warnings[0], "1 degenerate faces (no area) were left out.");
+  EXPECT_EQ(facts.warnings[1], "No face emits light, and there are no lamps: the solution will be dark.");
 }
 
 TEST(SceneStore, TakesAReflectanceOfOneForAsMuchAsSurfacesHaveAndSaysSo) {
@@ -29,8 +29,8 @@ TEST(SceneStore, TakesAReflectanceOfOneForAsMuchAsSurfacesHaveAndSaysSo) {
   scene.materials[0].reflectance = {1, 0.5, 1};
   const auto stored = store.add(scene, "");
   EXPECT_EQ(stored->content()->mesh.material_of(0).reflectance, (Rgb{0.95, 0.5, 0.95}));
-  ASSERT_EQ(stored->facts.warnings_size(), 1);
-  EXPECT_EQ(stored->facts.warnings(0), "1 materials have a reflectance of 1, which is taken for 0.95: the first is 'chalk'.");
+  ASSERT_EQ(stored->facts.warnings.size(), 1u);
+  EXPECT_EQ(stored->facts.warnings[0], "1 materials have a reflectance of 1, which is taken for 0.95: the first is 'chalk'.");
   scene.materials[0].reflectance.r = 1.0001;
   EXPECT_TRUE(refusal_of(grpc::INVALID_ARGUMENT, [&] { store.add(scene, ""); }).starts_with("material 0"));
 }
@@ -41,10 +41,10 @@ TEST(SceneStore, TellsOfFacesInThePlaceOfOthers) {
   const auto corners = scene.corners_of(scene.faces[1]);
   scene.add_face(std::vector(corners.begin(), corners.end()), 0);
   const auto stored = store.add(scene, "");
-  EXPECT_EQ(stored->facts.face_count(), 3u);
+  EXPECT_EQ(stored->facts.face_count, 3u);
   EXPECT_EQ(stored->content()->mesh.roots().size(), 2u);
-  ASSERT_EQ(stored->facts.warnings_size(), 1);
-  EXPECT_EQ(stored->facts.warnings(0),
+  ASSERT_EQ(stored->facts.warnings.size(), 1u);
+  EXPECT_EQ(stored->facts.warnings[0],
             "1 faces lie in the place of others and were left out: the first is face 2, in the place of face 1.");
 }
 
@@ -57,7 +57,7 @@ TEST(SceneStore, RefusesBadScenesByPlaceAndReason) {
 
 TEST(SceneStore, KeepsScenesThatAreInUse) {
   SceneStore store;
-  const std::string name = store.add(squares(1), "")->facts.name();
+  const std::string name = store.add(squares(1), "")->facts.name;
   {
     const SceneUse use = store.use(name);
     EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { store.remove(name); }), name + " has solves: delete them first");
@@ -73,7 +73,7 @@ TEST(SceneStore, ListsNewestFirstInPagesThatNeverOverlap) {
   std::string seen, token;
   do {
     const auto page = store.list(tokens.request(2, token));
-    for (const auto& stored : page.items) seen += stored->facts.display_name();
+    for (const auto& stored : page.items) seen += stored->facts.display_name;
     token = tokens.token(page.next_before);
     store.add(squares(1), "new");  // must not shift the pages that follow
   } while (!token.empty());
@@ -110,7 +110,7 @@ TEST(SceneUpload, BeginsWithTheScene) {
   upload.add(header());
   EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT, [&] { upload.add(header()); }), "scene: only the first message may set it");
   upload.add(chunk_of(squares(1)));
-  EXPECT_EQ(upload.finish(store)->facts.display_name(), "room");
+  EXPECT_EQ(upload.finish(store)->facts.display_name, "room");
 }
 
 TEST(SceneUpload, EndsAtTheLimits) {

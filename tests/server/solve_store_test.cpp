@@ -1,5 +1,7 @@
 #include "server/solves/solve_store.h"
 
+#include "server/archive/record_codec.h"
+#include "tests/server/kept_directory.h"
 #include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
@@ -24,7 +26,7 @@ class SolveStoreTest : public testing::Test {
     return options;
   }
   std::shared_ptr<StoredSolve> create() { return solves.create(scenes.use(scene), {}); }
-  static v1::Solve ended(const std::shared_ptr<StoredSolve>& solve) {
+  static SolveRecord ended(const std::shared_ptr<StoredSolve>& solve) {
     // The state is final before the log's listeners are woken for the last time, but those who wait for the log may be woken
     // earlier.
     while (!solve->ended()) std::this_thread::yield();
@@ -33,58 +35,56 @@ class SolveStoreTest : public testing::Test {
 
   StagedSolver stage;
   SceneStore scenes;
-  std::string scene = scenes.add(squares(2), "")->facts.name();
+  std::string scene = scenes.add(squares(2), "")->facts.name;
   SolveStore solves{options_for(stage), scenes};
 };
 
 TEST_F(SolveStoreTest, SolveRunsUntilTheSolverReturns) {
   const auto solve = create();
-  EXPECT_EQ(solve->describe().state(), v1::Solve::RUNNING);
-  EXPECT_FALSE(solve->describe().has_last_step());
+  EXPECT_EQ(solve->describe().status, SolveStatus::running);
+  EXPECT_FALSE(solve->describe().last_step.has_value());
   Step step;
   step.shots = 3;
   stage.log().publish({}, step);
-  EXPECT_EQ(solve->describe().last_step().shots(), 3u);
+  EXPECT_EQ(solve->describe().last_step->shots, 3u);
   stage.finish();
-  EXPECT_EQ(ended(solve).state(), v1::Solve::SUCCEEDED);
-  EXPECT_EQ(ended(solve).end_reason(), text(StopReason::tolerance));
-  EXPECT_TRUE(ended(solve).has_end_time());
+  EXPECT_EQ(ended(solve).status, SolveStatus::succeeded);
+  EXPECT_EQ(ended(solve).end_reason, text(StopReason::tolerance));
+  EXPECT_TRUE(ended(solve).end_time.has_value());
 }
 
 TEST_F(SolveStoreTest, CancelledSolveStaysReadable) {
   const auto solve = create();
   stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   solves.cancel(solve->name);
-  EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
+  EXPECT_EQ(ended(solve).status, SolveStatus::cancelled);
   EXPECT_EQ(solves.find(solve->name)->log()->leaves().size(), 1u);
-  EXPECT_EQ(ended(solves.cancel(solve->name)).state(), v1::Solve::CANCELLED) << "cancelling again changes nothing";
+  EXPECT_EQ(ended(solves.cancel(solve->name)).status, SolveStatus::cancelled) << "cancelling again changes nothing";
 }
 
 TEST_F(SolveStoreTest, SolverThatThrowsFailsTheSolveAndNotTheServer) {
   const auto solve = create();
   stage.fail("no rays today");
-  EXPECT_EQ(ended(solve).state(), v1::Solve::FAILED);
-  EXPECT_EQ(ended(solve).end_reason(), "no rays today");
+  EXPECT_EQ(ended(solve).status, SolveStatus::failed);
+  EXPECT_EQ(ended(solve).end_reason, "no rays today");
   solve->log()->wait_beyond(solve->log()->head());  // returns, as the log is closed though the solver did not close it
 }
 
 TEST_F(SolveStoreTest, OnlySoManyRunAtATimeAndOnlySoManyWait) {
-  for (const auto state : {v1::Solve::RUNNING, v1::Solve::RUNNING, v1::Solve::QUEUED, v1::Solve::QUEUED})
-    EXPECT_EQ(create()->describe().state(), state);
+  for (const auto status : {SolveStatus::running, SolveStatus::running, SolveStatus::queued, SolveStatus::queued})
+    EXPECT_EQ(create()->describe().status, status);
   EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { create(); }), "2 solves are waiting, as many as this server allows");
 }
 
 TEST_F(SolveStoreTest, WaitingSolvesStartByPriorityThenAge) {
   const auto first = create(), second = create();
-  v1::SolveSpec low, high;
-  low.set_priority(v1::PRIORITY_LOW);
-  high.set_priority(v1::PRIORITY_HIGH);
-  const auto third = solves.create(scenes.use(scene), low), fourth = solves.create(scenes.use(scene), high);
+  const auto third = solves.create(scenes.use(scene), {.priority = SolvePriority::low});
+  const auto fourth = solves.create(scenes.use(scene), {.priority = SolvePriority::high});
   solves.cancel(first->name);
-  while (fourth->describe().state() == v1::Solve::QUEUED) std::this_thread::yield();
-  EXPECT_EQ(third->describe().state(), v1::Solve::QUEUED);
+  while (fourth->describe().status == SolveStatus::queued) std::this_thread::yield();
+  EXPECT_EQ(third->describe().status, SolveStatus::queued);
   solves.cancel(second->name);
-  while (third->describe().state() == v1::Solve::QUEUED) std::this_thread::yield();
+  while (third->describe().status == SolveStatus::queued) std::this_thread::yield();
 }
 
 TEST_F(SolveStoreTest, PausedSolveGoesOnFromWhereItWas) {
@@ -92,27 +92,27 @@ TEST_F(SolveStoreTest, PausedSolveGoesOnFromWhereItWas) {
   EXPECT_EQ(stage.resumed_from(), 0u);
   stage.log().publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   solves.pause(solve->name);
-  while (solve->describe().state() != v1::Solve::PAUSED) std::this_thread::yield();
+  while (solve->describe().status != SolveStatus::paused) std::this_thread::yield();
   EXPECT_FALSE(solve->log()->closed());
   solves.resume(solve->name);
   EXPECT_EQ(stage.resumed_from(), sizeof(std::uint32_t));
-  EXPECT_EQ(solve->describe().state(), v1::Solve::RUNNING);
+  EXPECT_EQ(solve->describe().status, SolveStatus::running);
   EXPECT_EQ(stage.log().head(), 1u);
   stage.finish();
-  EXPECT_EQ(ended(solve).state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(ended(solve).status, SolveStatus::succeeded);
   EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { solves.pause(solve->name); }), solve->name + " has ended");
 }
 
 TEST_F(SolveStoreTest, PausedSolveCanBeCancelledAndLeavesItsPlaceToOthers) {
   const auto first = create(), second = create(), third = create();
   solves.pause(third->name);
-  EXPECT_EQ(third->describe().state(), v1::Solve::PAUSED) << "it had not begun";
+  EXPECT_EQ(third->describe().status, SolveStatus::paused) << "it had not begun";
   solves.pause(first->name);
-  while (first->describe().state() != v1::Solve::PAUSED) std::this_thread::yield();
+  while (first->describe().status != SolveStatus::paused) std::this_thread::yield();
   solves.resume(third->name);
-  while (third->describe().state() != v1::Solve::RUNNING) std::this_thread::yield();
+  while (third->describe().status != SolveStatus::running) std::this_thread::yield();
   solves.cancel(first->name);
-  EXPECT_EQ(first->describe().state(), v1::Solve::CANCELLED);
+  EXPECT_EQ(first->describe().status, SolveStatus::cancelled);
   EXPECT_TRUE(first->log()->closed());
 }
 
@@ -122,7 +122,7 @@ TEST_F(SolveStoreTest, CancellingASolveThatIsJustBeingParkedIsNotForgotten) {
     stage.log();
     solves.pause(solve->name);
     solves.cancel(solve->name);
-    EXPECT_EQ(ended(solve).state(), v1::Solve::CANCELLED);
+    EXPECT_EQ(ended(solve).status, SolveStatus::cancelled);
   }
 }
 
@@ -144,7 +144,7 @@ class KeptSolveTest : public testing::Test {
     made.keeping.archive = &archive;
     return made;
   }
-  v1::Solve kept() { return archive.solves().at(0).facts; }
+  SolveRecord kept() { return archive.solves().at(0).facts; }
 
   const std::filesystem::path directory = std::filesystem::temp_directory_path() / ("alvor_kept_" + std::to_string(getpid()));
   Archive archive{directory};
@@ -154,32 +154,30 @@ class KeptSolveTest : public testing::Test {
 };
 
 TEST_F(KeptSolveTest, WhatItShallDoIsKeptBeforeItIsDone) {
-  const auto solve = solves.create(scenes.use(scenes.add(squares(2), "")->facts.name()), {}, {});
-  while (kept().state() != v1::Solve::RUNNING) std::this_thread::yield();
+  const auto solve = solves.create(scenes.use(scenes.add(squares(2), "")->facts.name), {}, {});
+  while (kept().status != SolveStatus::running) std::this_thread::yield();
   solves.pause(solve->name);
-  EXPECT_EQ(kept().state(), v1::Solve::PAUSED);
+  EXPECT_EQ(kept().status, SolveStatus::paused);
   solves.resume(solve->name);
-  EXPECT_EQ(kept().state(), v1::Solve::RUNNING);
-  EXPECT_FALSE(kept().has_end_time());
+  EXPECT_EQ(kept().status, SolveStatus::running);
+  EXPECT_FALSE(kept().end_time.has_value());
   solves.pause(solve->name);
   solves.cancel(solve->name);
-  EXPECT_EQ(kept().state(), v1::Solve::CANCELLED);
-  EXPECT_TRUE(kept().has_end_time());
-  EXPECT_EQ(kept().end_reason(), "cancelled");
-  EXPECT_EQ(solve->state(), v1::Solve::RUNNING) << "others are told once it has stopped";
+  EXPECT_EQ(kept().status, SolveStatus::cancelled);
+  EXPECT_TRUE(kept().end_time.has_value());
+  EXPECT_EQ(kept().end_reason, "cancelled");
+  EXPECT_EQ(solve->status(), SolveStatus::running) << "others are told once it has stopped";
   may_stop.release();
   while (!solve->ended()) std::this_thread::yield();
-  EXPECT_EQ(kept().state(), v1::Solve::CANCELLED);
+  EXPECT_EQ(kept().status, SolveStatus::cancelled);
 }
 
 TEST_F(SolveStoreTest, SameRequestMakesOneSolve) {
   const auto solve = solves.create(scenes.use(scene), {}, {"", "once"});
   EXPECT_EQ(solves.create(scenes.use(scene), {}, {"", "once"}), solve);
-  v1::SolveSpec other;
-  other.set_tolerance(0.1);
   EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT,
                        [&] {
-                         solves.create(scenes.use(scene), other, {"", "once"});
+                         solves.create(scenes.use(scene), {.tolerance = 0.1}, {"", "once"});
                        }),
             "request_id: 'once' was used for another request");
   EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT,
@@ -190,7 +188,7 @@ TEST_F(SolveStoreTest, SameRequestMakesOneSolve) {
 }
 
 TEST_F(SolveStoreTest, TenantsSeeAndCountTheirOwn) {
-  const std::string hers = scenes.add(squares(1), "", {"ada", ""})->facts.name();
+  const std::string hers = scenes.add(squares(1), "", {"ada", ""})->facts.name;
   EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { scenes.use(hers, "bob"); }), hers + " does not exist");
   const auto solve = solves.create(scenes.use(hers, "ada"), {}, {"ada", ""});
   EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { solves.cancel(solve->name, "bob"); }), solve->name + " does not exist");
@@ -207,12 +205,12 @@ class SolveQuotaTest : public testing::Test {
     return {options, scenes};
   }
   /// Creates one more solve. Returns how it is refused, or "" if it is not.
-  std::string refusal(SolveStore& solves, const v1::SolveSpec& spec = {}) {
+  std::string refusal(SolveStore& solves, const SolveSpec& spec = {}) {
     return refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { solves.create(scenes.use(scene), spec); });
   }
   StagedSolver stage;
   SceneStore scenes;
-  const std::string scene = scenes.add(squares(2), "")->facts.name();
+  const std::string scene = scenes.add(squares(2), "")->facts.name;
 };
 
 TEST_F(SolveQuotaTest, ThoseThatHaveEndedAreCountedToo) {
@@ -227,11 +225,10 @@ TEST_F(SolveQuotaTest, ThoseThatHaveEndedAreCountedToo) {
 
 TEST_F(SolveQuotaTest, EndsWhatATenantMayStart) {
   SolveStore solves = solves_with({.solves = 2, .leaves = 1000});
-  v1::SolveSpec spec;
-  spec.set_max_elements(600);
+  SolveSpec spec{.max_elements = 600};
   EXPECT_EQ(refusal(solves, spec), "");
   EXPECT_EQ(refusal(solves, spec), "solve.spec.max_elements: with the other solves that have not ended 1200, 1000 are allowed");
-  spec.set_max_elements(400);
+  spec.max_elements = 400;
   EXPECT_EQ(refusal(solves, spec), "");
   EXPECT_EQ(refusal(solves, spec), "solves: 2 have not ended, as many as are allowed");
 }
@@ -252,12 +249,12 @@ TEST_F(SolveStoreTest, ShutDownCancelsAndRefusesWhatComesLater) {
   const auto solve = create();
   stage.log();
   solves.shut_down();
-  EXPECT_EQ(solve->describe().state(), v1::Solve::CANCELLED);
+  EXPECT_EQ(solve->describe().status, SolveStatus::cancelled);
   EXPECT_EQ(refusal_of(grpc::UNAVAILABLE, [&] { create(); }), "the server is stopping");
 }
 
 TEST_F(SolveStoreTest, ListsOneSceneOrAll) {
-  const std::string other = scenes.add(squares(1), "")->facts.name();
+  const std::string other = scenes.add(squares(1), "")->facts.name;
   const auto first = create();
   const auto second = solves.create(scenes.use(other), {});
   EXPECT_EQ(solves.list(scene, {}).items.size(), 1u);
@@ -273,11 +270,42 @@ TEST(SolveSpec, ZeroMeansTheDefault) {
   EXPECT_EQ(options.max_leaves, defaults.max_leaves);
   EXPECT_EQ(options.time_limit_s, defaults.time_limit_s);
   EXPECT_EQ(options.seed, defaults.seed);
-  v1::SolveSpec zeros;
-  zeros.set_max_depth(0);
-  zeros.set_seed(0);
+  const SolveSpec zeros{.max_depth = 0, .seed = 0};
   EXPECT_EQ(options_of(zeros, {}).max_depth, 0);
   EXPECT_EQ(options_of(zeros, {}).seed, 0u);
+}
+
+TEST(SolveSpec, WhatIsAskedIsEffective) {
+  const SolveSpec asked{.tolerance = 0.5,
+                        .max_depth = 0,
+                        .max_elements = 7,
+                        .min_edge_m = 0.1,
+                        .time_limit_s = 2,
+                        .threads = 1,
+                        .seed = 0,
+                        .strategy = Strategy::shoot,
+                        .form_factors = FormFactorMethod::hemicube,
+                        .step_pause_s = 1e-6,
+                        .priority = SolvePriority::low};
+  EXPECT_EQ(effective_spec(asked, options_of(asked, {})), asked);
+}
+
+TEST_F(KeptDirectoryTest, EndedSolveTellsTheLimitsThatItHad) {
+  Archive archive{directory};
+  SceneStore scenes{&archive};
+  SolveStoreOptions options;
+  options.keeping.archive = &archive;
+  options.solver = [](auto&&...) { return SolveOutcome(); };
+  options.limits.leaves = 1000;
+  const auto told = [](const SolveStore& solves) { return solves.all().at(0)->describe().effective_spec->max_elements; };
+  {
+    SolveStore solves{options, scenes};
+    const auto solve = solves.create(scenes.use(scenes.add(squares(2), "")->facts.name), {});
+    while (!solve->ended()) std::this_thread::yield();
+    EXPECT_EQ(told(solves), 1000u);
+  }
+  options.limits.leaves = 500;
+  EXPECT_EQ(told(SolveStore(options, scenes)), 1000u);
 }
 
 TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
@@ -300,7 +328,8 @@ TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
   for (const Case& spoilt : cases) {
     v1::SolveSpec spec;
     spoilt.spoil(spec);
-    EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT, [&] { options_of(spec, {.leaves = 100, .threads = 1}); }), spoilt.refusal);
+    EXPECT_EQ(refusal_of(grpc::INVALID_ARGUMENT, [&] { options_of(decode(spec), {.leaves = 100, .threads = 1}); }),
+              spoilt.refusal);
   }
 }
 

@@ -44,7 +44,7 @@ class WatchTest : public testing::Test {
     solve->run([](auto&, auto&, auto&, SolutionLog&, const SolveControl&) { return SolveOutcome{}; }, {}, {}, {});
   }
   std::shared_ptr<StoredSolve> make_solve() {
-    return std::make_shared<StoredSolve>(1, scenes.add(squares(4), ""), Caller{}, v1::SolveSpec{}, SolveOptions{}, Keeping{});
+    return std::make_shared<StoredSolve>(1, scenes.add(squares(4), ""), Caller{}, SolveSpec{}, SolveOptions{}, Keeping{});
   }
   /// Completes a frame on the watcher's side: it was written, applied and acknowledged.
   void deliver(SolutionMirror* mirror = nullptr) {

@@ -3,8 +3,6 @@
 #include "server/solves/stored_solve.h"
 #include "tests/server/kept_directory.h"
 
-#include <google/protobuf/util/time_util.h>
-
 #include <fstream>
 #include <optional>
 
@@ -12,7 +10,6 @@ namespace alvor {
 namespace {
 
 using namespace std::chrono_literals;
-using google::protobuf::util::TimeUtil;
 
 class WorkLostTest : public KeptDirectoryTest {
  protected:
@@ -30,9 +27,9 @@ class WorkLostTest : public KeptDirectoryTest {
   /// Adds the scene 1 and a solve of it.
   Archive::SolveRow add_solve(Archive& archive) {
     archive.add(scene_row(1, squares(1)), squares(1));
-    Archive::SolveRow row = solve_row(1, 1, v1::Solve::QUEUED);
+    Archive::SolveRow row = solve_row(1, 1, SolveStatus::queued);
     archive.add(row, 1);
-    row.facts.set_state(v1::Solve::RUNNING);
+    row.facts.status = SolveStatus::running;
     return row;
   }
   std::optional<std::chrono::microseconds> lost() {
@@ -77,10 +74,10 @@ TEST_F(WorkLostTest, DoesNotCountAPause) {
     Archive::SolveRow row = add_solve(run.archive);
     run.archive.update(row);
     run.at(10s);
-    row.facts.set_state(v1::Solve::PAUSED);
+    row.facts.status = SolveStatus::paused;
     run.archive.update(row);
     run.at(100s);
-    row.facts.set_state(v1::Solve::RUNNING);
+    row.facts.status = SolveStatus::running;
     run.archive.update(row);
     run.at(106s);
     run.archive.note_alive();
@@ -124,8 +121,8 @@ TEST_F(WorkLostTest, HasNothingToDoWithTheTimeOfDay) {
   {
     Run run(*this);
     Archive::SolveRow row = add_solve(run.archive);
-    *row.facts.mutable_create_time() = TimeUtil::SecondsToTimestamp(0);
-    *row.facts.mutable_checkpoint_time() = TimeUtil::SecondsToTimestamp(1);  // the wall clock was set ahead ten years
+    row.facts.create_time = SolveRecord::Time(0s);
+    row.facts.checkpoint_time = SolveRecord::Time(1s);  // the wall clock was set ahead ten years
     run.archive.update(row, Archive::Checkpoint{});
     run.at(7s);
     run.archive.note_alive();
@@ -133,7 +130,7 @@ TEST_F(WorkLostTest, HasNothingToDoWithTheTimeOfDay) {
   Archive archive(directory, clock());
   SceneStore scenes(&archive);
   const StoredSolve solve(archive.solves().at(0), scenes.use("scenes/s1").scene, {}, {.archive = &archive});
-  EXPECT_EQ(TimeUtil::DurationToSeconds(solve.describe().work_lost()), 7);
+  EXPECT_EQ(solve.describe().work_lost, 7s);
 }
 
 }  // namespace

@@ -13,12 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double default_tolerance = 0.02;  // the server's default
-
-double tolerance_of(const v1::Solve& solve) {
-  return solve.spec().tolerance() > 0 ? solve.spec().tolerance() : default_tolerance;
-}
-
 /// Records every frame.
 class Observer {
  public:
@@ -69,7 +63,7 @@ void try_to_cancel(Client& client, const std::string& name) {
 /// Follows a solve. `stop_waiting` ends the wait for a lost server.
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop,
                 std::stop_token stop_waiting) {
-  Observer observer(options, tolerance_of(solve));
+  Observer observer(options, solve.effective_spec().tolerance());
   Client::Watch watch;
   const auto on_frame = [&](const Client::Watch& now) { observer.see(now.mirror); };
   v1::Solve ended = watch_through(client, solve.name(), watch, on_frame, std::move(stop), std::move(stop_waiting));

@@ -195,7 +195,7 @@ function attach(next: Solve): void {
 }
 
 function beginChart(): void {
-  chart.begin(solve?.spec?.tolerance || 0.02);
+  chart.begin(solve?.effectiveSpec?.tolerance ?? 0);
 }
 
 function allowSaving(isAllowed: boolean): void {

@@ -1,0 +1,22 @@
+#pragma once
+// What the server knows of a scene besides its geometry and materials.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+/// The metadata of a stored scene.
+struct SceneRecord {
+  std::string name;          ///< `scenes/{scene}`
+  std::string display_name;  ///< for people
+  std::chrono::system_clock::time_point create_time;
+  std::uint64_t vertex_count = 0, face_count = 0, material_count = 0;
+  std::vector<std::string> warnings;  ///< a sentence for each change or oddity
+  std::string content_sha256;         ///< hexadecimal digits; scenes of equal content are stored once
+  std::uint64_t content_bytes = 0;    ///< before compression
+};
+
+}  // namespace alvor
