@@ -54,7 +54,8 @@ struct SolveSpec {
 
 /// A solve: what was asked, how far it is, and how it ended.
 struct SolveRecord {
-  using Time = std::chrono::system_clock::time_point;
+  using Clock = std::chrono::system_clock;
+  using Time = Clock::time_point;
 
   std::string name;  ///< `scenes/{scene}/solves/{solve}`
   SolveSpec spec;    ///< as it was asked

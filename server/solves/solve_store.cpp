@@ -1,45 +1,16 @@
 #include "server/solves/solve_store.h"
 
-#include "server/archive/record_codec.h"
 #include "server/base/status_error.h"
+#include "server/solves/solve_memory.h"
 
 #include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
 
-#include <sys/resource.h>
-#include <unistd.h>
-#include <algorithm>
-#include <system_error>
+#include <utility>
 
 namespace alvor {
 
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr std::uint64_t bytes_a_face =
-    2000;  // of a solve that has begun: its part of the scene, mesh, tree of boxes and first rows
-constexpr std::uint64_t bytes_a_leaf = 2400;  // of a running solve; docs/deploy.md: 2.1 to 2.7 KB
-constexpr auto between_looks = 50ms;          // at the memory, which grows by less than 1 MB/ms
-
-std::uint64_t least_memory(const StoredScene& scene) { return bytes_a_face * scene.facts.face_count; }
-
-bool goes_before(const StoredSolve& a, const StoredSolve& b) {
-  return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
-}
-
-void report_end(spdlog::logger& logger, const SolveRecord& solve) {
-  const Step step = solve.last_step.value_or(Step());
-  const auto level = solve.status == SolveStatus::failed ? spdlog::level::err : spdlog::level::info;
-  logger.log(level, "solve {} {}: {}, {:.2f} s, {} leaves, {} rays, traversal {:.0f} %", solve.name, text(solve.status),
-             solve.end_reason, step.elapsed_s, step.leaves, step.rays, 100 * solve.traversal_share);
-}
-
-/// Sets the nice value of the calling thread. Five steps are a factor of three in processor time.
-void be_as_nice_as(SolvePriority priority) {
-  const int nice = priority == SolvePriority::high ? 0 : priority == SolvePriority::low ? 10 : 5;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
-}
 
 void refuse_ended(const StoredSolve& solve) {
   if (solve.ended()) throw StatusError(grpc::FAILED_PRECONDITION, solve.name + " has ended");
@@ -165,133 +136,6 @@ void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& n
            std::to_string(options_.quota.leaves) + " are allowed");
 }
 
-/// As many as may run do, by priority and age; beside others only where there is memory.
-void SolveStore::start_waiting() {
-  join_finished();
-  while (!stopping_ && running_ < options_.max_running) {
-    Entry* const next = next_waiting();
-    if (!next || (running_ > 0 && !options_.memory.has_room(least_memory(*next->scene.scene)))) return;
-    try {
-      start(*next);
-    } catch (const std::system_error& fault) {
-      options_.logger->error("solve {} waits: {}", next->solve->name, fault.what());
-      return;
-    }
-  }
-}
-
-SolveStore::Entry* SolveStore::next_waiting() {
-  Entry* first = nullptr;
-  for (auto& [name, entry] : solves_)
-    if (!entry.is_running && entry.solve->status() == SolveStatus::queued && (!first || goes_before(*entry.solve, *first->solve)))
-      first = &entry;
-  return first;
-}
-
-void SolveStore::watch_memory() {
-  options_.memory.make_room(0);
-  if (options_.memory.is_short()) relieve_memory();
-  watching_memory_->post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
-}
-
-/// Of the tenant whose solves take most, the solve that came last must end with what it has; one after the other until there is
-/// room. Before that goes what nobody needs, and what else can.
-void SolveStore::relieve_memory() {
-  if (options_.spare_solves()) return;
-  Lock hold(lock_);
-  const std::string tenant = hungriest_tenant();
-  Entry* last = nullptr;
-  for (auto& [name, entry] : solves_) {
-    if (!entry.is_running) continue;
-    if (entry.short_of_memory.stop_requested()) return;  // it is just ending
-    if (entry.solve->creator.tenant == tenant && (!last || goes_before(*last->solve, *entry.solve))) last = &entry;
-  }
-  if (!last) return;
-  options_.logger->warn("memory is short: solve {} must end", last->solve->name);
-  last->short_of_memory.request_stop();
-}
-
-/// The tenant whose running solves take most memory.
-std::string SolveStore::hungriest_tenant() const {
-  std::map<std::string, std::uint64_t> bytes;
-  for (const auto& [name, entry] : solves_)
-    if (entry.is_running)
-      bytes[entry.solve->creator.tenant] +=
-          least_memory(*entry.scene.scene) + bytes_a_leaf * entry.solve->describe().last_step.value_or(Step()).leaves;
-  const auto most = std::ranges::max_element(bytes, {}, [](const auto& each) { return each.second; });
-  return most == bytes.end() ? "" : most->first;
-}
-
-void SolveStore::drop_logs() {
-  for (const auto& solve : all()) solve->drop_log();
-}
-
-void SolveStore::start(Entry& entry) {
-  entry.cancel = {};
-  entry.park = {};
-  entry.short_of_memory = {};
-  // It cannot begin before the lock is given back.
-  std::thread thread([this, &entry] { run(entry); });
-  threads_.emplace(thread.get_id(), std::move(thread));
-  entry.is_running = true;
-  ++running_;
-  entry.solve->note_running();
-  options_.logger->info("solve {} started", entry.solve->name);
-}
-
-void SolveStore::run(Entry& entry) {
-  const auto solve = [&] {
-    Lock hold(lock_);
-    return entry.solve;
-  }();
-  be_as_nice_as(solve->priority);
-  // What the scene has become may be far more than it was: faces of many corners are cut up.
-  const Solver solver = [&](const BaseMesh& mesh, const Plan& plan, const SolveOptions& how, SolutionLog& log,
-                            const SolveControl& control) {
-    options_.memory.admit("solve", bytes_a_face * mesh.roots().size());
-    return options_.solver(mesh, plan, how, log, control);
-  };
-  const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),
-                           abandon_.get_token()};
-  const auto is_paused = [&] {
-    Lock hold(lock_);
-    return entry.shall_pause;
-  };
-  solve->run(solver, control, is_paused,
-             [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", solve->name, fault); });
-  solve->drop_log();
-  trim_heap_soon();
-  report_end(*options_.logger, solve->describe());
-  Lock hold(lock_);
-  settle(entry);
-  entry.is_running = false;
-  --running_;
-  finished_.push_back(std::this_thread::get_id());
-  start_waiting();
-  changed_.notify_all();
-}
-
-/// What it shall do may have been said otherwise while it was about to pause.
-void SolveStore::settle(const Entry& entry) {
-  const auto status = entry.solve->status();
-  const auto wanted = entry.shall_cancel ? SolveStatus::cancelled : entry.shall_pause ? SolveStatus::paused : SolveStatus::queued;
-  if (entry.solve->ended() || status == wanted) return;
-  try {
-    entry.solve->set_waiting_status(wanted);
-  } catch (const StatusError& fault) {
-    options_.logger->error("solve {} cannot be kept: {}", entry.solve->name, fault.what());
-  }
-}
-
-/// All that a finished thread could still be at is to give the lock back, so this does not wait.
-void SolveStore::join_finished() {
-  std::erase_if(finished_, [this](std::thread::id id) ALVOR_REQUIRES(lock_) {
-    if (id == std::this_thread::get_id()) return false;
-    threads_.extract(id).mapped().join();
-    return true;
-  });
-}
-
 SolveStore::Entry& SolveStore::entry(const std::string& name, const std::string& tenant) {
   const auto found = solves_.find(name);
   if (found == solves_.end() || found->second.solve->creator.tenant != tenant) throw not_found(name);
@@ -371,24 +215,6 @@ void SolveStore::remove(const std::string& name, const std::string& tenant) {
   requests_.remove(old.creator);
   removed = solves_.extract(name);
   trim_heap_soon();
-}
-
-void SolveStore::shut_down() {
-  Lock hold(lock_);
-  stopping_ = true;
-  const auto ask = [&](std::stop_source Entry::*what) ALVOR_REQUIRES(lock_) {
-    for (auto& [name, entry] : solves_)
-      if (entry.is_running) (entry.*what).request_stop();
-  };
-  const auto nothing_runs = [this]() ALVOR_REQUIRES(lock_) { return running_ == 0; };
-  if (options_.keeping.archive) {
-    ask(&Entry::park);
-    changed_.wait_for(hold, options_.patience, nothing_runs);
-    abandon_.request_stop();
-  }
-  ask(&Entry::cancel);
-  changed_.wait(hold, nothing_runs);
-  join_finished();
 }
 
 }  // namespace alvor

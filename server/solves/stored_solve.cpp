@@ -1,11 +1,9 @@
 #include "server/solves/stored_solve.h"
 
-#include "server/archive/pieces.h"
 #include "server/base/random_id.h"
 #include "server/base/status_error.h"
 #include "server/solves/solve_spec.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -13,25 +11,15 @@ namespace alvor {
 
 namespace {
 
-constexpr int least_share = 20;                    // of the time between checkpoints goes into them
 constexpr std::uint64_t bytes_a_logged_leaf = 80;  // while it is loaded: 32 that stay, and the pieces it is read from
-
-SolveRecord::Time now() { return std::chrono::system_clock::now(); }
 
 void end_now(SolveRecord& facts, SolveStatus status, std::string_view reason) {
   facts.status = status;
   facts.end_reason = reason;
-  facts.end_time = now();
+  facts.end_time = SolveRecord::Clock::now();
 }
 
 void cancel(SolveRecord& facts) { end_now(facts, SolveStatus::cancelled, text(StopReason::cancelled)); }
-
-std::vector<std::string> pieces_of(const SolveControl::Write& write) {
-  PieceWriter pieces;
-  PlainWriter out([&](std::span<const std::byte> bytes) { pieces.add(bytes); });
-  write(out);
-  return pieces.finish();
-}
 
 }  // namespace
 
@@ -48,7 +36,7 @@ StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const Store
   facts_.name = name;
   facts_.spec = spec;
   facts_.effective_spec = effective_spec(spec, options);
-  facts_.create_time = now();
+  facts_.create_time = SolveRecord::Clock::now();
 }
 
 StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& solve_options,
@@ -124,165 +112,10 @@ void StoredSolve::drop_log() {
   trim_heap_soon();
 }
 
-std::vector<std::byte> StoredSolve::take_checkpoint() {
-  {
-    Lock hold(lock_);
-    if (!state_in_memory_.empty()) return std::exchange(state_in_memory_, {});
-    if (!facts_.checkpoint_time) return {};
-  }
-  return keeping_.archive->state(number);
-}
-
-void StoredSolve::run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
-                      const std::function<void(const std::string&)>& complain) {
-  SolveStatus status = SolveStatus::failed;
-  std::string reason;
-  SolveOutcome outcome;
-  try {
-    outcome = solve(solver, control, complain);
-    reason = text(outcome.reason);
-    const bool is_cancelled = outcome.reason == StopReason::cancelled;
-    const bool goes_on = outcome.reason == StopReason::parked || (is_cancelled && control.abandon.stop_requested());
-    status = !goes_on      ? is_cancelled ? SolveStatus::cancelled : SolveStatus::succeeded
-             : is_paused() ? SolveStatus::paused
-                           : SolveStatus::queued;
-  } catch (const std::bad_alloc&) {
-    reason = "out of memory";
-  } catch (const BadBytes& fault) {
-    reason = std::string("its checkpoint: ") + fault.what();
-  } catch (const std::exception& fault) {
-    reason = fault.what();
-  }
-  try {
-    if (is_final(status)) end(status, reason, outcome);
-    else set_waiting_status(status);
-  } catch (const std::exception& fault) {
-    complain(fault.what());
-    Lock hold(lock_);
-    facts_.status = status;  // there is no thread any more; after a restart it is queued in any case
-  }
-  if (is_final(status)) close_log();
-}
-
 /// One that is not loaded has no listeners, and is closed when it is.
 void StoredSolve::close_log() {
   Lock hold(log_lock_);
   if (log_) log_->close();
-}
-
-/// Null where it was cancelled meanwhile.
-std::shared_ptr<const SceneContent> StoredSolve::load_content(const std::stop_token& cancel) const {
-  CallStop stop;
-  const std::stop_callback cancelled(cancel, [&] { stop.stop({grpc::CANCELLED, "cancelled"}); });
-  try {
-    return scene_->content(stop);
-  } catch (const StatusError& refusal) {
-    if (refusal.code == grpc::CANCELLED) return nullptr;
-    throw;
-  }
-}
-
-SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
-                                const std::function<void(const std::string&)>& complain) {
-  const auto content = load_content(run.cancel);
-  if (!content) return {.reason = StopReason::cancelled};
-  const std::vector<std::byte> from = take_checkpoint();
-  const Plan plan(content->mesh, options);
-  show(plan);
-  try {
-    keep_row();
-  } catch (const std::exception& fault) {
-    complain(fault.what());
-  }
-  auto next_checkpoint = Clock::now() + keeping_.interval;
-  SolveControl control;
-  control.stop = run.cancel;
-  control.short_of_memory = run.short_of_memory;
-  control.park = run.park;
-  control.checkpoint = from;
-  control.priority = priority;
-  if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
-  control.save = [&](const SolveControl::Write& write) {
-    const auto begun = Clock::now();
-    try {
-      save(write);
-    } catch (const std::exception& fault) {
-      ++keeping_.counts->failures;
-      complain(fault.what());
-      if (run.park.stop_requested()) save_in_memory(write);
-    }
-    const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begun);
-    keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
-    next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
-  };
-  return solver(content->mesh, plan, options, *log(), control);
-}
-
-void StoredSolve::save(const SolveControl::Write& write) {
-  if (keeping_.archive) keep_checkpoint(pieces_of(write));
-  else save_in_memory(write);
-}
-
-void StoredSolve::save_in_memory(const SolveControl::Write& write) {
-  std::vector<std::byte> bytes = plain_bytes(write);
-  Lock hold(lock_);
-  state_in_memory_ = std::move(bytes);
-}
-
-/// `state` is empty once the solve has ended, as `change` then says.
-void StoredSolve::keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change) {
-  const auto solution = log();
-  const Archive::Checkpoint checkpoint{pieces_of([&](PlainWriter& out) { solution->save(out); }), std::move(state)};
-  Lock keep(keeping_lock_);
-  Archive::SolveRow next = row();
-  if (change) change(next.facts);
-  next.lineage[keeping_.epoch] = solution->head();
-  next.facts.last_step = solution->last_step();
-  next.facts.checkpoint_time = now();
-  keeping_.archive->update(next, checkpoint);
-  ++keeping_.counts->checkpoints;
-  for (const auto* pieces : {&checkpoint.log, &checkpoint.state})
-    for (const std::string& piece : *pieces) keeping_.counts->bytes += piece.size();
-  Lock hold(lock_);
-  lineage_ = std::move(next.lineage);
-  facts_.last_step = next.facts.last_step;
-  facts_.checkpoint_time = next.facts.checkpoint_time;
-  if (change) change(facts_);  // before another can keep what was true until now
-}
-
-void StoredSolve::show(const Plan& plan) {
-  Lock hold(lock_);
-  facts_.plan.assign(plan.features().begin(), plan.features().end());
-}
-
-/// Others see the end once it is kept, or could not be.
-void StoredSolve::end(SolveStatus status, const std::string& reason, const SolveOutcome& outcome) {
-  const auto end_time = now();
-  const auto say_end = [&](SolveRecord& facts) {
-    facts.status = status;
-    facts.end_reason = reason;
-    facts.end_time = end_time;
-    facts.cpu_s = outcome.cpu_s;
-    facts.traversal_share = outcome.traversal_share;
-    facts.balance = outcome.balance;
-  };
-  const auto show_end = [&] {
-    Lock hold(lock_);
-    say_end(facts_);
-  };
-  if (!keeping_.archive) return show_end();
-  try {
-    keep_checkpoint({}, say_end);
-    Lock hold(log_lock_);
-    is_log_kept_ = true;
-  } catch (const StatusError& fault) {
-    show_end();
-    if (fault.code == grpc::DATA_LOSS) keep_row();  // else it would fail anew whenever the server is started
-    throw;
-  } catch (...) {
-    show_end();
-    throw;
-  }
 }
 
 void StoredSolve::note_running() {
