@@ -299,9 +299,9 @@ TEST(SurfacePoints, AreUniformByAreaOverFrontsAndBothSidesOfTwoSided) {
 
 /// Returns small lamps on a ceiling, every other one facing up.
 EmitterTree lamps(int count) {
-  std::vector<Light> lights;
+  std::vector<EmittingTriangle> lights;
   for (int n = 0; n < count; ++n) {
-    Light light{{n % 10 * 1.0, n / 10 * 1.0, 3}, {0, 0.1, 0}, {0.1, 0, 0}, {0, 0, -1}, 0.005, {1.0 + n, 1, 1}, false};
+    EmittingTriangle light{{n % 10 * 1.0, n / 10 * 1.0, 3}, {0, 0.1, 0}, {0.1, 0, 0}, {0, 0, -1}, 0.005, {1.0 + n, 1, 1}, false};
     if (n % 2) std::swap(light.side_u, light.side_v), light.normal = {0, 0, 1};
     lights.push_back(light);
   }
