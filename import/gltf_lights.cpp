@@ -65,10 +65,12 @@ void GltfLights::append_warnings(std::vector<std::string>& warnings) const {
     warnings.push_back(counted(ranges_, "light has a range, which is", "lights have a range, which is") +
                        " ignored: light fades with the square of the distance only");
   if (negative_ > 0)
-    warnings.push_back(counted(negative_, "light of negative intensity is left out", "lights of negative intensity are left out"));
+    warnings.push_back(
+        counted(negative_, "light of negative intensity is left out", "lights of negative intensity are left out"));
   if (lights_ > 0 && model_.asset.generator.find("Blender") != std::string::npos)
-    warnings.push_back("Blender wrote this file: unless its exporter was told otherwise (lighting mode), lamps are 683 times as bright "
-                       "beside emissive surfaces as in Blender, which --light-scale 0.001464 corrects; area lamps are not in the file");
+    warnings.push_back(
+        "Blender wrote this file: unless its exporter was told otherwise (lighting mode), lamps are 683 times as bright "
+        "beside emissive surfaces as in Blender, which --light-scale 0.001464 corrects; area lamps are not in the file");
 }
 
 }  // namespace alvor

@@ -16,8 +16,8 @@ class GltfLights {
  public:
   explicit GltfLights(const tinygltf::Model& model) : model_(model) {}
 
-  /// Appends the light of a node, if it has one, at its place. A `radius` (metres) in the extras of the light or of the node makes it
-  /// a sphere. Throws ImportError that names the node if its light is not in the file or of an unknown type.
+  /// Appends the light of a node, if it has one, at its place. A `radius` (metres) in the extras of the light or of the node
+  /// makes it a sphere. Throws ImportError that names the node if its light is not in the file or of an unknown type.
   void add(const tinygltf::Node& node, std::size_t index, const Placement& placement, Scene& scene);
   /// Appends one sentence for each kind of thing that was not taken as the file has it.
   void append_warnings(std::vector<std::string>& warnings) const;

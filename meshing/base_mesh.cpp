@@ -131,7 +131,11 @@ Vec3 RootPatch::at(double u, double v) const {
 }
 
 BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
-    : materials_(scene.materials), absorption_(scene.absorption), lights_(scene.lights), up_(scene.up), quantity_(scene.quantity) {
+    : materials_(scene.materials),
+      absorption_(scene.absorption),
+      lights_(scene.lights),
+      up_(scene.up),
+      quantity_(scene.quantity) {
   Box used;
   for (const Face& face : scene.faces)
     for (const std::uint32_t vertex : scene.corners_of(face)) used.add(scene.vertices[vertex]);

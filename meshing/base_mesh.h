@@ -80,7 +80,7 @@ class BaseMesh {
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
-  const Rgb& absorption() const { return absorption_; }  ///< absorption coefficient of the medium, see Scene
+  const Rgb& absorption() const { return absorption_; }      ///< absorption coefficient of the medium, see Scene
   std::span<const Light> lights() const { return lights_; }  ///< those that are not faces
   UpAxis up() const { return up_; }
   Quantity quantity() const { return quantity_; }

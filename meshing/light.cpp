@@ -49,7 +49,8 @@ std::optional<std::string> fault_in(const Light& light) {
   if (!(light.radius >= 0 && light.radius <= max_coordinate)) return sentence("radius", light.radius, "is outside [0, 1e9] m");
   if (!(light.angular_diameter >= 0 && light.angular_diameter <= pi / 2))
     return sentence("angular diameter", light.angular_diameter, "is outside [0, pi / 2]");
-  if (!(light.outer_cone > 0 && light.outer_cone <= pi)) return sentence("outer cone angle", light.outer_cone, "is outside (0, pi]");
+  if (!(light.outer_cone > 0 && light.outer_cone <= pi))
+    return sentence("outer cone angle", light.outer_cone, "is outside (0, pi]");
   if (!(light.inner_cone >= 0 && light.inner_cone <= light.outer_cone))
     return sentence("inner cone angle", light.inner_cone, "is outside [0, outer cone angle]");
   return std::nullopt;

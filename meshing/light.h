@@ -17,16 +17,16 @@ enum class LightKind : std::uint8_t {
   directional,  ///< shines from infinitely far away along `direction`; a sun if it has an angular diameter
 };
 
-/// A lamp or a distant light. With a radius or an angular diameter its shadows have soft edges; the light on a surface that sees all
-/// of it is the same as without.
+/// A lamp or a distant light. With a radius or an angular diameter its shadows have soft edges; the light on a surface that sees
+/// all of it is the same as without.
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  /// Point, spot: radiant intensity, W/sr per band, in the middle of the cone for a spot. Directional: irradiance of a surface that
-  /// faces the light, W/m2 per band. >= 0. In a photometric scene cd and lx.
+  /// Point, spot: radiant intensity, W/sr per band, in the middle of the cone for a spot. Directional: irradiance of a surface
+  /// that faces the light, W/m2 per band. >= 0. In a photometric scene cd and lx.
   Rgb intensity;
-  Vec3 position;            ///< point, spot: metres
-  Vec3 direction{0, 0, -1}; ///< spot: axis of the cone; directional: the way the light travels. Unit
+  Vec3 position;             ///< point, spot: metres
+  Vec3 direction{0, 0, -1};  ///< spot: axis of the cone; directional: the way the light travels. Unit
   /// Spot: angles between the axis and the edge of the bright cone, and between the axis and the edge of all light; radians, 0 <=
   /// inner <= outer, 0 < outer <= pi.
   double inner_cone = 0, outer_cone = std::numbers::pi / 4;

@@ -31,8 +31,9 @@ struct Face {
   std::uint32_t material = 0;
 };
 
-/// What numbers of light mean: watts of radiation, or lumens of light as eyes weigh it. In a photometric scene all that is said in W,
-/// W/m2, W/sr and W/m2 sr is lm, lx, cd and cd/m2 per band; the luminous value is 0.2126 r + 0.7152 g + 0.0722 b (Rec. 709).
+/// What numbers of light mean: watts of radiation, or lumens of light as eyes weigh it. In a photometric scene all that is said
+/// in W, W/m2, W/sr and W/m2 sr is lm, lx, cd and cd/m2 per band; the luminous value is 0.2126 r + 0.7152 g + 0.0722 b (Rec.
+/// 709).
 enum class Quantity : std::uint8_t { radiometric, photometric };
 
 /// The axis that points up. It does not affect the light; it orients pictures and solution files.
@@ -69,10 +70,10 @@ struct Fault {
   std::string text() const { return place + ": " + reason; }
 };
 
-/// Returns the first fault of the scene; looks at counts, then materials, lights, vertices and faces in order. Linear in the size of the
-/// scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face, finite coordinates
-/// within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite absorption >= 0 and
-/// reflectance in [0, 1). Degenerate faces are no fault.
+/// Returns the first fault of the scene; looks at counts, then materials, lights, vertices and faces in order. Linear in the size
+/// of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face, finite
+/// coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite absorption >= 0
+/// and reflectance in [0, 1). Degenerate faces are no fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

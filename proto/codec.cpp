@@ -267,8 +267,9 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
     return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
   for (int i = 0; i < chunk.lights_size(); ++i)
     if (const auto kind = chunk.lights(i).kind(); !v1::Light::Kind_IsValid(kind) || kind == v1::Light::KIND_UNSPECIFIED)
-      return Fault{"light " + std::to_string(scene_.lights.size() + static_cast<std::size_t>(i)) + " '" + chunk.lights(i).name() + "'",
-                   "its kind " + std::to_string(kind) + " is not known"};
+      return Fault{
+          "light " + std::to_string(scene_.lights.size() + static_cast<std::size_t>(i)) + " '" + chunk.lights(i).name() + "'",
+          "its kind " + std::to_string(kind) + " is not known"};
   std::uint64_t promised = 0;  // a sum of 2^31 counts of 32 bits does not overflow
   for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
     const std::uint32_t count = chunk.face_corner_counts(i);
@@ -303,7 +304,8 @@ bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   take_lights(chunk, budget);
   take_vertices(chunk, budget);
   take_faces(chunk, budget);
-  return chunk.materials_size() > 0 || chunk.lights_size() > 0 || chunk.vertex_coordinates_size() > 0 || chunk.face_corner_counts_size() > 0;
+  return chunk.materials_size() > 0 || chunk.lights_size() > 0 || chunk.vertex_coordinates_size() > 0 ||
+         chunk.face_corner_counts_size() > 0;
 }
 
 // An item that does not fit is left for the next chunk. In an empty chunk the first item is always taken.
@@ -343,7 +345,8 @@ void SceneSlicer::take_faces(v1::GeometryChunk& chunk, std::int64_t& budget) {
   for (; face_ < scene_.faces.size(); ++face_) {
     const Face& face = scene_.faces[face_];
     const std::int64_t bytes = 5 * (std::int64_t{face.corner_count} + 2);  // each varint has at most 5 bytes
-    const bool is_empty = chunk.materials_size() + chunk.lights_size() + chunk.vertex_coordinates_size() + chunk.face_corner_counts_size() == 0;
+    const bool is_empty =
+        chunk.materials_size() + chunk.lights_size() + chunk.vertex_coordinates_size() + chunk.face_corner_counts_size() == 0;
     if (bytes > budget && !is_empty) break;
     chunk.add_face_corner_counts(face.corner_count);
     chunk.add_face_materials(face.material);

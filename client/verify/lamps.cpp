@@ -75,9 +75,8 @@ std::optional<Lamps::Sample> Lamps::sample(Vec3 point, Vec3 normal, double choic
 
 Lamps::Sample Lamps::sample_of(const Light& lamp, Vec3 point, Vec3 normal, UnitPair at) const {
   if (lamp.is_distant()) {
-    const Vec3 direction = lamp.angular_diameter > 0
-                               ? direction_in_cone(-lamp.direction, std::cos(lamp.angular_diameter / 2), at)
-                               : -lamp.direction;
+    const Vec3 direction =
+        lamp.angular_diameter > 0 ? direction_in_cone(-lamp.direction, std::cos(lamp.angular_diameter / 2), at) : -lamp.direction;
     const double out = way_out(point, direction);
     return {std::max(0.0, dot(normal, direction)) * lamp.intensity, (out + 0.01) * direction, out};
   }

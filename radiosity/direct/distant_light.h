@@ -8,11 +8,13 @@
 
 namespace alvor {
 
-/// A light so far away that it shines from one direction on all of the scene. Unblocked irradiance is E cos. Shadow rays end where
-/// they leave the scene's bounding box; with an angular diameter they point to a disk of that width. A medium fills the box only.
+/// A light so far away that it shines from one direction on all of the scene. Unblocked irradiance is E cos. Shadow rays end
+/// where they leave the scene's bounding box; with an angular diameter they point to a disk of that width. A medium fills the box
+/// only.
 class DistantLight final : public LightSource {
  public:
-  /// The light's power is what first meets fronts, estimated by 4096 parallel rays. Requires: `light` is distant; !fault_in(light).
+  /// The light's power is what first meets fronts, estimated by 4096 parallel rays. Requires: `light` is distant;
+  /// !fault_in(light).
   DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const EmissionUnit& unit);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
@@ -23,7 +25,7 @@ class DistantLight final : public LightSource {
  private:
   double exit_distance(Vec3 from, Vec3 direction) const;
 
-  const Vec3 towards_;  // unit, from the scene to the light
+  const Vec3 towards_;       // unit, from the scene to the light
   const double half_width_;  // tangent of half the angular diameter
   Vec3 low_, high_;          // of the scene's bounding box, local units
 };

@@ -9,8 +9,8 @@
 namespace alvor {
 
 /// Converts between W/m2 and emission units. One emission unit is the brightest emission of the scene in any band, W/m2; 1 W/m2
-/// if nothing emits. A lamp counts by its irradiance at a distance of the scene's extent. Inside direct, exchange and solve all light and power are multiples of it, so that squares stay within the
-/// range of numbers however bright or dim a scene is.
+/// if nothing emits. A lamp counts by its irradiance at a distance of the scene's extent. Inside direct, exchange and solve all
+/// light and power are multiples of it, so that squares stay within the range of numbers however bright or dim a scene is.
 class EmissionUnit {
  public:
   explicit EmissionUnit(const BaseMesh& mesh) {

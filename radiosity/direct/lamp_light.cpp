@@ -59,8 +59,7 @@ void LampLight::aim(const ShadowAim& aim, int first, int last) const {
     rays.t_min[o] = 0;
     rays.t_max[o] = short_of_lamp;
     const double cosine = std::max(0.0, dot(target, normal) / distance);
-    aim.weights[static_cast<std::size_t>(o)] =
-        static_cast<float>(cosine * share_over_distance_squared(-way, distance_squared));
+    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(cosine * share_over_distance_squared(-way, distance_squared));
   }
 }
 

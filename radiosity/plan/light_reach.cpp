@@ -90,8 +90,8 @@ LightReach::LightReach(const BaseMesh& mesh, const PointTree& corners) : is_dark
   for (std::uint32_t root = 0; root < is_dark.size(); ++root) {
     const RootPatch& face = mesh.roots()[root];
     const double height = height_of(face, mesh.centre());
-    const bool faces_nothing = !corners.any_above(face.normal, height + flat_tolerance * mesh.extent()) &&
-                               !faces_distant_light(mesh, face.normal);
+    const bool faces_nothing =
+        !corners.any_above(face.normal, height + flat_tolerance * mesh.extent()) && !faces_distant_light(mesh, face.normal);
     const bool is_shut_off = !faces_nothing && !zones.may_be_lit(root);
     facing_nothing += faces_nothing;
     shut_off += is_shut_off;

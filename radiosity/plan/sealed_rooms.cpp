@@ -115,7 +115,8 @@ SealedRoom::Side SealedRoom::side_of(const RootPatch& face) const {
 }
 
 bool SealedRoom::holds(Vec3 point) const {
-  return std::ranges::all_of(planes, [&](const Plane& plane) { return dot(plane.normal, point - origin) >= plane.height - tolerance; });
+  return std::ranges::all_of(planes,
+                             [&](const Plane& plane) { return dot(plane.normal, point - origin) >= plane.height - tolerance; });
 }
 
 std::vector<SealedRoom> find_sealed_rooms(const BaseMesh& mesh) { return RoomFinder(mesh).find(); }

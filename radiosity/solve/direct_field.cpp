@@ -188,8 +188,7 @@ void DirectField::load_light(PlainReader& in) {
   fit_to_nodes();
   const auto leaves = forests_.leaves().leaves();
   load_at(leaves, light_, in, "direct light", [](const DirectLight& light) { return is_sound(light); });
-  if (has_distant_lights_)
-    load_at(leaves, from_afar_, in, "light from afar", [](float light) { return std::isfinite(light); });
+  if (has_distant_lights_) load_at(leaves, from_afar_, in, "light from afar", [](float light) { return std::isfinite(light); });
   load_flags(leaves, is_known_, in);
   load_flags(leaves, is_lit_, in);
 }

@@ -75,12 +75,12 @@ class DirectField {
   std::vector<const LightSource*> tree_lights_;  ///< the others
   std::unique_ptr<LightTree> light_tree_;        ///< null if there are no others
   bool has_distant_lights_ = false;
-  double near_power_ = 0;                        ///< of faces and lamps
-  double power_ = 0, waiting_power_ = 0;         ///< of all lights
+  double near_power_ = 0;                 ///< of faces and lamps
+  double power_ = 0, waiting_power_ = 0;  ///< of all lights
   std::vector<DirectLight> light_;
   std::vector<float> from_afar_;  ///< irradiance from distant lights, sum of bands; empty if there are none
-  std::vector<bool> is_known_;  ///< the leaf has its own light of all lights
-  std::vector<bool> is_lit_;    ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
+  std::vector<bool> is_known_;    ///< the leaf has its own light of all lights
+  std::vector<bool> is_lit_;      ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
 };
 
 }  // namespace alvor

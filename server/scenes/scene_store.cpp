@@ -15,8 +15,9 @@ constexpr std::size_t longest_display_name = 256;
 constexpr std::uint64_t bytes_a_corner = 250;
 
 bool emits(const BaseMesh& mesh) {
-  return !mesh.lights().empty() || std::ranges::any_of(mesh.roots(),
-                             [&](const RootPatch& root) { return !mesh.materials()[root.material].emission.is_zero(); });
+  return !mesh.lights().empty() || std::ranges::any_of(mesh.roots(), [&](const RootPatch& root) {
+    return !mesh.materials()[root.material].emission.is_zero();
+  });
 }
 
 std::vector<std::string> warnings_about(const BaseMesh& mesh) {

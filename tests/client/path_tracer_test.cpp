@@ -137,17 +137,18 @@ TEST(PathTracer, LampsBringWhatTheirFormulasSay) {
     scene.lights = {lamp};
     EXPECT_NEAR(traced(scene, point).mean().mean(), irradiance, tolerance * irradiance) << static_cast<int>(lamp.kind);
   };
+  constexpr double above = 2e-5;  // rays start 1e-6 of the extent above their surface
   const Vec3 way{1, 1, 2};
-  expect(lamp_at(way, LightKind::point, 100), 100 * 2 / std::pow(6, 1.5), 1e-6);
+  expect(lamp_at(way, LightKind::point, 100), 100 * 2 / std::pow(6, 1.5), above);
   Light sphere = lamp_at(way, LightKind::point, 100);
   sphere.radius = 0.5;
   expect(sphere, 100 * 2 / std::pow(6, 1.5), 1e-3);
   Light spot = lamp_at(way, LightKind::spot, 100);
   spot.direction = -1 / length(way) * way;
-  expect(spot, 100 * 2 / std::pow(6, 1.5), 1e-6);
+  expect(spot, 100 * 2 / std::pow(6, 1.5), above);
   Light sun = lamp_at({}, LightKind::directional, 100);
   sun.direction = {0.6, 0, -0.8};
-  expect(sun, 80, 1e-6);
+  expect(sun, 80, 1e-9);
   sun.angular_diameter = 0.2;
   expect(sun, 80, 5e-3);
 }
@@ -155,9 +156,10 @@ TEST(PathTracer, LampsBringWhatTheirFormulasSay) {
 TEST(PathTracer, AllLampsTogetherBringTheirSum) {
   Scene scene;
   add_black_floor(scene, 10);
-  scene.lights = {lamp_at({0, 0, 2}, LightKind::point, 10), lamp_at({0, 0, 3}, LightKind::point, 90), lamp_at({0, 0, -1}, LightKind::point, 50)};
+  scene.lights = {lamp_at({0, 0, 2}, LightKind::point, 10), lamp_at({0, 0, 3}, LightKind::point, 90),
+                  lamp_at({0, 0, -1}, LightKind::point, 50)};
   const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}});
-  EXPECT_NEAR(estimate.mean().mean(), 10 / 4.0 + 90 / 9.0, sure * error_of(estimate) + 1e-9);
+  EXPECT_NEAR(estimate.mean().mean(), 10 / 4.0 + 90 / 9.0, sure * error_of(estimate) + 2e-4);
 }
 
 TEST(PathTracer, ALampInACubeHasTheKnownMeanIlluminance) {
@@ -166,14 +168,14 @@ TEST(PathTracer, ALampInACubeHasTheKnownMeanIlluminance) {
   scene.materials = {grey(0, 0.8)};
   test::add_box(scene, {0, 0, 0}, {4, 4, 4}, true);
   scene.lights = {lamp_at({2, 2, 2}, LightKind::point, 1000)};
+  std::vector<SurfacePoint> points;
+  constexpr int n = 16;
+  for (int k = 0; k < n * n; ++k) points.push_back({{(k % n + 0.5) * 4 / n, 0, (k / n + 0.5) * 4 / n}, {0, 1, 0}});
   double mean = 0, variance = 0;
-  constexpr int n = 8;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      const auto estimate = traced(scene, {{(i + 0.5) * 4 / n, 0, (j + 0.5) * 4 / n}, {0, 1, 0}}, 1024);
-      mean += estimate.mean().mean() / (n * n);
-      variance += estimate.variance_of_band_mean() / (n * n * n * n);
-    }
+  for (const auto& estimate : trace_irradiance(PathTracer(scene), points, {.paths = 1024})) {
+    mean += estimate.mean().mean() / (n * n);
+    variance += estimate.variance_of_band_mean() / (n * n * n * n);
+  }
   const double expected = 4 * std::numbers::pi * 1000 / (96 * 0.2);
   EXPECT_NEAR(mean, expected, sure * std::sqrt(variance) + 1e-3 * expected);
 }

@@ -300,7 +300,8 @@ std::string with_light(const std::string& light) {
 
 TEST(SceneFile, LightsOfAGlbStandWhereTheirNodesAre) {
   const SceneFile file = read_scene_file(GlbFile(with_light(R"({"type": "spot", "color": [1, 0.5, 0.25], "intensity": 8,
-      "range": 10, "extras": {"radius": 0.25}, "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.4}})"), square_bytes()));
+      "range": 10, "extras": {"radius": 0.25}, "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.4}})"),
+                                                 square_bytes()));
   ASSERT_EQ(file.scene.lights.size(), 1u);
   const Light& spot = file.scene.lights[0];
   EXPECT_EQ(spot.name, "lamp.001");

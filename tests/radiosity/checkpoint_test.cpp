@@ -66,7 +66,8 @@ Scene room_with_many_lamps() {
 Scene room_with_lamps_and_sun() {
   Scene scene = test::coloured_room();
   scene.faces.erase(scene.faces.begin() + 1);
-  Light lamp{"bulb", LightKind::point, {9, 8, 7}, {3, 2, 4}}, spot{"spot", LightKind::spot, {50, 50, 20}, {0.5, 2.5, 0.5}, {0, -1, 0}};
+  Light lamp{"bulb", LightKind::point, {9, 8, 7}, {3, 2, 4}},
+      spot{"spot", LightKind::spot, {50, 50, 20}, {0.5, 2.5, 0.5}, {0, -1, 0}};
   lamp.radius = 0.1;
   Light sun{"sun", LightKind::directional, {60, 60, 50}};
   sun.direction = normalized(Vec3{0.5, -1, 0.2});

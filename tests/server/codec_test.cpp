@@ -37,8 +37,8 @@ TEST(SceneCodec, EncodeDecodeEncodeGivesTheSameBytes) {
 Scene scene_with_lights() {
   Scene scene = squares(3);
   scene.quantity = Quantity::photometric;
-  Light bulb{"bulb", LightKind::point, {1, 2, 3}, {4, 5, 6}}, spot{"spot", LightKind::spot, {7, 8, 9}, {1, 2, 3}, {0, 1, 0}, 0.2, 0.7},
-      sun{"sun", LightKind::directional, {10, 20, 30}};
+  Light bulb{"bulb", LightKind::point, {1, 2, 3}, {4, 5, 6}},
+      spot{"spot", LightKind::spot, {7, 8, 9}, {1, 2, 3}, {0, 1, 0}, 0.2, 0.7}, sun{"sun", LightKind::directional, {10, 20, 30}};
   bulb.radius = 0.5;
   sun.direction = {1, 0, 0};
   sun.angular_diameter = 0.01;
