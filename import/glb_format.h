@@ -16,5 +16,7 @@ inline constexpr std::size_t largest_json = 1 << 20;
 /// `up_key`.
 inline constexpr double z_up_rotation[4] = {-0.70710678118654752, 0, 0, 0.70710678118654752};
 inline constexpr const char* up_key = "alvor_up";
+/// Keys of the same extras: what the numbers mean, and the lights that are not faces.
+inline constexpr const char *quantity_key = "alvor_quantity", *lights_key = "alvor_lights";
 
 }  // namespace alvor::glb

@@ -74,6 +74,8 @@ class Triangulation {
 
   DisplayMesh build() {
     out_.up = mesh_.up();
+    out_.quantity = mesh_.quantity();
+    out_.lights.assign(mesh_.lights().begin(), mesh_.lights().end());
     for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);
     for (std::size_t n = 0; n < leaves_.size(); ++n) emit(n);
     return std::move(out_);

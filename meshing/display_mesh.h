@@ -21,6 +21,8 @@ struct DisplayMesh {
   std::vector<RgbF> radiosity;   ///< B = E + rho H, W/m2
   std::vector<std::array<std::uint32_t, 3>> triangles;
   UpAxis up = UpAxis::y;
+  Quantity quantity = Quantity::radiometric;  ///< photometric: lx instead of W/m2
+  std::vector<Light> lights;                  ///< of the scene, those that are not faces
 };
 
 /// Triangulates `leaves` (sorted by id, together covering every root of `mesh`), with a vertex at every hanging corner so that no

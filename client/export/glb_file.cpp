@@ -1,5 +1,6 @@
 #include "client/export/glb_file.h"
 
+#include "client/export/light_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
 #include "import/bytes.h"
@@ -103,12 +104,14 @@ json unlit_material() {
           {"extensions", {{"KHR_materials_unlit", json::object()}}}};
 }
 
-json node_of(const Vec3& origin, UpAxis up) {
+json node_of(const Vec3& origin, const DisplayMesh& mesh) {
   json node = {{"name", "solution"}, {"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}};
-  if (up == UpAxis::y) return node;
+  json& extras = node["extras"] = {{quantity_key, name_of(mesh.quantity)}};
+  for (const Light& light : mesh.lights) extras[lights_key].push_back(json_of(light));
+  if (mesh.up == UpAxis::y) return node;
   node["translation"] = {origin.x, origin.z, -origin.y};
   node["rotation"] = z_up_rotation;
-  node["extras"] = {{up_key, "z"}};
+  extras[up_key] = "z";
   return node;
 }
 
@@ -146,7 +149,7 @@ std::string encode_glb(const DisplayMesh& mesh) {
   BinaryChunk chunk;
   const json attributes = add_attributes(chunk, mesh, origin);
   const std::size_t indices = chunk.add_indices(mesh.triangles);
-  std::string text = document(chunk, attributes, indices, node_of(origin, mesh.up)).dump();
+  std::string text = document(chunk, attributes, indices, node_of(origin, mesh)).dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

@@ -1,4 +1,5 @@
 #include "client/export/glb_file.h"
+#include "client/export/light_json.h"
 #include "client/export/solution_file.h"
 #include "import/bytes.h"
 #include "import/glb_format.h"
@@ -148,11 +149,16 @@ std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::
   return triangles;
 }
 
-UpAxis up_axis(const json& root) {
+/// Sets what the extras of the solution's node say about its scene. Files of older versions say less.
+void read_extras(const json& root, DisplayMesh& mesh) {
   const json& node = element(root, "nodes", 0);
   const auto extras = node.is_object() ? node.find("extras") : node.end();
-  const bool is_z = extras != node.end() && extras->is_object() && extras->value(up_key, json()) == "z";
-  return is_z ? UpAxis::z : UpAxis::y;
+  if (!node.is_object() || extras == node.end() || !extras->is_object()) return;
+  if (extras->value(up_key, json()) == "z") mesh.up = UpAxis::z;
+  if (extras->value(quantity_key, json()) == name_of(Quantity::photometric)) mesh.quantity = Quantity::photometric;
+  const json lights = extras->value(lights_key, json::array());
+  if (!lights.is_array()) fail("nodes[0].extras", "its lights are no list");
+  for (std::size_t n = 0; n < lights.size(); ++n) mesh.lights.push_back(light_of(lights[n], "light " + std::to_string(n)));
 }
 
 Vec3 translation(const json& root) {
@@ -171,7 +177,7 @@ DisplayMesh decode_glb(std::string_view bytes) {
   const Chunks chunks = chunks_of(bytes);
   const json root = parse_text(chunks.text);
   DisplayMesh mesh;
-  mesh.up = up_axis(root);
+  read_extras(root, mesh);
   const Vec3 shown = translation(root);
   const Vec3 origin = mesh.up == UpAxis::z ? Vec3{shown.x, -shown.z, shown.y} : shown;
   mesh.positions = read_vectors<Vec3>(root, chunks.binary, "POSITION", origin);

@@ -1,11 +1,13 @@
 #include "client/export/ply_file.h"
 
+#include "client/export/light_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
 #include "import/bytes.h"
 
 #include <charconv>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 namespace alvor {
 namespace {
@@ -19,19 +21,23 @@ constexpr std::string_view vertex_properties =
     "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 constexpr std::string_view face_properties = "property list uchar int vertex_indices\n";
-constexpr std::string_view z_up_comment = "comment z up\n";
+constexpr std::string_view z_up_comment = "comment z up\n", photometric_comment = "comment photometric\n";
+constexpr std::string_view light_comment = "comment light ";
 constexpr std::string_view last_line = "end_header\n";
 constexpr std::size_t vertex_size = 3 * sizeof(double) + 9 * sizeof(float) + 3;
 constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
 
 [[noreturn]] void fail(const std::string& place, const std::string& reason) { throw SolutionFileError(place + ": " + reason); }
 
-std::string header(std::size_t vertices, std::size_t faces, UpAxis up) {
+std::string header(const DisplayMesh& mesh) {
   std::string text(first_lines);
-  text += "comment Alvor solution: metres, W/m2\n";
-  if (up == UpAxis::z) text += z_up_comment;
-  text.append(vertex_element).append(std::to_string(vertices)).append("\n").append(vertex_properties);
-  text.append(face_element).append(std::to_string(faces)).append("\n").append(face_properties);
+  text += "comment Alvor solution: metres, W/m2 or, if photometric, lx\n";
+  if (mesh.up == UpAxis::z) text += z_up_comment;
+  if (mesh.quantity == Quantity::photometric) text += photometric_comment;
+  for (const Light& light : mesh.lights)
+    text.append(light_comment).append(json_of(light).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)).append("\n");
+  text.append(vertex_element).append(std::to_string(mesh.positions.size())).append("\n").append(vertex_properties);
+  text.append(face_element).append(std::to_string(mesh.triangles.size())).append("\n").append(face_properties);
   return text.append(last_line);
 }
 
@@ -77,16 +83,22 @@ struct Parts {
   std::string header;
   std::string_view body;
   UpAxis up = UpAxis::y;
+  Quantity quantity = Quantity::radiometric;
+  std::vector<Light> lights;
 };
 
 Parts parts_of(std::string_view bytes) {
-  constexpr std::size_t longest_header = 4096;
+  constexpr std::size_t longest_header = 1 << 24;  // 50 000 lights
   const std::size_t end = bytes.substr(0, longest_header).find("\nend_header\n");
   if (!bytes.starts_with("ply\n") || end == std::string_view::npos) fail("header", "not a PLY file of Alvor");
   Parts parts{{}, bytes.substr(end + 1 + last_line.size())};
   for (std::string_view rest = bytes.substr(0, end + 1); !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n') + 1);
     if (line == z_up_comment) parts.up = UpAxis::z;
+    if (line == photometric_comment) parts.quantity = Quantity::photometric;
+    if (line.starts_with(light_comment))
+      parts.lights.push_back(light_of(nlohmann::json::parse(line.substr(light_comment.size()), nullptr, false),
+                                      "light " + std::to_string(parts.lights.size())));
     if (!line.starts_with("comment")) parts.header += line;
     rest.remove_prefix(line.size());
   }
@@ -154,7 +166,7 @@ std::string encode_ply(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) fail("mesh", "has no triangles");
   if (mesh.positions.size() > std::numeric_limits<std::int32_t>::max()) fail("mesh", "has 2^31 vertices or more");
   const double exposure = automatic_exposure(mesh);
-  std::string bytes = header(mesh.positions.size(), mesh.triangles.size(), mesh.up);
+  std::string bytes = header(mesh);
   bytes.reserve(bytes.size() + mesh.positions.size() * vertex_size + mesh.triangles.size() * face_size);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     append_xyz<double>(bytes, mesh.positions[i]);
@@ -177,6 +189,8 @@ DisplayMesh decode_ply(std::string_view bytes) {
     fail("body", "the size is not that of the vertices and faces the header counts");
   DisplayMesh mesh;
   mesh.up = parts.up;
+  mesh.quantity = parts.quantity;
+  mesh.lights = parts.lights;
   Reader reader(parts.body);
   read_vertices(reader, counts.vertices, mesh);
   read_faces(reader, counts.faces, mesh);

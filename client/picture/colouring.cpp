@@ -10,7 +10,8 @@ namespace {
 ColourScale scale_for(const Stage& stage, const Camera& camera, const FalseColour& options) {
   if (options.scale) return *options.scale;
   std::vector<double> values;
-  stage.glance(camera, [&](const Seen& seen) { values.push_back(value_of(stage.irradiance(seen), options.band)); });
+  stage.glance(
+      camera, [&](const Seen& seen) { values.push_back(value_of(stage.irradiance(seen), options.band, stage.mesh().quantity)); });
   return automatic_scale(std::move(values), options.logarithmic);
 }
 
@@ -25,7 +26,7 @@ Colouring::Colouring(const Stage& stage, const Camera& camera, const FalseColour
     : stage_(stage), band_(options.band), scale_(scale_for(stage, camera, options)) {}
 
 Rgb Colouring::colour(const Seen& seen) const {
-  const double value = value_of(stage_.irradiance(seen), band_);
+  const double value = value_of(stage_.irradiance(seen), band_, stage_.mesh().quantity);
   if (value < scale_.low) note(below_);
   if (value > scale_.high) note(above_);
   return colour_map(scale_.position(value));

@@ -1,19 +1,21 @@
 #include "client/picture/false_colour.h"
 
+#include "client/picture/units.h"
+
 namespace alvor {
 
-double value_of(const RgbF& bands, Band band) {
+double value_of(const RgbF& bands, Band band, Quantity quantity) {
   switch (band) {
     case Band::red: return bands.r;
     case Band::green: return bands.g;
     case Band::blue: return bands.b;
     case Band::mean: break;
   }
-  return widen(bands).mean();
+  return one_number(widen(bands), quantity);
 }
 
-std::vector<std::string> legend_title(Band band) {
-  const std::string unit = "W/m2";
+std::vector<std::string> legend_title(Band band, Quantity quantity) {
+  const std::string unit = irradiance_unit(quantity);
   switch (band) {
     case Band::red: return {"red", unit};
     case Band::green: return {"green", unit};

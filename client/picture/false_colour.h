@@ -2,6 +2,7 @@
 // Options of a false-colour picture, which colours surfaces by their irradiance.
 
 #include "client/picture/colour_scale.h"
+#include "meshing/scene.h"
 #include "solution/rgb.h"
 
 #include <optional>
@@ -19,9 +20,10 @@ struct FalseColour {
   bool legend = true;                ///< draw one beside the view
 };
 
-double value_of(const RgbF& bands, Band band);
+/// Band::mean is the luminous value in a photometric scene.
+double value_of(const RgbF& bands, Band band, Quantity quantity);
 
 /// Returns the lines above the legend's bar: the name of the band, unless it is the mean, and the unit.
-std::vector<std::string> legend_title(Band band);
+std::vector<std::string> legend_title(Band band, Quantity quantity);
 
 }  // namespace alvor

@@ -17,12 +17,12 @@ constexpr std::uint32_t rounds = 64, rays_per_round = 64;
 /// Total of shadow rays; they are shared among emitting triangles by the most that each could send, with a minimum for each.
 constexpr double shadow_rays = 2048;
 constexpr std::uint32_t least_shadow_rays = 4;
-constexpr std::uint32_t trial_rays = 128;
+constexpr std::uint32_t trial_rays = 128, rays_of_soft_lamp = 256;
 /// Fraction of a shadow ray's length by which it ends before the emitter, so that in float32 it does not hit it.
 constexpr double before_emitter = 1e-5;
 
 // The streams of random numbers of one point.
-enum Purpose : std::uint64_t { trial, indirect, direct };
+enum Purpose : std::uint64_t { trial, indirect, direct, lamp };
 
 /// The irradiance from one emitting triangle if nothing blocks it.
 struct Unblocked {
@@ -33,7 +33,11 @@ struct Unblocked {
 }  // namespace
 
 Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption)
-    : mesh_(mesh), caster_(caster), medium_{absorption}, is_emitter_(mesh.triangles.size()) {
+    : mesh_(mesh),
+      caster_(caster),
+      medium_{absorption},
+      lamps_(mesh.lights, {{}, 1}, mesh.positions),
+      is_emitter_(mesh.triangles.size()) {
   const auto vertex_emits = [&](std::uint32_t vertex) { return emits(mesh.radiosity[vertex], mesh.irradiance[vertex]); };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     is_emitter_[t] = std::ranges::any_of(mesh.triangles[t], vertex_emits);
@@ -43,8 +47,10 @@ Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const 
 
 std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std::uint64_t stream) const {
   if (is_enclosed(point, stream)) return std::nullopt;
-  const GatheredIrradiance first = from_emitters(point, normal, stream), second = from_other_surfaces(point, normal, stream);
-  return GatheredIrradiance{first.irradiance + second.irradiance, std::hypot(first.standard_error, second.standard_error)};
+  const GatheredIrradiance first = from_emitters(point, normal, stream), second = from_lamps(point, normal, stream),
+                           third = from_other_surfaces(point, normal, stream);
+  return GatheredIrradiance{first.irradiance + second.irradiance + third.irradiance,
+                            std::hypot(first.standard_error, second.standard_error, third.standard_error)};
 }
 
 bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
@@ -81,6 +87,30 @@ GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_
   }
   sum.standard_error = std::sqrt(variance);
   return sum;
+}
+
+GatheredIrradiance Gatherer::from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+  GatheredIrradiance all;
+  double variance = 0;
+  for (std::size_t l = 0; l < lamps_.size(); ++l) {
+    PathRandom random(stream, lamp, l);
+    const EvenPairs places(random);
+    const std::uint32_t rays = lamps_.is_soft(l) ? rays_of_soft_lamp : 1;
+    Rgb sum;
+    double squares = 0;
+    for (std::uint32_t n = 0; n < rays; ++n) {
+      const Lamps::Sample sample = lamps_.sample_of(l, point, normal, places[n]);
+      if (sample.irradiance.is_zero() || caster_.is_blocked(point, point + sample.way)) continue;
+      const Rgb arriving = medium_.transmittance(sample.distance) * sample.irradiance;
+      sum += arriving;
+      squares += arriving.mean() * arriving.mean();
+    }
+    const Rgb mean = sum * (1.0 / rays);
+    all.irradiance += mean;
+    variance += std::max(0.0, squares / rays - mean.mean() * mean.mean()) / rays;
+  }
+  all.standard_error = std::sqrt(variance);
+  return all;
 }
 
 Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uint32_t triangle, std::uint32_t rays,

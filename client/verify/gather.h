@@ -1,6 +1,7 @@
 #pragma once
 // Computes irradiance in free air from a finished solution.
 
+#include "client/verify/lamps.h"
 #include "meshing/display_mesh.h"
 #include "radiosity/rays/medium.h"
 #include "radiosity/rays/visibility.h"
@@ -17,8 +18,9 @@ struct GatheredIrradiance {
 };
 
 /// Gathers the light that the surfaces of a solution send to a point. Light from emitters is each triangle's exact form factor
-/// times its visible fraction by shadow rays, so it is exact if nothing blocks. All other light is sampled by cosine-distributed
-/// rays (Nusselt's analogy). Borrows the mesh and its caster. Immutable; safe from any thread.
+/// times its visible fraction by shadow rays, so it is exact if nothing blocks; light of lamps is exact, but for soft shadows.
+/// All other light is sampled by cosine-distributed rays (Nusselt's analogy). Borrows the mesh and its caster. Immutable; safe
+/// from any thread.
 class Gatherer {
  public:
   /// `absorption` is the absorption coefficient of the medium that fills the scene, 1/m per band. Requires: `caster` holds the
@@ -39,6 +41,7 @@ class Gatherer {
 
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;
   GatheredIrradiance from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream) const;
+  GatheredIrradiance from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream) const;
   GatheredIrradiance from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream) const;
   VisibleShare visible_share(Vec3 point, Vec3 normal, std::uint32_t triangle, std::uint32_t rays, std::uint64_t stream) const;
   Vec3 corner(std::uint32_t triangle, int k) const { return mesh_.positions[mesh_.triangles[triangle][k]]; }
@@ -47,6 +50,7 @@ class Gatherer {
   const DisplayMesh& mesh_;
   const TriangleCaster& caster_;
   Medium medium_;
+  Lamps lamps_;                          ///< metres
   std::vector<std::uint32_t> emitters_;  ///< indices of the triangles that emit
   std::vector<bool> is_emitter_;         ///< by triangle
 };

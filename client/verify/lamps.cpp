@@ -23,15 +23,15 @@ Vec3 direction_in_cone(Vec3 axis, double cosine, UnitPair at) {
 
 }  // namespace
 
-Lamps::Lamps(const Scene& scene, const Extent& extent) {
+Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<const Vec3> surface_points) {
   const double inf = std::numeric_limits<double>::infinity();
   low_ = {inf, inf, inf}, high_ = {-inf, -inf, -inf};
-  for (const Vec3& vertex : scene.vertices) {
+  for (const Vec3& vertex : surface_points) {
     const Vec3 p = (vertex - extent.centre) / extent.longest_side;
     low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
     high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
   }
-  for (Light lamp : scene.lights) {
+  for (Light lamp : lights) {
     if (lamp.intensity.is_zero()) continue;
     lamp.position = (lamp.position - extent.centre) / extent.longest_side;
     lamp.radius /= extent.longest_side;
@@ -59,21 +59,22 @@ std::optional<Lamps::Sample> Lamps::sample(Vec3 point, Vec3 normal, double choic
   for (const Light& lamp : lamps_) all += unblocked(lamp, point, normal).sum();
   if (all <= 0) return std::nullopt;
   double left = choice * all, share = 0;
-  const Light* chosen = nullptr;
-  for (const Light& lamp : lamps_) {
-    const double brings = unblocked(lamp, point, normal).sum();
+  std::size_t chosen = 0;
+  for (std::size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
+    const double brings = unblocked(lamps_[lamp], point, normal).sum();
     if (brings <= 0) continue;
-    chosen = &lamp, share = brings / all;
+    chosen = lamp, share = brings / all;
     if (left < brings) break;
     left -= brings;
   }
-  Sample sample = sample_of(*chosen, point, normal, at);
+  Sample sample = sample_of(chosen, point, normal, at);
   sample.irradiance *= 1 / share;
   if (sample.irradiance.is_zero()) return std::nullopt;
   return sample;
 }
 
-Lamps::Sample Lamps::sample_of(const Light& lamp, Vec3 point, Vec3 normal, UnitPair at) const {
+Lamps::Sample Lamps::sample_of(std::size_t which, Vec3 point, Vec3 normal, UnitPair at) const {
+  const Light& lamp = lamps_[which];
   if (lamp.is_distant()) {
     const Vec3 direction =
         lamp.angular_diameter > 0 ? direction_in_cone(-lamp.direction, std::cos(lamp.angular_diameter / 2), at) : -lamp.direction;

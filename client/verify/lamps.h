@@ -7,6 +7,7 @@
 #include "meshing/scene.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace alvor {
@@ -16,9 +17,13 @@ namespace alvor {
 class Lamps {
  public:
   Lamps() = default;
-  Lamps(const Scene& scene, const Extent& extent);
+  /// `extent` tells the local coordinates; `surface_points` (metres) are those of the scene, beyond which nothing blocks.
+  Lamps(std::span<const Light> lights, const Extent& extent, std::span<const Vec3> surface_points);
 
   bool empty() const { return lamps_.empty(); }
+  std::size_t size() const { return lamps_.size(); }
+  /// Returns whether the lamp has a size, so that its samples differ.
+  bool is_soft(std::size_t lamp) const { return lamps_[lamp].radius > 0 || lamps_[lamp].angular_diameter > 0; }
 
   /// One lamp's light at a point, over the probability of having chosen this lamp; W/m2 per band.
   struct Sample {
@@ -28,10 +33,11 @@ class Lamps {
   };
   /// Returns an unbiased sample of the irradiance at a point; nothing if no lamp can bring any. `choice` and `at` are uniform.
   std::optional<Sample> sample(Vec3 point, Vec3 normal, double choice, UnitPair at) const;
+  /// Returns a sample of one lamp, chosen with probability 1.
+  Sample sample_of(std::size_t lamp, Vec3 point, Vec3 normal, UnitPair at) const;
 
  private:
   Rgb unblocked(const Light& lamp, Vec3 point, Vec3 normal) const;
-  Sample sample_of(const Light& lamp, Vec3 point, Vec3 normal, UnitPair at) const;
   double way_out(Vec3 point, Vec3 direction) const;
 
   std::vector<Light> lamps_;  ///< places and radii in local units; intensity so that E = I cos / d2 holds in them

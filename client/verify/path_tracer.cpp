@@ -36,7 +36,7 @@ double share_of(double density, double other_density) { return density / (densit
 PathTracer::PathTracer(const Scene& scene) : clear_(scene.absorption.is_zero()) {
   const std::vector<Facet> facets = facets_of(scene);
   extent_ = extent_of(facets);
-  lamps_ = Lamps(scene, extent_);
+  lamps_ = Lamps(scene.lights, extent_, scene.vertices);
   absorption_ = scene.absorption * extent_.longest_side;
   add_surfaces(scene, facets);
   std::vector<Vec3> corners;

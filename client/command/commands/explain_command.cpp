@@ -4,6 +4,7 @@
 #include "client/command/commands/outputs.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
+#include "client/command/options/light_options.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/command/output/notes.h"
@@ -26,6 +27,7 @@ struct ExplainCommand {
   std::filesystem::path scene;
   std::string format;      ///< format of a scene from stdin
   std::string absorption;  ///< three numbers; empty: none
+  LightOptions light;
   int max_depth = SolveOptions().max_depth;
   bool json = false;
   bool form_factors = false;
@@ -58,6 +60,7 @@ void run_explain(const ExplainCommand& command) {
   SceneFile file = read_scene(command.scene, command.format);
   warn(file.warnings);
   take_absorption(command.absorption, file.scene);
+  take_light_options(command.light, file.scene);
   if (command.form_factors) explain_form_factors(command, file.scene);
   else explain_plan(command, file.scene);
 }
@@ -73,6 +76,7 @@ void add_explain_command(CLI::App& app) {
   command.add_option("--max-depth", options->max_depth, "Most levels of subdivision of the solve (10)")
       ->check(CLI::Range(0, PatchId::max_level));
   add_absorption_option(command, options->absorption);
+  add_light_options(command, options->light);
   command.add_flag("--form-factors", options->form_factors,
                    "Check reciprocity, additivity and closure of form factors instead of showing the plan");
   command.add_option("--pairs", options->pairs, "Number of random pairs of faces to check (50)");

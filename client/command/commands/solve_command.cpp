@@ -6,6 +6,7 @@
 #include "client/command/commands/outputs.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
+#include "client/command/options/light_options.h"
 #include "client/command/options/option_checks.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
@@ -55,7 +56,8 @@ struct SolveCommand {
   std::string form_factors = "auto";  ///< a key of `form_factor_methods`
   std::optional<double> pace_s;
   std::string absorption;  ///< three numbers; empty: none
-  std::string up;          ///< "y" or "z"; empty: as the file says
+  LightOptions light;
+  std::string up;  ///< "y" or "z"; empty: as the file says
 };
 
 v1::SolveSpec spec_of(const SolveCommand& command) {
@@ -108,6 +110,7 @@ void run_solve(const SolveCommand& command) {
   prepare_outputs(command.outputs);
   SceneFile file = read_scene(command.scene, command.format);
   take_absorption(command.absorption, file.scene);
+  take_light_options(command.light, file.scene);
   take_up(command.up, file.scene.up);
   std::vector<std::string> warnings;
   const Followed followed = solve_and_follow(command, file, warnings);
@@ -133,6 +136,7 @@ void add_method(CLI::App& command, SolveCommand& options) {
       ->type_name("M")
       ->check(CLI::IsMember({"auto", "nusselt", "hemicube", "analytic"}));
   add_absorption_option(command, options.absorption);
+  add_light_options(command, options.light);
   command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
   command.add_option("--pace", options.pace_s, "Pause after each step, seconds; not counted as run time (0; 0.04 with --frames)")
       ->check(CLI::Range(0.0, 60.0));

@@ -4,6 +4,7 @@
 #include "client/command/commands/outputs.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
+#include "client/command/options/light_options.h"
 #include "client/command/options/option_checks.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
@@ -29,7 +30,8 @@ struct VerifyCommand {
   std::string format;  ///< format of the file from stdin
   VerifyOptions options;
   std::string absorption;  ///< three numbers; empty: none
-  std::string up;          ///< "y" or "z"; empty: as the solution says
+  LightOptions light;
+  std::string up;  ///< "y" or "z"; empty: as the solution says
   std::optional<double> max_error;
   std::filesystem::path csv, picture;  ///< empty: not asked for
   bool json = false;
@@ -74,6 +76,7 @@ void run_verify(const VerifyCommand& command) {
   require_outputs(command);
   SceneFile file = read_scene(command.scene, command.format);
   take_absorption(command.absorption, file.scene);
+  take_light_options(command.light, file.scene);
   warn(file.warnings);
   DisplayMesh solution = read_solution(command.solution, command.format);
   take_up(command.up, solution.up);
@@ -125,6 +128,7 @@ void add_verify_command(CLI::App& app) {
       ->type_name("SOLUTION");
   add_format_option(command, options->format);
   add_absorption_option(command, options->absorption);
+  add_light_options(command, options->light);
   add_effort(command, *options);
   add_results(command, *options);
   command.callback([options] { run_verify(*options); });

@@ -31,14 +31,15 @@ void warn_of_no_room(PictureSize size) {
 }  // namespace
 
 CLI::Option* add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
-  CLI::Option* wanted =
-      command.add_flag("--false-colour,--false-color", options.wanted, "Colour surfaces by irradiance, with a legend in W/m2");
+  CLI::Option* wanted = command.add_flag("--false-colour,--false-color", options.wanted,
+                                         "Colour surfaces by irradiance, with a legend in W/m2 or lx");
   command.add_option("--band", options.band, "Band whose irradiance is shown (the mean of all three)")
       ->type_name("BAND")
       ->check(CLI::IsMember({"r", "g", "b", "mean"}))
       ->needs(wanted);
   command
-      .add_option("--range", options.range, "Ends of the colour scale, W/m2 (from 0 to a round number that suits the picture)")
+      .add_option("--range", options.range,
+                  "Ends of the colour scale, W/m2 or lx (from 0 to a round number that suits the picture)")
       ->type_name("LOW,HIGH")
       ->needs(wanted);
   command.add_flag("--log-scale", options.logarithmic, "Use a logarithmic colour scale")->needs(wanted);

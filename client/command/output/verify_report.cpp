@@ -2,6 +2,7 @@
 
 #include "client/command/output/numbers.h"
 #include "client/command/output/table.h"
+#include "client/picture/units.h"
 
 #include <cmath>
 #include <cstdio>
@@ -45,7 +46,8 @@ std::vector<std::string> row_of(const Scene& scene, const VerifiedPoint& point) 
 }
 
 std::string worst_table(const Scene& scene, const Verification& verification) {
-  std::vector<std::vector<std::string>> rows{{"worst places", "normal", "face", "truth, W/m2", "solution", "error"}};
+  const std::string truth = std::string("truth, ") + irradiance_unit(scene.quantity);
+  std::vector<std::vector<std::string>> rows{{"worst places", "normal", "face", truth, "solution", "error"}};
   for (const VerifiedPoint& point : worst_points(verification, worst_shown)) rows.push_back(row_of(scene, point));
   return aligned(rows);
 }
@@ -87,7 +89,8 @@ std::string verify_summary(const Scene& scene, const Verification& verification,
       {"bias", percent(errors.bias.value), interval(errors.bias)},
       {"relative RMS", percent(errors.relative_rms), "over points; nRMSE is relative to the mean"},
       {"truth", percent(errors.truth_error), "its standard error, already taken out of the errors above"},
-      {"mean", digits("%.4g", errors.mean_truth), "W/m2 of true irradiance, all bands averaged"},
+      {"mean", digits("%.4g", errors.mean_truth),
+       std::string(irradiance_unit(scene.quantity)) + " of true irradiance, all bands averaged"},
       {"points", std::to_string(errors.points), "of " + std::to_string(verification.paths) + " paths each"},
       {"hidden", std::to_string(verification.hidden), hidden_note(verification)},
       {"dark", std::to_string(verification.dark), "points more, without light in truth and solution: left out"},
@@ -104,6 +107,7 @@ std::string verify_json(const Scene& scene, const Verification& verification, co
             {"truth_error", errors.truth_error},
             {"relative_truth_error", errors.relative_truth_error},
             {"mean_irradiance", errors.mean_truth},
+            {"unit", irradiance_unit(scene.quantity)},
             {"points", errors.points},
             {"hidden", verification.hidden},
             {"hidden_lit", verification.hidden_lit},
