@@ -149,7 +149,8 @@ std::string encode_glb(const DisplayMesh& mesh) {
   BinaryChunk chunk;
   const json attributes = add_attributes(chunk, mesh, origin);
   const std::size_t indices = chunk.add_indices(mesh.triangles);
-  std::string text = document(chunk, attributes, indices, node_of(origin, mesh)).dump();
+  std::string text =
+      document(chunk, attributes, indices, node_of(origin, mesh)).dump(-1, ' ', false, json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

@@ -15,14 +15,16 @@ namespace alvor {
 
 namespace {
 
-// Receivers that one task lights, so that their rays are traced together. Chosen; not measured.
+// Receivers that one task lights, so that their rays are traced together. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr std::size_t receivers_per_batch = 64;
 // Packets of 16 rays that a receiver sends: to a light whose first packet is partly blocked (packets_when_mixed, more), and to
-// all lights that it only samples (packets_of_rest). Chosen; not measured. That packets_of_rest is fixed was measured: sending
-// more only where some rays arrived lost half of the light behind a hole in a screen (docs/error-vs-time/tried.md).
+// all lights that it only samples (packets_of_rest). Chosen; half: error +1 %, rays -3 %, double: error -1 %, rays +10 %
+// (docs/design/constants.md). That packets_of_rest is fixed was measured: sending more only where some rays arrived lost half of
+// the light behind a hole in a screen (docs/error-vs-time/tried.md).
 constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
 // Share of the receiver's irradiance, as the first packets find it: a light whose unblocked irradiance is below this share
-// gets no more rays. Chosen; not measured.
+// gets no more rays. Chosen; half: the same, double: the same (docs/design/constants.md).
 constexpr double worth_a_closer_look = 0.1;
 
 using Lanes = std::array<float, RayPacket::width>;

@@ -8,7 +8,8 @@ namespace alvor {
 namespace {
 
 constexpr std::uint32_t none = ~0u;
-// Share of the units that a round of pairing must remove; if it removes less, unpaired units join pairs. Chosen; not measured.
+// Share of the units that a round of pairing must remove; if it removes less, unpaired units join pairs. Chosen; half and double
+// give the same solutions (docs/design/constants.md).
 constexpr double least_decrease = 0.1;
 
 /// Returns units of patches with equal names (`names` is by patch), numbered in the order of their first patches.

@@ -74,7 +74,8 @@ class Gathering : public Exchange {
   /// Returns the scalar product of two functions of the patches, weighted by area, per band.
   Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
 
-  static constexpr std::size_t remembered = 6;  // directions kept; each takes 6 numbers per patch. Chosen; not measured
+  static constexpr std::size_t remembered =
+      6;  // directions kept; each takes 6 numbers per patch. Chosen; half: the same, double: the same (docs/design/constants.md)
   std::span<const ShootingPatch> patches_;
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const Rgb> own_radiosity_;

@@ -13,11 +13,11 @@ namespace alvor {
 namespace {
 
 // Radii of the windows of a plane and of a quadratic, in edges of the row's patch. Measured for wide_window: 5 or 6.5 gave an
-// error of 1.1 % where 3.5 gives 0.9 % (Cornell box, a million rays, docs/error-vs-time/tried.md). narrow_window is chosen; not
-// measured.
+// error of 1.1 % where 3.5 gives 0.9 % (Cornell box, a million rays, docs/error-vs-time/tried.md). narrow_window is chosen; half:
+// error +39 %, rays +66 %, double: error -4 %, rays +6 % (docs/design/constants.md).
 constexpr double narrow_window = 1.5, wide_window = 3.5;
-// Distance, in edges of the row's patch, below which a row counts by its quarters, and beyond which as a whole. Chosen; not
-// measured.
+// Distance, in edges of the row's patch, below which a row counts by its quarters, and beyond which as a whole. Chosen; half:
+// error -2 %, rays -1 %, double: error -3 %, rays -10 % (docs/design/constants.md).
 constexpr double near_rows = 1.6;
 // Multiple of the noise's variance up to which noise explains a misfit. Measured: with 1 half of all windows misfit by chance;
 // with 1.3 a fifth fewer rays are needed; with twice that allowance detail is missed (docs/error-vs-time/tried.md).
@@ -25,9 +25,11 @@ constexpr double misfit_allowed = 1.3;
 // Share of a sample's variance that is left in its difference from a fit that uses the sample. It is 0.8 to 0.95, by the size of
 // the window (tests/radiosity/irradiance_field_test.cpp, NoiseIsNoMisfit).
 constexpr double residual_noise = 0.8;
-// Most rows in a window. A wide window of equal patches holds 3.5^2 pi = 38. Chosen; not measured.
+// Most rows in a window. A wide window of equal patches holds 3.5^2 pi = 38. Chosen; half: error -2 %, rays -7 %, double: error
+// -3 %, rays -3 % (docs/design/constants.md).
 constexpr std::size_t most_rows = 64;
-// Cosine between the normals of two rows from which they are one surface. Chosen; not measured.
+// Cosine between the normals of two rows from which they are one surface. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr double same_surface = 0.9;
 
 /// The mean irradiance that a number of rays found, and the mean place of their origins.

@@ -148,9 +148,10 @@ class OvershootStepper : public Stepper {
 
  private:
   // Multiple of the lowest unshot power from which the advanced share shrinks; advances raise the power until their light has
-  // come. Chosen; not measured.
+  // come. Chosen; half and double give the same solutions (docs/design/constants.md).
   static constexpr double usual_rise = 2;
-  // Shots per patch without a new lowest unshot power after which the advanced share is halved for good. Chosen; not measured.
+  // Shots per patch without a new lowest unshot power after which the advanced share is halved for good. Chosen; half and double
+  // give the same solutions (docs/design/constants.md).
   static constexpr std::size_t patience = 4;
 
   std::uint32_t look_at_all(const Rgb& ahead) {

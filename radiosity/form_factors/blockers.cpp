@@ -10,11 +10,13 @@ namespace alvor {
 namespace {
 
 // Most corners of two polygons together that are joined; cutting a polygon adds corners, of which ConvexPolygon holds 80. Chosen;
-// not measured.
+// half and double give the same solutions (docs/design/constants.md).
 constexpr std::size_t most_corners = 32;
-// Sine of the angle between the normals of polygons that count as coplanar. Chosen; not measured.
+// Sine of the angle between the normals of polygons that count as coplanar. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr double same_plane = 1e-9;
-// Sine of the angle at a corner that counts as straight and is dropped. Chosen; not measured.
+// Sine of the angle at a corner that counts as straight and is dropped. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr double straight = 1e-9;
 
 /// A polygon as the list of its welded vertices. Empty after it was joined to another.

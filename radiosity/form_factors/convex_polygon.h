@@ -21,7 +21,8 @@ struct Plane {
 /// A convex planar polygon: its corners in order. It allocates nothing; a copy copies only the corners that there are.
 class ConvexPolygon {
  public:
-  /// Most corners: 64 of a face (see FacePolygons) and 16 that cuts add. Chosen; not measured.
+  /// Most corners: 64 of a face (see FacePolygons) and 16 that cuts add. Chosen; half and double give the same solutions
+  /// (docs/design/constants.md).
   static constexpr int capacity = 80;
 
   ConvexPolygon() {}

@@ -6,9 +6,11 @@ namespace alvor {
 
 namespace {
 
-// Most corners of a face that stays one piece; ConvexPolygon holds 80, the rest is for cuts. Chosen; not measured.
+// Most corners of a face that stays one piece; ConvexPolygon holds 80, the rest is for cuts. Chosen; half and double give the
+// same solutions (docs/design/constants.md).
 constexpr std::size_t most_whole_corners = 64;
-// Share of a polygon's size by which its corners may lie off its plane. Chosen; not measured.
+// Share of a polygon's size by which its corners may lie off its plane. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr double planar = 1e-9;
 
 bool is_flat(std::span<const Vec3> polygon) {

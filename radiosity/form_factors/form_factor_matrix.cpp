@@ -18,9 +18,11 @@ namespace alvor {
 
 namespace {
 
-// Share of the sum of two polygons' radii: a corner closer to a plane than that lies in it. Chosen; not measured.
+// Share of the sum of two polygons' radii: a corner closer to a plane than that lies in it. Chosen; half and double give the same
+// solutions (docs/design/constants.md).
 constexpr double flat_slack = 1e-12;
-// Rows that are computed in parallel before they are handed out. Chosen; not measured.
+// Rows that are computed in parallel before they are handed out. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr std::size_t rows_at_once = 16;
 
 /// Quadrature points of a polygon, as arrays for SIMD. The weights sum to 1; unused points have the weight 0.
@@ -317,9 +319,10 @@ class FormFactorRows::Pairs {
     }
   }
 
-  // Relative accuracy of a shadowed pair that is integrated adaptively. Chosen; not measured.
+  // Relative accuracy of a shadowed pair that is integrated adaptively. Chosen; half and double give the same solutions
+  // (docs/design/constants.md).
   static constexpr double relative_accuracy = 1e-3;
-  // Most sample points of a face for such a pair. Chosen; not measured.
+  // Most sample points of a face for such a pair. Chosen; half and double give the same solutions (docs/design/constants.md).
   static constexpr std::uint64_t most_points = 10'000;
   // Error bound of a far pair as a share of its form factor, times the sixth power of the distance in radii. At most 0.03 was
   // measured.
@@ -331,14 +334,18 @@ class FormFactorRows::Pairs {
   // was violated between faces of four scenes; with 0.15 the bounds hold.
   static constexpr double unseen_error = 0.15;
   // Share of the row's area below which a face is sampled from its own points. Without that the points of a floor missed two
-  // thirds of the light to a lamp's frame (ARCHITECTURE.md). The value is chosen; not measured.
+  // thirds of the light to a lamp's frame (ARCHITECTURE.md). The value is chosen; half: the same, double: the same
+  // (docs/design/constants.md).
   static constexpr double small_share = 0.25;
-  // Multiple of the accuracy that the error bound of a shadowed pair may reach before more points are used. Chosen; not measured.
+  // Multiple of the accuracy that the error bound of a shadowed pair may reach before more points are used. Chosen; half: the
+  // same, double: the same (docs/design/constants.md).
   static constexpr double shadow_accuracy = 1000;
 
-  // Most blockers of a shadowed pair that is integrated adaptively. Chosen; not measured.
+  // Most blockers of a shadowed pair that is integrated adaptively. Chosen; half and double give the same solutions
+  // (docs/design/constants.md).
   static constexpr std::size_t most_followed_blockers = 16;
-  // Most times that a face is cut into four parts to get more sample points. Chosen; not measured.
+  // Most times that a face is cut into four parts to get more sample points. Chosen; half: the same, double: the same
+  // (docs/design/constants.md).
   static constexpr int most_levels = 1;
 
   const FacePolygons& faces_;

@@ -14,13 +14,14 @@ constexpr double pi = std::numbers::pi;
 // Distance of two polygons, as a multiple of the sum of their radii, beyond which they are integrated over their areas by six
 // Gauss points a side. Measured: between unit squares at this distance six points err by 3e-15 and four by 4e-10.
 constexpr double far_ratio = 6;
-// Rounding error of the contour integral, as a share of the product of the perimeters: some two machine epsilons. Chosen; not
-// measured.
+// Rounding error of the contour integral, as a share of the product of the perimeters: some two machine epsilons. Chosen; half
+// and double give the same solutions (docs/design/constants.md).
 constexpr double rounding = 5e-16;
 // Multiple of the contour integral's own error estimate that is taken as its bound. Errors of five times the estimate were
 // measured, where an edge nears another (ARCHITECTURE.md, Form factors between faces).
 constexpr double safety = 10;
-// Share of a polygon's radius and distance: a corner closer to a plane than that lies on it. Chosen; not measured.
+// Share of a polygon's radius and distance: a corner closer to a plane than that lies on it. Chosen; half and double give the
+// same solutions (docs/design/constants.md).
 constexpr double flat_slack = 1e-12;
 
 struct Ball {

@@ -12,7 +12,8 @@ namespace alvor {
 
 namespace {
 
-// Share of the size of two polygons: a corner closer to a plane than that lies in it. Chosen; not measured.
+// Share of the size of two polygons: a corner closer to a plane than that lies in it. Chosen; half and double give the same
+// solutions (docs/design/constants.md).
 constexpr double flat_slack = 1e-12;
 // Squared sine of the angle between two directions that count as one: flat_slack squared.
 constexpr double no_angle = 1e-24;
@@ -121,7 +122,8 @@ struct Cell {
 /// between edges of several blockers are left out.
 std::vector<ConvexPolygon> cut_at_events(const ConvexPolygon& from, const ConvexPolygon& to,
                                          std::span<const ConvexPolygon> blockers) {
-  constexpr std::size_t most_cells = 400;  // cells after which no more cuts are made. Chosen; not measured
+  constexpr std::size_t most_cells =
+      400;  // cells after which no more cuts are made. Chosen; half and double give the same solutions (docs/design/constants.md)
   std::vector<ConvexPolygon> cells{from}, next;
   const double slack = 1e-9 * size_of(from, from);
   const auto cut_all = [&](const ConvexPolygon& edges, const ConvexPolygon& corners) {

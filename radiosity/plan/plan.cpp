@@ -11,15 +11,17 @@ namespace alvor {
 
 namespace {
 
-// Share of all area that emits, above which rows carry emission: they then find emitters as well as shadow rays do. Chosen; not
-// measured.
+// Share of all area that emits, above which rows carry emission: they then find emitters as well as shadow rays do. Chosen; half
+// and double give the same solutions (docs/design/constants.md).
 constexpr double most_area_emits = 0.5;
 // Share of the scene's extent by which a point must lie behind a plane to count as behind it: three spacings of float32 at half
 // the extent (3e-8), closer than rays can tell.
 constexpr double behind = 1e-7;
-// Number of plain steps up to which conjugate residuals are not worth their memory. Chosen; not measured.
+// Number of plain steps up to which conjugate residuals are not worth their memory. Chosen; half and double give the same
+// solutions (docs/design/constants.md).
 constexpr double plain_steps = 8;
-// Share of the light that may be left after the plain steps, each of which leaves the largest reflectance. Chosen; not measured.
+// Share of the light that may be left after the plain steps, each of which leaves the largest reflectance. Chosen; half and
+// double give the same solutions (docs/design/constants.md).
 constexpr double converged = 1e-6;
 
 template <class... Parts>

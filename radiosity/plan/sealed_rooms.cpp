@@ -11,9 +11,11 @@ namespace {
 // Share of the scene's extent: a point closer to a plane than this lies on it. It is the tolerance within which the mesh welds
 // vertices.
 constexpr double flat_tolerance = 1e-9;
-// Cosine of the angle between normals that count as one direction, 1.4e-6 radians. Chosen; not measured.
+// Cosine of the angle between normals that count as one direction, 1.4e-6 radians. Chosen; half and double give the same
+// solutions (docs/design/constants.md).
 constexpr double same_direction = 1 - 1e-12;
-// Most sealed rooms that are kept, and most planes of a room. Chosen; not measured.
+// Most sealed rooms that are kept, and most planes of a room. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr std::size_t most_rooms = 64, most_planes = 64;
 
 std::span<const Vec3> corners_of(const RootPatch& root) {

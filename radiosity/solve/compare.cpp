@@ -18,12 +18,13 @@ namespace {
 // Share of the tolerance: a pass ends when the unshot power is below this share of it, as a share of the emitted power. Squares
 // add, so what is unshot adds 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
 constexpr double pass_unshot = 0.1;
-// Share of the emitted power that may be unshot in the solution that errors are measured against. Chosen; not measured.
+// Share of the emitted power that may be unshot in the solution that errors are measured against. Chosen; half and double give
+// the same solutions (docs/design/constants.md).
 constexpr double converged_unshot = 1e-12;
-// Error (see ErrorSample) at which a course ends. Chosen; not measured.
+// Error (see ErrorSample) at which a course ends. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr double last_error = 1e-6;
 // Steps per patch after which a course ends. A step per patch multiplies the residual by about the reflectance: 0.99^1000 = 4e-5.
-// Chosen; not measured.
+// Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr std::uint64_t most_sweeps = 1000;
 
 constexpr Strategy compared[]{Strategy::gather, Strategy::shoot, Strategy::sorted, Strategy::sorted_ambient, Strategy::overshoot};

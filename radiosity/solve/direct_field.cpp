@@ -10,10 +10,11 @@ namespace alvor {
 
 namespace {
 
-// Most lights that reach the leaves one after the other; more are put into a LightTree. Chosen; not measured.
+// Most lights that reach the leaves one after the other; more are put into a LightTree. Chosen; half and double give the same
+// solutions (docs/design/constants.md).
 constexpr std::size_t most_one_by_one = 12;
-// Parts in which the leaves get their direct light if there are more lights, each followed by `after_each`. Chosen; not
-// measured.
+// Parts in which the leaves get their direct light if there are more lights, each followed by `after_each`. Chosen; half and
+// double give the same solutions (docs/design/constants.md).
 constexpr std::size_t parts_shown = 8;
 
 bool is_sound(const DirectLight& light) {

@@ -12,11 +12,12 @@ namespace alvor {
 
 namespace {
 
-// Absolute accuracy aimed at for single form factors. Shadowed ones err more, their sums less. Chosen; not measured.
+// Absolute accuracy aimed at for single form factors. Shadowed ones err more, their sums less. Chosen; half: the same, double:
+// the same (docs/design/constants.md).
 constexpr double accuracy = 1e-4;
 // Most rows of a scene, and most shadowed patches seen from one patch, for which the edges of shadows are followed. With few and
 // large patches common sample points err by percents (2 % around a block, tests/radiosity/known_boxes_test.cpp). With many,
-// following takes a hundred times as long. Chosen between these; not measured.
+// following takes a hundred times as long. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr std::size_t most_rows_followed = 32, most_shadows_followed = 32;
 
 std::vector<Vec3> polygon_of(const BaseMesh& mesh, const PatchShape& shape) {

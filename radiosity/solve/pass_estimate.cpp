@@ -16,14 +16,14 @@ namespace {
 constexpr double rays_per_leaf_split = 4 * 32;
 // Rays that splitting a row costs: four children, a row and 32 shadow rays each.
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
-// Rays above which a row gets no more. Chosen; not measured.
+// Rays above which a row gets no more. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
 // Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show.
 // Measured on six scenes (ARCHITECTURE.md, Estimate, mark, refine).
 constexpr double unseen_detail = 2.5;
 // Share of the variance of a leaf's direct light that is seen in the display. Bilinear interpolation between vertices that
 // average the four leaves around them leaves (5/12)^2 = 0.17; the slopes by which the display mesh extrapolates are not in it.
-// Chosen; not measured.
+// Chosen; half: error same, rays -1 %, double: error -1 %, rays +3 % (docs/design/constants.md).
 constexpr double noise_in_display = 0.16;
 // Share of the variance of a leaf's direct light that noise adds to its squared interpolation error. Independent noise on a
 // regular grid adds 0.14 inside a surface and 0.30 at a crease (computed from interpolation_error); 0.25 lies between.
@@ -31,9 +31,11 @@ constexpr double noise_in_differences = 0.25;
 // Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations above
 // the mean of sixteen squared normal deviations.
 constexpr double noise_of_origins = 1.7;
-// Share of a window's squared misfit that its fit has at the centre: a guess. Chosen; not measured.
+// Share of a window's squared misfit that its fit has at the centre: a guess. Chosen; half: error same, rays +1 %, double: error
+// -5 %, rays +10 % (docs/design/constants.md).
 constexpr double misfit_at_centre = 0.25;
-// Share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; not measured.
+// Share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2 %, rays
+// same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }

@@ -21,22 +21,29 @@ namespace {
 // Exchange::remaining_error() that ends a pass, as a share of the tolerance. Squares add, so the light that is still to come adds
 // 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
 constexpr double pass_remaining = 0.1;
-// Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; not measured.
+// Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; half: the same, double: the same
+// (docs/design/constants.md).
 constexpr double final_remaining = 1e-6;
-// Multiple of the tolerance: after an estimated error below it the next pass is taken to be the last. Chosen; not measured.
+// Multiple of the tolerance: after an estimated error below it the next pass is taken to be the last. Chosen; half: the same,
+// double: the same (docs/design/constants.md).
 constexpr double near_the_end = 1.5;
 // Share of the estimated error by which a display may differ from the solution. Squares add, so a display errs by at most
-// sqrt(1 + 0.5^2) = 1.12 times the estimated error. Chosen; not measured.
+// sqrt(1 + 0.5^2) = 1.12 times the estimated error. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr double displayed_error = 0.5;
-// Share of the lowest error so far that a pass without splits must get below to count as a gain. Chosen; not measured.
+// Share of the lowest error so far that a pass without splits must get below to count as a gain. Chosen; half and double give the
+// same solutions (docs/design/constants.md).
 constexpr double worth_going_on = 0.98;
-// Passes without gain that are made before the solve ends. Chosen; not measured.
+// Passes without gain that are made before the solve ends. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr int most_idle_passes = 4;
-// Share of the unshot power at the last publication below which an exchange publishes again. Chosen; not measured.
+// Share of the unshot power at the last publication below which an exchange publishes again. Chosen; half and double give the
+// same solutions (docs/design/constants.md).
 constexpr double publish_when = 0.75;
-// Largest share of the time that may go into steps that only show progress. Chosen; not measured.
+// Largest share of the time that may go into steps that only show progress. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr double publishing_share = 0.1;
-// Number of first steps that are published whatever they cost. Chosen; not measured.
+// Number of first steps that are published whatever they cost. Chosen; half and double give the same solutions
+// (docs/design/constants.md).
 constexpr std::uint64_t always_published = 12;
 
 /// The progress of a run that is not part of its state. Saved with checkpoints.

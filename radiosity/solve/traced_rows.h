@@ -54,7 +54,8 @@ class TracedRows {
   /// Reads what save_wanted() wrote. Throws BadBytes.
   void load_wanted(PlainReader& in);
 
-  /// Rows that are traced at once. A solve can be interrupted between batches and go on later. Chosen; not measured.
+  /// Rows that are traced at once. A solve can be interrupted between batches and go on later. Chosen; half and double give the
+  /// same solutions (docs/design/constants.md).
   static constexpr std::size_t rows_per_batch = 8192;
 
  private:

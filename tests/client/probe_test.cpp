@@ -67,6 +67,21 @@ TEST(Probe, GathersInTheAir) {
   EXPECT_TRUE(std::isnan(samples[0].radiosity.g));
 }
 
+TEST(Probe, GathersTheLightOfLamps) {
+  DisplayMesh room = lit_room(2);
+  for (RgbF& each : room.radiosity) each = {};
+  for (RgbF& each : room.irradiance) each = {};
+  Light lamp{"bulb", LightKind::point, {10, 20, 30}, {1, 1.5, 1}}, ball{"ball", LightKind::point, {10, 20, 30}, {1, 1.75, 1}};
+  ball.radius = 0.1;
+  room.lights = {lamp, ball};
+  const std::vector<ProbePoint> points{{{1, 0.5, 1}, {0, 1, 0}}, {{1, 0.5, 1}, {0, -1, 0}}};
+  const auto samples = probe(room, points);
+  const double expected = 20 / 1.0 + 20 / (1.25 * 1.25);
+  EXPECT_NEAR(samples[0].irradiance.g, expected, 1e-4 * expected);
+  EXPECT_NEAR(samples[0].irradiance.r, expected / 2, 1e-4 * expected);
+  EXPECT_EQ(samples[1].irradiance.g, 0);
+}
+
 TEST(Probe, GathersPastWhatStandsInTheLight) {
   DisplayMesh room = lit_room(2);
   // Adds a two-sided sheet halfway up, over the half of the room with x < 1. Seen from below it hides half of the ceiling's

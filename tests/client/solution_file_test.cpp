@@ -51,6 +51,35 @@ INSTANTIATE_TEST_SUITE_P(Formats, SolutionFile, testing::Values(".glb", ".ply"),
 
 void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(length(a - b), tolerance); }
 
+TEST_P(SolutionFile, RemembersLightsAndWhatItsNumbersMean) {
+  DisplayMesh mesh = hand_made_room({.origin = {100, 200, 300}});
+  mesh.up = UpAxis::z;
+  mesh.quantity = Quantity::photometric;
+  Light bulb{"bulb \n \"1\" \xff", LightKind::point, {1, 2, 3}, {101, 202, 303}},
+      spot{"spot", LightKind::spot, {4, 5, 6}, {}, {0, 1, 0}, 0.1, 0.2};
+  bulb.radius = 0.125;
+  mesh.lights = {bulb, spot};
+  const DisplayMesh back = decoded(encoded(mesh));
+  EXPECT_EQ(back.quantity, Quantity::photometric);
+  ASSERT_EQ(back.lights.size(), 2u);
+  EXPECT_EQ(back.lights[0].position, bulb.position);
+  EXPECT_EQ(back.lights[0].radius, bulb.radius);
+  EXPECT_EQ(back.lights[1], spot);
+}
+
+TEST_P(SolutionFile, ALightThatIsNoneIsRefusedByName) {
+  DisplayMesh mesh = hand_made_room({});
+  mesh.lights = {{"bulb", LightKind::point, {1, 2, 3}}, {"spot", LightKind::spot, {4, 5, 6}}};
+  mesh.lights[1].radius = 1234.5;
+  const auto with = [](std::string text, const std::string& old, const std::string& by) {
+    return text.replace(text.find(old), old.size(), by);
+  };
+  EXPECT_NE(refusal(with(encoded(mesh), "1234.5", "-234.5")).find("light 1: radius -234.5 is outside [0, 1e9] m"),
+            std::string::npos);
+  EXPECT_NE(refusal(with(encoded(mesh), "1234.5", "\"123\" ")).find("light 1: not a light as Alvor writes it"), std::string::npos)
+      << refusal(with(encoded(mesh), "1234.5", "\"123\" "));
+}
+
 TEST_P(SolutionFile, RemembersWhichAxisPointsUp) {
   DisplayMesh mesh = hand_made_room({.origin = {100, 200, 300}});
   for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
