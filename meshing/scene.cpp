@@ -1,5 +1,6 @@
 #include "meshing/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +9,8 @@ namespace alvor {
 namespace {
 
 constexpr double max_coordinate = 1e9;
+// Each distant light lights every leaf by rays of its own, whatever it brings.
+constexpr std::ptrdiff_t most_distant_lights = 64;
 constexpr double max_emission = 1e30;  // W/m2: after a million reflections the result still fits in a float
 
 std::string number(double value) {
@@ -72,6 +75,8 @@ std::optional<Fault> find_fault(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (auto reason = fault_in(scene.materials[i]))
       return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};
+  if (const auto count = std::ranges::count_if(scene.lights, &Light::is_distant); count > most_distant_lights)
+    return Fault{"scene", "has " + std::to_string(count) + " distant lights, at most 64 are possible"};
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (auto reason = fault_in(scene.lights[i]))
       return Fault{"light " + std::to_string(i) + " '" + scene.lights[i].name + "'", *reason};

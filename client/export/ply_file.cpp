@@ -88,7 +88,7 @@ struct Parts {
 };
 
 Parts parts_of(std::string_view bytes) {
-  constexpr std::size_t longest_header = 1 << 24;  // 50 000 lights
+  constexpr std::size_t longest_header = 1 << 26;  // a hundred thousand lights
   const std::size_t end = bytes.substr(0, longest_header).find("\nend_header\n");
   if (!bytes.starts_with("ply\n") || end == std::string_view::npos) fail("header", "not a PLY file of Alvor");
   Parts parts{{}, bytes.substr(end + 1 + last_line.size())};

@@ -1,6 +1,7 @@
 #pragma once
 // A WatchSolve call: sends the frames of a Watch over the network.
 
+#include "alvor/v1/solve_service.pb.h"
 #include "server/base/mutex.h"
 #include "server/base/work_pool.h"
 #include "server/watch/watches.h"

@@ -15,9 +15,10 @@ void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
 }  // namespace
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
-  // A material's size in memory; an empty one takes only two bytes on the wire.
-  constexpr std::uint64_t bytes_of_material = 100;
-  bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size());
+  // Sizes in memory; an empty material or light takes only a few bytes on the wire.
+  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 200;
+  bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size()) +
+            bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size());
   check_limit(bytes_, limits_.bytes, "bytes");
   limits_.memory.refuse_without_room("scene", message.ByteSizeLong());
   if (message.has_scene() == begun_)
@@ -36,6 +37,9 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
   const Scene& scene = assembler_.scene();
   check_limit(scene.corners.size() + static_cast<std::uint64_t>(chunk.corner_vertices_size()), limits_.corners, "corners");
   check_limit(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
+  check_limit(scene.lights.size() + static_cast<std::uint64_t>(chunk.lights_size()), limits_.lights, "lights");
+  for (const v1::Light& light : chunk.lights())
+    check_limit(light.name().size(), limits_.bytes_of_name, "bytes in a light's name");
   for (const std::uint32_t corners : chunk.face_corner_counts())
     check_limit(corners, limits_.corners_of_face, "corners in a face");
   for (const v1::Material& material : chunk.materials())

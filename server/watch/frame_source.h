@@ -1,6 +1,7 @@
 #pragma once
 // Encodes the frames of one solve, each once for all its watchers.
 
+#include "alvor/v1/solve_service.pb.h"
 #include "server/base/mutex.h"
 #include "server/solves/stored_solve.h"
 

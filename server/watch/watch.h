@@ -1,6 +1,7 @@
 #pragma once
 // One watcher of a solve: decides when it gets its next frame. Does not use the network.
 
+#include "alvor/v1/solve_service.pb.h"
 #include "server/base/mutex.h"
 #include "server/watch/frame_source.h"
 

@@ -39,5 +39,28 @@ TEST(Scene, FaultsNameThePlaceAndTheReason) {
             "material 0 'grey': emission 1e+31 is beyond 1e30 W/m2");
 }
 
+TEST(Scene, FaultsOfLightsNameThem) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto fault_of = [](const std::function<void(Light&)>& spoil) {
+    return fault_after([&](Scene& scene) {
+      scene.lights = {Light{"bulb", LightKind::point, {1, 1, 1}}, Light{"spot", LightKind::spot, {1, 1, 1}}};
+      spoil(scene.lights[1]);
+    });
+  };
+  EXPECT_EQ(fault_of([](Light&) {}), "");
+  EXPECT_EQ(fault_of([](Light& l) { l.intensity.g = -1; }), "light 1 'spot': intensity -1 is outside [0, 1e30]");
+  EXPECT_EQ(fault_of([](Light& l) { l.intensity.g = nan; }), "light 1 'spot': intensity nan is outside [0, 1e30]");
+  EXPECT_EQ(fault_of([](Light& l) { l.position.x = nan; }), "light 1 'spot': coordinate nan is not within 1e9 m");
+  EXPECT_EQ(fault_of([](Light& l) { l.direction = {}; }), "light 1 'spot': its direction is not a unit vector");
+  EXPECT_EQ(fault_of([](Light& l) { l.radius = -1; }), "light 1 'spot': radius -1 is outside [0, 1e9] m");
+  EXPECT_EQ(fault_of([](Light& l) { l.outer_cone = 0; }), "light 1 'spot': outer cone angle 0 is outside (0, pi]");
+  EXPECT_EQ(fault_of([](Light& l) { l.inner_cone = 2; }), "light 1 'spot': inner cone angle 2 is outside [0, outer cone angle]");
+  EXPECT_EQ(fault_of([](Light& l) { l.angular_diameter = 2; }), "light 1 'spot': angular diameter 2 is outside [0, pi / 2]");
+  EXPECT_EQ(fault_after([](Scene& s) {
+              s.lights.assign(65, Light{"sun", LightKind::directional, {1, 1, 1}});
+            }),
+            "scene: has 65 distant lights, at most 64 are possible");
+}
+
 }  // namespace
 }  // namespace alvor

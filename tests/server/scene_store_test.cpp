@@ -129,5 +129,21 @@ TEST(SceneUpload, EndsAtTheLimits) {
   upload_with({.corners = 80, .materials = 2});
 }
 
+TEST(SceneUpload, OfManyLightsEndsAtTheLimits) {
+  Scene scene = squares(1);
+  scene.lights.resize(3);
+  scene.lights[2].name = std::string(20, 'x');
+  const auto upload_with = [&](const UploadLimits& limits) {
+    SceneUpload upload(limits);
+    upload.add(header());
+    upload.add(chunk_of(scene));
+  };
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { upload_with({.lights = 2}); }),
+            "scene: more than 2 lights, the limit of this server");
+  EXPECT_EQ(refusal_of(grpc::RESOURCE_EXHAUSTED, [&] { upload_with({.bytes_of_name = 19}); }),
+            "scene: more than 19 bytes in a light's name, the limit of this server");
+  upload_with({.bytes_of_name = 20, .lights = 3});
+}
+
 }  // namespace
 }  // namespace alvor
