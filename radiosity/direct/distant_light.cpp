@@ -75,13 +75,7 @@ void DistantLight::aim(const ShadowAim& aim, int first, int last) const {
     if (half_width_ > 0)
       direction = normalized(towards_ + half_width_ * disk_point(towards_, aim.at[static_cast<std::size_t>(o)]));
     const Vec3 way = exit_distance(from, direction) * direction;
-    RayPacket& rays = aim.rays;
-    rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
-    rays.direction_x[o] = static_cast<float>(way.x);
-    rays.direction_y[o] = static_cast<float>(way.y);
-    rays.direction_z[o] = static_cast<float>(way.z);
-    rays.t_min[o] = 0;
-    rays.t_max[o] = 1;
+    set_ray(aim, o, way, 1);
     aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(std::max(0.0, dot(direction, normal)));
   }
 }

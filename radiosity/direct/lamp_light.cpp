@@ -51,13 +51,7 @@ void LampLight::aim(const ShadowAim& aim, int first, int last) const {
       const double sine = std::min(0.99, radius_ / distance), edge = distance * sine / std::sqrt(1 - sine * sine);
       target += edge * disk_point(way / distance, aim.at[static_cast<std::size_t>(o)]);
     }
-    RayPacket& rays = aim.rays;
-    rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
-    rays.direction_x[o] = static_cast<float>(target.x);
-    rays.direction_y[o] = static_cast<float>(target.y);
-    rays.direction_z[o] = static_cast<float>(target.z);
-    rays.t_min[o] = 0;
-    rays.t_max[o] = short_of_lamp;
+    set_ray(aim, o, target, short_of_lamp);
     const double cosine = std::max(0.0, dot(target, normal) / distance);
     aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(cosine * share_over_distance_squared(-way, distance_squared));
   }

@@ -24,6 +24,17 @@ struct ShadowAim {
   std::array<float, RayPacket::width>& weights;  ///< light that arrives by each ray if nothing blocks it, see sample_scale()
 };
 
+/// Sets ray `o` of the packet: from its origin along `way` (local units), of which it may be blocked up to the share `end`.
+inline void set_ray(const ShadowAim& aim, int o, Vec3 way, float end) {
+  RayPacket& rays = aim.rays;
+  rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
+  rays.direction_x[o] = static_cast<float>(way.x);
+  rays.direction_y[o] = static_cast<float>(way.y);
+  rays.direction_z[o] = static_cast<float>(way.z);
+  rays.t_min[o] = 0;
+  rays.t_max[o] = end;
+}
+
 /// Bounds on what a light brings, for the LightTree. Local units (see LocalFrame).
 struct LightExtent {
   Vec3 place;      ///< a point of the light
