@@ -23,21 +23,24 @@ std::string sentence(const char* what, Value value, const char* reason) {
 
 bool is_unit(Vec3 v) { return std::abs(dot(v, v) - 1) < 1e-6; }
 
-double width_of(const Light& spot) { return std::max(least_width, std::cos(spot.inner_cone) - std::cos(spot.outer_cone)); }
-
 }  // namespace
 
-double spot_share(const Light& spot, double cosine) {
-  const double edge = std::clamp((cosine - std::cos(spot.outer_cone)) / width_of(spot), 0.0, 1.0);
+SpotCone::SpotCone(const Light& spot)
+    : cosine_of_edge_(std::cos(spot.outer_cone)), width_(std::max(least_width, std::cos(spot.inner_cone) - cosine_of_edge_)) {}
+
+double SpotCone::share(double cosine) const {
+  const double edge = std::clamp((cosine - cosine_of_edge_) / width_, 0.0, 1.0);
   return edge * edge;
 }
 
-// The integral of the share over the sphere: 2 pi times the integral over the cosine of the square of the linear part and of the
-// part that is 1.
+// 2 pi times the integral over the cosine of the square of the linear part and of the part that is 1.
+double SpotCone::solid_angle() const {
+  const double all = 1 - cosine_of_edge_, edge = std::min(1.0, all / width_);
+  return 2 * pi * (width_ * edge * edge * edge / 3 + std::max(0.0, all - width_));
+}
+
 Rgb radiated_power(const Light& light) {
-  if (light.kind == LightKind::point) return 4 * pi * light.intensity;
-  const double width = width_of(light), all = 1 - std::cos(light.outer_cone), edge = std::min(1.0, all / width);
-  return 2 * pi * (width * edge * edge * edge / 3 + std::max(0.0, all - width)) * light.intensity;
+  return (light.kind == LightKind::spot ? SpotCone(light).solid_angle() : 4 * pi) * light.intensity;
 }
 
 std::optional<std::string> fault_in(const Light& light) {

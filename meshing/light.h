@@ -37,9 +37,20 @@ struct Light {
   bool is_distant() const { return kind == LightKind::directional; }
 };
 
-/// Returns the share of a spot's intensity at an angle from its axis: 1 inside the inner cone, 0 outside the outer one, between
-/// them the square of a linear function of the cosine (KHR_lights_punctual, "Inner and outer cone angles").
-double spot_share(const Light& spot, double cosine);
+/// The cones of a spot, with their cosines computed once.
+class SpotCone {
+ public:
+  explicit SpotCone(const Light& spot);
+  /// Returns the share of the spot's intensity at an angle from its axis, given the angle's cosine: 1 inside the inner cone, 0
+  /// outside the outer one, between them the square of a linear function of the cosine (KHR_lights_punctual, "Inner and outer
+  /// cone angles").
+  double share(double cosine) const;
+  /// Returns the integral of the share over all directions, steradians.
+  double solid_angle() const;
+
+ private:
+  double cosine_of_edge_, width_;  ///< cosine of the outer cone; how much larger that of the inner cone is
+};
 
 /// Returns the power of a point or spot light, W per band: the integral of its intensity over all directions.
 Rgb radiated_power(const Light& light);

@@ -31,9 +31,9 @@ struct Face {
   std::uint32_t material = 0;
 };
 
-/// What numbers of light mean: watts of radiation, or lumens of light as eyes weigh it. In a photometric scene all that is said
-/// in W, W/m2, W/sr and W/m2 sr is lm, lx, cd and cd/m2 per band; the luminous value is 0.2126 r + 0.7152 g + 0.0722 b (Rec.
-/// 709).
+/// The quantity in which a scene counts light: watts of radiation, or lumens, as eyes weigh it. In a photometric scene all that
+/// is said in W, W/m2, W/sr and W/m2 sr is lm, lx, cd and cd/m2 per band; the luminous value is 0.2126 r + 0.7152 g + 0.0722 b
+/// (Rec. 709).
 enum class Quantity : std::uint8_t { radiometric, photometric };
 
 /// The axis that points up. It does not affect the light; it orients pictures and solution files.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace alvor {
@@ -23,6 +24,10 @@ constexpr Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x 
 inline double length(Vec3 a) { return std::sqrt(dot(a, a)); }
 /// Requires: length(a) > 0.
 inline Vec3 normalized(Vec3 a) { return a / length(a); }
+/// Returns the smaller value of each coordinate.
+constexpr Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+/// Returns the larger value of each coordinate.
+constexpr Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 constexpr Vec3 lerp(Vec3 a, Vec3 b, double t) { return a * (1 - t) + b * t; }
 
 }  // namespace alvor

@@ -3,6 +3,7 @@
 #include "client/export/light_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
+#include "client/picture/units.h"
 #include "import/bytes.h"
 #include "import/glb_format.h"
 
@@ -26,8 +27,8 @@ Float3 float3(const RgbF& a) { return {a.r, a.g, a.b}; }
 Vec3 middle_of_box(const std::vector<Vec3>& points) {
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    low = lower(low, p);
+    high = upper(high, p);
   }
   return lerp(low, high, 0.5);
 }

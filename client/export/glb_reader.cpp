@@ -1,6 +1,7 @@
 #include "client/export/glb_file.h"
 #include "client/export/light_json.h"
 #include "client/export/solution_file.h"
+#include "client/picture/units.h"
 #include "import/bytes.h"
 #include "import/glb_format.h"
 

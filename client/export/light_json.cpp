@@ -58,6 +58,4 @@ Light light_of(const json& source, const std::string& place) {
   }
 }
 
-const char* name_of(Quantity quantity) { return quantity == Quantity::photometric ? "photometric" : "radiometric"; }
-
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// How solution files hold the lights and the quantity of their scene.
+// How solution files hold the lights of their scene.
 
 #include "meshing/scene.h"
 
@@ -11,8 +11,5 @@ namespace alvor {
 nlohmann::json json_of(const Light& light);
 /// Reads what json_of() wrote. Throws SolutionFileError that names `place`.
 Light light_of(const nlohmann::json& json, const std::string& place);
-
-/// "radiometric" or "photometric".
-const char* name_of(Quantity quantity);
 
 }  // namespace alvor

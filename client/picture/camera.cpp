@@ -35,8 +35,8 @@ Box box_of(const DisplayMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
       const Vec3 p = to_upright(mesh.up, mesh.positions[vertex]);
-      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+      box.low = lower(box.low, p);
+      box.high = upper(box.high, p);
     }
   }
   return box;

@@ -41,8 +41,8 @@ std::vector<Facet> facets_of(const Scene& scene) {
 Extent extent_of(std::span<const Vec3> points) {
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    low = lower(low, p);
+    high = upper(high, p);
   }
   return {lerp(low, high, 0.5), std::max({high.x - low.x, high.y - low.y, high.z - low.z})};
 }

@@ -28,8 +28,8 @@ Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<cons
   low_ = {inf, inf, inf}, high_ = {-inf, -inf, -inf};
   for (const Vec3& vertex : surface_points) {
     const Vec3 p = (vertex - extent.centre) / extent.longest_side;
-    low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
-    high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
+    low_ = lower(low_, p);
+    high_ = upper(high_, p);
   }
   for (Light lamp : lights) {
     if (lamp.intensity.is_zero()) continue;
@@ -50,7 +50,7 @@ Rgb Lamps::unblocked(const Light& lamp, Vec3 point, Vec3 normal) const {
   const double distance = std::max({length(way), lamp.radius, nearest_place});
   const double height = dot(way, normal) + lamp.radius;
   if (height <= 0) return {};
-  const double share = lamp.kind == LightKind::spot ? spot_share(lamp, dot(-way, lamp.direction) / distance) : 1;
+  const double share = lamp.kind == LightKind::spot ? SpotCone(lamp).share(dot(-way, lamp.direction) / distance) : 1;
   return share * std::min(1.0, height / distance) / (distance * distance) * lamp.intensity;
 }
 
@@ -83,7 +83,7 @@ Lamps::Sample Lamps::sample_of(std::size_t which, Vec3 point, Vec3 normal, UnitP
   }
   const Vec3 way = lamp.position - point;
   const double distance = std::max(length(way), nearest_place);
-  const double share = lamp.kind == LightKind::spot ? spot_share(lamp, dot(-way, lamp.direction) / distance) : 1;
+  const double share = lamp.kind == LightKind::spot ? SpotCone(lamp).share(dot(-way, lamp.direction) / distance) : 1;
   if (lamp.radius == 0 || distance <= lamp.radius) {
     const double most = std::max(distance, lamp.radius);
     return {share * std::max(0.0, dot(way, normal) / distance) / (most * most) * lamp.intensity, nearly_there * way, distance};

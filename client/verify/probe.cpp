@@ -30,8 +30,8 @@ RgbF interpolated(const DisplayMesh& mesh, const std::vector<RgbF>& values, cons
 double extent_of(const DisplayMesh& mesh) {
   Vec3 low = mesh.positions.front(), high = low;
   for (const Vec3& p : mesh.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    low = lower(low, p);
+    high = upper(high, p);
   }
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }

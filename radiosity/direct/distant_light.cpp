@@ -49,8 +49,8 @@ DistantLight::DistantLight(const LocalScene& scene, std::uint32_t number, const 
       half_width_(std::tan(light.angular_diameter / 2)) {
   for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root)
     for (const Vec3& corner : scene.corners(root)) {
-      low_ = {std::min(low_.x, corner.x), std::min(low_.y, corner.y), std::min(low_.z, corner.z)};
-      high_ = {std::max(high_.x, corner.x), std::max(high_.y, corner.y), std::max(high_.z, corner.z)};
+      low_ = lower(low_, corner);
+      high_ = upper(high_, corner);
     }
 }
 

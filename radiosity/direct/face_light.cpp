@@ -13,9 +13,6 @@ namespace {
 // the same solutions (docs/design/constants.md).
 constexpr float short_of_face = 1 - 1e-4f;
 
-Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-
 }  // namespace
 
 FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const Rgb& emission)

@@ -23,13 +23,13 @@ LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light&
     : LightSource(number, unit.from_watts_per_m2((1 / squared(scene.frame().metres_per_unit)) * lamp.intensity),
                   unit.from_watts_per_m2(radiated_power(lamp)).sum()),
       lamp_(lamp),
+      cone_(lamp.kind == LightKind::spot ? std::optional(SpotCone(lamp)) : std::nullopt),
       place_(scene.frame().to_local(lamp.position)),
       radius_(lamp.radius / scene.frame().metres_per_unit),
       nearest_(std::max(radius_, nearest_lamp)) {}
 
 double LampLight::share_over_distance_squared(Vec3 from_lamp, double distance_squared) const {
-  const double share =
-      lamp_.kind == LightKind::spot ? spot_share(lamp_, dot(from_lamp, lamp_.direction) / std::sqrt(distance_squared)) : 1;
+  const double share = cone_ ? cone_->share(dot(from_lamp, lamp_.direction) / std::sqrt(distance_squared)) : 1;
   return share / std::max(distance_squared, nearest_ * nearest_);
 }
 

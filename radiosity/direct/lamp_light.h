@@ -25,7 +25,8 @@ class LampLight final : public LightSource {
   double share_over_distance_squared(Vec3 from_lamp, double squared) const;
 
   const Light lamp_;
-  const Vec3 place_;  // local units, as all lengths below
+  const std::optional<SpotCone> cone_;  ///< of a spot
+  const Vec3 place_;                    // local units, as all lengths below
   const double radius_, nearest_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the direct field knows of a light, of whatever kind it is.
+// The interface of a light, through which the direct field computes its irradiance and its shadows.
 
 #include "radiosity/rays/ray_source.h"
 #include "radiosity/rays/visibility.h"

@@ -14,9 +14,6 @@ constexpr double small_share = 0.02;
 // Most lights that one receiver computes one by one. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr std::size_t most_single = 48;
 
-Vec3 lower(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-Vec3 upper(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-
 double along(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
 /// Returns the largest dot(direction, p) over the points p of the box.
@@ -32,8 +29,9 @@ LightTree::LightTree(LightSources lights) : lights_(lights) {
   std::vector<LightExtent> extents;
   for (std::uint32_t l = 0; l < all.size(); ++l) {
     all[l] = l;
-    assert(lights[l]->extent());
-    extents.push_back(*lights[l]->extent());
+    const auto extent = lights[l]->extent();
+    assert(extent);
+    extents.push_back(*extent);
   }
   nodes_.reserve(2 * all.size());
   nodes_.emplace_back();

@@ -110,10 +110,7 @@ Box Box::of(std::span<const Vec3> points) {
   return box;
 }
 
-Box Box::joined(const Box& o) const {
-  return {{std::min(low.x, o.low.x), std::min(low.y, o.low.y), std::min(low.z, o.low.z)},
-          {std::max(high.x, o.high.x), std::max(high.y, o.high.y), std::max(high.z, o.high.z)}};
-}
+Box Box::joined(const Box& o) const { return {lower(low, o.low), upper(high, o.high)}; }
 
 bool Box::touches(const Box& o) const {
   return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y && low.z <= o.high.z &&

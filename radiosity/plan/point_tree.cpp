@@ -22,8 +22,8 @@ void PointTree::build(std::uint32_t node) {
   const auto points = std::span(points_).subspan(first, count);
   Vec3 low = points[0], high = points[0];
   for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    low = lower(low, p);
+    high = upper(high, p);
   }
   nodes_[node].low = low;
   nodes_[node].high = high;

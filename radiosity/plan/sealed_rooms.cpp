@@ -71,8 +71,8 @@ class RoomFinder {
           return dot(plane.normal, p - mesh_.centre()) < plane.height - room.tolerance;
         };
         if (std::ranges::any_of(room.planes, is_behind)) return std::nullopt;
-        room.low = {std::min(room.low.x, p.x), std::min(room.low.y, p.y), std::min(room.low.z, p.z)};
-        room.high = {std::max(room.high.x, p.x), std::max(room.high.y, p.y), std::max(room.high.z, p.z)};
+        room.low = lower(room.low, p);
+        room.high = upper(room.high, p);
       }
     for (const std::uint32_t root : part) {
       const RootPatch& wall = mesh_.roots()[root];

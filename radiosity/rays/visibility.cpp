@@ -250,8 +250,8 @@ Vec3 centre_of(std::span<const Vec3> positions) {
   if (positions.empty()) return {};
   Vec3 low = positions[0], high = low;
   for (const Vec3& p : positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    low = lower(low, p);
+    high = upper(high, p);
   }
   return lerp(low, high, 0.5);
 }

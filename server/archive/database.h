@@ -18,7 +18,7 @@ namespace alvor {
 
 /// With this begins each message about it.
 inline const std::string data_directory = "the server's data directory: ";
-/// What was read is not what was written: DATA_LOSS.
+/// Returns the error DATA_LOSS, for data of the archive that is not what was written. `what` says which data.
 inline StatusError data_loss(const std::string& what) { return {grpc::DATA_LOSS, data_directory + what}; }
 
 /// Thread-safe. Each change is one transaction: when a call returns, all of it is on the disk; when it throws, nothing is. Throws

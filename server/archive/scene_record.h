@@ -1,5 +1,5 @@
 #pragma once
-// What the server knows of a scene besides its geometry and materials.
+// The record of a scene: its name, counts and warnings, without its geometry and materials.
 
 #include <chrono>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// What the server knows of a solve besides its solution.
+// The record of a solve: what was asked, its status and its newest step, without its solution.
 
 #include "radiosity/plan/solve_options.h"
 #include "radiosity/solve/power_balance.h"

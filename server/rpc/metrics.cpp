@@ -43,7 +43,7 @@ MetricFamily one(const char* name, const char* help, MetricType type, double val
   return made;
 }
 
-// What is told of a solve before its first step.
+// The step that metrics count for a solve that has published none.
 constexpr Step nothing_known{.unshot_fraction = 0, .estimated_error = 0};
 
 double cpu_seconds() {

@@ -68,8 +68,8 @@ void SolveStore::watch_memory() {
   watching_memory_->post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
 }
 
-/// Of the tenant whose solves take most, the solve that came last must end with what it has; one after the other until there is
-/// room. Before that goes what nobody needs, and what else can.
+/// Makes room when memory is short: asks options_.spare_solves to end something else; if that ends nothing, ends the youngest
+/// solve of the tenant whose solves take most, with the solution that it has.
 void SolveStore::relieve_memory() {
   if (options_.spare_solves()) return;
   Lock hold(lock_);

@@ -55,8 +55,8 @@ Measured measure(const Scene& scene) {
     measured.triangles += corners.size() - 2;
     for (const std::uint32_t corner : corners) {
       const Vec3 p = upright_z(scene, corner);
-      measured.low = {std::min(measured.low.x, p.x), std::min(measured.low.y, p.y), std::min(measured.low.z, p.z)};
-      measured.high = {std::max(measured.high.x, p.x), std::max(measured.high.y, p.y), std::max(measured.high.z, p.z)};
+      measured.low = lower(measured.low, p);
+      measured.high = upper(measured.high, p);
     }
   }
   return measured;

@@ -104,7 +104,7 @@ TEST(SpotLamp, RadiatesTheIntegralOfItsIntensity) {
     double sum = 0;  // over the cosine, from the edge of the light to the axis
     const double range = 1 - std::cos(outer);
     constexpr int n = 200'000;
-    for (int k = 0; k < n; ++k) sum += spot_share(spot, 1 - (k + 0.5) / n * range) * range / n;
+    for (int k = 0; k < n; ++k) sum += SpotCone(spot).share(1 - (k + 0.5) / n * range) * range / n;
     EXPECT_NEAR(radiated_power(spot).g, 2 * pi * 100 * sum, 1e-3 * radiated_power(spot).g) << inner << ' ' << outer;
   }
   EXPECT_NEAR(radiated_power(point_lamp({}, 100)).g, 4 * pi * 100, 1e-9);

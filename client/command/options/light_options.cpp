@@ -1,6 +1,6 @@
 #include "client/command/options/light_options.h"
 
-#include "client/command/options/option_checks.h"
+#include "client/picture/units.h"
 
 namespace alvor {
 
@@ -10,13 +10,12 @@ void add_light_options(CLI::App& command, LightOptions& options) {
   command
       .add_option("--quantity", options.quantity,
                   "Unit of the file's light: radiometric (W) or photometric (lm) (photometric for glTF, else radiometric)")
-      ->check(CLI::IsMember({"radiometric", "photometric"}));
+      ->check(CLI::IsMember({name_of(Quantity::radiometric), name_of(Quantity::photometric)}));
 }
 
 void take_light_options(const LightOptions& options, Scene& scene) {
   for (Light& light : scene.lights) light.intensity *= options.scale;
-  if (!options.quantity.empty())
-    scene.quantity = options.quantity == "photometric" ? Quantity::photometric : Quantity::radiometric;
+  if (!options.quantity.empty()) scene.quantity = quantity_of(options.quantity);
 }
 
 }  // namespace alvor
