@@ -23,7 +23,28 @@ std::string sentence(const char* what, Value value, const char* reason) {
 
 bool is_unit(Vec3 v) { return std::abs(dot(v, v) - 1) < 1e-6; }
 
+std::optional<std::string> fault_in_luminaire(const Light& light) {
+  if (!light.web) return "it has no photometric web";
+  if (auto fault = fault_in(*light.web)) return fault;
+  if (!is_unit(light.across) || std::abs(dot(light.across, light.direction)) > 1e-6)
+    return "its axis across is not a unit vector perpendicular to its direction";
+  const LuminousOpening& opening = light.opening;
+  for (const double size : {opening.across, opening.along, opening.height})
+    if (!(size >= 0 && size <= max_coordinate)) return sentence("size of its opening", size, "is outside [0, 1e9] m");
+  using Shape = LuminousOpening::Shape;
+  const bool has_area = opening.shape == Shape::sphere || (opening.across > 0 && opening.along > 0);
+  if (opening.shape != Shape::point && !(has_area && opening.across > 0)) return "its opening has no area";
+  return std::nullopt;
+}
+
 }  // namespace
+
+bool operator==(const Light& a, const Light& b) {
+  const bool is_same_web = a.web == b.web || (a.web && b.web && *a.web == *b.web);
+  return is_same_web && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity && a.position == b.position &&
+         a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone && a.radius == b.radius &&
+         a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening && a.sky == b.sky;
+}
 
 SpotCone::SpotCone(const Light& spot)
     : cosine_of_edge_(std::cos(spot.outer_cone)), width_(std::max(least_width, std::cos(spot.inner_cone) - cosine_of_edge_)) {}
@@ -39,8 +60,18 @@ double SpotCone::solid_angle() const {
   return 2 * pi * (width_ * edge * edge * edge / 3 + std::max(0.0, all - width_));
 }
 
+double radius_of(const Light& light) {
+  const LuminousOpening& opening = light.opening;
+  if (light.kind != LightKind::luminaire) return light.radius;
+  return length({opening.across, opening.along, opening.height}) / 2;
+}
+
 Rgb radiated_power(const Light& light) {
-  return (light.kind == LightKind::spot ? SpotCone(light).solid_angle() : 4 * pi) * light.intensity;
+  switch (light.kind) {
+    case LightKind::spot: return SpotCone(light).solid_angle() * light.intensity;
+    case LightKind::luminaire: return light.web->flux() * light.intensity;
+    default: return 4 * pi * light.intensity;
+  }
 }
 
 std::optional<std::string> fault_in(const Light& light) {
@@ -56,7 +87,8 @@ std::optional<std::string> fault_in(const Light& light) {
     return sentence("outer cone angle", light.outer_cone, "is outside (0, pi]");
   if (!(light.inner_cone >= 0 && light.inner_cone <= light.outer_cone))
     return sentence("inner cone angle", light.inner_cone, "is outside [0, outer cone angle]");
-  return std::nullopt;
+  if (light.kind == LightKind::sky) return fault_in(light.sky);
+  return light.kind == LightKind::luminaire ? fault_in_luminaire(light) : std::nullopt;
 }
 
 }  // namespace alvor

@@ -9,10 +9,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -27,7 +29,9 @@ double decode_seconds(const google::protobuf::Duration& duration);
 v1::Rgb encode(const Rgb& value);
 Rgb decode(const v1::Rgb& message);
 v1::Material encode(const Material& material);
-v1::Light encode(const Light& light);
+v1::Light encode(const Light& light);  ///< without the number of its web
+v1::PhotometricWeb encode(const PhotometricWeb& web);
+PhotometricWeb decode(const v1::PhotometricWeb& message);  ///< unchecked, see fault_in()
 v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
 
@@ -55,11 +59,14 @@ class SceneAssembler {
   std::optional<Fault> fault_in(const v1::GeometryChunk& chunk) const;
   std::string place_in_chunk(const char* field) const;
 
+  std::optional<Fault> fault_in_lights(const v1::GeometryChunk& chunk) const;
+
   Scene scene_;
+  std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
   std::uint64_t chunks_ = 0;
 };
 
-/// Cuts a scene into chunks: materials, lights, then vertices, then faces. The scene must outlive it.
+/// Cuts a scene into chunks: materials, lights with their webs, then vertices, then faces. The scene must outlive it.
 class SceneSlicer {
  public:
   /// Each chunk stays below `max_bytes` (256 or more), but holds at least one item and never cuts a face.
@@ -76,6 +83,7 @@ class SceneSlicer {
   const Scene& scene_;
   std::int64_t max_bytes_;
   std::size_t material_ = 0, light_ = 0, vertex_ = 0, face_ = 0;
+  std::unordered_map<const PhotometricWeb*, std::uint32_t> webs_;  // those that were sent, and their numbers
 };
 
 }  // namespace alvor

@@ -27,17 +27,61 @@ v1::Light::Kind encode_kind(LightKind kind) {
     case LightKind::point: return v1::Light::POINT;
     case LightKind::spot: return v1::Light::SPOT;
     case LightKind::directional: return v1::Light::DIRECTIONAL;
+    case LightKind::luminaire: return v1::Light::LUMINAIRE;
+    case LightKind::sky: return v1::Light::SKY;
   }
   return v1::Light::KIND_UNSPECIFIED;
+}
+
+/// Requires: the kind is known.
+LightKind decode_kind(v1::Light::Kind kind) {
+  switch (kind) {
+    case v1::Light::SPOT: return LightKind::spot;
+    case v1::Light::DIRECTIONAL: return LightKind::directional;
+    case v1::Light::LUMINAIRE: return LightKind::luminaire;
+    case v1::Light::SKY: return LightKind::sky;
+    default: return LightKind::point;
+  }
+}
+
+// The shapes of the API are those of LuminousOpening::Shape in their order, after SHAPE_UNSPECIFIED.
+v1::LuminousOpening encode_opening(const LuminousOpening& opening) {
+  v1::LuminousOpening message;
+  message.set_shape(static_cast<v1::LuminousOpening::Shape>(static_cast<int>(opening.shape) + 1));
+  message.set_across_meters(opening.across);
+  message.set_along_meters(opening.along);
+  message.set_height_meters(opening.height);
+  return message;
+}
+
+LuminousOpening decode_opening(const v1::LuminousOpening& message) {
+  const int shape = std::max(0, static_cast<int>(message.shape()) - 1);
+  return {static_cast<LuminousOpening::Shape>(shape), message.across_meters(), message.along_meters(), message.height_meters()};
+}
+
+v1::SkyDistribution encode_sky(const SkyDistribution& sky) {
+  v1::SkyDistribution message;
+  message.set_a(sky.a);
+  message.set_b(sky.b);
+  message.set_c(sky.c);
+  message.set_d(sky.d);
+  message.set_e(sky.e);
+  message.set_g(sky.g);
+  *message.mutable_to_sun() = encode_vector(sky.to_sun);
+  return message;
+}
+
+SkyDistribution decode_sky(const v1::SkyDistribution& message) {
+  SkyDistribution sky{message.a(), message.b(), message.c(), message.d(), message.e(), message.g()};
+  if (message.has_to_sun()) sky.to_sun = decode_vector(message.to_sun());
+  return sky;
 }
 
 /// Fields that do not count for a kind of light may be left out: they keep their defaults.
 Light decode_light(const v1::Light& message) {
   Light light;
   light.name = message.name();
-  light.kind = message.kind() == v1::Light::SPOT          ? LightKind::spot
-               : message.kind() == v1::Light::DIRECTIONAL ? LightKind::directional
-                                                          : LightKind::point;
+  light.kind = decode_kind(message.kind());
   light.intensity = decode(message.intensity());
   if (message.has_position()) light.position = decode_vector(message.position());
   if (message.has_direction()) light.direction = decode_vector(message.direction());
@@ -47,6 +91,9 @@ Light decode_light(const v1::Light& message) {
   }
   light.radius = message.radius_meters();
   light.angular_diameter = message.angular_diameter_radians();
+  if (message.has_across()) light.across = decode_vector(message.across());
+  if (message.has_opening()) light.opening = decode_opening(message.opening());
+  if (message.has_sky()) light.sky = decode_sky(message.sky());
   return light;
 }
 
@@ -78,7 +125,30 @@ v1::Light encode(const Light& light) {
   }
   message.set_radius_meters(light.radius);
   message.set_angular_diameter_radians(light.angular_diameter);
+  if (light.kind == LightKind::luminaire) {
+    *message.mutable_across() = encode_vector(light.across);
+    *message.mutable_opening() = encode_opening(light.opening);
+  }
+  if (light.kind == LightKind::sky) *message.mutable_sky() = encode_sky(light.sky);
   return message;
+}
+
+v1::PhotometricWeb encode(const PhotometricWeb& web) {
+  v1::PhotometricWeb message;
+  message.set_axis(web.axis == PhotometricWeb::Axis::across ? v1::PhotometricWeb::ACROSS : v1::PhotometricWeb::AIM);
+  message.mutable_plane_degrees()->Assign(web.planes.begin(), web.planes.end());
+  message.mutable_angle_degrees()->Assign(web.angles.begin(), web.angles.end());
+  message.mutable_intensities()->Assign(web.intensities.begin(), web.intensities.end());
+  return message;
+}
+
+PhotometricWeb decode(const v1::PhotometricWeb& message) {
+  PhotometricWeb web;
+  web.axis = message.axis() == v1::PhotometricWeb::ACROSS ? PhotometricWeb::Axis::across : PhotometricWeb::Axis::aim;
+  web.planes.assign(message.plane_degrees().begin(), message.plane_degrees().end());
+  web.angles.assign(message.angle_degrees().begin(), message.angle_degrees().end());
+  web.intensities.assign(message.intensities().begin(), message.intensities().end());
+  return web;
 }
 
 std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
@@ -87,7 +157,11 @@ std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   if (chunk.up_axis() != v1::UP_AXIS_UNSPECIFIED) scene_.up = chunk.up_axis() == v1::UP_AXIS_Z ? UpAxis::z : UpAxis::y;
   if (chunk.quantity() != v1::QUANTITY_UNSPECIFIED)
     scene_.quantity = chunk.quantity() == v1::QUANTITY_PHOTOMETRIC ? Quantity::photometric : Quantity::radiometric;
-  for (const v1::Light& light : chunk.lights()) scene_.lights.push_back(decode_light(light));
+  for (const v1::PhotometricWeb& web : chunk.webs()) webs_.push_back(std::make_shared<PhotometricWeb>(decode(web)));
+  for (const v1::Light& light : chunk.lights()) {
+    scene_.lights.push_back(decode_light(light));
+    if (scene_.lights.back().kind == LightKind::luminaire) scene_.lights.back().web = webs_[light.web()];
+  }
   for (const v1::Material& material : chunk.materials()) scene_.materials.push_back(decode_material(material));
   for (int i = 0; i < chunk.vertex_coordinates_size(); i += 3)
     scene_.vertices.push_back({chunk.vertex_coordinates(i), chunk.vertex_coordinates(i + 1), chunk.vertex_coordinates(i + 2)});
@@ -110,11 +184,7 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
     return Fault{place_in_chunk("vertex_coordinates"), "has " + count_of(coordinates, "numbers, needs three per vertex")};
   if (materials != faces)
     return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
-  for (int i = 0; i < chunk.lights_size(); ++i)
-    if (const auto kind = chunk.lights(i).kind(); !v1::Light::Kind_IsValid(kind) || kind == v1::Light::KIND_UNSPECIFIED)
-      return Fault{
-          "light " + std::to_string(scene_.lights.size() + static_cast<std::size_t>(i)) + " '" + chunk.lights(i).name() + "'",
-          "its kind " + std::to_string(kind) + " is not known"};
+  if (auto fault = fault_in_lights(chunk)) return fault;
   std::uint64_t promised = 0;  // a sum of 2^31 counts of 32 bits does not overflow
   for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
     const std::uint32_t count = chunk.face_corner_counts(i);
@@ -129,6 +199,22 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   if (scene_.corners.size() + corners > most || scene_.vertices.size() + coordinates / 3 > most)
     return Fault{place_in_chunk("corner_vertices"), "the scene has more vertices or corners than 32 bits can count"};
+  return std::nullopt;
+}
+
+std::optional<Fault> SceneAssembler::fault_in_lights(const v1::GeometryChunk& chunk) const {
+  const std::size_t webs = webs_.size() + static_cast<std::size_t>(chunk.webs_size());
+  for (int i = 0; i < chunk.lights_size(); ++i) {
+    const v1::Light& light = chunk.lights(i);
+    const auto fault = [&](const char* what, int number) {
+      const std::size_t which = scene_.lights.size() + static_cast<std::size_t>(i);
+      return Fault{"light " + std::to_string(which) + " '" + light.name() + "'",
+                   std::string("its ") + what + " " + std::to_string(number) + " is not known"};
+    };
+    if (!v1::Light::Kind_IsValid(light.kind()) || light.kind() == v1::Light::KIND_UNSPECIFIED) return fault("kind", light.kind());
+    if (!v1::LuminousOpening::Shape_IsValid(light.opening().shape())) return fault("opening's shape", light.opening().shape());
+    if (light.kind() == v1::Light::LUMINAIRE && light.web() >= webs) return fault("web", static_cast<int>(light.web()));
+  }
   return std::nullopt;
 }
 
@@ -168,9 +254,18 @@ void SceneSlicer::take_materials(v1::GeometryChunk& chunk, std::int64_t& budget)
 void SceneSlicer::take_lights(v1::GeometryChunk& chunk, std::int64_t& budget) {
   if (material_ < scene_.materials.size()) return;
   for (; light_ < scene_.lights.size(); ++light_) {
-    v1::Light message = encode(scene_.lights[light_]);
-    const auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 6;
+    const Light& light = scene_.lights[light_];
+    v1::Light message = encode(light);
+    auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 12;
+    const auto sent = webs_.find(light.web.get());
+    v1::PhotometricWeb web;
+    if (light.web && sent == webs_.end()) {
+      web = encode(*light.web);
+      bytes += static_cast<std::int64_t>(web.ByteSizeLong()) + 6;
+    }
     if (bytes > budget && chunk.materials_size() + chunk.lights_size() > 0) break;
+    if (light.web && sent == webs_.end()) *chunk.add_webs() = std::move(web);
+    if (light.web) message.set_web(webs_.try_emplace(light.web.get(), static_cast<std::uint32_t>(webs_.size())).first->second);
     *chunk.add_lights() = std::move(message);
     budget -= bytes;
   }

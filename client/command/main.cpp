@@ -40,6 +40,7 @@ void add_commands(CLI::App& app) {
   add_explain_command(app);
   add_form_factor_command(app);
   add_form_factors_command(app);
+  add_luminaire_command(app);
   add_scenes_command(app);
   add_solves_command(app);
   add_quiet_option(app);

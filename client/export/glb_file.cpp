@@ -108,7 +108,7 @@ json unlit_material() {
 json node_of(const Vec3& origin, const DisplayMesh& mesh) {
   json node = {{"name", "solution"}, {"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}};
   json& extras = node["extras"] = {{quantity_key, name_of(mesh.quantity)}};
-  for (const Light& light : mesh.lights) extras[lights_key].push_back(json_of(light));
+  for (std::size_t which = 0; which < mesh.lights.size(); ++which) extras[lights_key].push_back(json_of(mesh.lights, which));
   if (mesh.up == UpAxis::y) return node;
   node["translation"] = {origin.x, origin.z, -origin.y};
   node["rotation"] = z_up_rotation;

@@ -159,7 +159,7 @@ void read_extras(const json& root, DisplayMesh& mesh) {
   if (extras->value(quantity_key, json()) == name_of(Quantity::photometric)) mesh.quantity = Quantity::photometric;
   const json lights = extras->value(lights_key, json::array());
   if (!lights.is_array()) fail("nodes[0].extras", "its lights are no list");
-  for (std::size_t n = 0; n < lights.size(); ++n) mesh.lights.push_back(light_of(lights[n], "light " + std::to_string(n)));
+  for (const json& light : lights) mesh.lights.push_back(light_of(light, mesh.lights));
 }
 
 Vec3 translation(const json& root) {

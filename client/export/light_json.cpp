@@ -4,7 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <memory>
+#include <string>
 
 namespace alvor {
 
@@ -12,7 +15,16 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kinds{"point", "spot", "directional"};
+constexpr std::array kinds{"point", "spot", "directional", "luminaire", "sky"};
+constexpr std::array shapes{"point", "rectangle", "ellipse", "box", "cylinder", "sphere"};
+
+/// Returns the number of `name` in a list of names. Throws SolutionFileError.
+template <class Value>
+Value value_named(const auto& names, const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw SolutionFileError("'" + name + "' is not known");
+  return static_cast<Value>(found - names.begin());
+}
 
 std::array<double, 3> numbers_of(const json& object, const char* key) { return object.at(key).get<std::array<double, 3>>(); }
 
@@ -21,28 +33,83 @@ Vec3 vector_of(const json& object, const char* key) {
   return {x, y, z};
 }
 
-}  // namespace
-
-json json_of(const Light& light) {
-  const Vec3 &p = light.position, &d = light.direction;
-  return {{"name", light.name},
-          {"kind", kinds[static_cast<std::size_t>(light.kind)]},
-          {"intensity", {light.intensity.r, light.intensity.g, light.intensity.b}},
-          {"position", {p.x, p.y, p.z}},
-          {"direction", {d.x, d.y, d.z}},
-          {"inner_cone_radians", light.inner_cone},
-          {"outer_cone_radians", light.outer_cone},
-          {"radius_meters", light.radius},
-          {"angular_diameter_radians", light.angular_diameter}};
+json json_of_web(const PhotometricWeb& web) {
+  return {{"axis", web.axis == PhotometricWeb::Axis::across ? "across" : "aim"},
+          {"plane_degrees", web.planes},
+          {"angle_degrees", web.angles},
+          {"intensities", web.intensities}};
 }
 
-Light light_of(const json& source, const std::string& place) {
+std::shared_ptr<const PhotometricWeb> web_of(const json& source) {
+  auto web = std::make_shared<PhotometricWeb>();
+  web->axis = source.at("axis") == "across" ? PhotometricWeb::Axis::across : PhotometricWeb::Axis::aim;
+  source.at("plane_degrees").get_to(web->planes);
+  source.at("angle_degrees").get_to(web->angles);
+  source.at("intensities").get_to(web->intensities);
+  return web;
+}
+
+json json_of_sky(const SkyDistribution& sky) {
+  return {{"coefficients", {sky.a, sky.b, sky.c, sky.d, sky.e, sky.g}}, {"to_sun", {sky.to_sun.x, sky.to_sun.y, sky.to_sun.z}}};
+}
+
+SkyDistribution sky_of(const json& source) {
+  const auto [a, b, c, d, e, g] = source.at("coefficients").get<std::array<double, 6>>();
+  return {a, b, c, d, e, g, vector_of(source, "to_sun")};
+}
+
+void add_luminaire(std::span<const Light> lights, std::size_t which, json& object) {
+  const Light& light = lights[which];
+  const LuminousOpening& opening = light.opening;
+  object["across"] = {light.across.x, light.across.y, light.across.z};
+  object["opening"] = {{"shape", shapes[static_cast<std::size_t>(opening.shape)]},
+                       {"across_meters", opening.across},
+                       {"along_meters", opening.along},
+                       {"height_meters", opening.height}};
+  const auto first = std::ranges::find(lights, light.web, &Light::web) - lights.begin();
+  if (static_cast<std::size_t>(first) < which) object["web_of"] = first;
+  else object["web"] = json_of_web(*light.web);
+}
+
+void read_luminaire_fields(const json& source, std::span<const Light> before, Light& light) {
+  light.across = vector_of(source, "across");
+  const json& opening = source.at("opening");
+  light.opening = {value_named<LuminousOpening::Shape>(shapes, opening.at("shape")), opening.at("across_meters"),
+                   opening.at("along_meters"), opening.at("height_meters")};
+  if (!source.contains("web_of")) {
+    light.web = web_of(source.at("web"));
+    return;
+  }
+  const auto which = source.at("web_of").get<std::size_t>();
+  if (which >= before.size()) throw SolutionFileError("its web is not that of an earlier light");
+  light.web = before[which].web;
+}
+
+}  // namespace
+
+json json_of(std::span<const Light> lights, std::size_t which) {
+  const Light& light = lights[which];
+  const Vec3 &p = light.position, &d = light.direction;
+  json object{{"name", light.name},
+              {"kind", kinds[static_cast<std::size_t>(light.kind)]},
+              {"intensity", {light.intensity.r, light.intensity.g, light.intensity.b}},
+              {"position", {p.x, p.y, p.z}},
+              {"direction", {d.x, d.y, d.z}},
+              {"inner_cone_radians", light.inner_cone},
+              {"outer_cone_radians", light.outer_cone},
+              {"radius_meters", light.radius},
+              {"angular_diameter_radians", light.angular_diameter}};
+  if (light.kind == LightKind::luminaire) add_luminaire(lights, which, object);
+  if (light.kind == LightKind::sky) object["sky"] = json_of_sky(light.sky);
+  return object;
+}
+
+Light light_of(const json& source, std::span<const Light> before) {
+  const std::string place = "light " + std::to_string(before.size());
   try {
     Light light;
     light.name = source.at("name").get<std::string>();
-    const auto kind = std::ranges::find(kinds, source.at("kind").get<std::string>());
-    if (kind == kinds.end()) throw SolutionFileError(place + ": its kind is not known");
-    light.kind = static_cast<LightKind>(kind - kinds.begin());
+    light.kind = value_named<LightKind>(kinds, source.at("kind"));
     const auto [r, g, b] = numbers_of(source, "intensity");
     light.intensity = {r, g, b};
     light.position = vector_of(source, "position");
@@ -51,10 +118,14 @@ Light light_of(const json& source, const std::string& place) {
     light.outer_cone = source.at("outer_cone_radians").get<double>();
     light.radius = source.at("radius_meters").get<double>();
     light.angular_diameter = source.at("angular_diameter_radians").get<double>();
-    if (const auto reason = fault_in(light)) throw SolutionFileError(place + ": " + *reason);
+    if (light.kind == LightKind::luminaire) read_luminaire_fields(source, before, light);
+    if (light.kind == LightKind::sky) light.sky = sky_of(source.at("sky"));
+    if (const auto reason = fault_in(light)) throw SolutionFileError(*reason);
     return light;
   } catch (const json::exception&) {
     throw SolutionFileError(place + ": not a light as Alvor writes it");
+  } catch (const SolutionFileError& error) {
+    throw SolutionFileError(place + ": " + error.what());
   }
 }
 

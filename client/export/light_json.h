@@ -5,11 +5,15 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstddef>
+#include <span>
+
 namespace alvor {
 
-/// Returns an object with the fields of alvor.v1.Light; lengths in metres, angles in radians.
-nlohmann::json json_of(const Light& light);
-/// Reads what json_of() wrote. Throws SolutionFileError that names `place`.
-Light light_of(const nlohmann::json& json, const std::string& place);
+/// Returns an object with the fields of alvor.v1.Light; lengths in metres, angles in radians. A luminaire has its photometric web
+/// unless an earlier one has the same: then `web_of` tells by its number from 0 which of `lights`.
+nlohmann::json json_of(std::span<const Light> lights, std::size_t which);
+/// Reads what json_of() wrote, after the lights before it. Throws SolutionFileError that names the light.
+Light light_of(const nlohmann::json& json, std::span<const Light> before);
 
 }  // namespace alvor

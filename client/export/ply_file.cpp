@@ -34,8 +34,10 @@ std::string header(const DisplayMesh& mesh) {
   text += "comment Alvor solution: metres, W/m2 or, if photometric, lx\n";
   if (mesh.up == UpAxis::z) text += z_up_comment;
   if (mesh.quantity == Quantity::photometric) text += photometric_comment;
-  for (const Light& light : mesh.lights)
-    text.append(light_comment).append(json_of(light).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)).append("\n");
+  for (std::size_t which = 0; which < mesh.lights.size(); ++which)
+    text.append(light_comment)
+        .append(json_of(mesh.lights, which).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))
+        .append("\n");
   text.append(vertex_element).append(std::to_string(mesh.positions.size())).append("\n").append(vertex_properties);
   text.append(face_element).append(std::to_string(mesh.triangles.size())).append("\n").append(face_properties);
   return text.append(last_line);
@@ -97,8 +99,7 @@ Parts parts_of(std::string_view bytes) {
     if (line == z_up_comment) parts.up = UpAxis::z;
     if (line == photometric_comment) parts.quantity = Quantity::photometric;
     if (line.starts_with(light_comment))
-      parts.lights.push_back(light_of(nlohmann::json::parse(line.substr(light_comment.size()), nullptr, false),
-                                      "light " + std::to_string(parts.lights.size())));
+      parts.lights.push_back(light_of(nlohmann::json::parse(line.substr(light_comment.size()), nullptr, false), parts.lights));
     if (!line.starts_with("comment")) parts.header += line;
     rest.remove_prefix(line.size());
   }

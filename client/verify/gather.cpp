@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace alvor {
 
@@ -37,6 +38,7 @@ Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const 
       caster_(caster),
       medium_{absorption},
       lamps_(mesh.lights, {{}, 1}, mesh.positions),
+      skies_(mesh.lights),
       is_emitter_(mesh.triangles.size()) {
   const auto vertex_emits = [&](std::uint32_t vertex) { return emits(mesh.radiosity[vertex], mesh.irradiance[vertex]); };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -151,6 +153,8 @@ GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::u
     for (std::uint32_t n = 0; n < rays_per_round; ++n) {
       const Vec3 direction = cosine_direction(normal, directions[n]);
       const auto hit = caster_.cast(point, direction);
+      if (!hit && !skies_.empty())
+        sum += medium_.transmittance(lamps_.way_out(point, direction)) * (std::numbers::pi * skies_.radiance(direction));
       if (!hit || is_emitter_[hit->triangle]) continue;
       const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
       if (dot(area, direction) < 0) sum += medium_.transmittance(hit->distance) * radiosity(hit->triangle, hit->u, hit->v);

@@ -2,6 +2,7 @@
 // Computes irradiance in free air from a finished solution.
 
 #include "client/verify/lamps.h"
+#include "client/verify/skies.h"
 #include "meshing/display_mesh.h"
 #include "radiosity/rays/medium.h"
 #include "radiosity/rays/visibility.h"
@@ -50,7 +51,8 @@ class Gatherer {
   const DisplayMesh& mesh_;
   const TriangleCaster& caster_;
   Medium medium_;
-  Lamps lamps_;                          ///< metres
+  Lamps lamps_;  ///< metres
+  Skies skies_;
   std::vector<std::uint32_t> emitters_;  ///< indices of the triangles that emit
   std::vector<bool> is_emitter_;         ///< by triangle
 };

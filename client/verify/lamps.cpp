@@ -21,6 +21,12 @@ Vec3 direction_in_cone(Vec3 axis, double cosine, UnitPair at) {
   return z * axis + r * std::cos(turn) * side + r * std::sin(turn) * up;
 }
 
+/// Returns the intensity of a lamp in a direction (unit), as a factor of Light::intensity.
+double share_of_intensity(const Light& lamp, Vec3 direction) {
+  if (lamp.kind == LightKind::spot) return SpotCone(lamp).share(dot(direction, lamp.direction));
+  return lamp.kind == LightKind::luminaire ? HungWeb(lamp).intensity(direction) : 1;
+}
+
 }  // namespace
 
 Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<const Vec3> surface_points) {
@@ -32,9 +38,14 @@ Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<cons
     high_ = upper(high_, p);
   }
   for (Light lamp : lights) {
-    if (lamp.intensity.is_zero()) continue;
+    if (lamp.intensity.is_zero() || lamp.kind == LightKind::sky) continue;
     lamp.position = (lamp.position - extent.centre) / extent.longest_side;
     lamp.radius /= extent.longest_side;
+    for (double* size : {&lamp.opening.across, &lamp.opening.along, &lamp.opening.height}) *size /= extent.longest_side;
+    if (lamp.opening.shape == LuminousOpening::Shape::sphere) lamp.radius = lamp.opening.across / 2;
+    Opening& opening = openings_.emplace_back();
+    if (lamp.kind == LightKind::luminaire) opening.faces = faces_of_opening(lamp);
+    for (const OpeningFace& face : opening.faces) opening.area += face.area;
     if (!lamp.is_distant()) lamp.intensity *= 1 / (extent.longest_side * extent.longest_side);
     lamps_.push_back(lamp);
   }
@@ -47,10 +58,12 @@ Rgb Lamps::unblocked(const Light& lamp, Vec3 point, Vec3 normal) const {
     return std::max(0.0, cosine) * lamp.intensity;
   }
   const Vec3 way = lamp.position - point;
-  const double distance = std::max({length(way), lamp.radius, nearest_place});
-  const double height = dot(way, normal) + lamp.radius;
+  const double radius = std::max(lamp.radius, radius_of(lamp)), distance = std::max({length(way), radius, nearest_place});
+  const double height = dot(way, normal) + radius;
   if (height <= 0) return {};
-  const double share = lamp.kind == LightKind::spot ? SpotCone(lamp).share(dot(-way, lamp.direction) / distance) : 1;
+  // Parts of an opening are seen from other directions than its middle: some light is expected from everywhere.
+  const double least = lamp.kind == LightKind::luminaire ? 0.05 * lamp.web->greatest() : 0;
+  const double share = std::max(least, share_of_intensity(lamp, -way / std::max(length(way), nearest_place)));
   return share * std::min(1.0, height / distance) / (distance * distance) * lamp.intensity;
 }
 
@@ -81,9 +94,10 @@ Lamps::Sample Lamps::sample_of(std::size_t which, Vec3 point, Vec3 normal, UnitP
     const double out = way_out(point, direction);
     return {std::max(0.0, dot(normal, direction)) * lamp.intensity, (out + 0.01) * direction, out};
   }
+  if (!openings_[which].faces.empty()) return sample_of_opening(which, point, normal, at);
   const Vec3 way = lamp.position - point;
   const double distance = std::max(length(way), nearest_place);
-  const double share = lamp.kind == LightKind::spot ? SpotCone(lamp).share(dot(-way, lamp.direction) / distance) : 1;
+  const double share = share_of_intensity(lamp, -way / distance);
   if (lamp.radius == 0 || distance <= lamp.radius) {
     const double most = std::max(distance, lamp.radius);
     return {share * std::max(0.0, dot(way, normal) / distance) / (most * most) * lamp.intensity, nearly_there * way, distance};
@@ -94,6 +108,28 @@ Lamps::Sample Lamps::sample_of(std::size_t which, Vec3 point, Vec3 normal, UnitP
   const double scale = 2 * (1 - cosine) / (lamp.radius * lamp.radius) * share * std::max(0.0, dot(direction, normal));
   // The way ends in the sphere's middle plane: what lies in the sphere before that would hide it.
   return {scale * lamp.intensity, nearly_there * distance * direction, distance};
+}
+
+// A point of one of the faces, chosen by the share of the opening's area that it shows to the point; faces that look away show
+// none. Then the light that the web tells for that direction comes from that point.
+Lamps::Sample Lamps::sample_of_opening(std::size_t which, Vec3 point, Vec3 normal, UnitPair at) const {
+  const Light& lamp = lamps_[which];
+  const Opening& opening = openings_[which];
+  const OpeningFace* face = opening.faces.data();
+  double left = at.u * opening.area;
+  while (left >= face->area && face != &opening.faces.back()) left -= face++->area;
+  const Vec3 way = face->at({std::min(1.0, left / face->area), at.v}) - point;
+  const double distance = std::max(length(way), nearest_place);
+  const Vec3 out = -way / distance;
+  double share = 1;
+  if (opening.faces.size() > 1) {
+    double shown = 0;
+    for (const OpeningFace& other : opening.faces) shown += other.area * std::max(0.0, dot(other.normal, out));
+    const double own = std::max(0.0, dot(face->normal, out));
+    share = own > 0 ? opening.area * own / shown : 0;
+  }
+  const double scale = share * share_of_intensity(lamp, out) * std::max(0.0, -dot(out, normal)) / (distance * distance);
+  return {scale * lamp.intensity, nearly_there * way, distance};
 }
 
 double Lamps::way_out(Vec3 point, Vec3 direction) const {

@@ -1,9 +1,10 @@
 #pragma once
-// The lamps and distant lights of a scene, for the path tracer. Written apart from the solver's (radiosity/direct), so that an
-// error in one is seen.
+// The lamps and distant lights of a scene, except skies, for the path tracer. Written apart from the solver's (radiosity/direct),
+// so that an error in one is seen.
 
 #include "client/verify/facets.h"
 #include "client/verify/path_random.h"
+#include "meshing/opening_face.h"
 #include "meshing/scene.h"
 
 #include <optional>
@@ -23,7 +24,9 @@ class Lamps {
   bool empty() const { return lamps_.empty(); }
   std::size_t size() const { return lamps_.size(); }
   /// Returns whether the lamp has a size, so that its samples differ.
-  bool is_soft(std::size_t lamp) const { return lamps_[lamp].radius > 0 || lamps_[lamp].angular_diameter > 0; }
+  bool is_soft(std::size_t lamp) const {
+    return lamps_[lamp].radius > 0 || lamps_[lamp].angular_diameter > 0 || !openings_[lamp].faces.empty();
+  }
 
   /// One lamp's light at a point, over the probability of having chosen this lamp; W/m2 per band.
   struct Sample {
@@ -36,12 +39,21 @@ class Lamps {
   /// Returns a sample of one lamp, chosen with probability 1.
   Sample sample_of(std::size_t lamp, Vec3 point, Vec3 normal, UnitPair at) const;
 
- private:
-  Rgb unblocked(const Light& lamp, Vec3 point, Vec3 normal) const;
+  /// Returns the distance from a point in a direction (unit) to where it leaves the scene's bounding box.
   double way_out(Vec3 point, Vec3 direction) const;
 
-  std::vector<Light> lamps_;  ///< places and radii in local units; intensity so that E = I cos / d2 holds in them
-  Vec3 low_, high_;           ///< bounding box of the scene
+ private:
+  /// Where a luminaire shines from; no faces for other lamps.
+  struct Opening {
+    std::vector<OpeningFace> faces;
+    double area = 0;
+  };
+  Sample sample_of_opening(std::size_t lamp, Vec3 point, Vec3 normal, UnitPair at) const;
+  Rgb unblocked(const Light& lamp, Vec3 point, Vec3 normal) const;
+
+  std::vector<Opening> openings_;  ///< by lamp
+  std::vector<Light> lamps_;       ///< places and radii in local units; intensity so that E = I cos / d2 holds in them
+  Vec3 low_, high_;                ///< bounding box of the scene
 };
 
 }  // namespace alvor

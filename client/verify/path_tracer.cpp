@@ -37,6 +37,7 @@ PathTracer::PathTracer(const Scene& scene) : clear_(scene.absorption.is_zero()) 
   const std::vector<Facet> facets = facets_of(scene);
   extent_ = extent_of(facets);
   lamps_ = Lamps(scene.lights, extent_, scene.vertices);
+  skies_ = Skies(scene.lights);
   absorption_ = scene.absorption * extent_.longest_side;
   add_surfaces(scene, facets);
   std::vector<Vec3> corners;
@@ -67,7 +68,7 @@ void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets)
 }
 
 Rgb PathTracer::irradiance(const SurfacePoint& point, std::uint32_t paths, PathRandom random) const {
-  if (lights_.empty() && lamps_.empty()) return {};
+  if (lights_.empty() && lamps_.empty() && skies_.empty()) return {};
   const Bend start = start_at(point);
   const EvenPairs lights(random), directions(random);
   Rgb sum;
@@ -103,7 +104,7 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
     if (!lamps_.empty()) arriving += throughput * from_lamps(bend, random);
     const Vec3 direction = cosine_direction(bend.normal, choices.direction);
     const Met met = meet(bend, direction);
-    if (!met.surface) return arriving;
+    if (!met.surface) return met.is_outside ? arriving + throughput * from_skies(bend, direction) : arriving;
     if (!clear_) throughput = throughput * transmittance(met.distance);
     if (!met.surface->emission.is_zero()) arriving += throughput * from_met_light(bend, direction, met);
     throughput = throughput * met.surface->reflectance;
@@ -113,6 +114,13 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
     bend = met.bend;
     choices = {random.pair(), random.pair()};
   }
+}
+
+// Directions by cosine: the mean of pi times the radiance is the irradiance.
+Rgb PathTracer::from_skies(const Bend& bend, Vec3 direction) const {
+  if (skies_.empty()) return {};
+  const Rgb arriving = std::numbers::pi * skies_.radiance(direction);
+  return clear_ ? arriving : arriving * transmittance(lamps_.way_out(bend.place, direction));
 }
 
 Rgb PathTracer::from_lamps(const Bend& bend, PathRandom& random) const {
@@ -148,7 +156,7 @@ Rgb PathTracer::from_met_light(const Bend& bend, Vec3 direction, const Met& met)
 
 PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction) const {
   auto hit = caster_->cast(bend.place, direction);
-  if (!hit) return {};
+  if (!hit) return {.is_outside = true};
   if (const Surface& back = surfaces_[hit->triangle]; !back.two_sided && dot(back.normal, direction) >= 0) {
     // The ray may have hit the wrong one of two faces back to back in one place.
     const auto front = caster_->cast_front(bend.place, direction);

@@ -6,6 +6,7 @@
 #include "client/verify/facets.h"
 #include "client/verify/lamps.h"
 #include "client/verify/path_random.h"
+#include "client/verify/skies.h"
 #include "meshing/scene.h"
 
 #include <cstdint>
@@ -69,12 +70,14 @@ class PathTracer {
     const Surface* surface = nullptr;  ///< null if the path leaves the scene or ends on a black back
     Bend bend;
     double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
+    bool is_outside = false;          ///< the path leaves the scene
   };
 
   Bend start_at(const SurfacePoint& point) const;
   void add_surfaces(const Scene& scene, std::span<const Facet> facets);
   Rgb path(Bend bend, Choices choices, PathRandom& random) const;
   Rgb from_chosen_light(const Bend& bend, UnitPair choice) const;
+  Rgb from_skies(const Bend& bend, Vec3 direction) const;
   Rgb from_lamps(const Bend& bend, PathRandom& random) const;
   Rgb from_met_light(const Bend& bend, Vec3 direction, const Met& met) const;
   Met meet(const Bend& bend, Vec3 direction) const;
@@ -86,6 +89,7 @@ class PathTracer {
   std::vector<Surface> surfaces_;
   EmitterTree lights_{{}};
   Lamps lamps_;
+  Skies skies_;
   std::unique_ptr<const TriangleCaster> caster_;
 };
 

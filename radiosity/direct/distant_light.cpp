@@ -11,8 +11,6 @@ namespace alvor {
 
 namespace {
 
-// A shadow ray ends this far outside of the scene's bounding box, local units, so that it meets what lies on the box.
-constexpr double beyond_box = 1e-3;
 // Packets of rays that estimate how much of a distant light meets fronts. The estimate orders lights and the shown progress only.
 constexpr std::uint32_t trial_packets = 256;
 // Radius of a sphere about the local origin that holds the scene: half the diagonal of the unit cube, rounded up.
@@ -46,26 +44,10 @@ DistantLight::DistantLight(const LocalScene& scene, std::uint32_t number, const 
     : LightSource(number, unit.from_watts_per_m2(light.intensity),
                   unit.from_watts_per_m2(light.intensity).sum() * area_met(scene, -light.direction)),
       towards_(-light.direction),
-      half_width_(std::tan(light.angular_diameter / 2)) {
-  for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root)
-    for (const Vec3& corner : scene.corners(root)) {
-      low_ = lower(low_, corner);
-      high_ = upper(high_, corner);
-    }
-}
+      half_width_(std::tan(light.angular_diameter / 2)),
+      box_(scene) {}
 
 double DistantLight::unblocked(Vec3, Vec3 normal) const { return std::max(0.0, dot(towards_, normal)); }
-
-double DistantLight::exit_distance(Vec3 from, Vec3 direction) const {
-  double distance = 4 * scene_radius;
-  const auto leave = [&](double at, double step, double low, double high) {
-    if (step != 0) distance = std::min(distance, ((step > 0 ? high : low) - at) / step);
-  };
-  leave(from.x, direction.x, low_.x, high_.x);
-  leave(from.y, direction.y, low_.y, high_.y);
-  leave(from.z, direction.z, low_.z, high_.z);
-  return std::max(0.0, distance) + beyond_box;
-}
 
 void DistantLight::aim(const ShadowAim& aim, int first, int last) const {
   const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
@@ -74,7 +56,7 @@ void DistantLight::aim(const ShadowAim& aim, int first, int last) const {
     Vec3 direction = towards_;
     if (half_width_ > 0)
       direction = normalized(towards_ + half_width_ * disk_point(towards_, aim.at[static_cast<std::size_t>(o)]));
-    const Vec3 way = exit_distance(from, direction) * direction;
+    const Vec3 way = box_.way_out(from, direction) * direction;
     set_ray(aim, o, way, 1);
     aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(std::max(0.0, dot(direction, normal)));
   }

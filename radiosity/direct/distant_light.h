@@ -4,6 +4,7 @@
 #include "meshing/light.h"
 #include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
+#include "radiosity/direct/scene_box.h"
 #include "radiosity/rays/local_scene.h"
 
 namespace alvor {
@@ -23,11 +24,9 @@ class DistantLight final : public LightSource {
   std::optional<LightExtent> extent() const override { return std::nullopt; }
 
  private:
-  double exit_distance(Vec3 from, Vec3 direction) const;
-
   const Vec3 towards_;       // unit, from the scene to the light
   const double half_width_;  // tangent of half the angular diameter
-  Vec3 low_, high_;          // of the scene's bounding box, local units
+  const SceneBox box_;
 };
 
 }  // namespace alvor

@@ -19,7 +19,8 @@ class EmissionUnit {
       brightest = std::max(brightest, mesh.material_of(root).emission.max());
     for (const Light& light : mesh.lights()) {
       const double squared = light.is_distant() ? 1 : mesh.extent() * mesh.extent();
-      brightest = std::max(brightest, light.intensity.max() / squared);
+      const double greatest = light.web ? light.web->greatest() : 1;
+      brightest = std::max(brightest, light.intensity.max() * greatest / squared);
     }
     if (brightest > 0) watts_per_m2_ = brightest;
   }

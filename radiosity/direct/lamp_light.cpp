@@ -17,6 +17,8 @@ constexpr double nearest_lamp = 1e-5;
 
 double squared(double x) { return x * x; }
 
+double radius_of_sphere(const Light& lamp) { return lamp.kind == LightKind::luminaire ? lamp.opening.across / 2 : lamp.radius; }
+
 }  // namespace
 
 LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit)
@@ -24,13 +26,19 @@ LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light&
                   unit.from_watts_per_m2(radiated_power(lamp)).sum()),
       lamp_(lamp),
       cone_(lamp.kind == LightKind::spot ? std::optional(SpotCone(lamp)) : std::nullopt),
+      web_(lamp.kind == LightKind::luminaire ? std::optional(HungWeb(lamp)) : std::nullopt),
       place_(scene.frame().to_local(lamp.position)),
-      radius_(lamp.radius / scene.frame().metres_per_unit),
+      radius_(radius_of_sphere(lamp) / scene.frame().metres_per_unit),
       nearest_(std::max(radius_, nearest_lamp)) {}
 
+/// Returns the lamp's intensity in a direction (unit), in multiples of its own.
+double LampLight::share(Vec3 direction) const {
+  if (cone_) return cone_->share(dot(direction, lamp_.direction));
+  return web_ ? web_->intensity(direction) : 1;
+}
+
 double LampLight::share_over_distance_squared(Vec3 from_lamp, double distance_squared) const {
-  const double share = cone_ ? cone_->share(dot(from_lamp, lamp_.direction) / std::sqrt(distance_squared)) : 1;
-  return share / std::max(distance_squared, nearest_ * nearest_);
+  return share(from_lamp / std::sqrt(distance_squared)) / std::max(distance_squared, nearest_ * nearest_);
 }
 
 double LampLight::unblocked(Vec3 at, Vec3 normal) const {
@@ -59,7 +67,7 @@ void LampLight::aim(const ShadowAim& aim, int first, int last) const {
 
 std::optional<LightExtent> LampLight::extent() const {
   const Vec3 around{radius_, radius_, radius_};
-  const double intensity = colour().sum();
+  const double intensity = colour().sum() * (web_ ? web_->web().greatest() : 1);
   return LightExtent{place_, place_ - around, place_ + around, {}, std::numbers::pi * intensity, intensity / squared(nearest_)};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Point and spot lamps.
+// Lamps that shine from a point or a sphere.
 
 #include "meshing/light.h"
 #include "radiosity/direct/emission_unit.h"
@@ -8,12 +8,13 @@
 
 namespace alvor {
 
-/// A point or spot lamp. Unblocked irradiance is I cos / d2. Shadow rays go to the lamp's middle, or to a disk of its radius that
-/// faces the receiver: a sphere of even radiance sends I / d2 too, however near (Lambert's law), while all of it is above the
-/// horizon. Closer than the radius, or than 1e-5 of the scene's extent, d is that distance.
+/// A point lamp, a spot, or a luminaire whose opening is a point or a sphere. Unblocked irradiance is I cos / d2. Shadow rays go
+/// to the lamp's middle, or to a disk of its radius that faces the receiver: a sphere of even radiance sends I / d2 too, however
+/// near (Lambert's law), while all of it is above the horizon. Closer than the radius, or than 1e-5 of the scene's extent, d is
+/// that distance.
 class LampLight final : public LightSource {
  public:
-  /// Requires: `lamp` is not distant; !fault_in(lamp).
+  /// Requires: `lamp` is of these kinds; !fault_in(lamp).
   LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
@@ -22,10 +23,12 @@ class LampLight final : public LightSource {
   std::optional<LightExtent> extent() const override;
 
  private:
+  double share(Vec3 direction) const;
   double share_over_distance_squared(Vec3 from_lamp, double squared) const;
 
   const Light lamp_;
   const std::optional<SpotCone> cone_;  ///< of a spot
+  const std::optional<HungWeb> web_;    ///< of a luminaire
   const Vec3 place_;                    // local units, as all lengths below
   const double radius_, nearest_;
 };

@@ -70,7 +70,7 @@ class LightSource {
   virtual void aim(const ShadowAim& aim, int first, int last) const = 0;
   /// Returns the factor from a weight to irradiance, in multiples of colour(), if the light was chosen with `probability`.
   virtual double sample_scale(double probability) const = 0;
-  /// Returns nothing if the light is so far away that it shines from one direction on all of the scene.
+  /// Returns nothing if the light comes from outside of the scene.
   virtual std::optional<LightExtent> extent() const = 0;
 
  private:

@@ -13,6 +13,8 @@ namespace {
 // Share of the scene's extent: a point lower than this above a plane lies on it. It is the tolerance within which the mesh welds
 // vertices.
 constexpr double flat_tolerance = 1e-9;
+// A face whose normal has at least this cosine from a sky's nadir sees none of the sky.
+constexpr double looks_away = 1 - 1e-9;
 
 /// Zones of the scene between which sealed rooms keep light from passing. Zone 0 is outside of all rooms. A face belongs to the
 /// smallest room that it is in, and to smaller rooms that it is partly in. A face that belongs to several zones joins them: light
@@ -79,6 +81,7 @@ double height_of(const RootPatch& face, Vec3 centre) {
 
 bool faces_distant_light(const BaseMesh& mesh, Vec3 normal) {
   return std::ranges::any_of(mesh.lights(), [&](const Light& light) {
+    if (light.kind == LightKind::sky) return dot(normal, light.direction) < looks_away;
     return light.is_distant() && dot(normal, light.direction) < std::sin(light.angular_diameter / 2);
   });
 }

@@ -47,7 +47,7 @@ std::vector<Vec3> corners_about_centre(const BaseMesh& mesh, const std::vector<b
       corners.push_back(mesh.roots()[root].corners[c] - mesh.centre());
   for (const Light& light : mesh.lights()) {
     if (light.is_distant()) continue;
-    const double r = light.radius;
+    const double r = radius_of(light);
     for (const Vec3 side : {Vec3{r, r, r}, Vec3{r, r, -r}, Vec3{r, -r, r}, Vec3{r, -r, -r}, Vec3{-r, r, r}, Vec3{-r, r, -r},
                             Vec3{-r, -r, r}, Vec3{-r, -r, -r}})
       corners.push_back(light.position + side - mesh.centre());

@@ -16,7 +16,7 @@ void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
   // Sizes in memory; an empty material or light takes only a few bytes on the wire.
-  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 200;
+  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 300;
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size()) +
             bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size());
   check_limit(bytes_, limits_.bytes, "bytes");

@@ -174,6 +174,37 @@ TEST_F(Command, ASolveThatWasCutShortSaysWhatHasNoLightYet) {
   EXPECT_EQ(nlohmann::json::parse(run("solve " + cornell_box + quick + " --json").out).at("unlit_fraction"), 0);
 }
 
+TEST_F(Command, ALuminaireIsDescribedAndDrawn) {
+  const Ran ran = run("luminaire '" ALVOR_SCENES "/luminaires/pendant.ldt' --json -o polar.png");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto json = nlohmann::json::parse(ran.out);
+  EXPECT_NEAR(json.at("lumens").get<double>(), json.at("stated_lumens").get<double>(), 0.01 * json.at("lumens").get<double>());
+  EXPECT_EQ(json.at("opening").at("shape"), "rectangle");
+  EXPECT_EQ(text_of(file("polar.png")).substr(1, 3), "PNG");
+  write("bad.ies", "IESNA91\nTILT=NONE\n1 1 1 nine\n");
+  const Ran bad = run("luminaire bad.ies");
+  EXPECT_EQ(bad.status, 3);
+  EXPECT_EQ(bad.err, "alvor: bad.ies: line 3: 'nine' is not a number, needs its number of vertical angles\n");
+}
+
+TEST_F(Command, LuminairesLightARoomInLux) {
+  write("room.mtl", room_materials);
+  write("room.obj", room_of_eight());
+  const std::string panel = "--luminaire '" ALVOR_SCENES "/luminaires/panel.ies@1,0.8,1:0,30,45' ";
+  const auto mean = [&](const std::string& options) {
+    const Ran ran = run("solve room.obj --json " + panel + options);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return nlohmann::json::parse(ran.out);
+  };
+  const auto photometric = mean("--quantity photometric --tolerance 0.2"), radiometric = mean("--tolerance 0.2");
+  EXPECT_EQ(photometric.at("irradiance_unit"), "lx");
+  EXPECT_EQ(radiometric.at("irradiance_unit"), "W/m2");
+  EXPECT_GT(photometric.at("mean_irradiance"), radiometric.at("mean_irradiance"));
+  EXPECT_NE(radiometric.at("warnings").dump().find("1/179 W"), std::string::npos);
+  EXPECT_EQ(run("solve room.obj --luminaire panel.ies").status, 2);
+  EXPECT_EQ(run("solve room.obj --luminaire absent.ies@1,1,1").status, 3);
+}
+
 TEST_F(Command, JsonIsAllThatStdoutHolds) {
   const Ran ran = run("solve " + cornell_box + quick + " --json");
   ASSERT_EQ(ran.status, 0) << ran.err;

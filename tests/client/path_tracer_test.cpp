@@ -153,6 +153,30 @@ TEST(PathTracer, LampsBringWhatTheirFormulasSay) {
   expect(sun, 80, 5e-3);
 }
 
+// A luminaire with a Lambertian web brings what an emissive face in the place of its opening brings, also close by.
+TEST(PathTracer, ALambertianLuminaireIsAnAreaLamp) {
+  auto web = std::make_shared<PhotometricWeb>(PhotometricWeb{.planes = {0}});
+  for (int degree = 0; degree <= 90; ++degree) {
+    web->angles.push_back(degree);
+    web->intensities.push_back(static_cast<float>(100 * std::cos(degree * std::numbers::pi / 180)));
+  }
+  Light panel = lamp_at({0, 0, 1}, LightKind::luminaire, 1);
+  panel.across = {1, 0, 0};
+  panel.opening = {LuminousOpening::Shape::rectangle, 1.2, 0.8, 0};
+  panel.web = web;
+  Scene by_web, by_face;
+  add_black_floor(by_web, 10);
+  by_web.lights = {panel};
+  add_black_floor(by_face, 10);
+  by_face.materials.push_back(grey(std::numbers::pi * 100 / (1.2 * 0.8), 0));
+  const auto material = static_cast<std::uint32_t>(by_face.materials.size() - 1);
+  by_face.add_polygon(std::vector<Vec3>{{-0.6, -0.4, 1}, {-0.6, 0.4, 1}, {0.6, 0.4, 1}, {0.6, -0.4, 1}}, material);
+  for (const Vec3 place : {Vec3{0, 0, 0}, {0.5, 0.7, 0}, {2, 1, 0}}) {
+    const auto a = traced(by_web, {place, {0, 0, 1}}), b = traced(by_face, {place, {0, 0, 1}});
+    EXPECT_NEAR(a.mean().mean(), b.mean().mean(), sure * (error_of(a) + error_of(b)) + 1e-4 * b.mean().mean()) << place.x;
+  }
+}
+
 TEST(PathTracer, AllLampsTogetherBringTheirSum) {
   Scene scene;
   add_black_floor(scene, 10);

@@ -58,13 +58,20 @@ TEST_P(SolutionFile, RemembersLightsAndWhatItsNumbersMean) {
   Light bulb{"bulb \n \"1\" \xff", LightKind::point, {1, 2, 3}, {101, 202, 303}},
       spot{"spot", LightKind::spot, {4, 5, 6}, {}, {0, 1, 0}, 0.1, 0.2};
   bulb.radius = 0.125;
-  mesh.lights = {bulb, spot};
+  Light downlight{"downlight", LightKind::luminaire, {1, 1, 1}, {3, 2, 1}};
+  downlight.across = {0, 1, 0};
+  downlight.opening = {LuminousOpening::Shape::cylinder, 0.1, 0.2, 0.3};
+  downlight.web =
+      std::make_shared<PhotometricWeb>(PhotometricWeb{PhotometricWeb::Axis::aim, {0, 90, 360}, {0, 90}, {1, 2, 3.25, 4, 1, 2}});
+  mesh.lights = {bulb, spot, downlight, downlight};
   const DisplayMesh back = decoded(encoded(mesh));
   EXPECT_EQ(back.quantity, Quantity::photometric);
-  ASSERT_EQ(back.lights.size(), 2u);
+  ASSERT_EQ(back.lights.size(), 4u);
   EXPECT_EQ(back.lights[0].position, bulb.position);
   EXPECT_EQ(back.lights[0].radius, bulb.radius);
   EXPECT_EQ(back.lights[1], spot);
+  EXPECT_EQ(back.lights[2], downlight);
+  EXPECT_EQ(back.lights[2].web, back.lights[3].web);  // written once
 }
 
 TEST_P(SolutionFile, ALightThatIsNoneIsRefusedByName) {

@@ -156,6 +156,25 @@ Scene room_with_all_kinds() {
   scene.lights = {point_lamp({2, 2, 2}, 10), spot_lamp({1, 2.5, 1}, {0.2, -1, 0.3}, 0.2, 0.8), sun({0.3, -1, 0.2}, 50),
                   sun({-0.3, -1, 0.2}, 50, 0.1), point_lamp({3, 1.5, 4}, 20)};
   scene.lights.back().radius = 0.3;
+  // Its planes differ as little as those of measured webs, which are closer: sharp kinks would need finer rules.
+  const auto web = std::make_shared<PhotometricWeb>(PhotometricWeb{
+      .planes = {0, 90, 180, 270, 360}, .angles = {0, 20, 60, 180}, .intensities = {9,   9, 7, 1, 9,   9, 6, 2, 9, 9,
+                                                                                    7.5, 0, 9, 9, 5.5, 1, 9, 9, 7, 1}});
+  using Shape = LuminousOpening::Shape;
+  for (const LuminousOpening& opening : {LuminousOpening{},
+                                         {Shape::rectangle, 0.6, 0.3, 0},
+                                         {Shape::ellipse, 0.6, 0.3, 0},
+                                         {Shape::box, 0.6, 0.3, 0.2},
+                                         {Shape::cylinder, 0.4, 0.3, 0.3},
+                                         {Shape::sphere, 0.4, 0, 0}}) {
+    Light light = point_lamp({2, 2.2, 3}, 1);
+    light.kind = LightKind::luminaire;
+    light.direction = normalized(Vec3{0.2, -1, 0.1});
+    light.across = normalized(cross(light.direction, {0, 0, 1}));
+    light.opening = opening;
+    light.web = web;
+    scene.lights.push_back(light);
+  }
   return scene;
 }
 

@@ -42,7 +42,14 @@ Scene scene_with_lights() {
   bulb.radius = 0.5;
   sun.direction = {1, 0, 0};
   sun.angular_diameter = 0.01;
-  scene.lights = {bulb, spot, sun};
+  Light downlight{"downlight", LightKind::luminaire, {1, 1, 1}, {3, 2, 1}};
+  downlight.across = {0, 1, 0};
+  downlight.opening = {LuminousOpening::Shape::box, 0.1, 0.2, 0.3};
+  const PhotometricWeb web{PhotometricWeb::Axis::across, {-90, 0, 90}, {0, 180}, {1, 2, 3, 4, 5, 6}};
+  downlight.web = std::make_shared<PhotometricWeb>(web);
+  Light other{"other", LightKind::luminaire, {2, 2, 2}};
+  other.web = std::make_shared<PhotometricWeb>(PhotometricWeb{PhotometricWeb::Axis::aim, {0}, {0, 90}, {1, 0}});
+  scene.lights = {bulb, spot, sun, downlight, other, downlight};
   return scene;
 }
 
@@ -50,9 +57,19 @@ TEST(SceneCodec, LightsAndTheQuantityArrive) {
   for (const std::size_t bytes : {256u, 1u << 20}) {
     const Scene arrived = assemble(slice(scene_with_lights(), bytes));
     EXPECT_EQ(arrived.quantity, Quantity::photometric);
-    ASSERT_EQ(arrived.lights.size(), 3u);
+    ASSERT_EQ(arrived.lights.size(), 6u);
     EXPECT_EQ(arrived.lights, scene_with_lights().lights);
+    EXPECT_EQ(arrived.lights[3].web, arrived.lights[5].web);  // sent once
+    EXPECT_NE(arrived.lights[3].web, arrived.lights[4].web);
   }
+}
+
+TEST(SceneCodec, ALuminaireWithoutItsWebIsRefusedByName) {
+  v1::GeometryChunk chunk = slice(scene_with_lights(), 1 << 20)[0];
+  chunk.mutable_lights(4)->set_web(2);
+  const auto fault = SceneAssembler().add(chunk);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->text(), "light 4 'other': its web 2 is not known");
 }
 
 TEST(SceneCodec, ALightOfNoKnownKindIsRefusedByName) {

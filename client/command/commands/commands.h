@@ -14,6 +14,7 @@ void add_compare_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
 void add_form_factor_command(CLI::App& app);
 void add_form_factors_command(CLI::App& app);
+void add_luminaire_command(CLI::App& app);
 void add_scenes_command(CLI::App& app);
 void add_solves_command(CLI::App& app);
 

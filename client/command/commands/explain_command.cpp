@@ -58,9 +58,9 @@ void explain_form_factors(const ExplainCommand& command, const Scene& scene) {
 void run_explain(const ExplainCommand& command) {
   require_inputs({{InputKind::scene, command.scene}}, command.format);
   SceneFile file = read_scene(command.scene, command.format);
-  warn(file.warnings);
   take_absorption(command.absorption, file.scene);
-  take_light_options(command.light, file.scene);
+  take_light_options(command.light, file);
+  warn(file.warnings);
   if (command.form_factors) explain_form_factors(command, file.scene);
   else explain_plan(command, file.scene);
 }

@@ -19,9 +19,8 @@ void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
 }
 
 // Writes the solution and the frames, unless nothing was published because the solve failed at once.
-void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
-  if (followed.mirror.steps().empty() || (options.solution.path.empty() && options.frames.empty())) return;
-  const BaseMesh mesh(scene);
+void write_pictures(const OutputOptions& options, const BaseMesh& mesh, const Followed& followed) {
+  if (followed.mirror.steps().empty()) return;
   if (!options.solution.path.empty()) write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
   if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
 }
@@ -30,8 +29,8 @@ void print_written(const std::filesystem::path& path) {
   if (!path.empty() && !is_stream(path)) notes() << "wrote " << path.string() << '\n';
 }
 
-void print_for_people(const OutputOptions& options, const Followed& followed) {
-  notes() << summary(followed);
+void print_for_people(const OutputOptions& options, const Followed& followed, const MeanLight& light) {
+  notes() << summary(followed, light);
   for (const auto& path : {options.solution.path, options.report, options.frames}) print_written(path);
 }
 
@@ -65,10 +64,12 @@ void deliver(const OutputOptions& options, const Scene& scene, const Followed& f
   // Files to stdout are written last, because the reader may have gone.
   const auto write_report = [&] { write_output(options.report, step_table(followed.mirror.steps())); };
   if (!options.report.empty() && !is_stream(options.report)) write_report();
-  write_pictures(options, scene, followed);
+  const BaseMesh mesh(scene);
+  write_pictures(options, mesh, followed);
+  const MeanLight light = mean_light(mesh, followed.mirror.leaves());
   if (is_stream(options.report)) write_report();
-  if (options.json) results() << outcome_json(followed, warnings);
-  else print_for_people(options, followed);
+  if (options.json) results() << outcome_json(followed, light, warnings);
+  else print_for_people(options, followed, light);
   if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));
 }
 

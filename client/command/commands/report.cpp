@@ -1,9 +1,13 @@
 #include "client/command/commands/report.h"
 
 #include "client/command/output/numbers.h"
+#include "client/picture/units.h"
+#include "meshing/patch_place.h"
 #include "proto/codec.h"
 
 #include <nlohmann/json.hpp>
+
+#include <cstdio>
 
 namespace alvor {
 
@@ -27,6 +31,14 @@ std::string unlit(const Step& step) {
          " of the surface that light may reach has no light yet: the solve ended before its turn\n";
 }
 
+std::string text_of(const MeanLight& light) {
+  char text[120];
+  std::snprintf(text, sizeof text, "mean %s of all surfaces %.4g %s (%.4g m2)\n",
+                light.quantity == Quantity::photometric ? "illuminance" : "irradiance", light.irradiance,
+                irradiance_unit(light.quantity), light.area);
+  return text;
+}
+
 }  // namespace
 
 std::string step_table(std::span<const Step> steps) {
@@ -35,7 +47,17 @@ std::string step_table(std::span<const Step> steps) {
   return table;
 }
 
-std::string outcome_json(const Followed& followed, std::span<const std::string> warnings) {
+MeanLight mean_light(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
+  MeanLight light{.quantity = mesh.quantity()};
+  double power = 0;
+  for (const LeafValue& leaf : leaves)
+    power += area_of(mesh, shape_of(mesh, leaf.patch)) * one_number(widen(leaf.irradiance), light.quantity);
+  for (const RootPatch& root : mesh.roots()) light.area += root.area;
+  if (light.area > 0) light.irradiance = power / light.area;
+  return light;
+}
+
+std::string outcome_json(const Followed& followed, const MeanLight& light, std::span<const std::string> warnings) {
   const Step last = last_step(followed);
   nlohmann::ordered_json json;
   json["solve"] = followed.solve.name();
@@ -50,17 +72,19 @@ std::string outcome_json(const Followed& followed, std::span<const std::string> 
   json["unshot_fraction"] = last.unshot_fraction;
   json["estimated_error"] = last.estimated_error;
   json["unlit_fraction"] = last.unlit_fraction;
+  json["mean_irradiance"] = light.irradiance;
+  json["irradiance_unit"] = irradiance_unit(light.quantity);
   json["first_frame_s"] = followed.first_frame_s;
   json["warnings"] = std::vector<std::string>(warnings.begin(), warnings.end());
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
-std::string summary(const Followed& followed) {
+std::string summary(const Followed& followed, const MeanLight& light) {
   const Step last = last_step(followed);
   const std::string& reason = followed.solve.end_reason();
   return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
          seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + ": " +
-         (reason.empty() ? "still running" : reason) + '\n' + unlit(last);
+         (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + text_of(light);
 }
 
 }  // namespace alvor

@@ -110,8 +110,8 @@ void run_solve(const SolveCommand& command) {
   prepare_outputs(command.outputs);
   SceneFile file = read_scene(command.scene, command.format);
   take_absorption(command.absorption, file.scene);
-  take_light_options(command.light, file.scene);
   take_up(command.up, file.scene.up);
+  take_light_options(command.light, file);
   std::vector<std::string> warnings;
   const Followed followed = solve_and_follow(command, file, warnings);
   deliver(command.outputs, file.scene, followed, warnings);

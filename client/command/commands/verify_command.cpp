@@ -76,7 +76,8 @@ void run_verify(const VerifyCommand& command) {
   require_outputs(command);
   SceneFile file = read_scene(command.scene, command.format);
   take_absorption(command.absorption, file.scene);
-  take_light_options(command.light, file.scene);
+  take_up(command.up, file.scene.up);
+  take_light_options(command.light, file);
   warn(file.warnings);
   DisplayMesh solution = read_solution(command.solution, command.format);
   take_up(command.up, solution.up);

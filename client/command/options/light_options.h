@@ -1,22 +1,27 @@
 #pragma once
 // Options for what a scene file says about light.
 
-#include "meshing/scene.h"
+#include "client/command/options/sky_options.h"
+#include "import/scene_file.h"
 
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <vector>
 
 namespace alvor {
 
 struct LightOptions {
-  double scale = 1;      ///< of all lights that are not faces
-  std::string quantity;  ///< "radiometric" or "photometric"; empty: what the format says
+  double scale = 1;                     ///< of all lights that are not faces
+  std::string quantity;                 ///< "radiometric" or "photometric"; empty: what the format says
+  std::vector<std::string> luminaires;  ///< FILE@x,y,z[:turn,tilt,spin]
+  double efficacy = 179;                ///< lm/W of the light of luminaires in a radiometric scene; as in Radiance
+  SkyOptions sky;
 };
 
 void add_light_options(CLI::App& command, LightOptions& options);
 
-/// Changes the scene as the options say.
-void take_light_options(const LightOptions& options, Scene& scene);
+/// Changes the scene as the options say, and appends to its warnings. Throws Failure for a luminaire that cannot be read.
+void take_light_options(const LightOptions& options, SceneFile& file);
 
 }  // namespace alvor

@@ -1,0 +1,151 @@
+#include "radiosity/direct/sky_light.h"
+
+#include "radiosity/direct/face_integral.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace alvor {
+
+namespace {
+
+using std::numbers::pi;
+
+// Steps of the table over normals: angles from the zenith and azimuths; and of the sum over directions that fills it.
+constexpr int tilts = 48, turns = 96, rings = 32, sectors = 128;
+// Smallest distance from which an exit is looked at, local units.
+constexpr double nearest_exit = 1e-5;
+// Cosine of the angle between a zenith and the side of an exit within which the side stands upright.
+constexpr double aligned = 1 - 1e-9;
+
+/// Returns the power that a sky sends through exits, or onto open faces, in local units squared times its colour.
+double power_of(const SkyDome& dome, const SkyExits& exits, bool is_of_open) {
+  double sum = 0;
+  for (const SkyExits::WayOut& way : exits.ways_out)
+    if (way.is_of_open == is_of_open) sum += pi * way.area * dome.radiance(way.direction);
+  return sum;
+}
+
+double square_metres(const LocalScene& scene) { return scene.frame().metres_per_unit * scene.frame().metres_per_unit; }
+
+}  // namespace
+
+DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+                     std::shared_ptr<const SkyExits> exits)
+    : LightSource(number, unit.from_watts_per_m2(sky.intensity),
+                  unit.from_watts_per_m2(sky.intensity).sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, true)),
+      dome_(sky),
+      exits_(std::move(exits)),
+      side_(normalized(cross(dome_.zenith(), std::abs(dome_.zenith().x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}))),
+      other_(cross(dome_.zenith(), side_)),
+      box_(scene) {
+  fill_table();
+}
+
+void DomeLight::fill_table() {
+  struct Ray {
+    Vec3 direction;
+    double brings;  // radiance times solid angle
+  };
+  std::vector<Ray> rays;
+  for (int ring = 0; ring < rings; ++ring)
+    for (int sector = 0; sector < sectors; ++sector) {
+      // Even by solid angle, so that the horizon, which tilted faces look at, is as fine as the zenith.
+      const double cosine = (ring + 0.5) / rings, sine = std::sqrt(1 - cosine * cosine), turn = 2 * pi * (sector + 0.5) / sectors;
+      const Vec3 direction = cosine * dome_.zenith() + sine * std::cos(turn) * side_ + sine * std::sin(turn) * other_;
+      rays.push_back({direction, dome_.radiance(direction) * 2 * pi / (rings * sectors)});
+    }
+  for (int tilt = 0; tilt <= tilts; ++tilt)
+    for (int turn = 0; turn < turns; ++turn) {
+      const double a = pi * tilt / tilts, b = 2 * pi * turn / turns;
+      const Vec3 normal = std::cos(a) * dome_.zenith() + std::sin(a) * std::cos(b) * side_ + std::sin(a) * std::sin(b) * other_;
+      double sum = 0;
+      for (const Ray& ray : rays) sum += ray.brings * std::max(0.0, dot(ray.direction, normal));
+      table_.push_back(static_cast<float>(sum));
+    }
+}
+
+double DomeLight::unblocked(Vec3, Vec3 normal) const {
+  const double tilt = std::acos(std::clamp(dot(normal, dome_.zenith()), -1.0, 1.0)) / pi * tilts;
+  double turn = std::atan2(dot(normal, other_), dot(normal, side_)) / (2 * pi) * turns;
+  if (turn < 0) turn += turns;
+  const int row = std::min(tilts - 1, static_cast<int>(tilt)), column = std::min(turns - 1, static_cast<int>(turn));
+  const auto at = [&](int r, int c) { return double{table_[static_cast<std::size_t>(r * turns + c % turns)]}; };
+  const double u = turn - column, v = tilt - row;
+  return (1 - v) * ((1 - u) * at(row, column) + u * at(row, column + 1)) +
+         v * ((1 - u) * at(row + 1, column) + u * at(row + 1, column + 1));
+}
+
+void DomeLight::aim(const ShadowAim& aim, int first, int last) const {
+  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
+  const Vec3 tangent = normalized(cross(normal, std::abs(normal.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  const Vec3 bitangent = cross(normal, tangent);
+  for (int o = first; o < last; ++o) {
+    const Uv at = aim.at[static_cast<std::size_t>(o)];
+    const double radius = std::sqrt(at.u), angle = 2 * pi * at.v;
+    const Vec3 direction = normalized(radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent +
+                                      std::sqrt(std::max(0.0, 1 - at.u)) * normal);
+    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
+    set_ray(aim, o, box_.way_out(from, direction) * direction, 1);
+    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(pi * dome_.radiance(direction));
+  }
+}
+
+ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+                     std::shared_ptr<const SkyExits> exits, std::size_t which)
+    : LightSource(number, unit.from_watts_per_m2(sky.intensity),
+                  unit.from_watts_per_m2(sky.intensity).sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, false) /
+                      static_cast<double>(exits->exits.size())),
+      dome_(sky),
+      exits_(std::move(exits)),
+      exit_(exits_->exits[which]) {}
+
+/// Returns the irradiance that a point of the exit brings, per area of the exit.
+double ExitLight::brings(Vec3 from, Vec3 at, Vec3 normal) const {
+  const Vec3 way = from - at;
+  const double squared = std::max(dot(way, way), nearest_exit * nearest_exit), distance = std::sqrt(squared);
+  const double here = dot(way, normal), there = -dot(way, exit_.inwards);
+  return here > 0 && there > 0 ? here * there / (squared * squared) * dome_.radiance(way / distance) : 0;
+}
+
+/// Returns the part of the exit through which the sky is seen from a point: above the horizontal plane through the point. A
+/// zenith that is not along a side leaves the exit whole.
+SkyExit ExitLight::above_horizon(Vec3 at) const {
+  SkyExit part = exit_;
+  const double height = dot(part.corner - at, dome_.zenith());
+  const auto cut = [&](Vec3& side) {
+    const double rise = dot(side, dome_.zenith());
+    // The horizon lies at this share of the side.
+    const double share = std::clamp(-height / rise, 0.0, 1.0);
+    if (rise > 0) part.corner += share * side, side = (1 - share) * side;
+    else side = share * side;
+  };
+  const double along_u = std::abs(dot(part.side_u, dome_.zenith())), along_v = std::abs(dot(part.side_v, dome_.zenith()));
+  if (along_u > aligned * length(part.side_u)) cut(part.side_u);
+  else if (along_v > aligned * length(part.side_v)) cut(part.side_v);
+  return part;
+}
+
+double ExitLight::unblocked(Vec3 at, Vec3 normal) const {
+  const SkyExit part = above_horizon(at);
+  const double size_u = length(part.side_u), size_v = length(part.side_v);
+  if (!(size_u > 0 && size_v > 0)) return 0;
+  const auto point = [&](Uv uv) { return part.at(uv.u, uv.v); };
+  const auto brings_here = [&](Vec3 from) { return brings(from, at, normal); };
+  return part.area() * FaceIntegral(point, brings_here, size_u, size_v, at).mean();
+}
+
+void ExitLight::aim(const ShadowAim& aim, int first, int last) const {
+  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
+  for (int o = first; o < last; ++o) {
+    const Uv at = aim.at[static_cast<std::size_t>(o)];
+    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
+    const SkyExit part = above_horizon(from);
+    const Vec3 target = part.at(at.u, at.v);
+    set_ray(aim, o, target - from, 1);
+    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(part.area() * brings(target, from, normal));
+  }
+}
+
+}  // namespace alvor

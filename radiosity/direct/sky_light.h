@@ -1,0 +1,64 @@
+#pragma once
+// Light of the sky: from all directions for faces in the open, through exits for the others (see SkyExits).
+
+#include "meshing/light.h"
+#include "radiosity/direct/emission_unit.h"
+#include "radiosity/direct/light_source.h"
+#include "radiosity/direct/scene_box.h"
+#include "radiosity/direct/sky_exits.h"
+#include "radiosity/rays/local_scene.h"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace alvor {
+
+/// The whole dome of a sky, for open faces. Unblocked irradiance is interpolated in a table over normals; the directions of
+/// shadow rays are cosine-distributed about the receiver's normal.
+class DomeLight final : public LightSource {
+ public:
+  /// Requires: `sky` is a sky; !fault_in(sky).
+  DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+            std::shared_ptr<const SkyExits> exits);
+
+  bool may_reach(std::uint32_t root) const override { return exits_->is_open[root]; }
+  double unblocked(Vec3 at, Vec3 normal) const override;
+  void aim(const ShadowAim& aim, int first, int last) const override;
+  double sample_scale(double probability) const override { return 1 / probability; }
+  std::optional<LightExtent> extent() const override { return std::nullopt; }
+
+ private:
+  void fill_table();
+
+  const SkyDome dome_;
+  const std::shared_ptr<const SkyExits> exits_;
+  Vec3 side_, other_;  // with the zenith the axes of the table
+  const SceneBox box_;
+  std::vector<float> table_;  // by angle from the zenith, then by azimuth
+};
+
+/// What a sky sends through one exit, for closed faces. Unblocked irradiance is the integral over the exit by Gauss' rule; shadow
+/// rays go to points that are uniform by area.
+class ExitLight final : public LightSource {
+ public:
+  /// Requires: `sky` is a sky; !fault_in(sky).
+  ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+            std::shared_ptr<const SkyExits> exits, std::size_t which);
+
+  bool may_reach(std::uint32_t root) const override { return !exits_->is_open[root]; }
+  double unblocked(Vec3 at, Vec3 normal) const override;
+  void aim(const ShadowAim& aim, int first, int last) const override;
+  double sample_scale(double probability) const override { return 1 / probability; }
+  std::optional<LightExtent> extent() const override { return std::nullopt; }
+
+ private:
+  SkyExit above_horizon(Vec3 at) const;
+  double brings(Vec3 from, Vec3 at, Vec3 normal) const;
+
+  const SkyDome dome_;
+  const std::shared_ptr<const SkyExits> exits_;
+  const SkyExit& exit_;
+};
+
+}  // namespace alvor
