@@ -2,7 +2,6 @@
 // Point and spot lamps.
 
 #include "meshing/light.h"
-#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/rays/local_scene.h"
 
@@ -13,8 +12,9 @@ namespace alvor {
 /// horizon. Closer than the radius, or than 1e-5 of the scene's extent, d is that distance.
 class LampLight final : public LightSource {
  public:
-  /// Requires: `lamp` is not distant; !fault_in(lamp).
-  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit);
+  /// `colour` is the irradiance, in the middle of a spot's cone, of a surface that faces the lamp at a distance of one local
+  /// unit. `power` is that of LightSource. Requires: `lamp` is not distant; !fault_in(lamp).
+  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, int first, int last) const override;
