@@ -12,11 +12,12 @@ namespace alvor {
 namespace {
 
 /// The normal equations of a least-squares gradient g: sum w (d d^T) g = sum w d dv, for each band.
+template <class Value>
 struct NormalEquations {
   double ss = 0, st = 0, tt = 0;
-  Rgb s, t;
+  Value s, t;
 
-  void add(double ds, double dt, const Rgb& difference) {
+  void add(double ds, double dt, const Value& difference) {
     const double w = 1 / (ds * ds + dt * dt);
     ss += w * ds * ds;
     st += w * ds * dt;
@@ -25,13 +26,34 @@ struct NormalEquations {
     t += (w * dt) * difference;
   }
   /// Returns the slope along each axis; zero along a direction without neighbours.
-  std::pair<Rgb, Rgb> solve() const {
+  std::pair<Value, Value> solve() const {
     const double ridge = 1e-6 * (ss + tt);
     if (!(ridge > 0)) return {};
     const double a = ss + ridge, d = tt + ridge, inverse = 1 / (a * d - st * st);
     return {inverse * (d * s - st * t), inverse * (a * t - st * s)};
   }
 };
+
+template <class Value>
+LeafSlopeOf<Value> slope_of(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours,
+                            std::span<const Vec3> centre, std::span<const Value> value) {
+  LeafSlopeOf<Value> slope{{}, {}, {}, value[leaf], value[leaf]};
+  if (value[leaf].is_zero()) return slope;
+  const TangentFrame frame(forest.mesh().roots()[forest.id(leaf).root_face()].normal);
+  NormalEquations<Value> equations;
+  for (const NodeIndex other : neighbours) {
+    const Vec3 d = centre[other] - centre[leaf];
+    if (value[other].is_zero() || dot(d, d) == 0) continue;
+    equations.add(dot(d, frame.s), dot(d, frame.t), value[other] - value[leaf]);
+    slope.low = lower(slope.low, value[other]);
+    slope.high = upper(slope.high, value[other]);
+  }
+  const auto [s, t] = equations.solve();
+  slope.r = s.r * frame.s + t.r * frame.t;
+  slope.g = s.g * frame.s + t.g * frame.t;
+  slope.b = s.b * frame.s + t.b * frame.t;
+  return slope;
+}
 
 }  // namespace
 
@@ -73,22 +95,12 @@ std::vector<SmoothNeighbours> NeighbourTable::of(std::span<const NodeIndex> leav
 
 LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                      std::span<const Rgb> value) {
-  LeafSlope slope{{}, {}, {}, value[leaf], value[leaf]};
-  if (value[leaf].is_zero()) return slope;
-  const TangentFrame frame(forest.mesh().roots()[forest.id(leaf).root_face()].normal);
-  NormalEquations equations;
-  for (const NodeIndex other : neighbours) {
-    const Vec3 d = centre[other] - centre[leaf];
-    if (value[other].is_zero() || dot(d, d) == 0) continue;
-    equations.add(dot(d, frame.s), dot(d, frame.t), value[other] - value[leaf]);
-    slope.low = lower(slope.low, value[other]);
-    slope.high = upper(slope.high, value[other]);
-  }
-  const auto [s, t] = equations.solve();
-  slope.r = s.r * frame.s + t.r * frame.t;
-  slope.g = s.g * frame.s + t.g * frame.t;
-  slope.b = s.b * frame.s + t.b * frame.t;
-  return slope;
+  return slope_of(forest, leaf, neighbours, centre, value);
+}
+
+RelativeSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours,
+                         std::span<const Vec3> centre, std::span<const RelativeLight> value) {
+  return slope_of(forest, leaf, neighbours, centre, value);
 }
 
 }  // namespace alvor

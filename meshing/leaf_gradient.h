@@ -2,6 +2,7 @@
 // Gradients of leaf values, from differences between neighbouring leaves.
 
 #include "meshing/patch_forest.h"
+#include "solution/relative_light.h"
 
 #include <array>
 #include <cstdint>
@@ -11,13 +12,16 @@
 namespace alvor {
 
 /// The gradient of each band in the leaf's plane, per metre, and the smallest and largest value among the leaf and its
-/// neighbours.
-struct LeafSlope {
+/// neighbours. `Value` is Rgb or RelativeLight.
+template <class Value>
+struct LeafSlopeOf {
   Vec3 r, g, b;
-  Rgb low, high;
+  Value low, high;
 
-  Rgb along(Vec3 offset) const { return {dot(r, offset), dot(g, offset), dot(b, offset)}; }
+  Value along(Vec3 offset) const { return {dot(r, offset), dot(g, offset), dot(b, offset)}; }
 };
+using LeafSlope = LeafSlopeOf<Rgb>;
+using RelativeSlope = LeafSlopeOf<RelativeLight>;
 
 /// A leaf's neighbours across its edges: at most two across each edge, none across creases.
 class SmoothNeighbours {
@@ -57,5 +61,7 @@ class NeighbourTable {
 /// `centre` and `value` are indexed by node. Safe from any thread.
 LeafSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
                      std::span<const Rgb> value);
+RelativeSlope leaf_slope(const PatchForest& forest, NodeIndex leaf, const SmoothNeighbours& neighbours,
+                         std::span<const Vec3> centre, std::span<const RelativeLight> value);
 
 }  // namespace alvor

@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <concepts>
 
 namespace alvor {
 
-template <class T>
+/// The unit of an Rgb whose type does not tell it: W/m2, or a factor, such as a reflectance, that any light may be multiplied by.
+struct AnyUnit;
+
+/// A value per band. Values of different `Unit` cannot be added, compared or converted to each other.
+template <class T, class Unit = AnyUnit>
 struct RgbOf {
   T r{}, g{}, b{};
 
@@ -37,7 +42,9 @@ struct RgbOf {
   friend constexpr RgbOf operator*(RgbOf a, T s) { return a *= s; }
   friend constexpr RgbOf operator*(T s, RgbOf a) { return a *= s; }
   /// Multiplies band by band, as reflectance times irradiance.
-  friend constexpr RgbOf operator*(const RgbOf& a, const RgbOf& c) { return {a.r * c.r, a.g * c.g, a.b * c.b}; }
+  friend constexpr RgbOf operator*(const RgbOf& a, const RgbOf& c) requires std::same_as<Unit, AnyUnit> {
+    return {a.r * c.r, a.g * c.g, a.b * c.b};
+  }
 
   constexpr T sum() const { return r + g + b; }
   constexpr T mean() const { return sum() / T(3); }
@@ -56,12 +63,18 @@ constexpr RgbF narrow(const Rgb& a) { return {static_cast<float>(a.r), static_ca
 constexpr Rgb widen(const RgbF& a) { return {a.r, a.g, a.b}; }
 
 /// Returns the smaller value of each band.
-constexpr Rgb lower(const Rgb& a, const Rgb& b) { return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)}; }
+template <class T, class Unit>
+constexpr RgbOf<T, Unit> lower(const RgbOf<T, Unit>& a, const RgbOf<T, Unit>& b) {
+  return {std::min(a.r, b.r), std::min(a.g, b.g), std::min(a.b, b.b)};
+}
 /// Returns the larger value of each band.
-constexpr Rgb upper(const Rgb& a, const Rgb& b) { return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)}; }
+template <class T, class Unit>
+constexpr RgbOf<T, Unit> upper(const RgbOf<T, Unit>& a, const RgbOf<T, Unit>& b) {
+  return {std::max(a.r, b.r), std::max(a.g, b.g), std::max(a.b, b.b)};
+}
 
-template <class T>
-RgbOf<T> absolute(const RgbOf<T>& a) {
+template <class T, class Unit>
+RgbOf<T, Unit> absolute(const RgbOf<T, Unit>& a) {
   return {std::abs(a.r), std::abs(a.g), std::abs(a.b)};
 }
 

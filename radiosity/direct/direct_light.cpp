@@ -137,10 +137,10 @@ class ShadowBatch {
 
   void add(const Lit& lit) const {
     DirectLight& light = light_[lit.receiver];
-    const Rgb& colour = lights_[lit.light]->colour();
+    const RelativeLight& colour = lights_[lit.light]->colour();
     const double mean = lit.mean_unblocked(), visible = mean * lit.fraction.value();
     if (visible <= 0) return;
-    const Rgb arriving = medium ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
+    const RelativeLight arriving = medium ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
     light.irradiance += arriving;
     const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / mean;
     const QuarterPlane unblocked(lit.unblocked, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
@@ -214,14 +214,14 @@ class ShadowBatch {
   void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Samples samples = sample_rest(r, choice, tree);
     if (samples.count == 0) return;
-    const Rgb mean = (1 / samples.count) * samples.sum;
+    const RelativeLight mean = (1 / samples.count) * samples.sum;
     light_[r].irradiance += mean;
     for (float& there : light_[r].at_origin) there += static_cast<float>(mean.mean());
     light_[r].variance +=
         static_cast<float>(std::max(0.0, samples.squares / samples.count - mean.mean() * mean.mean()) / samples.count);
   }
   struct Samples {
-    Rgb sum;
+    RelativeLight sum;
     double squares = 0, count = 0;
   };
   Samples sample_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
@@ -231,7 +231,7 @@ class ShadowBatch {
     rays_.resize(packets_of_rest);
     weights_.resize(packets_of_rest);
     blocked_.resize(packets_of_rest);
-    std::array<Rgb, packets_of_rest * RayPacket::width> brings{};
+    std::array<RelativeLight, packets_of_rest * RayPacket::width> brings{};
     for (std::size_t packet = 0; packet < packets_of_rest; ++packet) {
       ShadowAim aim = aim_of(r, packet);
       for (int o = 0; o < RayPacket::width; ++o) {
@@ -253,7 +253,7 @@ class ShadowBatch {
       if (receiver.hidden_origins >> o & 1) continue;
       samples.count += 1;
       if (blocked_[packet] >> o & 1) continue;
-      Rgb arriving = double(weights_[packet][o]) * brings[n];
+      RelativeLight arriving = double(weights_[packet][o]) * brings[n];
       if constexpr (medium) arriving = medium_.transmittance(distance(rays_[packet], static_cast<int>(o))) * arriving;
       samples.sum += arriving;
       samples.squares += arriving.mean() * arriving.mean();

@@ -13,10 +13,9 @@
 
 namespace alvor {
 
-/// The irradiance that a patch receives straight from lights, averaged over the part of the patch that is not hidden. In
-/// emission units (see EmissionUnit).
+/// The irradiance that a patch receives straight from lights, averaged over the part of the patch that is not hidden.
 struct DirectLight {
-  Rgb irradiance;
+  RelativeLight irradiance;
   /// Irradiance at each origin of the patch, from the origin's own shadow rays; mean over bands, in emission units. The origins
   /// are those of transport rows.
   std::array<float, origins_per_patch> at_origin{};

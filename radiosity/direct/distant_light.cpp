@@ -40,9 +40,8 @@ double area_met(const LocalScene& scene, Vec3 towards) {
 
 }  // namespace
 
-DistantLight::DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const EmissionUnit& unit)
-    : LightSource(number, unit.from_watts_per_m2(light.intensity),
-                  unit.from_watts_per_m2(light.intensity).sum() * area_met(scene, -light.direction)),
+DistantLight::DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const RelativeLight& colour)
+    : LightSource(number, colour, colour.sum() * area_met(scene, -light.direction)),
       towards_(-light.direction),
       half_width_(std::tan(light.angular_diameter / 2)),
       box_(scene) {}

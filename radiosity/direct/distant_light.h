@@ -2,7 +2,6 @@
 // Light from one direction: the sun, or a directional light.
 
 #include "meshing/light.h"
-#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/direct/scene_box.h"
 #include "radiosity/rays/local_scene.h"
@@ -14,9 +13,9 @@ namespace alvor {
 /// only.
 class DistantLight final : public LightSource {
  public:
-  /// The light's power is what first meets fronts, estimated by 4096 parallel rays. Requires: `light` is distant;
-  /// !fault_in(light).
-  DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const EmissionUnit& unit);
+  /// `colour` is the irradiance of a surface that faces the light. The light's power is what first meets fronts, estimated by
+  /// 4096 parallel rays. Requires: `light` is distant; !fault_in(light).
+  DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const RelativeLight& colour);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, int first, int last) const override;

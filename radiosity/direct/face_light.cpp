@@ -15,7 +15,7 @@ constexpr float short_of_face = 1 - 1e-4f;
 
 }  // namespace
 
-FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const Rgb& emission)
+FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission)
     : LightSource(root, emission, emission.sum() * scene.mesh().roots()[root].area), scene_(scene) {}
 
 double FaceLight::unblocked(Vec3 at, Vec3 normal) const {

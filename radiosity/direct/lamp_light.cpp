@@ -21,9 +21,8 @@ double radius_of_sphere(const Light& lamp) { return lamp.kind == LightKind::lumi
 
 }  // namespace
 
-LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit)
-    : LightSource(number, unit.from_watts_per_m2((1 / squared(scene.frame().metres_per_unit)) * lamp.intensity),
-                  unit.from_watts_per_m2(radiated_power(lamp)).sum()),
+LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power)
+    : LightSource(number, colour, power),
       lamp_(lamp),
       cone_(lamp.kind == LightKind::spot ? std::optional(SpotCone(lamp)) : std::nullopt),
       web_(lamp.kind == LightKind::luminaire ? std::optional(HungWeb(lamp)) : std::nullopt),

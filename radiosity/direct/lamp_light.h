@@ -2,7 +2,6 @@
 // Lamps that shine from a point or a sphere.
 
 #include "meshing/light.h"
-#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/rays/local_scene.h"
 
@@ -14,8 +13,10 @@ namespace alvor {
 /// that distance.
 class LampLight final : public LightSource {
  public:
-  /// Requires: `lamp` is of these kinds; !fault_in(lamp).
-  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const EmissionUnit& unit);
+  /// `colour` is the irradiance, in the middle of a spot's cone or for a web's
+  /// intensity of 1, of a surface that faces the lamp at a distance of one local
+  /// unit. `power` is that of LightSource. Requires: `lamp` is of these kinds; !fault_in(lamp).
+  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, int first, int last) const override;

@@ -3,7 +3,7 @@
 
 #include "radiosity/rays/ray_source.h"
 #include "radiosity/rays/visibility.h"
-#include "solution/rgb.h"
+#include "solution/relative_light.h"
 
 #include <array>
 #include <cstdint>
@@ -51,13 +51,14 @@ class LightSource {
  public:
   /// `number` tells the lights of a scene apart: it selects the random numbers of shadow rays. `power` is what the light sends
   /// out, in emission units times m2, summed over bands.
-  LightSource(std::uint32_t number, const Rgb& colour, double power) : number_(number), colour_(colour), power_(power) {}
+  LightSource(std::uint32_t number, const RelativeLight& colour, double power)
+      : number_(number), colour_(colour), power_(power) {}
   virtual ~LightSource() = default;
   LightSource(const LightSource&) = delete;
   LightSource& operator=(const LightSource&) = delete;
 
   std::uint32_t number() const { return number_; }
-  const Rgb& colour() const { return colour_; }  ///< emission units per band
+  const RelativeLight& colour() const { return colour_; }
   double power() const { return power_; }
 
   /// Returns whether the light can reach the front of a root patch at all, as far as one can tell at no cost.
@@ -75,7 +76,7 @@ class LightSource {
 
  private:
   std::uint32_t number_;
-  Rgb colour_;
+  RelativeLight colour_;
   double power_;
 };
 

@@ -15,49 +15,69 @@ bool shines_from_area(const Light& light) {
   return light.kind == LightKind::luminaire && light.opening.shape != Shape::point && light.opening.shape != Shape::sphere;
 }
 
-/// Makes the lights of skies; where they enter the scene is found once for all of them.
-class SkyLights {
+/// Makes the lights of one scene that are not faces.
+class LightMaker {
  public:
-  SkyLights(const LocalScene& scene, const EmissionUnit& unit, OwnedLights& lights)
-      : scene_(scene), unit_(unit), lights_(lights) {}
+  LightMaker(const LocalScene& scene, const EmissionUnit& unit)
+      : scene_(scene), unit_(unit), number_(static_cast<std::uint32_t>(scene.mesh().roots().size())) {}
 
-  void add(const Light& sky, std::uint32_t& number) {
-    if (!exits_) exits_ = std::make_shared<SkyExits>(scene_);
-    if (exits_->any_open) lights_.push_back(std::make_unique<DomeLight>(scene_, number++, sky, unit_, exits_));
-    for (std::size_t which = 0; which < exits_->exits.size(); ++which)
-      lights_.push_back(std::make_unique<ExitLight>(scene_, number++, sky, unit_, exits_, which));
+  void add(const Light& light) {
+    if (light.kind == LightKind::sky) add_sky(light);
+    else if (light.is_distant()) make<DistantLight>(light, unit_.from_watts_per_m2(light.intensity));
+    else add_lamp(light);
   }
+  OwnedLights take() { return std::move(lights_); }
 
  private:
+  template <class Kind, class... Arguments>
+  void make(Arguments&&... arguments) {
+    lights_.push_back(std::make_unique<Kind>(scene_, number_++, std::forward<Arguments>(arguments)...));
+  }
+  void add_lamp(const Light& lamp) {
+    const double metres = scene_.frame().metres_per_unit;
+    const RelativeLight at_one_local_unit = unit_.from_watts_per_m2((1 / (metres * metres)) * lamp.intensity);
+    const double power = unit_.from_watts_per_m2(radiated_power(lamp)).sum();
+    if (shines_from_area(lamp)) make<OpeningLight>(lamp, at_one_local_unit, power);
+    else make<LampLight>(lamp, at_one_local_unit, power);
+  }
+  /// Where skies enter the scene is found once for all of them.
+  void add_sky(const Light& sky) {
+    if (!exits_) exits_ = std::make_shared<SkyExits>(scene_);
+    const RelativeLight colour = unit_.from_watts_per_m2(sky.intensity);
+    if (exits_->any_open) make<DomeLight>(sky, colour, exits_);
+    for (std::size_t which = 0; which < exits_->exits.size(); ++which) make<ExitLight>(sky, colour, exits_, which);
+  }
+
   const LocalScene& scene_;
   const EmissionUnit& unit_;
-  OwnedLights& lights_;
+  std::uint32_t number_;
+  OwnedLights lights_;
   std::shared_ptr<const SkyExits> exits_;
 };
 
 }  // namespace
 
+std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const EmissionUnit& unit) {
+  std::vector<RelativeLight> emission;
+  for (const Material& material : mesh.materials()) emission.push_back(unit.from_watts_per_m2(material.emission));
+  return emission;
+}
+
 OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit) {
   OwnedLights lights;
+  const auto emission_of = emission_by_material(scene.mesh(), unit);
   for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root) {
-    const Rgb emission = unit.from_watts_per_m2(scene.mesh().material_of(root).emission);
+    const RelativeLight& emission = emission_of[scene.mesh().roots()[root].material];
     if (!emission.is_zero()) lights.push_back(std::make_unique<FaceLight>(scene, root, emission));
   }
   return lights;
 }
 
 OwnedLights lights_beside_faces(const LocalScene& scene, const EmissionUnit& unit) {
-  OwnedLights lights;
-  auto number = static_cast<std::uint32_t>(scene.mesh().roots().size());
-  SkyLights skies(scene, unit, lights);
-  for (const Light& light : scene.mesh().lights()) {
-    if (light.intensity.is_zero()) continue;
-    if (light.kind == LightKind::sky) skies.add(light, number);
-    else if (light.is_distant()) lights.push_back(std::make_unique<DistantLight>(scene, number++, light, unit));
-    else if (shines_from_area(light)) lights.push_back(std::make_unique<OpeningLight>(scene, number++, light, unit));
-    else lights.push_back(std::make_unique<LampLight>(scene, number++, light, unit));
-  }
-  return lights;
+  LightMaker maker(scene, unit);
+  for (const Light& light : scene.mesh().lights())
+    if (!light.intensity.is_zero()) maker.add(light);
+  return maker.take();
 }
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Makes the light sources of a scene. Nothing else asks of what kind a light is.
+// Makes the light sources of a scene, in emission units. Nothing else asks of what kind a light is.
 
 #include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
@@ -11,6 +11,9 @@
 namespace alvor {
 
 using OwnedLights = std::vector<std::unique_ptr<const LightSource>>;
+
+/// Returns the emission of each material of the mesh.
+std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const EmissionUnit& unit);
 
 /// Returns a light for each root patch that emits, in the order of the roots.
 OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit);

@@ -17,11 +17,9 @@ constexpr double nearest_opening = 1e-5;
 
 }  // namespace
 
-OpeningLight::OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const EmissionUnit& unit)
-    : LightSource(
-          number,
-          unit.from_watts_per_m2((1 / (scene.frame().metres_per_unit * scene.frame().metres_per_unit)) * luminaire.intensity),
-          unit.from_watts_per_m2(radiated_power(luminaire)).sum()),
+OpeningLight::OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const RelativeLight& colour,
+                           double power)
+    : LightSource(number, colour, power),
       web_(luminaire),
       faces_(faces_of_opening(luminaire)),
       place_(scene.frame().to_local(luminaire.position)),

@@ -3,7 +3,6 @@
 
 #include "meshing/light.h"
 #include "meshing/opening_face.h"
-#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/rays/local_scene.h"
 
@@ -17,8 +16,9 @@ namespace alvor {
 /// their distance; shadow rays go to points that are uniform by area.
 class OpeningLight final : public LightSource {
  public:
-  /// Requires: `luminaire` shines from faces (see faces_of_opening()); !fault_in(luminaire).
-  OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const EmissionUnit& unit);
+  /// `colour` and `power` are as for LampLight. Requires: `luminaire` shines from faces (see faces_of_opening());
+  /// !fault_in(luminaire).
+  OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const RelativeLight& colour, double power);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, int first, int last) const override;

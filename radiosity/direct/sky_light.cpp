@@ -31,10 +31,9 @@ double square_metres(const LocalScene& scene) { return scene.frame().metres_per_
 
 }  // namespace
 
-DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
                      std::shared_ptr<const SkyExits> exits)
-    : LightSource(number, unit.from_watts_per_m2(sky.intensity),
-                  unit.from_watts_per_m2(sky.intensity).sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, true)),
+    : LightSource(number, colour, colour.sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, true)),
       dome_(sky),
       exits_(std::move(exits)),
       side_(normalized(cross(dome_.zenith(), std::abs(dome_.zenith().x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}))),
@@ -92,11 +91,11 @@ void DomeLight::aim(const ShadowAim& aim, int first, int last) const {
   }
 }
 
-ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
                      std::shared_ptr<const SkyExits> exits, std::size_t which)
-    : LightSource(number, unit.from_watts_per_m2(sky.intensity),
-                  unit.from_watts_per_m2(sky.intensity).sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, false) /
-                      static_cast<double>(exits->exits.size())),
+    : LightSource(
+          number, colour,
+          colour.sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, false) / static_cast<double>(exits->exits.size())),
       dome_(sky),
       exits_(std::move(exits)),
       exit_(exits_->exits[which]) {}

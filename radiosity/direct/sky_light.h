@@ -2,7 +2,6 @@
 // Light of the sky: from all directions for faces in the open, through exits for the others (see SkyExits).
 
 #include "meshing/light.h"
-#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/direct/scene_box.h"
 #include "radiosity/direct/sky_exits.h"
@@ -18,8 +17,8 @@ namespace alvor {
 /// shadow rays are cosine-distributed about the receiver's normal.
 class DomeLight final : public LightSource {
  public:
-  /// Requires: `sky` is a sky; !fault_in(sky).
-  DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+  /// `colour` is the irradiance of an open surface that faces the zenith. Requires: `sky` is a sky; !fault_in(sky).
+  DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
             std::shared_ptr<const SkyExits> exits);
 
   bool may_reach(std::uint32_t root) const override { return exits_->is_open[root]; }
@@ -42,8 +41,8 @@ class DomeLight final : public LightSource {
 /// rays go to points that are uniform by area.
 class ExitLight final : public LightSource {
  public:
-  /// Requires: `sky` is a sky; !fault_in(sky).
-  ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const EmissionUnit& unit,
+  /// `colour` is the irradiance of an open surface that faces the zenith. Requires: `sky` is a sky; !fault_in(sky).
+  ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
             std::shared_ptr<const SkyExits> exits, std::size_t which);
 
   bool may_reach(std::uint32_t root) const override { return !exits_->is_open[root]; }

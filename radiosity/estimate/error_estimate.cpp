@@ -6,7 +6,7 @@
 namespace alvor {
 
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
-                           std::span<const Rgb> value, std::span<const LeafSlope> slope) {
+                           std::span<const RelativeLight> value, std::span<const RelativeSlope> slope) {
   double squares = 0, count = 0;
   bool at_crease = neighbours.at_crease();
   const auto miss = [&](NodeIndex from, NodeIndex to) {

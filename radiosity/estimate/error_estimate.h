@@ -13,7 +13,7 @@ namespace alvor {
 /// The result is 0.25 of the RMS difference over all neighbours, and 0.4 of it at a crease, up to which the leaf extrapolates.
 /// The spans are indexed by node.
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
-                           std::span<const Rgb> value, std::span<const LeafSlope> slope);
+                           std::span<const RelativeLight> value, std::span<const RelativeSlope> slope);
 
 /// The parts of the estimated nRMSE of the irradiance: RMS error over the mean irradiance. Their squares add up to total().
 struct ErrorEstimate {

@@ -31,7 +31,7 @@ CoarseGrid::CoarseGrid(CoarseUnits units, const RowHits& hits) : units_(std::mov
   for (Matrix& band : matrices(units_, hits, weight_)) band_.emplace_back(std::move(band));
 }
 
-void CoarseGrid::correct(std::span<const Rgb> residual, std::span<Rgb> step) const {
+void CoarseGrid::correct(std::span<const RelativeLight> residual, std::span<RelativeLight> step) const {
   std::array<std::vector<double>, 3> mean;
   for (auto& band : mean) band.resize(units_.count);
   for (std::size_t p = 0; p < residual.size(); ++p) {

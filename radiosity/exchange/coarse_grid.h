@@ -17,7 +17,7 @@ class CoarseGrid {
 
   /// Improves `step`, which holds the residual at first: replaces its mean over each unit by the irradiance that removes the mean
   /// of the residual. Both spans are by patch.
-  void correct(std::span<const Rgb> residual, std::span<Rgb> step) const;
+  void correct(std::span<const RelativeLight> residual, std::span<RelativeLight> step) const;
 
  private:
   using Matrix = std::vector<std::vector<double>>;

@@ -21,7 +21,7 @@ double share(double remaining, double all) {
 }  // namespace
 
 double Exchange::remaining_error() const {
-  const Rgb remaining = amplification() * unshot_rms(), all = mean_radiosity();
+  const RelativeLight remaining = amplification() * unshot_rms(), all = mean_radiosity();
   return Rgb{share(remaining.r, all.r), share(remaining.g, all.g), share(remaining.b, all.b)}.max();
 }
 

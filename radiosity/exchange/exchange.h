@@ -1,7 +1,7 @@
 #pragma once
 // Iterative solution of the exchange of light between patches that have rows, until nothing is unshot.
 
-#include "solution/rgb.h"
+#include "solution/relative_light.h"
 
 #include <cstddef>
 #include <functional>
@@ -10,7 +10,7 @@
 namespace alvor {
 
 /// The system x = e + rho F x while it is being solved. F are the transport rows, x is the radiosity distributed so far, and
-/// e + rho F x - x is the unshot radiosity. Light is in emission units (see EmissionUnit). Used by one thread at a time.
+/// e + rho F x - x is the unshot radiosity. Used by one thread at a time.
 class Exchange {
  public:
   virtual ~Exchange() = default;
@@ -18,22 +18,22 @@ class Exchange {
   virtual std::size_t sweep() = 0;
   /// Returns |unshot radiosity| times area, summed over patches and bands, in emission units times m2.
   virtual double unshot_power() const = 0;
-  /// Returns the RMS of the unshot radiosity over the area, per band, in emission units.
-  virtual Rgb unshot_rms() const = 0;
-  /// Returns the mean over the area of the magnitude of the radiosity, distributed and unshot, per band, in emission units.
-  /// Emission that rows do not carry is not in it.
-  virtual Rgb mean_radiosity() const = 0;
+  /// Returns the RMS of the unshot radiosity over the area, per band.
+  virtual RelativeLight unshot_rms() const = 0;
+  /// Returns the mean over the area of the magnitude of the radiosity, distributed and unshot, per band. Emission that rows do
+  /// not carry is not in it.
+  virtual RelativeLight mean_radiosity() const = 0;
   /// Returns a bound on all light that unshot radiosity becomes before it is absorbed, itself included, as a multiple of it
   /// (RMS), per band: see alvor::amplification.
   virtual Rgb amplification() const = 0;
-  /// Returns the irradiance that each patch received by its row so far, in emission units.
-  virtual std::vector<Rgb> irradiance() const = 0;
-  /// Returns the ambient irradiance (Cohen et al. 1988), in emission units: R times the mean unshot radiosity, with
-  /// R = 1 / (1 - mean reflectance). In an open scene each reflection is weakened by the share of light that escapes.
-  virtual Rgb ambient_irradiance() const = 0;
+  /// Returns the irradiance that each patch received by its row so far.
+  virtual std::vector<RelativeLight> irradiance() const = 0;
+  /// Returns the ambient irradiance (Cohen et al. 1988): R times the mean unshot radiosity, with R = 1 / (1 - mean reflectance).
+  /// In an open scene each reflection is weakened by the share of light that escapes.
+  virtual RelativeLight ambient_irradiance() const = 0;
   virtual std::size_t patch_count() const = 0;
-  /// Returns the radiosity that each leaf has shot, patch after patch, in emission units. Empty if light is gathered.
-  virtual std::vector<Rgb> shot() const { return {}; }
+  /// Returns the radiosity that each leaf has shot, patch after patch. Empty if light is gathered.
+  virtual std::vector<RelativeLight> shot() const { return {}; }
 
   /// Returns a bound on the radiosity that is still to come: its RMS over the mean radiosity, in the worst band. Where nearly all
   /// light is reflected it is far more than the unshot radiosity: a small residual is no small error. It holds as far as rows are

@@ -1,7 +1,7 @@
 #pragma once
 // Fits a polynomial in two coordinates to samples of irradiance by weighted least squares.
 
-#include "solution/rgb.h"
+#include "solution/relative_light.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +34,7 @@ class FieldEquations {
   }
 
   struct Solution {
-    std::array<Rgb, 6> coefficient{};
+    std::array<RelativeLight, 6> coefficient{};
     double misfit = 0;    ///< mean square residual of the samples, mean over bands
     double response = 0;  ///< variance of the fit's value at the centre, as a multiple of one ray's variance
     double noise = 0;     ///< mean variance of a sample, as a multiple of one ray's variance

@@ -32,8 +32,8 @@ Rgb ratio(const Rgb& a, const Rgb& b) {
 }  // namespace
 
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
-                     std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
-                     std::vector<PatchId> ids, GatheringNeeds needs)
+                     std::span<const RelativeLight> own_radiosity, std::vector<const std::uint32_t*> hit_leaf,
+                     std::vector<RelativeLight> irradiance, std::vector<PatchId> ids, GatheringNeeds needs)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
@@ -86,27 +86,31 @@ void Gathering::spread(Light&& light) {
   });
 }
 
-Rgb Gathering::row_times_radiosity(std::size_t p) const {
+RelativeLight Gathering::row_times_radiosity(std::size_t p) const {
   const TransportRow& row = *patches_[p].row;
   if (row.rays == 0) return {};
   const std::span leaf(hit_leaf_[p], row.hits.size());
   return (1.0 / row.rays) * (row.hit_weight.empty() ? leaving_.sum(leaf) : leaving_.weighted_sum(leaf, row.hit_weight));
 }
 
-void Gathering::gather(std::vector<Rgb>& received) {
+void Gathering::gather(std::vector<RelativeLight>& received) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
 }
 
+// A row sees as much reflectance as it would gather light if all patches reflected an irradiance of 1.
 std::vector<Rgb> Gathering::reflectance_seen() {
-  std::vector<Rgb> seen(patches_.size());
-  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance; });
-  gather(seen);
+  static constexpr RelativeLight one{1, 1, 1};
+  std::vector<RelativeLight> received(patches_.size());
+  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * one; });
+  gather(received);
+  std::vector<Rgb> seen;
+  for (const RelativeLight& light : received) seen.push_back(light / one);
   return seen;
 }
 
-Rgb Gathering::product(std::span<const Rgb> a, std::span<const Rgb> b) const {
+Rgb Gathering::product(std::span<const RelativeLight> a, std::span<const RelativeLight> b) const {
   Rgb sum;
-  for (std::size_t p = 0; p < a.size(); ++p) sum += patches_[p].area * (a[p] * b[p]);
+  for (std::size_t p = 0; p < a.size(); ++p) sum += patches_[p].area * alvor::product(a[p], b[p]);
   return sum;
 }
 
@@ -122,10 +126,10 @@ void Gathering::find_unshot() {
   unshot_sum_ = {};
   Rgb squares;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const Rgb unshot = power_weight_[p] * residual_[p];
+    const RelativeLight unshot = power_weight_[p] * residual_[p];
     unshot_power_ += absolute(unshot).sum();
     unshot_sum_ += unshot;
-    if (patches_[p].area > 0) squares += (1 / patches_[p].area) * (unshot * unshot);
+    if (patches_[p].area > 0) squares += (1 / patches_[p].area) * alvor::product(unshot, unshot);
   }
   unshot_rms_ = {std::sqrt(squares.r / area_), std::sqrt(squares.g / area_), std::sqrt(squares.b / area_)};
 }
@@ -157,7 +161,7 @@ void Gathering::plain_step() {
 
 void Gathering::conjugate_step() {
   watch_decrease();
-  Direction next{residual_, std::vector<Rgb>(patches_.size()), {}};
+  Direction next{residual_, std::vector<RelativeLight>(patches_.size()), {}};
   if (coarse_) coarse_->correct(residual_, next.step);
   spread([&](std::size_t p, std::uint32_t) { return patches_[p].reflectance * next.step[p]; });
   gather(next.change);
@@ -176,7 +180,7 @@ Rgb Gathering::helps(const Rgb& length, const Rgb& overlap) const {
   return {double(gain.r > least.r), double(gain.g > least.g), double(gain.b > least.b)};
 }
 
-void Gathering::advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change) {
+void Gathering::advance(const Rgb& length, std::span<const RelativeLight> step, std::span<const RelativeLight> change) {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     irradiance_[p] += length * step[p];
     residual_[p] -= length * change[p];
@@ -192,14 +196,14 @@ void Gathering::remember(Direction direction, const Rgb& in_bands) {
   ++steps_;
 }
 
-Rgb Gathering::mean_radiosity() const {
-  Rgb power = own_power_;
+RelativeLight Gathering::mean_radiosity() const {
+  RelativeLight power = own_power_;
   for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
-  return area_ > 0 ? (1 / area_) * power : Rgb{};
+  return area_ > 0 ? (1 / area_) * power : RelativeLight{};
 }
 
-std::vector<Rgb> Gathering::irradiance() const {
-  std::vector<Rgb> all(patches_.size());
+std::vector<RelativeLight> Gathering::irradiance() const {
+  std::vector<RelativeLight> all(patches_.size());
   for (std::size_t p = 0; p < patches_.size(); ++p) all[p] = upper(irradiance_[p] + residual_[p], {});
   return all;
 }

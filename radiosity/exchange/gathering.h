@@ -32,35 +32,35 @@ class Gathering : public Exchange {
   Gathering() = default;
   /// Begins at `irradiance` (by patch). Places number the leaves of all patches, patch after patch, as in ShootingPatch;
   /// `leaf_of_place` is the leaf at each place, among `leaf_count` leaves. `own_radiosity` (by place) is a leaf's emission and
-  /// reflected direct light, in emission units. `hit_leaf` of each patch are the leaves that the hits of its row find. `ids` (by
-  /// patch) may be empty; then there is no coarse grid. Borrows all but the vectors.
+  /// reflected direct light. `hit_leaf` of each patch are the leaves that the hits of its row find. `ids` (by patch) may be
+  /// empty; then there is no coarse grid. Borrows all but the vectors.
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
-            std::span<const Rgb> own_radiosity, std::vector<const std::uint32_t*> hit_leaf, std::vector<Rgb> irradiance,
-            std::vector<PatchId> ids = {}, GatheringNeeds needs = {});
+            std::span<const RelativeLight> own_radiosity, std::vector<const std::uint32_t*> hit_leaf,
+            std::vector<RelativeLight> irradiance, std::vector<PatchId> ids = {}, GatheringNeeds needs = {});
 
   std::size_t sweep() override;
   double unshot_power() const override { return unshot_power_; }
-  Rgb unshot_rms() const override { return unshot_rms_; }
-  Rgb mean_radiosity() const override;
+  RelativeLight unshot_rms() const override { return unshot_rms_; }
+  RelativeLight mean_radiosity() const override;
   Rgb amplification() const override { return amplification_; }
-  std::vector<Rgb> irradiance() const override;
-  Rgb ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
+  std::vector<RelativeLight> irradiance() const override;
+  RelativeLight ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
   std::size_t patch_count() const override { return patches_.size(); }
 
  private:
   /// A search direction, by patch: a step of the irradiance, and the change that it takes away from the residual.
   struct Direction {
-    std::vector<Rgb> step, change;
-    Rgb norm;  // squared norm of `change`, weighted by area
+    std::vector<RelativeLight> step, change;
+    Rgb norm;  // product of `change` with itself
   };
-  void gather(std::vector<Rgb>& received);
-  Rgb row_times_radiosity(std::size_t patch) const;
+  void gather(std::vector<RelativeLight>& received);
+  RelativeLight row_times_radiosity(std::size_t patch) const;
   void plain_step();
   void conjugate_step();
   void make_conjugate(Direction& next) const;
   /// Returns 1 for each band in which the step reduces the squared residual by more than 1 %, else 0.
   Rgb helps(const Rgb& length, const Rgb& overlap) const;
-  void advance(const Rgb& length, std::span<const Rgb> step, std::span<const Rgb> change);
+  void advance(const Rgb& length, std::span<const RelativeLight> step, std::span<const RelativeLight> change);
   void remember(Direction direction, const Rgb& in_bands);
   std::vector<Rgb> reflectance_seen();
   void coarsen(CoarseUnits units);
@@ -71,20 +71,20 @@ class Gathering : public Exchange {
   void spread(Light&& light);
   void find_own_power();
   void find_unshot();
-  /// Returns the scalar product of two functions of the patches, weighted by area, per band.
-  Rgb product(std::span<const Rgb> a, std::span<const Rgb> b) const;
+  /// Returns the scalar product of two functions of the patches, weighted by area, per band, in emission units squared times m2.
+  Rgb product(std::span<const RelativeLight> a, std::span<const RelativeLight> b) const;
 
   static constexpr std::size_t remembered =
       6;  // directions kept; each takes 6 numbers per patch. Chosen; half: the same, double: the same (docs/design/constants.md)
   std::span<const ShootingPatch> patches_;
   std::span<const std::uint32_t> leaf_of_place_;
-  std::span<const Rgb> own_radiosity_;
+  std::span<const RelativeLight> own_radiosity_;
   std::vector<const std::uint32_t*> hit_leaf_;
   bool is_accelerated_ = true;
-  LightByLeaf leaving_{0, true};            // light that the next gathering finds at each leaf
-  std::vector<Rgb> irradiance_, residual_;  // by patch
-  std::vector<Rgb> power_weight_;           // by patch: area times reflectance
-  std::vector<Direction> directions_;       // the last directions, in a ring
+  LightByLeaf leaving_{0, true};                      // light that the next gathering finds at each leaf
+  std::vector<RelativeLight> irradiance_, residual_;  // by patch
+  std::vector<Rgb> power_weight_;                     // by patch: area times reflectance
+  std::vector<Direction> directions_;                 // the last directions, in a ring
   std::size_t steps_ = 0;
   std::vector<PatchId> ids_;                  // by patch
   std::vector<std::uint32_t> patch_of_leaf_;  // for the coarse grid
@@ -93,7 +93,8 @@ class Gathering : public Exchange {
   std::size_t sweeps_ = 0;
   bool is_finest_ = false;  // the coarse grid has been replaced by the finer one
   double area_ = 0, unshot_power_ = 0;
-  Rgb unshot_rms_, unshot_sum_, own_power_, ambient_gain_, amplification_;
+  RelativeLight unshot_rms_, unshot_sum_, own_power_;
+  Rgb ambient_gain_, amplification_;
 };
 
 }  // namespace alvor

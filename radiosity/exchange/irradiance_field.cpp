@@ -35,7 +35,7 @@ constexpr double same_surface = 0.9;
 /// The mean irradiance that a number of rays found, and the mean place of their origins.
 struct Sample {
   Vec3 at;
-  Rgb irradiance;
+  RelativeLight irradiance;
   double rays = 0;
 };
 
@@ -115,7 +115,7 @@ class Fitter {
     const RootPatch& root = forest_.mesh().roots()[shape.root];
     known.normal = root.normal;
     known.edge = std::sqrt(area_of(forest_.mesh(), shape));
-    Rgb sum;
+    RelativeLight sum;
     for (int k = 0; k < 4; ++k) {
       const Uv c = shape.child(k).centre();
       known.quarters[k] = {root.at(c.u, c.v), samples[k].irradiance, samples[k].rays};
@@ -131,7 +131,7 @@ class Fitter {
       known.noise = squared_bend(samples, shape.corner_count == 4) * known.whole.rays / 4;
   }
   static double squared_bend(const RowSamples& q, bool is_quad) {
-    const Rgb ends = q[0].irradiance + q[3].irradiance, others = q[1].irradiance + q[2].irradiance;
+    const RelativeLight ends = q[0].irradiance + q[3].irradiance, others = q[1].irradiance + q[2].irradiance;
     const double bend = is_quad ? (ends - others).mean() / 2 : (4 * q[3].irradiance - ends - others).mean() / std::sqrt(12);
     return bend * bend;
   }
@@ -179,7 +179,7 @@ class Fitter {
   }
   static void add_sample(const Sample& sample, const FieldFit& field, Window& window) {
     const Vec3 d = sample.at - field.centre;
-    const Rgb& value = sample.irradiance;
+    const RelativeLight& value = sample.irradiance;
     if (window.count == window.samples.size()) return;
     window.samples[window.count++] = {dot(d, field.s), dot(d, field.t), sample.rays, value.r, value.g, value.b};
   }
@@ -227,10 +227,10 @@ class Fitter {
 
 }  // namespace
 
-Rgb FieldFit::at(Vec3 point) const {
+RelativeLight FieldFit::at(Vec3 point) const {
   const double u = dot(point - centre, s), v = dot(point - centre, t);
-  const Rgb value = coefficient[0] + u * coefficient[1] + v * coefficient[2] + (u * u) * coefficient[3] +
-                    (u * v) * coefficient[4] + (v * v) * coefficient[5];
+  const RelativeLight value = coefficient[0] + u * coefficient[1] + v * coefficient[2] + (u * u) * coefficient[3] +
+                              (u * v) * coefficient[4] + (v * v) * coefficient[5];
   const auto within = [](double x, double l, double h) {
     return std::max(0.0, std::min(std::max({x, l - (h - l) / 2, l / 4}), h + (h - l) / 2));
   };

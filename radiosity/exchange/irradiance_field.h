@@ -3,6 +3,7 @@
 
 #include "meshing/leaf_gradient.h"
 #include "radiosity/rays/transport_rows.h"
+#include "solution/relative_light.h"
 
 #include <array>
 #include <span>
@@ -10,32 +11,32 @@
 
 namespace alvor {
 
-/// The mean irradiance, in emission units, that the rays of one quarter (a child's place) of a row found.
+/// The mean irradiance that the rays of one quarter (a child's place) of a row found.
 struct QuarterSample {
-  Rgb irradiance;
+  RelativeLight irradiance;
   double rays = 0;  ///< number of rays, which is the weight of the sample; 0: the quarter is hidden
 };
 using RowSamples = std::array<QuarterSample, 4>;
 
-/// Irradiance around the centre of a row, in emission units: a polynomial of degree 0, 1 or 2 in the tangent plane.
+/// Irradiance around the centre of a row: a polynomial of degree 0, 1 or 2 in the tangent plane.
 struct FieldFit {
-  Vec3 centre, s, t;               ///< coordinates of a point are dot(point - centre, s), dot(point - centre, t)
-  std::array<Rgb, 6> coefficient;  ///< coefficients of 1, s, t, s^2, s t, t^2
-  Rgb low, high;                   ///< range of the samples near the centre and of the row's mean, per band
-  double variance = 0;             ///< noise of the value at the centre: variance, mean over bands, emission units squared
-  double window_misfit = 0;        ///< mean square difference of the window's samples, less 1.3 times their noise; at least 0
+  Vec3 centre, s, t;                         ///< coordinates of a point are dot(point - centre, s), dot(point - centre, t)
+  std::array<RelativeLight, 6> coefficient;  ///< coefficients of 1, s, t, s^2, s t, t^2
+  RelativeLight low, high;                   ///< range of the samples near the centre and of the row's mean, per band
+  double variance = 0;        ///< noise of the value at the centre: variance, mean over bands, emission units squared
+  double window_misfit = 0;   ///< mean square difference of the window's samples, less 1.3 times their noise; at least 0
   double squared_misfit = 0;  ///< mean square difference of the row's own samples, less their noise; may be negative by chance
 
-  static FieldFit constant(const Rgb& value) { return {{}, {}, {}, {value}, value, value}; }
+  static FieldFit constant(const RelativeLight& value) { return {{}, {}, {}, {value}, value, value}; }
   /// Adds the same irradiance everywhere.
-  void add(const Rgb& irradiance) {
+  void add(const RelativeLight& irradiance) {
     coefficient[0] += irradiance;
     low += irradiance;
     high += irradiance;
   }
-  /// Returns the irradiance at a point, in emission units. It is kept within the range [low, high], widened by half of its width
+  /// Returns the irradiance at a point. It is kept within the range [low, high], widened by half of its width
   /// on both sides, but not below a quarter of `low` nor below 0.
-  Rgb at(Vec3 point) const;
+  RelativeLight at(Vec3 point) const;
 };
 
 /// Returns a fit for each of `rows`, the leaves of `forest`: weighted least squares over the samples of nearby rows that are

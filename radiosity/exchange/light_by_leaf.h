@@ -1,7 +1,7 @@
 #pragma once
 // The light that leaves each leaf, stored so that rows can sum it over their hits.
 
-#include "solution/rgb.h"
+#include "solution/relative_light.h"
 
 #include <cassert>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace alvor {
 
-/// The light that leaves each leaf, in emission units: three bands side by side, or one if all bands are equal. It is held in
+/// The light that leaves each leaf: three bands side by side, or one if all bands are equal. It is held in
 /// double precision: at reflectance 0.999999 an error of 1e-7 in each reflection is an error of a tenth of the solution.
 /// Different leaves may be set from different threads.
 class LightByLeaf {
@@ -19,17 +19,17 @@ class LightByLeaf {
       : three_(three_bands ? leaves : 0), one_(three_bands ? 0 : leaves), has_three_(three_bands) {}
 
   /// Sets the light of a leaf. Requires: with one band, the bands of `light` are equal but for rounding.
-  void set(std::uint32_t leaf, const Rgb& light) {
+  void set(std::uint32_t leaf, const RelativeLight& light) {
     if (has_three_) three_[leaf] = {static_cast<Stored>(light.r), static_cast<Stored>(light.g), static_cast<Stored>(light.b), 0};
     else one_[leaf] = static_cast<Stored>(light.g);
   }
 
   std::size_t size() const { return has_three_ ? three_.size() : one_.size(); }
   /// Returns the sum over hits of the light of the leaf that each hit finds.
-  Rgb sum(std::span<const std::uint32_t> leaf) const { return has_three_ ? sum_of_three(leaf) : sum_of_one(leaf); }
+  RelativeLight sum(std::span<const std::uint32_t> leaf) const { return has_three_ ? sum_of_three(leaf) : sum_of_one(leaf); }
   /// Returns the sum over hits of the hit's weight times the light of its leaf. Requires: at least as many weights as leaves;
   /// more are ignored.
-  Rgb weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
+  RelativeLight weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
 
  private:
   using Stored = double;
@@ -37,7 +37,7 @@ class LightByLeaf {
     Stored r = 0, g = 0, b = 0, unused = 0;
   };
   /// Sums three bands, in four lanes: one load and one addition per hit.
-  Rgb sum_of_three(std::span<const std::uint32_t> leaf) const {
+  RelativeLight sum_of_three(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     for (const std::uint32_t l : leaf) {
       const Padded& hit = three_[l];
@@ -47,7 +47,7 @@ class LightByLeaf {
     return {sum[0], sum[1], sum[2]};
   }
   /// Sums one band, four hits at a time.
-  Rgb sum_of_one(std::span<const std::uint32_t> leaf) const {
+  RelativeLight sum_of_one(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     std::size_t h = 0;
     for (; h + 4 <= leaf.size(); h += 4)
@@ -62,9 +62,9 @@ class LightByLeaf {
   bool has_three_;
 };
 
-inline Rgb LightByLeaf::weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const {
+inline RelativeLight LightByLeaf::weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const {
   assert(weight.size() >= leaf.size());
-  Rgb sum;
+  RelativeLight sum;
   if (!has_three_) {
     double one = 0;
     for (std::size_t h = 0; h < leaf.size(); ++h) one += double(weight[h].g) * one_[leaf[h]];
@@ -72,7 +72,7 @@ inline Rgb LightByLeaf::weighted_sum(std::span<const std::uint32_t> leaf, std::s
   }
   for (std::size_t h = 0; h < leaf.size(); ++h) {
     const Padded& hit = three_[leaf[h]];
-    sum += widen(weight[h]) * Rgb{hit.r, hit.g, hit.b};
+    sum += widen(weight[h]) * RelativeLight{hit.r, hit.g, hit.b};
   }
   return sum;
 }

@@ -85,8 +85,9 @@ void Shooting::transpose_weights() {
 }
 
 template <class Radiosity>
-Rgb Shooting::row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const {
-  Rgb sum;
+std::invoke_result_t<Radiosity, std::uint32_t> Shooting::row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last,
+                                                                 Radiosity&& radiosity) const {
+  std::invoke_result_t<Radiosity, std::uint32_t> sum;
   const auto& weight = patches_[patch].row->hit_weight;
   if (weight.empty()) {
     for (std::uint64_t h = first; h < last; ++h) sum += radiosity(hit_leaf_[h]);
@@ -100,8 +101,9 @@ void Shooting::find_unshot() {
   for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf)
     leaves_[leaf].shot += patches_[patch_of_leaf_[leaf]].reflectance * shot_irradiance_[patch_of_leaf_[leaf]];
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
-    const Rgb sum = row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return leaves_[leaf].shot; });
-    const Rgb before = gathered_[p] + shot_irradiance_[p];
+    const RelativeLight sum =
+        row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return leaves_[leaf].shot; });
+    const RelativeLight before = gathered_[p] + shot_irradiance_[p];
     gathered_[p] = receivers_[p].weight * sum;
     shot_irradiance_[p] = receivers_[p].unshot = {};
     leaf_power_[p] = 0;
@@ -117,7 +119,7 @@ void Shooting::find_unshot() {
 void Shooting::adopt_unshot() {
   account_.reset();
   for (std::uint32_t p = 0; p < patches_.size(); ++p) {
-    const Rgb newly = shot_irradiance_[p] + receivers_[p].unshot;
+    const RelativeLight newly = shot_irradiance_[p] + receivers_[p].unshot;
     for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
       ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
       leaf.shot += leaf.unshot + patches_[p].reflectance * newly;
@@ -137,7 +139,7 @@ void Shooting::gather(std::uint32_t receiver) {
   const std::uint64_t first = first_hit_[receiver], last = first_hit_[receiver + 1];
   const auto is_own = [&](std::uint32_t leaf) { return leaf - patch.first_leaf < patch.leaf_count; };
   bool sees_itself = false;
-  const Rgb sum = row_sum(receiver, first, last, [&](std::uint32_t leaf) {
+  const RelativeLight sum = row_sum(receiver, first, last, [&](std::uint32_t leaf) {
     if (!is_own(leaf)) return leaves_[leaf].shot;
     sees_itself = true;
     return emission_of(leaf, receiver);
@@ -146,7 +148,8 @@ void Shooting::gather(std::uint32_t receiver) {
   if (sees_itself)
     own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) { return is_own(leaf) ? Rgb{1, 1, 1} : Rgb{}; });
   const Rgb& rho = patch.reflectance;
-  const Rgb irradiance = weight * Rgb{sum.r / (1 - rho.r * own.r), sum.g / (1 - rho.g * own.g), sum.b / (1 - rho.b * own.b)};
+  const RelativeLight irradiance =
+      weight * RelativeLight{sum.r / (1 - rho.r * own.r), sum.g / (1 - rho.g * own.g), sum.b / (1 - rho.b * own.b)};
   for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf) {
     leaves_[leaf].shot = emission_of(leaf, receiver) + rho * irradiance;
     leaves_[leaf].unshot = {};
@@ -166,26 +169,26 @@ template <class Body>
 void Shooting::for_each_leaf(Body&& body) const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const Rgb& rho = patches_[p].reflectance;
-    const Rgb unshot = rho * receivers_[p].unshot, shot = rho * shot_irradiance_[p];
+    const RelativeLight unshot = rho * receivers_[p].unshot, shot = rho * shot_irradiance_[p];
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
       body(leaves_[k].area, leaves_[k].shot + shot, leaves_[k].unshot + unshot);
   }
 }
 
-Rgb Shooting::unshot_rms() const {
+RelativeLight Shooting::unshot_rms() const {
   Rgb squares;
   double area = 0;
-  for_each_leaf([&](double leaf_area, const Rgb&, const Rgb& unshot) {
-    squares += leaf_area * (unshot * unshot);
+  for_each_leaf([&](double leaf_area, const RelativeLight&, const RelativeLight& unshot) {
+    squares += leaf_area * product(unshot, unshot);
     area += leaf_area;
   });
   return {std::sqrt(squares.r / area), std::sqrt(squares.g / area), std::sqrt(squares.b / area)};
 }
 
-Rgb Shooting::mean_radiosity() const {
-  Rgb power;
+RelativeLight Shooting::mean_radiosity() const {
+  RelativeLight power;
   double area = 0;
-  for_each_leaf([&](double leaf_area, const Rgb& shot, const Rgb& unshot) {
+  for_each_leaf([&](double leaf_area, const RelativeLight& shot, const RelativeLight& unshot) {
     power += leaf_area * absolute(shot + unshot);
     area += leaf_area;
   });
@@ -207,12 +210,12 @@ void Shooting::send(std::uint32_t shooter, Leaving&& leaving) {
   }
 }
 
-void Shooting::shoot(std::uint32_t shooter, const Rgb& advance) {
+void Shooting::shoot(std::uint32_t shooter, const RelativeLight& advance) {
   const ShootingPatch& patch = patches_[shooter];
-  const Rgb irradiance = receivers_[shooter].unshot + advance;
-  const Rgb reflected = patch.reflectance * irradiance;
+  const RelativeLight irradiance = receivers_[shooter].unshot + advance;
+  const RelativeLight reflected = patch.reflectance * irradiance;
   shot_irradiance_[shooter] += irradiance;
-  receivers_[shooter].unshot = Rgb{} - advance;
+  receivers_[shooter].unshot = RelativeLight{} - advance;
   if (account_) book(shooter, reflected);
   const bool leaves_differ = leaf_power_[shooter] != 0;
   if (leaves_differ) send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + reflected; });
@@ -226,8 +229,8 @@ void Shooting::shoot(std::uint32_t shooter, const Rgb& advance) {
   }
 }
 
-Rgb Shooting::signed_unshot_power() const {
-  Rgb power;
+RelativeLight Shooting::signed_unshot_power() const {
+  RelativeLight power;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const ShootingPatch& patch = patches_[p];
     power += (patch.area * patch.reflectance) * receivers_[p].unshot;
@@ -249,25 +252,27 @@ void Shooting::keep_ambient_account() {
 
 // Called before the shot. The light that leaves the shooter is no longer unshot; the part that others will reflect becomes
 // unshot.
-void Shooting::book(std::uint32_t shooter, const Rgb& reflected) {
+void Shooting::book(std::uint32_t shooter, const RelativeLight& reflected) {
   for (std::uint32_t k = 0; k < patches_[shooter].leaf_count; ++k) {
     const std::uint32_t at = patches_[shooter].first_leaf + k;
     const ShootingLeaf& leaf = leaves_[at];
-    account_->power += (leaf.unshot + reflected) * (account_->gain[at] - Rgb{leaf.area, leaf.area, leaf.area});
+    account_->power += (account_->gain[at] - Rgb{leaf.area, leaf.area, leaf.area}) * (leaf.unshot + reflected);
   }
 }
 
-Rgb Shooting::ambient_irradiance() const { return ambient_gain_ * (account_ ? account_->power : signed_unshot_power()); }
+RelativeLight Shooting::ambient_irradiance() const {
+  return ambient_gain_ * (account_ ? account_->power : signed_unshot_power());
+}
 
-std::vector<Rgb> Shooting::irradiance() const {
-  std::vector<Rgb> all;
+std::vector<RelativeLight> Shooting::irradiance() const {
+  std::vector<RelativeLight> all;
   all.reserve(patches_.size());
   for (std::size_t p = 0; p < patches_.size(); ++p) all.push_back(gathered_[p] + shot_irradiance_[p] + receivers_[p].unshot);
   return all;
 }
 
-std::vector<Rgb> Shooting::shot() const {
-  std::vector<Rgb> all;
+std::vector<RelativeLight> Shooting::shot() const {
+  std::vector<RelativeLight> all;
   all.reserve(leaves_.size());
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const std::uint32_t p = patch_of_leaf_[leaf];
@@ -276,8 +281,8 @@ std::vector<Rgb> Shooting::shot() const {
   return all;
 }
 
-std::vector<Rgb> Shooting::unshot_by_leaf() const {
-  std::vector<Rgb> all;
+std::vector<RelativeLight> Shooting::unshot_by_leaf() const {
+  std::vector<RelativeLight> all;
   all.reserve(leaves_.size());
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const std::uint32_t p = patch_of_leaf_[leaf];

@@ -2,11 +2,12 @@
 // The linear system of transport rows and its unshot radiosity (Cohen, Chen, Wallace & Greenberg 1988). Strategies drive it.
 
 #include "radiosity/rays/transport_rows.h"
-#include "solution/rgb.h"
+#include "solution/relative_light.h"
 
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace alvor {
@@ -28,17 +29,16 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches);
 /// & Thorin).
 Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen);
 
-/// The radiosity of a leaf, in emission units: distributed and not yet distributed.
+/// The radiosity of a leaf: distributed and not yet distributed.
 struct ShootingLeaf {
-  double area = 0;  ///< m2
-  Rgb unshot;       ///< radiosity not yet distributed; may be negative
-  Rgb shot;         ///< radiosity distributed so far
+  double area = 0;       ///< m2
+  RelativeLight unshot;  ///< radiosity not yet distributed; may be negative
+  RelativeLight shot;    ///< radiosity distributed so far
 };
 
 /// The system x = e + rho F x, solved one patch at a time. x is the shot radiosity, the irradiance of a patch is its row times x,
 /// and the unshot radiosity is exactly the residual e + rho F x - x, so a split or an edited light is no special case. All leaves
-/// of a patch receive the same light by its row. Light is in emission units. radiosity/exchange/strategies.h chooses the next
-/// patch.
+/// of a patch receive the same light by its row. radiosity/exchange/strategies.h chooses the next patch.
 class Shooting {
  public:
   /// `hit_leaf` lists, row after row, the leaf that each hit of the row finds. Borrows the patches.
@@ -51,7 +51,7 @@ class Shooting {
   /// Shoots the unshot radiosity of the patch, and also reflects the irradiance `advance` that is still to come (Feda &
   /// Purgathofer 1992). An advance counts as negative unshot radiosity until it has come. The shooter's unshot radiosity is set
   /// to zero first, so that a patch that sees itself receives light of its own.
-  void shoot(std::uint32_t shooter, const Rgb& advance = {});
+  void shoot(std::uint32_t shooter, const RelativeLight& advance = {});
 
   /// Counts all unshot radiosity as shot, x := e + rho F x. To be called before the first gather(). Afterwards, and after
   /// gather(), the unshot radiosity is not known until find_unshot() is called.
@@ -69,14 +69,14 @@ class Shooting {
     return std::span(hit_leaf_).subspan(first_hit_[patch], first_hit_[patch + 1] - first_hit_[patch]);
   }
   /// Returns the power that a shot of the patch with `advance` would send: magnitude, summed over bands, emission units times m2.
-  double unshot_power_of(std::uint32_t patch, const Rgb& advance = {}) const;
+  double unshot_power_of(std::uint32_t patch, const RelativeLight& advance = {}) const;
   /// Returns the sum of unshot_power_of() over all patches, emission units times m2.
   double unshot_power() const;
-  Rgb unshot_rms() const;                                      ///< see Exchange::unshot_rms
-  Rgb mean_radiosity() const;                                  ///< see Exchange::mean_radiosity
+  RelativeLight unshot_rms() const;                            ///< see Exchange::unshot_rms
+  RelativeLight mean_radiosity() const;                        ///< see Exchange::mean_radiosity
   const Rgb& amplification() const { return amplification_; }  ///< see Exchange::amplification
-  /// Returns the ambient irradiance, in emission units: see Exchange::ambient_irradiance.
-  Rgb ambient_irradiance() const;
+  /// Returns the ambient irradiance: see Exchange::ambient_irradiance.
+  RelativeLight ambient_irradiance() const;
   /// Makes later shots keep the sum of the unshot power up to date, so that ambient_irradiance() takes no time. Takes as long as
   /// a pass over all hits. Ends when adopt_unshot() is called.
   void keep_ambient_account();
@@ -86,12 +86,12 @@ class Shooting {
     for (std::uint64_t e = first_entry_[shooter]; e < first_entry_[shooter + 1]; ++e) body(entries_[e].receiver);
   }
 
-  /// Returns the irradiance that each patch received by its row so far, in emission units.
-  std::vector<Rgb> irradiance() const;
-  /// Returns the radiosity of each leaf that was distributed so far, in emission units.
-  std::vector<Rgb> shot() const;
-  /// Returns the radiosity of each leaf that is not distributed yet, in emission units.
-  std::vector<Rgb> unshot_by_leaf() const;
+  /// Returns the irradiance that each patch received by its row so far.
+  std::vector<RelativeLight> irradiance() const;
+  /// Returns the radiosity of each leaf that was distributed so far.
+  std::vector<RelativeLight> shot() const;
+  /// Returns the radiosity of each leaf that is not distributed yet.
+  std::vector<RelativeLight> unshot_by_leaf() const;
 
  private:
   struct Entry {
@@ -99,13 +99,13 @@ class Shooting {
   };
   /// The part of a receiving patch that shots read and write, on one cache line.
   struct alignas(32) Receiver {
-    Rgb unshot;         ///< irradiance received and not yet reflected; rho times it is unshot on every leaf
-    double weight = 0;  ///< weight of one hit of its row
+    RelativeLight unshot;  ///< irradiance received and not yet reflected; rho times it is unshot on every leaf
+    double weight = 0;     ///< weight of one hit of its row
   };
   /// Running sum of the signed unshot power.
   struct Account {
     std::vector<Rgb> gain;  ///< by leaf: unshot power that one unit of its radiosity becomes when shot, m2; less than its area
-    Rgb power;              ///< unshot power now, emission units times m2
+    RelativeLight power;    ///< unshot power now, emission units times m2
   };
   void transpose();
   void transpose_weights();
@@ -115,15 +115,16 @@ class Shooting {
   void for_each_leaf(Body&& body) const;
   /// Returns the sum over hits [first, last) of the row of the hit's weight times radiosity(leaf).
   template <class Radiosity>
-  Rgb row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last, Radiosity&& radiosity) const;
+  std::invoke_result_t<Radiosity, std::uint32_t> row_sum(std::size_t patch, std::uint64_t first, std::uint64_t last,
+                                                         Radiosity&& radiosity) const;
   /// Adds to each receiver its hit's weight times leaving(leaf), for all hits on leaves of the shooter.
   template <class Leaving>
   void send(std::uint32_t shooter, Leaving&& leaving);
   /// Brings the running sum of the unshot power up to date for a shot that is about to be made.
-  void book(std::uint32_t shooter, const Rgb& reflected);
-  Rgb signed_unshot_power() const;
+  void book(std::uint32_t shooter, const RelativeLight& reflected);
+  RelativeLight signed_unshot_power() const;
   /// Returns the emission and reflected direct light of a leaf, computed from its residual.
-  Rgb emission_of(std::uint32_t leaf, std::uint32_t patch) const {
+  RelativeLight emission_of(std::uint32_t leaf, std::uint32_t patch) const {
     return leaves_[leaf].unshot + leaves_[leaf].shot - patches_[patch].reflectance * gathered_[patch];
   }
 
@@ -134,18 +135,18 @@ class Shooting {
   std::vector<std::uint64_t> first_hit_;    // by receiver, into hit_leaf_
   std::vector<std::uint64_t> first_entry_;  // by shooter, into entries_
   std::vector<Entry> entries_;
-  std::vector<RgbF> entry_weight_;    // by entry; empty if no row has hit weights
-  std::vector<Receiver> receivers_;   // by patch
-  std::vector<Rgb> gathered_;         // by patch: irradiance whose reflection is in ShootingLeaf::shot
-  std::vector<Rgb> shot_irradiance_;  // by patch: irradiance that was reflected and is not yet in ShootingLeaf::shot
-  std::vector<double> leaf_power_;    // by patch: sum of area |unshot| over its leaves
-  Rgb ambient_gain_;                  // ambient irradiance of one unit of unshot power, 1/m2
+  std::vector<RgbF> entry_weight_;              // by entry; empty if no row has hit weights
+  std::vector<Receiver> receivers_;             // by patch
+  std::vector<RelativeLight> gathered_;         // by patch: irradiance whose reflection is in ShootingLeaf::shot
+  std::vector<RelativeLight> shot_irradiance_;  // by patch: irradiance that was reflected and is not yet in ShootingLeaf::shot
+  std::vector<double> leaf_power_;              // by patch: sum of area |unshot| over its leaves
+  Rgb ambient_gain_;                            // ambient irradiance of one unit of unshot power, 1/m2
   Rgb amplification_;
   std::optional<Account> account_;
 };
 
-inline double Shooting::unshot_power_of(std::uint32_t patch, const Rgb& advance) const {
-  const Rgb irradiance = receivers_[patch].unshot + advance;
+inline double Shooting::unshot_power_of(std::uint32_t patch, const RelativeLight& advance) const {
+  const RelativeLight irradiance = receivers_[patch].unshot + advance;
   return leaf_power_[patch] + patches_[patch].area * absolute(patches_[patch].reflectance * irradiance).sum();
 }
 

@@ -125,7 +125,7 @@ class OvershootStepper : public Stepper {
 
   bool step() override {
     choose_share();
-    const Rgb ahead = share_ * system_.ambient_irradiance();
+    const RelativeLight ahead = share_ * system_.ambient_irradiance();
     const std::uint32_t shooter = look_at_all(ahead);
     if (shooter == none) return false;
     system_.shoot(shooter, ahead);
@@ -135,7 +135,7 @@ class OvershootStepper : public Stepper {
 
   std::size_t sweep() override {
     choose_share();
-    const Rgb ahead = share_ * system_.ambient_irradiance();
+    const RelativeLight ahead = share_ * system_.ambient_irradiance();
     const std::uint32_t first = look_at_all(ahead);
     if (first == none) return 0;
     const double enough = powers_[first] / 2;
@@ -154,7 +154,7 @@ class OvershootStepper : public Stepper {
   // give the same solutions (docs/design/constants.md).
   static constexpr std::size_t patience = 4;
 
-  std::uint32_t look_at_all(const Rgb& ahead) {
+  std::uint32_t look_at_all(const RelativeLight& ahead) {
     for (std::uint32_t p = 0; p < powers_.size(); ++p) powers_[p] = system_.unshot_power_of(p, ahead);
     return find_largest(powers_);
   }

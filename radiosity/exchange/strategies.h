@@ -50,13 +50,13 @@ class ShotExchange : public Exchange {
 
   std::size_t sweep() override { return stepper_->sweep(); }
   double unshot_power() const override { return system_.unshot_power(); }
-  Rgb unshot_rms() const override { return system_.unshot_rms(); }
-  Rgb mean_radiosity() const override { return system_.mean_radiosity(); }
+  RelativeLight unshot_rms() const override { return system_.unshot_rms(); }
+  RelativeLight mean_radiosity() const override { return system_.mean_radiosity(); }
   Rgb amplification() const override { return system_.amplification(); }
-  std::vector<Rgb> irradiance() const override { return system_.irradiance(); }
-  Rgb ambient_irradiance() const override { return system_.ambient_irradiance(); }
+  std::vector<RelativeLight> irradiance() const override { return system_.irradiance(); }
+  RelativeLight ambient_irradiance() const override { return system_.ambient_irradiance(); }
   std::size_t patch_count() const override { return system_.patch_count(); }
-  std::vector<Rgb> shot() const override { return system_.shot(); }
+  std::vector<RelativeLight> shot() const override { return system_.shot(); }
 
  private:
   Shooting system_;

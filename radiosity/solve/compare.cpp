@@ -54,7 +54,7 @@ class Reference {
  public:
   Reference() = default;
   /// Takes the irradiance (by patch) that solves the system, and the system with nothing shot.
-  Reference(const Shooting& unshot_system, std::vector<Rgb> irradiance) : irradiance_(std::move(irradiance)) {
+  Reference(const Shooting& unshot_system, std::vector<RelativeLight> irradiance) : irradiance_(std::move(irradiance)) {
     const auto own = unshot_system.unshot_by_leaf();
     for (std::size_t p = 0; p < irradiance_.size(); ++p) {
       const ShootingPatch& patch = unshot_system.patches()[p];
@@ -64,20 +64,20 @@ class Reference {
   }
 
   /// Returns the error of the system's irradiance with the ambient term added: see ErrorSample.
-  double error_of(const Shooting& system, const Rgb& ambient) const {
+  double error_of(const Shooting& system, const RelativeLight& ambient) const {
     const auto irradiance = system.irradiance();
     double sum = 0;
     for (std::size_t p = 0; p < irradiance.size(); ++p) {
       const ShootingPatch& patch = system.patches()[p];
-      const Rgb shown = patch.row->is_hidden() ? irradiance[p] : irradiance[p] + ambient;
+      const RelativeLight shown = patch.row->is_hidden() ? irradiance[p] : irradiance[p] + ambient;
       sum += patch.area * square(patch.reflectance * (shown - irradiance_[p]));
     }
     return norm_ > 0 ? std::sqrt(sum / norm_) : 0;
   }
 
  private:
-  static double square(const Rgb& a) { return (a * a).sum(); }
-  std::vector<Rgb> irradiance_;  // by patch
+  static double square(const RelativeLight& a) { return product(a, a).sum(); }
+  std::vector<RelativeLight> irradiance_;  // by patch
   double norm_ = 0;
 };
 
@@ -154,7 +154,7 @@ class Comparer {
   }
 
   void look(const Shooting& system, std::uint64_t steps, double cpu_s, StrategyCourse& course) {
-    const Rgb ambient = shows_ambient(course.strategy) ? system.ambient_irradiance() : Rgb{};
+    const RelativeLight ambient = shows_ambient(course.strategy) ? system.ambient_irradiance() : RelativeLight{};
     course.curve.push_back({steps, cpu_s, reference_.error_of(system, ambient)});
     if (steps == options_.steps) keep_picture(system, course);
   }
@@ -163,8 +163,7 @@ class Comparer {
     course.error = course.curve.back().error;
     pass_->show(system.irradiance());
     course.leaves = sorted_leaves();
-    if (shows_ambient(course.strategy))
-      course.ambient_irradiance = state_.direct.unit().to_watts_per_m2(system.ambient_irradiance());
+    if (shows_ambient(course.strategy)) course.ambient_irradiance = state_.in_watts_per_m2(system.ambient_irradiance());
   }
 
   std::uint64_t next_look(std::uint64_t steps) const {

@@ -34,7 +34,9 @@ DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOp
 
 // If most surfaces emit, as in a furnace, rows carry the emission, because a row that sums to 1 is exact and shadow rays are not.
 void DirectField::choose_lights() {
-  OwnedLights faces = lights_of_faces(scene_, unit_), others = lights_beside_faces(scene_, unit_);
+  const EmissionUnit unit(forests_.mesh());
+  emission_ = emission_by_material(forests_.mesh(), unit);
+  OwnedLights faces = lights_of_faces(scene_, unit), others = lights_beside_faces(scene_, unit);
   for (const auto* list : {&faces, &others})
     for (const auto& light : *list) {
       power_ += light->power();

@@ -2,7 +2,6 @@
 // The direct field of a solve: the irradiance of each leaf that comes straight from lights.
 
 #include "radiosity/direct/direct_light.h"
-#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/solve/traced_rows.h"
 
@@ -13,17 +12,18 @@
 
 namespace alvor {
 
-/// The direct light of all leaves. Light is in emission units, power in emission units times m2; indices are by leaf node.
-/// Borrows all that it is made with. Used by one thread at a time.
+/// The direct light of all leaves. Power is in emission units times m2; indices are by leaf node. Borrows all that it is made
+/// with. Used by one thread at a time.
 class DirectField {
  public:
   DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
 
-  const EmissionUnit& unit() const { return unit_; }
-  /// Returns the emission of a root patch, in emission units.
-  Rgb emission_of(std::uint32_t root) const { return unit_.from_watts_per_m2(forests_.mesh().material_of(root).emission); }
+  /// Returns the emission of a root patch.
+  const RelativeLight& emission_of(std::uint32_t root) const { return emission_[forests_.mesh().roots()[root].material]; }
   /// Returns the part of emission_of(root) that rows bring to receivers: all of it if most surfaces emit, else none.
-  Rgb emission_by_rows(std::uint32_t root) const { return plan_.emission_by_rows() ? emission_of(root) : Rgb{}; }
+  RelativeLight emission_by_rows(std::uint32_t root) const {
+    return plan_.emission_by_rows() ? emission_of(root) : RelativeLight{};
+  }
   /// Returns the power that all root patches and lamps emit, and what of distant lights first arrives on leaves (a rough
   /// estimate of it while light is waiting). Summed over bands, in emission units times m2.
   double emitted_power() const;
@@ -69,7 +69,7 @@ class DirectField {
   const SolveOptions& options_;
   const LocalScene& scene_;
   RayBudget& budget_;
-  const EmissionUnit unit_{forests_.mesh()};
+  std::vector<RelativeLight> emission_;  ///< by material
   OwnedLights owned_lights_;
   std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first
   std::vector<const LightSource*> tree_lights_;  ///< the others

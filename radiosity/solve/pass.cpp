@@ -94,11 +94,11 @@ bool Pass::refine() {
 Shooting Pass::unshot_system() {
   assert(stage_ == Stage::exchanging || stage_ == Stage::estimated);
   assert(state_.rows.carry_light());
-  std::ranges::fill(state_.shot, Rgb{});
+  std::ranges::fill(state_.shot, RelativeLight{});
   return system_->shooting();
 }
 
-void Pass::show(std::span<const Rgb> irradiance) { state_.field.set(system_->rows(), irradiance); }
+void Pass::show(std::span<const RelativeLight> irradiance) { state_.field.set(system_->rows(), irradiance); }
 
 void Pass::show_what_came_since() {
   if (state_.rows.carry_light()) state_.field.move_to(system_->rows(), exchange_->irradiance());
@@ -110,8 +110,6 @@ double Pass::unshot_fraction() const {
   return (exchange_ ? exchange_->unshot_power() : state_.unshot_power()) / emitted;
 }
 
-Rgb Pass::ambient_irradiance() const {
-  return exchange_ ? state_.direct.unit().to_watts_per_m2(exchange_->ambient_irradiance()) : Rgb{};
-}
+Rgb Pass::ambient_irradiance() const { return exchange_ ? state_.in_watts_per_m2(exchange_->ambient_irradiance()) : Rgb{}; }
 
 }  // namespace alvor

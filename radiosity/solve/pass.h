@@ -50,8 +50,8 @@ class Pass {
   /// Returns the system with nothing shot and direct light unshot on its receivers. Forgets the shots in the state. The system
   /// borrows from the pass. Requires: rows carry light (TracedRows::carry_light).
   Shooting unshot_system();
-  /// Sets the shown indirect irradiance of each patch to the given one, in emission units, without smoothing.
-  void show(std::span<const Rgb> irradiance);
+  /// Sets the shown indirect irradiance of each patch to the given one, without smoothing.
+  void show(std::span<const RelativeLight> irradiance);
   /// Sets the shown indirect irradiance to the smooth field fitted to the rows' samples. A finished pass shows it.
   void show_smoothly();
   /// Adds to the shown indirect irradiance the light that each row received since it was set.
@@ -73,7 +73,7 @@ class Pass {
   double estimate_leaves(ErrorEstimate& error);
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
-  double squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const;
+  double squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   bool rows_tell_what_is_lost() const;
 

@@ -20,11 +20,11 @@ bool Pass::rows_tell_what_is_lost() const {
 // otherwise.
 PowerBalance Pass::balance() const {
   const DirectField& direct = state_.direct;
-  PowerBalance balance{.emitted = direct.unit().to_watts(direct.emitted_power())};
+  PowerBalance balance{.emitted = state_.in_watts(direct.emitted_power())};
   if (!exchange_) return balance;
   const auto patches = system_->patches();
-  const auto irradiance = state_.rows.carry_light() ? exchange_->irradiance() : std::vector<Rgb>(patches.size());
-  Rgb absorbed, lost;
+  const auto irradiance = state_.rows.carry_light() ? exchange_->irradiance() : std::vector<RelativeLight>(patches.size());
+  RelativeLight absorbed, lost;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const ShootingPatch& patch = patches[p];
     const TransportRow& row = *patch.row;
@@ -33,15 +33,15 @@ PowerBalance Pass::balance() const {
     const double open = row.visible_share();
     for (const NodeIndex leaf : system_->leaves_of(p)) {
       const double area = state_.forests.leaf_area(leaf), seen = open * area;
-      const Rgb arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
+      const RelativeLight arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
       absorbed += seen * ((white - patch.reflectance) * arriving);
       lost += seen * ((white - found) * (emission + patch.reflectance * arriving)) + (area - seen) * emission;
     }
   }
-  balance.absorbed = direct.unit().to_watts(absorbed.sum());
-  balance.unshot = direct.unit().to_watts(exchange_->unshot_power());
+  balance.absorbed = state_.in_watts(absorbed.sum());
+  balance.unshot = state_.in_watts(exchange_->unshot_power());
   const double not_seen_again = std::max(0.0, balance.emitted - balance.absorbed - balance.unshot);
-  balance.lost = rows_tell_what_is_lost() ? direct.unit().to_watts(lost.sum()) : not_seen_again;
+  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(lost.sum()) : not_seen_again;
   return balance;
 }
 

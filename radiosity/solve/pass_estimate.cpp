@@ -48,7 +48,7 @@ struct Field {
   std::span<const NodeIndex> leaves;
   std::span<const SmoothNeighbours> neighbours;
   std::span<const Vec3> centre;
-  std::span<const Rgb> value;
+  std::span<const RelativeLight> value;
 };
 
 template <class Body>
@@ -56,12 +56,12 @@ void for_each_leaf(const Field& field, Body&& body) {
   tbb::parallel_for(std::size_t{0}, field.leaves.size(), std::forward<Body>(body));
 }
 
-void find_slopes(const Field& f, std::span<LeafSlope> by_node) {
+void find_slopes(const Field& f, std::span<RelativeSlope> by_node) {
   for_each_leaf(
       f, [&](std::size_t n) { by_node[f.leaves[n]] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); });
 }
 
-std::vector<double> interpolation_errors(const Field& f, std::span<const LeafSlope> slope) {
+std::vector<double> interpolation_errors(const Field& f, std::span<const RelativeSlope> slope) {
   std::vector<double> errors(f.leaves.size());
   for_each_leaf(f,
                 [&](std::size_t n) { errors[n] = interpolation_error(f.leaves[n], f.neighbours[n], f.centre, f.value, slope); });
@@ -126,7 +126,7 @@ void Pass::estimate_rows(ErrorEstimate& error) {
     error.misfit += area * fit.squared_misfit;
     errors[p] = area * misfit_at_centre * fit.window_misfit;
     if (row.crosses_contact()) {
-      const Rgb direct = state_.direct[system_->leaves_of(p).front()].irradiance;
+      const RelativeLight direct = state_.direct[system_->leaves_of(p).front()].irradiance;
       const double by_contact = area * squared(contact_error * (state_.field.irradiance(node) + direct).mean());
       errors[p] += by_contact;
       error.misfit += by_contact;
@@ -141,7 +141,7 @@ void Pass::estimate_rows(ErrorEstimate& error) {
 
 /// Returns the mean square deviation of the irradiance at a leaf's origins from the leaf's linear slope, less the noise of shadow
 /// rays, at least 0; in emission units squared.
-double Pass::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafSlope& slope) const {
+double Pass::squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const {
   const Forests& forests = state_.forests;
   const DirectLight& direct = state_.direct[leaf];
   const NodeIndex row = forests.row_of(leaf);
@@ -164,7 +164,7 @@ double Pass::squared_contrast(NodeIndex leaf, const Rgb& irradiance, const LeafS
 double Pass::estimate_leaves(ErrorEstimate& error) {
   Forests& forests = state_.forests;
   const auto leaves = system_->leaves();
-  std::vector<Rgb> irradiance(forests.leaves().node_count());
+  std::vector<RelativeLight> irradiance(forests.leaves().node_count());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     irradiance[leaves[n]] = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
   });
@@ -172,7 +172,7 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   for (const NodeIndex leaf : leaves) power += forests.leaf_area(leaf) * irradiance[leaf].mean();
   const auto neighbours = forests.leaf_neighbours(leaves);
   const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
-  std::vector<LeafSlope> slope(forests.leaves().node_count());
+  std::vector<RelativeSlope> slope(forests.leaves().node_count());
   find_slopes(field, slope);
   auto errors = interpolation_errors(field, slope);
   for_each_leaf(field, [&](std::size_t n) {

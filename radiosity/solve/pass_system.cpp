@@ -36,7 +36,7 @@ std::unique_ptr<Exchange> PassSystem::begin_exchange() const {
 
 std::unique_ptr<Exchange> PassSystem::begin_gathering() const {
   std::vector<const NodeIndex*> hit_leaf;
-  std::vector<Rgb> irradiance;
+  std::vector<RelativeLight> irradiance;
   std::vector<PatchId> ids;
   for (const NodeIndex row : rows_) {
     ids.push_back(state_.forests.rows().id(row));

@@ -12,7 +12,7 @@
 namespace alvor {
 
 /// The linear system of a pass. Patches are the leaves of the row forest, in their order. Leaves are listed patch after patch; a
-/// leaf's place is its index in that list. Light is in emission units. Borrows the state, which must not be refined meanwhile.
+/// leaf's place is its index in that list. Borrows the state, which must not be refined meanwhile.
 class PassSystem {
  public:
   explicit PassSystem(SolveState& state);
@@ -39,7 +39,7 @@ class PassSystem {
   SolveState& state_;
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
-  std::vector<Rgb> own_radiosity_;  ///< by place: emission that rows carry, and reflected direct light
+  std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and reflected direct light
 };
 
 }  // namespace alvor

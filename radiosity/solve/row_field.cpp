@@ -13,7 +13,7 @@ namespace {
 const FieldFit no_field{};
 
 bool is_sound(const FieldFit& fit) {
-  return std::ranges::all_of(fit.coefficient, &Rgb::is_finite) && fit.low.is_finite() && fit.high.is_finite() &&
+  return std::ranges::all_of(fit.coefficient, &RelativeLight::is_finite) && fit.low.is_finite() && fit.high.is_finite() &&
          std::isfinite(dot(fit.centre, fit.centre) + dot(fit.s, fit.s) + dot(fit.t, fit.t)) &&
          std::isfinite(fit.variance + fit.window_misfit + fit.squared_misfit);
 }
@@ -24,7 +24,7 @@ RowField::RowField(const Forests& forests, bool has_rows) : forests_(forests), h
 
 const FieldFit& RowField::fit(NodeIndex row) const { return has_rows_ ? fit_[row] : no_field; }
 
-void RowField::set(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance) {
+void RowField::set(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance) {
   assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
   for (std::size_t n = 0; n < rows.size(); ++n) {
     irradiance_[rows[n]] = irradiance[n];
@@ -32,7 +32,7 @@ void RowField::set(std::span<const NodeIndex> rows, std::span<const Rgb> irradia
   }
 }
 
-void RowField::move_to(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance) {
+void RowField::move_to(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance) {
   assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
   for (std::size_t n = 0; n < rows.size(); ++n) {
     fit_[rows[n]].add(irradiance[n] - irradiance_[rows[n]]);
@@ -71,7 +71,7 @@ void RowField::load(PlainReader& in) {
   if (!has_rows_) return;
   fit_to_nodes();
   const auto rows = forests_.rows().leaves();
-  load_at(rows, irradiance_, in, "irradiance of rows", [](const Rgb& light) { return light.is_finite(); });
+  load_at(rows, irradiance_, in, "irradiance of rows", [](const RelativeLight& light) { return light.is_finite(); });
   load_at(rows, fit_, in, "field of rows", [](const FieldFit& fit) { return is_sound(fit); });
 }
 

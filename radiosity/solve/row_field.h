@@ -9,23 +9,22 @@
 
 namespace alvor {
 
-/// The field of indirect irradiance, in emission units; indices are by row node. If rows carry no light it is zero everywhere and
-/// takes no memory.
+/// The field of indirect irradiance; indices are by row node. If rows carry no light it is zero everywhere and takes no memory.
 class RowField {
  public:
   RowField(const Forests& forests, bool has_rows);
 
   /// Returns the irradiance that rows bring to a point on the row's patch.
-  Rgb at(NodeIndex row, Vec3 point) const { return has_rows_ ? fit_[row].at(point) : Rgb{}; }
+  RelativeLight at(NodeIndex row, Vec3 point) const { return has_rows_ ? fit_[row].at(point) : RelativeLight{}; }
   /// Returns the irradiance that the row itself received when the field was set.
-  Rgb irradiance(NodeIndex row) const { return has_rows_ ? irradiance_[row] : Rgb{}; }
+  RelativeLight irradiance(NodeIndex row) const { return has_rows_ ? irradiance_[row] : RelativeLight{}; }
   const FieldFit& fit(NodeIndex row) const;
 
   /// Makes the field constant over each of `rows`. Requires: as many values as rows; rows carry light.
-  void set(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance);
+  void set(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance);
   /// Adds to the field of each row the difference between `irradiance` and the irradiance that the row had received before.
   /// Requires: as many values as rows; rows carry light.
-  void move_to(std::span<const NodeIndex> rows, std::span<const Rgb> irradiance);
+  void move_to(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance);
   /// Replaces the field of each row by a fit; irradiance(row) does not change. Requires: as many fits as rows; rows carry light.
   void set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits);
 
@@ -41,7 +40,7 @@ class RowField {
  private:
   const Forests& forests_;
   const bool has_rows_;
-  std::vector<Rgb> irradiance_;
+  std::vector<RelativeLight> irradiance_;
   std::vector<FieldFit> fit_;
 };
 

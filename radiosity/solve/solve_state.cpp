@@ -57,7 +57,7 @@ std::vector<LeafValue> SolveState::leaf_values() const {
   std::vector<LeafValue> values;
   values.reserve(leaf_count());
   for (const NodeIndex leaf : forests.leaves().leaves()) {
-    const Rgb irradiance = direct.unit().to_watts_per_m2(direct[leaf].irradiance + indirect(leaf));
+    const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf));
     values.push_back({forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))});
   }
   return values;
@@ -131,7 +131,7 @@ void SolveState::load(PlainReader& in, std::uint32_t version) {
   rows.load_rows(in, version);
   field.load(in);
   direct.load_light(in);
-  load_at(forests.leaves().leaves(), shot, in, "shot light", [](const Rgb& light) { return light.is_finite(); });
+  load_at(forests.leaves().leaves(), shot, in, "shot light", [](const RelativeLight& light) { return light.is_finite(); });
   rows.load_wanted(in);
   direct.load_waiting(in);
 }

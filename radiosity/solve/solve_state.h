@@ -1,6 +1,7 @@
 #pragma once
 // The state that a solve keeps from pass to pass.
 
+#include "radiosity/direct/emission_unit.h"
 #include "radiosity/solve/direct_field.h"
 #include "radiosity/solve/forests.h"
 #include "radiosity/solve/row_field.h"
@@ -31,14 +32,18 @@ class SolveState {
   TracedRows rows;
   RowField field;
   DirectField direct;
-  std::vector<Rgb> shot;  ///< by leaf node: radiosity that shots distributed so far, in emission units; 0 if light is gathered
+  std::vector<RelativeLight> shot;  ///< by leaf node: radiosity that shots distributed so far; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
-  /// Returns the irradiance that rows bring to the centre of a leaf, in emission units.
-  Rgb indirect(NodeIndex leaf) const { return field.at(forests.row_of(leaf), forests.leaf_centres()[leaf]); }
+  /// Returns the irradiance that rows bring to the centre of a leaf.
+  RelativeLight indirect(NodeIndex leaf) const { return field.at(forests.row_of(leaf), forests.leaf_centres()[leaf]); }
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
   /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
   std::vector<LeafValue> leaf_values() const;
+  /// Returns light in W/m2, such as an ambient irradiance that is displayed with leaf_values().
+  Rgb in_watts_per_m2(const RelativeLight& light) const { return unit_.to_watts_per_m2(light); }
+  /// Returns W for a power in emission units times m2.
+  double in_watts(double power) const { return unit_.to_watts(power); }
   /// Returns the power that is not distributed yet if no exchange has begun: the emitters' waiting power and the reflection of
   /// direct light. Summed over bands, in emission units times m2.
   double unshot_power() const;
@@ -62,6 +67,7 @@ class SolveState {
   void load(PlainReader& in, std::uint32_t version);
 
  private:
+  const EmissionUnit unit_{mesh};
   const Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
   void follow_contact(NodeIndex split_leaf);

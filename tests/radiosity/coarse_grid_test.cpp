@@ -77,7 +77,7 @@ TEST(CoarseGrid, OfAllPatchesIsTheSolution) {
   const System system(2, 40);
   CoarseUnits units = one_for_each_patch(system);
   const Hits hits(system);
-  std::vector<Rgb> emission;
+  std::vector<RelativeLight> emission;
   for (const ShootingLeaf& leaf : system.leaves) emission.push_back(leaf.unshot);
   const auto residual = system.gathered(emission);  // the residual at zero irradiance
   auto step = residual;
@@ -101,10 +101,10 @@ System chain(std::uint32_t rooms, std::uint32_t patches_a_room, double reflectan
 int sweeps_down_to(double remaining_error, const System& system, std::vector<PatchId> ids) {
   std::vector<std::uint32_t> place(system.leaves.size());
   std::iota(place.begin(), place.end(), 0u);
-  std::vector<Rgb> emission;
+  std::vector<RelativeLight> emission;
   for (const ShootingLeaf& leaf : system.leaves) emission.push_back(leaf.unshot);
   Gathering gathering(system.patches, place, place.size(), emission, Hits(system).hit_leaf,
-                      std::vector<Rgb>(system.patches.size()), std::move(ids));
+                      std::vector<RelativeLight>(system.patches.size()), std::move(ids));
   int sweeps = 0;
   settle(gathering, remaining_error, [&](std::size_t) { return ++sweeps < 10'000; });
   return sweeps;

@@ -18,7 +18,7 @@ constexpr Strategy all[]{Strategy::gather, Strategy::shoot, Strategy::sorted, St
 bool always(std::size_t) { return true; }
 
 /// Returns the RMS error of the radiosity in the first band, over the mean radiosity.
-double true_error(const System& system, std::span<const Rgb> solution, const Exchange& exchange) {
+double true_error(const System& system, std::span<const RelativeLight> solution, const Exchange& exchange) {
   const auto irradiance = exchange.irradiance(), expected = system.gathered(solution);
   double squares = 0, power = 0, area = 0;
   for (std::size_t p = 0; p < irradiance.size(); ++p) {

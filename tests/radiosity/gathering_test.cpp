@@ -20,8 +20,8 @@ constexpr double float_noise = 1e-6;
 /// A gathering over all patches of a system. The place of each leaf is its own number. Borrows the system.
 class Gatherer {
  public:
-  explicit Gatherer(const System& system) : Gatherer(system, std::vector<Rgb>(system.patches.size())) {}
-  Gatherer(const System& system, std::vector<Rgb> start)
+  explicit Gatherer(const System& system) : Gatherer(system, std::vector<RelativeLight>(system.patches.size())) {}
+  Gatherer(const System& system, std::vector<RelativeLight> start)
       : place_(system.leaves.size()), emission_(system.leaves.size()), gathering_(begun(system, std::move(start))) {}
   Gathering& operator*() { return gathering_; }
   Gathering* operator->() { return &gathering_; }
@@ -35,7 +35,7 @@ class Gatherer {
   }
 
  private:
-  Gathering begun(const System& system, std::vector<Rgb> start) {
+  Gathering begun(const System& system, std::vector<RelativeLight> start) {
     std::iota(place_.begin(), place_.end(), 0u);
     for (std::size_t leaf = 0; leaf < emission_.size(); ++leaf) emission_[leaf] = system.leaves[leaf].unshot;
     std::vector<const std::uint32_t*> hit_leaf;
@@ -48,7 +48,7 @@ class Gatherer {
   }
 
   std::vector<std::uint32_t> place_;
-  std::vector<Rgb> emission_;
+  std::vector<RelativeLight> emission_;
   Gathering gathering_;
 };
 
@@ -73,12 +73,12 @@ struct Probed {
 
   /// Returns the residual e + rho F x - x of the first leaf of each patch, which is that of the patch's other leaves too. x is
   /// the radiosity that the probes see.
-  std::vector<Rgb> residual(const Gathering& gathering) const {
+  std::vector<RelativeLight> residual(const Gathering& gathering) const {
     const auto seen = gathering.irradiance();
-    std::vector<Rgb> x(system.leaves.size()), residual;
+    std::vector<RelativeLight> x(system.leaves.size()), residual;
     for (std::size_t p = 0; p < patch_count; ++p) {
       const ShootingPatch& patch = system.patches[p];
-      const Rgb reflected = seen[patch_count + p] - system.leaves[patch.first_leaf].unshot;
+      const RelativeLight reflected = seen[patch_count + p] - system.leaves[patch.first_leaf].unshot;
       for (std::uint32_t k = 0; k < patch.leaf_count; ++k)
         x[patch.first_leaf + k] = system.leaves[patch.first_leaf + k].unshot + reflected;
     }
@@ -93,18 +93,19 @@ struct Probed {
     return power;
   }
   /// Returns the squared norm that a step minimises: that of the residual as irradiance, weighted by area.
-  Rgb squared_norm(std::span<const Rgb> residual_by_patch) const {
+  Rgb squared_norm(std::span<const RelativeLight> residual_by_patch) const {
     Rgb sum;
     for (std::size_t p = 0; p < patch_count; ++p) {
-      const Rgb &rho = system.patches[p].reflectance, left = residual_by_patch[p];
-      const Rgb received{left.r / rho.r, left.g / rho.g, left.b / rho.b};
-      sum += system.patches[p].area * (received * received);
+      const Rgb& rho = system.patches[p].reflectance;
+      const RelativeLight& left = residual_by_patch[p];
+      const RelativeLight received{left.r / rho.r, left.g / rho.g, left.b / rho.b};
+      sum += system.patches[p].area * product(received, received);
     }
     return sum;
   }
   /// Returns the residual that plain iteration, x := e + rho F x, leaves of a residual.
-  std::vector<Rgb> iterated(std::span<const Rgb> residual_by_patch) const {
-    std::vector<Rgb> by_leaf(system.leaves.size());
+  std::vector<RelativeLight> iterated(std::span<const RelativeLight> residual_by_patch) const {
+    std::vector<RelativeLight> by_leaf(system.leaves.size());
     for (std::size_t p = 0; p < patch_count; ++p)
       for (std::uint32_t k = 0; k < system.patches[p].leaf_count; ++k)
         by_leaf[system.patches[p].first_leaf + k] = residual_by_patch[p];
@@ -141,7 +142,7 @@ TEST(Gathering, ArrivesAtTheSolution) {
     const auto solved = system.solved();
     expect_near(run->irradiance(), system.gathered(solved), float_noise);
     const auto irradiance = run->irradiance();
-    std::vector<Rgb> radiosity(solved.size());
+    std::vector<RelativeLight> radiosity(solved.size());
     for (std::size_t p = 0; p < system.patches.size(); ++p)
       for (std::uint32_t k = 0; k < system.patches[p].leaf_count; ++k) {
         const std::uint32_t leaf = system.patches[p].first_leaf + k;
@@ -179,7 +180,7 @@ TEST(Gathering, ResidualNeverGrowsAndPlainIterationNeverLeavesLess) {
 }
 
 int jacobi_iterations_down_to(double fraction, const System& system) {
-  std::vector<Rgb> x(system.leaves.size());
+  std::vector<RelativeLight> x(system.leaves.size());
   for (const ShootingLeaf& leaf : system.leaves) x[&leaf - system.leaves.data()] = leaf.unshot;
   double first = 0;
   for (int n = 0;; ++n) {
@@ -211,7 +212,7 @@ TEST(Gathering, BegunAtTheSolutionHasNothingUnshot) {
 
 TEST(Gathering, ArrivesFromAnyStart) {
   const System system(7, 60);
-  Gatherer run(system, std::vector<Rgb>(system.patches.size(), {3, 0, 50}));
+  Gatherer run(system, std::vector<RelativeLight>(system.patches.size(), {3, 0, 50}));
   run.sweep_down_to(1e-9);
   // The start is brighter than the solution, so rounding of the start is larger too.
   expect_near(run->irradiance(), system.gathered(system.solved()), 10 * float_noise);

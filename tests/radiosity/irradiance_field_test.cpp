@@ -40,7 +40,7 @@ struct Rows {
   std::vector<RowSamples> samples(Irradiance&& irradiance) const {
     std::vector<RowSamples> samples(size());
     for (std::size_t n = 0; n < size(); ++n)
-      for (int k = 0; k < 4; ++k) samples[n][k] = {irradiance(quarter(n, k)) * Rgb{1, 1, 1}, rays};
+      for (int k = 0; k < 4; ++k) samples[n][k] = {irradiance(quarter(n, k)) * RelativeLight{1, 1, 1}, rays};
     return samples;
   }
   std::vector<FieldFit> fit(std::span<const RowSamples> samples) const {
@@ -227,7 +227,7 @@ TEST(IrradianceField, DarkRowsAreExactlyDarkAndDoNotDarkenTheirNeighbours) {
   const auto fits = rows.fit(rows.samples(half));
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const Vec3 at = rows.centre(n);
-    if (at.x < size / 2) EXPECT_EQ(fits[n].at(at), Rgb{});
+    if (at.x < size / 2) EXPECT_EQ(fits[n].at(at), RelativeLight{});
     else EXPECT_NEAR(fits[n].at(at).g, half(at), 1e-11);
   }
 }
@@ -257,7 +257,7 @@ TEST(IrradianceField, BandsAreFittedApart) {
     for (int k = 0; k < 4; ++k) samples[n][k].irradiance = {50 + rows.quarter(n, k).x, 0, 80 - rows.quarter(n, k).z};
   const auto fits = rows.fit(samples);
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    const Rgb value = fits[n].at(rows.centre(n));
+    const RelativeLight value = fits[n].at(rows.centre(n));
     EXPECT_NEAR(value.r, 50 + rows.centre(n).x, 1e-10);
     EXPECT_EQ(value.g, 0);
     EXPECT_NEAR(value.b, 80 - rows.centre(n).z, 1e-10);

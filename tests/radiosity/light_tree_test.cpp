@@ -1,6 +1,7 @@
 #include "radiosity/direct/light_tree.h"
 
 #include "radiosity/direct/direct_light.h"
+#include "radiosity/direct/emission_unit.h"
 #include "radiosity/direct/face_light.h"
 #include "radiosity/form_factors/form_factor.h"
 #include "tests/scenes.h"
@@ -66,9 +67,10 @@ struct Lamps {
 
   static std::vector<std::unique_ptr<FaceLight>> faces_of(const LocalScene& scene) {
     std::vector<std::unique_ptr<FaceLight>> faces;
+    const EmissionUnit unit(scene.mesh());
     for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root)
       if (const Rgb emission = scene.mesh().material_of(root).emission; !emission.is_zero())
-        faces.push_back(std::make_unique<FaceLight>(scene, root, emission));
+        faces.push_back(std::make_unique<FaceLight>(scene, root, unit.from_watts_per_m2(emission)));
     return faces;
   }
   static std::vector<const LightSource*> borrowed(const std::vector<std::unique_ptr<FaceLight>>& faces) {

@@ -27,7 +27,7 @@ TEST(Shooting, GoesOnFromAnyStateBecauseUnshotIsTheResidual) {
   System started = system;
   std::mt19937 random(1);
   for (ShootingLeaf& leaf : started.leaves) {  // more was "shot" in some places than is right: negative residuals follow
-    leaf.shot = double(random() % 10) * Rgb{1, 0, 1};
+    leaf.shot = double(random() % 10) * RelativeLight{1, 0, 1};
     leaf.unshot -= leaf.shot;
   }
   Shooting shooting(started.patches, started.leaves, started.hit_leaf);
@@ -44,7 +44,7 @@ TEST(Shooting, IrradianceIsTheRowsTimesWhatWasShot) {
   for (int n = 0; n < 5; ++n) stepper->sweep();
   const auto shot = shooting.shot();
   for (std::size_t p = 0; p < system.patches.size(); ++p) {
-    Rgb sum;
+    RelativeLight sum;
     for (std::size_t h = 0; h < 64; ++h) sum += shot[system.hit_leaf[64 * p + h]];
     EXPECT_NEAR(shooting.irradiance()[p].r, sum.r / 64, 1e-12);
   }

@@ -23,7 +23,7 @@ void step_until(Strategy strategy, Shooting& shooting, double unshot_power) {
   EXPECT_LE(shooting.unshot_power(), unshot_power);
 }
 
-void expect_close(std::span<const Rgb> got, std::span<const Rgb> expected, double absolute_error) {
+void expect_close(std::span<const RelativeLight> got, std::span<const RelativeLight> expected, double absolute_error) {
   ASSERT_EQ(got.size(), expected.size());
   for (std::size_t n = 0; n < got.size(); ++n) EXPECT_LE(absolute(got[n] - expected[n]).max(), absolute_error) << n;
 }
@@ -59,7 +59,7 @@ TEST(Strategies, AgreeOnARoom) {
   SolveState state(mesh, {.max_depth = 4}, budget);
   Pass pass(state);
   pass.prepare();
-  std::vector<Rgb> expected;
+  std::vector<RelativeLight> expected;
   for (const Strategy strategy : all) {
     SCOPED_TRACE(text(strategy));
     Shooting shooting = pass.unshot_system();
@@ -67,8 +67,8 @@ TEST(Strategies, AgreeOnARoom) {
     const auto shot = shooting.shot();
     if (expected.empty()) expected = shot;
     double largest = 0;
-    for (const Rgb& x : expected) largest = std::max(largest, x.max());
-    EXPECT_GT(state.direct.unit().to_watts_per_m2({largest, largest, largest}).max(), 0.1);
+    for (const RelativeLight& x : expected) largest = std::max(largest, x.max());
+    EXPECT_GT(state.in_watts_per_m2({largest, largest, largest}).max(), 0.1);
     expect_close(shot, expected, 1e-6 * largest);
   }
 }
@@ -102,9 +102,10 @@ TEST(Strategies, AmbientAccountEqualsWhatIsUnshotAfterAnyNumberOfShots) {
     const auto stepper = make_stepper(strategy, shooting);
     for (int n = 0; n < 300; ++n) {
       const auto left = system.residual(shooting.shot());
-      Rgb unshot;
+      RelativeLight unshot;
       for (std::size_t leaf = 0; leaf < left.size(); ++leaf) unshot += system.leaves[leaf].area * left[leaf];
-      const Rgb expected{unshot.r / (area - reflected.r), unshot.g / (area - reflected.g), unshot.b / (area - reflected.b)};
+      const RelativeLight expected{unshot.r / (area - reflected.r), unshot.g / (area - reflected.g),
+                                   unshot.b / (area - reflected.b)};
       ASSERT_LE(absolute(shooting.ambient_irradiance() - expected).max(), 1e-9) << "after " << n << " shots";
       stepper->step();
     }
@@ -115,7 +116,7 @@ TEST(Strategies, AmbientTermBalancesTheEnergyOfAUniformEnclosureAfterEveryShot) 
   // With uniform rho and reciprocal rows, sum A (B + rho ambient) = sum A E / (1 - rho), where B is shot plus unshot radiosity.
   constexpr double rho = 0.8;
   const System system = System::reciprocal(1, 40, rho, 3);
-  Rgb emitted;
+  RelativeLight emitted;
   for (const ShootingLeaf& leaf : system.leaves) emitted += leaf.area * leaf.unshot;
   for (const Strategy strategy : shooters) {
     SCOPED_TRACE(text(strategy));
@@ -123,11 +124,11 @@ TEST(Strategies, AmbientTermBalancesTheEnergyOfAUniformEnclosureAfterEveryShot) 
     const auto stepper = make_stepper(strategy, shooting);
     for (int n = 0; n < 200; ++n) {
       const auto irradiance = shooting.irradiance();
-      const Rgb ambient = shooting.ambient_irradiance();
-      Rgb sum;
+      const RelativeLight ambient = shooting.ambient_irradiance();
+      RelativeLight sum;
       for (std::size_t p = 0; p < irradiance.size(); ++p)
         sum += system.leaves[p].area * (system.leaves[p].unshot + rho * (irradiance[p] + ambient));
-      const Rgb expected = 1 / (1 - rho) * emitted;
+      const RelativeLight expected = 1 / (1 - rho) * emitted;
       ASSERT_LE(absolute(sum - expected).max(), 1e-10 * expected.max()) << "after " << n << " shots";
       stepper->step();
     }
@@ -146,7 +147,7 @@ TEST(Strategies, GatheringDividesTheWholeSumWhereAPatchSeesItself) {
   shooting.find_unshot();
   const auto stepper = make_stepper(Strategy::gather, shooting);
   stepper->step();
-  const std::vector<Rgb> expected{{1 + 0.5 * 2 / 0.5, 1 + 0.9 * 2 / 0.1, 1}, {3 + 0.5 * 2 / 0.5, 3 + 0.9 * 2 / 0.1, 3}};
+  const std::vector<RelativeLight> expected{{1 + 0.5 * 2 / 0.5, 1 + 0.9 * 2 / 0.1, 1}, {3 + 0.5 * 2 / 0.5, 3 + 0.9 * 2 / 0.1, 3}};
   expect_close(shooting.shot(), expected, 1e-12);
   shooting.find_unshot();
   EXPECT_LT(shooting.unshot_power(), 1e-12);
@@ -177,13 +178,13 @@ TEST(Strategies, SortedShootsTheLargestUnshotPowerFirst) {
 }
 
 /// Returns the number of steps until the RMS error of the displayed irradiance is at most `error` times the solution's RMS.
-int steps_to(double error, Strategy strategy, const System& system, std::span<const Rgb> solved) {
+int steps_to(double error, Strategy strategy, const System& system, std::span<const RelativeLight> solved) {
   Shooting shooting = system.begun();
   const auto stepper = make_stepper(strategy, shooting);
   const auto solved_irradiance = system.gathered(solved);
   for (int steps = 0;; ++steps) {
     const auto irradiance = shooting.irradiance();
-    const Rgb ambient = shows_ambient(strategy) ? shooting.ambient_irradiance() : Rgb{};
+    const RelativeLight ambient = shows_ambient(strategy) ? shooting.ambient_irradiance() : RelativeLight{};
     double squares = 0, reference = 0;
     for (std::size_t p = 0; p < irradiance.size(); ++p) {
       const double difference = (irradiance[p] + ambient - solved_irradiance[p]).r;

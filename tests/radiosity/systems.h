@@ -44,7 +44,7 @@ struct System {
     for (std::uint32_t p = 0; p < count; ++p) {
       const auto area = 16u << random() % 3;
       system.add_patch(p, area, {reflectance, reflectance, reflectance});
-      system.add_leaf(p, area, p < emitting ? Rgb{1, 0.5, 2} : Rgb{});
+      system.add_leaf(p, area, p < emitting ? RelativeLight{1, 0.5, 2} : RelativeLight{});
       ends.insert(ends.end(), area, p);
     }
     std::ranges::shuffle(ends, random);
@@ -58,10 +58,10 @@ struct System {
   }
 
   /// Returns the irradiance of each patch: its row times x.
-  std::vector<Rgb> gathered(std::span<const Rgb> x) const {
-    std::vector<Rgb> irradiance;
+  std::vector<RelativeLight> gathered(std::span<const RelativeLight> x) const {
+    std::vector<RelativeLight> irradiance;
     for (std::size_t p = 0, h = 0; p < patches.size(); ++p) {
-      Rgb sum;
+      RelativeLight sum;
       const std::size_t count = rows[p].hits.size();
       for (const std::size_t end = h + count; h < end; ++h) sum += x[hit_leaf[h]];
       irradiance.push_back(sum * (1.0 / double(count)));
@@ -70,8 +70,8 @@ struct System {
   }
 
   /// Returns the residual e + rho F x - x of each leaf.
-  std::vector<Rgb> residual(std::span<const Rgb> x) const {
-    std::vector<Rgb> left;
+  std::vector<RelativeLight> residual(std::span<const RelativeLight> x) const {
+    std::vector<RelativeLight> left;
     const auto irradiance = gathered(x);
     for (std::size_t p = 0; p < patches.size(); ++p)
       for (std::uint32_t leaf = patches[p].first_leaf; leaf < patches[p].first_leaf + patches[p].leaf_count; ++leaf)
@@ -80,8 +80,8 @@ struct System {
   }
 
   /// Returns the solution x of each leaf, by 2000 Jacobi iterations.
-  std::vector<Rgb> solved() const {
-    std::vector<Rgb> x(leaves.size());
+  std::vector<RelativeLight> solved() const {
+    std::vector<RelativeLight> x(leaves.size());
     for (int n = 0; n < 2000; ++n) {
       const auto left = residual(x);
       for (std::size_t leaf = 0; leaf < x.size(); ++leaf) x[leaf] += left[leaf];
@@ -103,14 +103,14 @@ struct System {
     rows[p].rays = hits;
     patches.push_back({&rows[p], std::uint32_t(leaves.size()), 0, reflectance, 0});
   }
-  void add_leaf(std::uint32_t p, double area, Rgb emission) {
+  void add_leaf(std::uint32_t p, double area, RelativeLight emission) {
     leaves.push_back({area, emission, {}});
     ++patches[p].leaf_count;
     patches[p].area += area;
   }
 };
 
-inline void expect_near(std::span<const Rgb> got, std::span<const Rgb> expected, double relative) {
+inline void expect_near(std::span<const RelativeLight> got, std::span<const RelativeLight> expected, double relative) {
   ASSERT_EQ(got.size(), expected.size());
   for (std::size_t n = 0; n < got.size(); ++n) {
     EXPECT_NEAR(got[n].r, expected[n].r, relative * expected[n].r);
