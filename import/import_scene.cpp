@@ -85,14 +85,14 @@ SceneFile checked(SceneFile file) {
 }
 
 ImportedScene imported(SceneFiles& files, const v1::ImportOptions& options) {
-  if (options.accepts_missing_files()) files.accept_missing();
+  for (const std::string& name : options.absent_files()) files.declare_absent(name);
   try {
     SceneFile file = import_by_extension(files);
     files.require_found();
     take_options(options, file.scene);
     return {checked(std::move(file)), {}};
   } catch (const MissingFileError&) {
-    if (files.accepts_missing()) throw;
+    if (files.missing().empty()) throw;  // it is absent
     return {{}, {files.missing().begin(), files.missing().end()}};
   }
 }

@@ -31,17 +31,18 @@ void refuse_unreadable(const fs::path& path) {
   if (fs::file_size(path, error) == 0 && !error) throw ImportError("file", "is empty");
 }
 
-/// Adds those of the missing files that are beside the scene. Returns whether there were any.
-bool add_found(SceneFiles& files, const std::vector<std::string>& missing, const fs::path& folder) {
-  bool is_any = false;
+/// Adds those of the missing files that are beside the scene, and names the others in the options. Throws ImportError if all of
+/// them are known.
+void add_missing(SceneFiles& files, v1::ImportOptions& options, const std::vector<std::string>& missing, const fs::path& folder) {
+  bool is_any_new = false;
   for (const std::string& name : missing) {
-    if (files.beside().contains(name)) continue;
-    if (auto bytes = read_beside(folder, name)) {
-      files.add(name, *std::move(bytes));
-      is_any = true;
-    }
+    const bool is_absent = std::ranges::find(options.absent_files(), name) != options.absent_files().end();
+    if (is_absent || files.beside().contains(name)) continue;
+    is_any_new = true;
+    if (auto bytes = read_beside(folder, name)) files.add(name, *std::move(bytes));
+    else options.add_absent_files(as_utf8(name));
   }
-  return is_any;
+  if (!is_any_new) throw ImportError("file '" + missing.front() + "'", "is asked for again and again");
 }
 
 SceneFile checked(Scene scene, std::vector<std::string> warnings) {
@@ -57,7 +58,7 @@ SceneFile read_apart(SceneFiles files, const fs::path& folder) {
       if (const auto fault = assembler.add(chunk)) throw ImportError(fault->place, fault->reason);
     });
     if (answer.missing.empty()) return checked(assembler.take(), std::move(answer.warnings));
-    if (!add_found(files, answer.missing, folder)) options.set_accepts_missing_files(true);
+    add_missing(files, options, answer.missing, folder);
   }
 }
 

@@ -1,5 +1,7 @@
 #include "import/scene_files.h"
 
+#include "proto/codec.h"
+
 #include <algorithm>
 
 namespace alvor {
@@ -16,6 +18,7 @@ constexpr std::string_view separators = "/\\";
 std::string reason_against_name(std::string_view name) {
   if (name.empty()) return "names no file";
   if (name.size() > longest_name) return "has a name of more than " + std::to_string(longest_name) + " bytes";
+  if (as_utf8(name) != name) return "has a name that is not UTF-8";
   if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < ' '; })) return "has control characters";
   if (name.find(':') != std::string::npos) return "is a URL or names a drive: only files beside the scene are read";
   if (separators.find(name.front()) != separators.npos) return "is an absolute path: only files beside the scene are read";
@@ -44,7 +47,7 @@ const std::string* SceneFiles::find(std::string_view name) {
   if (plain.empty()) return nullptr;
   const auto found = beside_.find(plain);
   if (found != beside_.end()) return &found->second;
-  missing_.insert(std::move(plain));
+  if (!absent_.contains(plain)) missing_.insert(std::move(plain));
   return nullptr;
 }
 
@@ -57,7 +60,7 @@ std::map<std::string, std::string> SceneFiles::release() {
 }
 
 void SceneFiles::require_found() const {
-  if (!missing_.empty() && !accepts_missing_) throw MissingFileError("file '" + *missing_.begin() + "'", "is missing");
+  if (!missing_.empty()) throw MissingFileError("file '" + *missing_.begin() + "'", "is missing");
 }
 
 }  // namespace alvor

@@ -34,24 +34,22 @@ class SceneFiles {
 
   /// Adds a file that the scene names, or replaces it. Requires: reason_against_name(name) is empty.
   void add(std::string_view name, std::string bytes) { beside_.insert_or_assign(plain_name(name), std::move(bytes)); }
+  /// Says that nobody has this file: it does not count as missing.
+  void declare_absent(std::string_view name) { absent_.insert(plain_name(name)); }
   /// Returns the bytes of a file that the scene names, or null if it is missing or its name is not allowed.
   const std::string* find(std::string_view name);
   const std::map<std::string, std::string>& beside() const { return beside_; }
   /// Gives up all files, the scene file among them, and returns them by name.
   std::map<std::string, std::string> release();
-  /// Throws MissingFileError if files were asked for in vain, unless accept_missing() was called. For importers, to end early.
+  /// Throws MissingFileError if files are missing. For importers, to end early.
   void require_found() const;
-  /// Lets importers go on without files that are missing, if they can.
-  void accept_missing() { accepts_missing_ = true; }
-  bool accepts_missing() const { return accepts_missing_; }
-  /// Returns the names of allowed files that were asked for and are not here.
+  /// Returns the names of allowed files that were asked for, are not here, and were not declared absent.
   const std::set<std::string>& missing() const { return missing_; }
 
  private:
   std::string scene_, bytes_;
   std::map<std::string, std::string> beside_;
-  std::set<std::string> missing_;
-  bool accepts_missing_ = false;
+  std::set<std::string> missing_, absent_;
 };
 
 }  // namespace alvor

@@ -3,6 +3,7 @@
 #include "import/apart/records.h"
 #include "import/import_error.h"
 #include "import/one_line.h"
+#include "proto/codec.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -207,7 +208,7 @@ bool take_record(Record& record, ImporterAnswer& answer, const std::function<voi
       if (!chunk.ParseFromString(record.bytes)) return false;
       take(chunk);
       return true;
-    case RecordKind::warning: append_line(answer.warnings, one_line_of(record.bytes)); return true;
+    case RecordKind::warning: append_line(answer.warnings, as_utf8(one_line_of(record.bytes))); return true;
     case RecordKind::missing:
       if (!reason_against_name(record.bytes).empty()) return false;
       append_line(answer.missing, std::move(record.bytes));

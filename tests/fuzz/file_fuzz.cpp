@@ -46,9 +46,9 @@ void read_scene(const Kind& kind) {
   alvor::SceneFiles files(kind.read, alvor::read_whole_file(directory() / kind.read));
   for (const auto& entry : fs::directory_iterator(directory()))
     files.add(entry.path().filename().string(), alvor::read_whole_file(entry.path()));
-  alvor::v1::ImportOptions options;
-  options.set_accepts_missing_files(true);
-  (void)alvor::import_scene(files, options);
+  const auto missing = alvor::import_scene(files, {}).missing;
+  for (const std::string& name : missing) files.declare_absent(name);
+  if (!missing.empty()) (void)alvor::import_scene(files, {});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -59,6 +60,7 @@ const std::map<std::string, void (*)()> faults{
     {"fork", [] { (void)fork(); }},
     {"exec", [] { (void)execl("/bin/true", "true", nullptr); }},
     {"kill", [] { (void)kill(getppid(), 0); }},
+    {"signal a thread", [] { (void)syscall(SYS_tgkill, getppid(), getppid(), 0); }},
     {"write code", write_code},
     {"speak nonsense", speak_nonsense},
     {"write without end", write_without_end},

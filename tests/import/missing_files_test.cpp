@@ -18,10 +18,13 @@ SceneFiles room() {
 
 Names missing(SceneFiles& files) { return import_scene(files, {}).missing; }
 
-ImportedScene without(SceneFiles& files) {
+/// Reads the scene without the files that are missing.
+ImportedScene without(const SceneFiles& files) {
+  SceneFiles all(files.scene(), files.bytes());
+  for (const auto& [name, bytes] : files.beside()) all.add(name, bytes);
   v1::ImportOptions options;
-  options.set_accepts_missing_files(true);
-  return import_scene(files, options);
+  for (const std::string& name : files.missing()) options.add_absent_files(name);
+  return import_scene(all, options);
 }
 
 TEST(MissingFiles, OfObjAreAllLibrariesAndThenAllImagesOfMaterialsInUse) {
@@ -82,6 +85,8 @@ TEST(MissingFiles, AreAskedForInPlainNames) {
   EXPECT_EQ(reason_against_name("maps/..\\..\\wood.png"), "leaves the folder of the scene");
   EXPECT_EQ(reason_against_name(std::string(2000, 'a')), "has a name of more than 1000 bytes");
   EXPECT_EQ(reason_against_name("wood..png"), "");
+  EXPECT_EQ(reason_against_name("h\xc3\xb6lz.png"), "");
+  EXPECT_EQ(reason_against_name("h\xf6lz.png"), "has a name that is not UTF-8");
 }
 
 TEST(ImportOptions, ReplaceWhatTheFileSays) {

@@ -71,7 +71,8 @@ TEST(RunImporter, MemoryIsLimited) {
 }
 
 TEST(RunImporter, AnImporterMayNeitherOpenFilesNorConnectNorStartPrograms) {
-  for (const char* fault : {"open", "socket", "fork", "exec", "kill", "write code"}) EXPECT_EQ(refusal(fault), tried) << fault;
+  for (const char* fault : {"open", "socket", "fork", "exec", "kill", "signal a thread", "write code"})
+    EXPECT_EQ(refusal(fault), tried) << fault;
 }
 
 TEST(RunImporter, AnswersThatAreNoSceneAreRefused) {

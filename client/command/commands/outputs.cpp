@@ -20,7 +20,7 @@ void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
 
 // Writes the solution and the frames, unless nothing was published because the solve failed at once.
 void write_pictures(const OutputOptions& options, const Scene& scene, const Followed& followed) {
-  if (followed.mirror.steps().empty() || (options.solution.path.empty() && options.frames.empty())) return;
+  if (followed.mirror.steps().empty() || !draws(options)) return;
   const BaseMesh mesh(scene);
   if (!options.solution.path.empty()) write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
   if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
@@ -60,6 +60,8 @@ void prepare_outputs(const OutputOptions& options) {
   reserve_stdout_for({options.solution.path, options.report});
   if (!options.frames.empty()) make_folder(options.frames, "frame_0000.png", "--frames");
 }
+
+bool draws(const OutputOptions& options) { return !options.solution.path.empty() || !options.frames.empty(); }
 
 void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
   // Files to stdout are written last, because the reader may have gone.

@@ -29,8 +29,12 @@ void add_output_options(CLI::App& command, OutputOptions& options);
 /// written, so that the user learns it before a long solve and not after.
 void prepare_outputs(const OutputOptions& options);
 
+/// Returns whether deliver() needs the scene.
+bool draws(const OutputOptions& options);
+
 /// Writes the files, then prints the JSON object or a summary for people. Throws FileError or SolutionFileError if
 /// something could not be written, and Failure (failed) after all that if the solve did not end well.
+/// Requires: `scene` is the solve's scene if draws(options).
 void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings);
 
 }  // namespace alvor
