@@ -5,19 +5,20 @@ WORKDIR /alvor
 COPY scripts/setup.sh scripts/
 RUN scripts/setup.sh compile
 COPY . .
-RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord && strip build/release/bin/alvor build/release/bin/alvord
+RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import && \
+    strip build/release/bin/alvor build/release/bin/alvord build/release/bin/alvor-import
 
 FROM debian:bookworm-slim
 RUN apt-get update -qq && \
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-      libassimp5 libcairo2 libembree3-3 libgrpc++1.51 libopenmesh1 libpng16-16 libprotobuf32 libspdlog1.10 libsqlite3-0 libssl3 libtbb12 \
-      libzstd1 && \
+      libassimp5 libcairo2 libembree3-3 libgrpc++1.51 libopenmesh1 libpng16-16 libprotobuf32 libseccomp2 libspdlog1.10 libsqlite3-0 \
+      libssl3 libtbb12 libzstd1 && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
     echo 'alvor:x:10001:10001::/out:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 /out
 COPY scenes /usr/local/share/alvor/scenes
-COPY --from=build /alvor/build/release/bin/alvor /usr/local/bin/
-RUN alvor --version > /dev/null
+COPY --from=build /alvor/build/release/bin/alvor /alvor/build/release/bin/alvor-import /usr/local/bin/
+RUN alvor --version > /dev/null && alvor explain /usr/local/share/alvor/scenes/cornell_box.obj > /dev/null
 
 USER 10001:10001
 WORKDIR /out

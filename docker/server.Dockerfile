@@ -15,19 +15,20 @@ WORKDIR /alvor
 COPY scripts/setup.sh scripts/
 RUN scripts/setup.sh compile
 COPY . .
-RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord && strip build/release/bin/alvor build/release/bin/alvord
+RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import && \
+    strip build/release/bin/alvor build/release/bin/alvord build/release/bin/alvor-import
 
 FROM debian:bookworm-slim
 RUN apt-get update -qq && \
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-      libembree3-3 libgrpc++1.51 libopenmesh1 libprometheus-cpp-pull1.0 libprotobuf32 libspdlog1.10 libsqlite3-0 \
-      libssl3 libtbb12 libzstd1 && \
+      libassimp5 libembree3-3 libgrpc++1.51 libopenmesh1 libprometheus-cpp-pull1.0 libprotobuf32 libseccomp2 libspdlog1.10 \
+      libsqlite3-0 libssl3 libtbb12 libzstd1 && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
     echo 'alvor:x:10001:10001::/var/lib/alvor:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 -m 700 /var/lib/alvor && install -d -o 10001 -g 10001 -m 750 /run/alvor
 COPY --from=page /alvor/build/release/bin/web /usr/local/share/alvor/web
-COPY --from=build /alvor/build/release/bin/alvord /usr/local/bin/
-RUN alvord --help > /dev/null
+COPY --from=build /alvor/build/release/bin/alvord /alvor/build/release/bin/alvor-import /usr/local/bin/
+RUN alvord --help > /dev/null && alvor-import 10000000000 1 < /dev/null
 
 # Each option has a variable of its name; what is given to the container's command goes before it.
 ENV ALVORD_LISTEN=0.0.0.0:50051 ALVORD_DATA=/var/lib/alvor ALVORD_HEALTH=0.0.0.0:50052 ALVORD_PAGE=/usr/local/share/alvor/web

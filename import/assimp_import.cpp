@@ -6,12 +6,13 @@
 #include "import/texture_colour.h"
 #include "import/unsupported.h"
 
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -56,8 +57,8 @@ Convention convention_of(const aiScene& source, const std::string& extension) {
 /// Reads one file's materials and meshes into a scene.
 class AssimpReader {
  public:
-  AssimpReader(const aiScene& source, std::filesystem::path folder, const Convention& convention)
-      : source_(source), folder_(std::move(folder)), convention_(convention) {}
+  AssimpReader(const aiScene& source, SceneFiles& files, const Convention& convention)
+      : source_(source), files_(files), convention_(convention) {}
 
   SceneFile read() {
     for (const aiMaterial* material : std::span(source_.mMaterials, source_.mNumMaterials)) add_material(*material);
@@ -96,9 +97,7 @@ class AssimpReader {
 
   std::optional<Rgb> mean_of_texture(const aiString& name) const {
     if (const aiTexture* embedded = source_.GetEmbeddedTexture(name.C_Str())) return mean_of_embedded(*embedded);
-    std::string file = name.C_Str();
-    std::ranges::replace(file, '\\', '/');
-    return mean_colour_of_file(folder_ / file);
+    return mean_colour(files_.find(name.C_Str()));
   }
 
   /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
@@ -169,7 +168,7 @@ class AssimpReader {
   }
 
   const aiScene& source_;
-  std::filesystem::path folder_;
+  SceneFiles& files_;
   Convention convention_;
   SceneFile file_;
   std::optional<std::uint32_t> default_material_;
@@ -199,33 +198,42 @@ void refuse_what_assimp_cannot_survive(std::istream& stream, std::uintmax_t file
 /// No post-processing: every step of Assimp that joins, sorts or triangulates loses the file's faces or their order.
 constexpr unsigned as_it_is = 0;
 
-SceneFile scene_of(const Assimp::Importer& importer, const std::filesystem::path& folder, const std::string& extension) {
-  const aiScene* source = importer.GetScene();
-  if (!source) throw ImportError("file", importer.GetErrorString());
-  return AssimpReader(*source, folder, convention_of(*source, extension)).read();
-}
+/// Gives Assimp the files of a scene, and no others.
+class MemoryFiles : public Assimp::IOSystem {
+ public:
+  explicit MemoryFiles(const SceneFiles& files) : files_(files) {}
+
+  bool Exists(const char* name) const override { return find(name) != nullptr; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    const std::string* const bytes = mode[0] == 'r' ? find(name) : nullptr;
+    if (!bytes) return nullptr;
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  /// Formats look for files that need not exist. So what is not found here does not count as missing.
+  const std::string* find(const char* name) const {
+    const std::string plain = plain_name(name);
+    if (plain == files_.scene()) return &files_.bytes();
+    const auto found = files_.beside().find(plain);
+    return found == files_.beside().end() ? nullptr : &found->second;
+  }
+
+  const SceneFiles& files_;
+};
 
 }  // namespace
 
-SceneFile import_by_assimp(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  refuse_what_assimp_cannot_survive(stream, std::filesystem::file_size(path));
+SceneFile import_by_assimp(SceneFiles& files) {
+  std::istringstream stream(files.bytes());
+  refuse_what_assimp_cannot_survive(stream, files.bytes().size());
   Assimp::Importer importer;
-  importer.ReadFile(path.string(), as_it_is);
-  return scene_of(importer, path.parent_path(), lower_case_extension(path));
-}
-
-SceneFile import_by_assimp(const std::string& bytes, const std::string& extension, const std::filesystem::path& folder) {
-  std::istringstream stream(bytes);
-  refuse_what_assimp_cannot_survive(stream, bytes.size());
-  Assimp::Importer importer;
-  importer.ReadFileFromMemory(bytes.data(), bytes.size(), as_it_is, extension.substr(1).c_str());
-  return scene_of(importer, folder, extension);
-}
-
-bool is_read_by_assimp(const std::string& extension) {
-  const Assimp::Importer importer;
-  return importer.IsExtensionSupported(extension);
+  importer.SetIOHandler(new MemoryFiles(files));  // the importer deletes it
+  const aiScene* const source = importer.ReadFile(files.scene(), as_it_is);
+  if (!source) throw ImportError("file", importer.GetErrorString());
+  return AssimpReader(*source, files, convention_of(*source, lower_case_extension(files.scene()))).read();
 }
 
 }  // namespace alvor

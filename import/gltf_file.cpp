@@ -1,9 +1,9 @@
 #include "import/gltf_file.h"
 
 #include "import/bytes.h"
-#include "import/file_beside.h"
 #include "import/glb_format.h"
 #include "import/import_error.h"
+#include "import/named_file.h"
 #include "import/tiny_gltf.h"
 
 #include <charconv>
@@ -106,8 +106,8 @@ std::string uri_of(const json& element) {
 /// The bytes of the buffers outside the JSON. tinygltf asks for them by the buffer's number.
 class Buffers {
  public:
-  /// Reads the files that the JSON's buffers name, and replaces each URI by the buffer's number.
-  Buffers(json& gltf, std::optional<std::string_view> binary, const std::filesystem::path& folder, ByteBudget& budget) {
+  /// Takes the files that the JSON's buffers name, and replaces each URI by the buffer's number.
+  Buffers(json& gltf, std::optional<std::string_view> binary, SceneFiles& files, ByteBudget& budget) {
     const auto buffers = gltf.find("buffers");
     if (buffers == gltf.end() || !buffers->is_array()) return;
     for (json& buffer : *buffers) {
@@ -115,7 +115,7 @@ class Buffers {
       if (!buffer.is_object()) continue;
       const std::string place = "buffer " + std::to_string(bytes_.size() - 1), uri = uri_of(buffer);
       if (is_data_uri(uri)) continue;
-      if (!uri.empty()) bytes_.back() = read_file_beside(folder, uri, place);
+      if (!uri.empty()) bytes_.back() = file_of_uri(files, uri, place);
       else if (binary && bytes_.size() == 1) bytes_.back() = *binary;
       else throw ImportError(place, "names no file");
       budget.spend(bytes_.back().size(), place);
@@ -167,6 +167,51 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
+/// Returns the element of an object, or null if there is none or `object` is none.
+const json* member(const json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return found == object.end() ? nullptr : &*found;
+}
+
+/// Returns the element whose index is `object[name]` in the file's list, or null.
+const json* element_of(const json& gltf, const char* list, const json& object, const char* name) {
+  const json* const index = member(object, name);
+  const json* const elements = member(gltf, list);
+  if (!index || !index->is_number_unsigned() || !elements || !elements->is_array()) return nullptr;
+  const auto number = index->get<std::uint64_t>();
+  return number < elements->size() ? &(*elements)[number] : nullptr;
+}
+
+/// Asks for a file, so that `files` remembers it if it is missing. Faulty names are refused later.
+void ask_for(const json& element, SceneFiles& files) {
+  const std::string uri = element.is_object() ? uri_of(element) : "";
+  if (!uri.empty() && !is_data_uri(uri)) files.find(decoded_uri(uri));
+}
+
+/// Asks for the images that give materials a colour, see colour_images().
+void ask_for_images(const json& gltf, SceneFiles& files) {
+  const json* const materials = member(gltf, "materials");
+  if (!materials || !materials->is_array()) return;
+  const auto ask_for_texture = [&](const json* texture_use) {
+    const json* const texture = texture_use ? element_of(gltf, "textures", *texture_use, "index") : nullptr;
+    const json* const image = texture ? element_of(gltf, "images", *texture, "source") : nullptr;
+    if (image) ask_for(*image, files);
+  };
+  for (const json& material : *materials) {
+    const json* const surface = member(material, "pbrMetallicRoughness");
+    ask_for_texture(surface ? member(*surface, "baseColorTexture") : nullptr);
+    ask_for_texture(member(material, "emissiveTexture"));
+  }
+}
+
+/// Asks for all files that are needed, because the first missing one ends the reading.
+void ask_for_files(const json& gltf, SceneFiles& files) {
+  const json* const buffers = member(gltf, "buffers");
+  if (buffers && buffers->is_array())
+    for (const json& buffer : *buffers) ask_for(buffer, files);
+  ask_for_images(gltf, files);
+}
+
 /// Returns the images that give materials a colour. Others (bump maps, roughness) may be missing.
 std::set<int> colour_images(const tinygltf::Model& model) {
   std::set<int> images;
@@ -177,12 +222,13 @@ std::set<int> colour_images(const tinygltf::Model& model) {
   return images;
 }
 
-void read_images(tinygltf::Model& model, const std::filesystem::path& folder, ByteBudget& budget) {
+void read_images(tinygltf::Model& model, SceneFiles& files, ByteBudget& budget) {
   for (const int i : colour_images(model)) {
     if (i < 0 || i >= static_cast<int>(model.images.size())) continue;
     tinygltf::Image& image = model.images[static_cast<std::size_t>(i)];
     if (image.bufferView >= 0 || image.uri.empty() || !image.image.empty()) continue;
-    const std::string place = "image " + std::to_string(i), bytes = read_file_beside(folder, image.uri, place);
+    const std::string place = "image " + std::to_string(i);
+    const std::string& bytes = file_of_uri(files, image.uri, place);
     budget.spend(bytes.size(), place);
     image.image.assign(bytes.begin(), bytes.end());
   }
@@ -190,11 +236,12 @@ void read_images(tinygltf::Model& model, const std::filesystem::path& folder, By
 
 }  // namespace
 
-tinygltf::Model load_gltf(std::string_view content, const std::filesystem::path& folder) {
-  const Container container = container_of(content);
+tinygltf::Model load_gltf(SceneFiles& files) {
+  const Container container = container_of(files.bytes());
   json gltf = parse(container.text);
+  ask_for_files(gltf, files);
   ByteBudget budget;
-  Buffers buffers(gltf, container.binary, folder, budget);
+  Buffers buffers(gltf, container.binary, files, budget);
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);
   loader.SetFsCallbacks(buffers.callbacks());
@@ -204,7 +251,7 @@ tinygltf::Model load_gltf(std::string_view content, const std::filesystem::path&
   if (!loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), ""))
     throw ImportError("file", error.empty() ? "is not glTF" : error);
   refuse_unknown_extensions(model);
-  read_images(model, folder, budget);
+  read_images(model, files, budget);
   return model;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <filesystem>
-#include <string_view>
+#include "import/scene_files.h"
 
 namespace alvor_tinygltf {
 class Model;
@@ -10,9 +9,9 @@ namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 
-/// Parses the bytes of a glTF 2.0 file, text or binary; files that it names are read from `folder`. Images stay encoded, those in
-/// buffer views stay there. Numbers and indices are not checked. Throws ImportError, also for required extensions that change
-/// shapes in ways not known here.
-tinygltf::Model load_gltf(std::string_view content, const std::filesystem::path& folder);
+/// Parses a glTF 2.0 file, text or binary, with the buffers and images that it names. Images stay encoded, those in buffer views
+/// stay there. Numbers and indices are not checked. Throws ImportError, also for required extensions that change shapes in ways
+/// not known here, and MissingFileError after asking for all files that are needed.
+tinygltf::Model load_gltf(SceneFiles& files);
 
 }  // namespace alvor

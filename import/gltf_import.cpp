@@ -8,7 +8,6 @@
 #include "import/placement.h"
 #include "import/tiny_gltf.h"
 #include "import/unsupported.h"
-#include "import/whole_file.h"
 
 #include <algorithm>
 #include <array>
@@ -243,10 +242,8 @@ class GltfReader {
 
 }  // namespace
 
-SceneFile import_gltf(const std::filesystem::path& path) { return import_gltf(read_whole_file(path), path.parent_path()); }
-
-SceneFile import_gltf(std::string_view bytes, const std::filesystem::path& folder) {
-  const tinygltf::Model model = load_gltf(bytes, folder);
+SceneFile import_gltf(SceneFiles& files) {
+  const tinygltf::Model model = load_gltf(files);
   return GltfReader(model).read();
 }
 

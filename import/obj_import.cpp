@@ -5,7 +5,6 @@
 #include "import/placement.h"
 #include "import/texture_colour.h"
 #include "import/unsupported.h"
-#include "import/whole_file.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -44,20 +42,20 @@ std::set<std::string> materials_with(std::string_view key, const std::string& te
 /// Reads MTL files; checks their lines before tinyobjloader parses them.
 class MaterialLibrary : public tinyobj::MaterialReader {
  public:
-  explicit MaterialLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit MaterialLibrary(SceneFiles& files) : files_(files) {}
 
   /// Called by tinyobjloader for each file named by a `mtllib` line.
   bool operator()(const std::string& file, std::vector<tinyobj::material_t>* materials, std::map<std::string, int>* index,
                   std::string*, std::string* error) override {
     if (file.empty()) return false;
-    try {
-      std::istringstream stream(read_whole_file(folder_ / file));
-      load(stream, file, materials, index, error);
-      return true;
-    } catch (const FileError&) {
+    const std::string* bytes = files_.find(file);
+    if (!bytes) {
       missing_.insert(file);
       return false;
     }
+    std::istringstream stream(*bytes);
+    load(stream, file, materials, index, error);
+    return true;
   }
 
   const tinyobj::material_t* find(const std::string& name) const {
@@ -87,7 +85,7 @@ class MaterialLibrary : public tinyobj::MaterialReader {
     }
   }
 
-  std::filesystem::path folder_;
+  SceneFiles& files_;
   std::map<std::string, tinyobj::material_t> by_name_;
   std::set<std::string> missing_;
 };
@@ -142,24 +140,24 @@ class ObjBuilder {
   std::vector<std::uint32_t> polygon_;
 };
 
-Rgb under_texture(const Rgb& factor, std::string file, const Material& material, const std::filesystem::path& folder,
+Rgb under_texture(const Rgb& factor, std::string file, const Material& material, SceneFiles& files,
                   std::vector<std::string>& warnings) {
   if (file.empty() || factor.is_zero()) return factor;
   std::ranges::replace(file, '\\', '/');
   const std::string texture = "material '" + material.name + "': texture '" + file + "'";
-  return textured(factor, mean_colour_of_file(folder / file), texture, warnings);
+  return textured(factor, mean_colour(files.find(file)), texture, warnings);
 }
 
-void fill_materials(SceneFile& file, const MaterialLibrary& library, const std::filesystem::path& folder) {
+void fill_materials(SceneFile& file, const MaterialLibrary& library, SceneFiles& files) {
   Unsupported unsupported;
   for (Material& material : file.scene.materials) {
     const tinyobj::material_t* found = library.find(material.name);
     if (found) {
       unsupported.transparent_materials += found->dissolve < 1 || !found->alpha_texname.empty();
       unsupported.metals += found->metallic > 0.5;
-      material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, folder, file.warnings);
+      material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, files, file.warnings);
       material.emission =
-          emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, folder, file.warnings));
+          emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, files, file.warnings));
     } else if (!material.name.empty()) {
       file.warnings.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
     } else {
@@ -178,17 +176,30 @@ void refuse_indices_beyond(const Scene& scene) {
                                                            std::to_string(scene.vertices.size()) + " vertices");
 }
 
-}  // namespace
-
-SceneFile import_obj(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) throw ImportError("file", "cannot be opened");
-  return import_obj(stream, path.parent_path());
+/// Asks for the material libraries, so that the file need not be read again for each missing one. `text` is the result of
+/// clean_lines, with one library a line.
+void ask_for_libraries(std::string_view text, SceneFiles& files) {
+  constexpr std::string_view keyword = "mtllib ";
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    if (line.starts_with(keyword)) {
+      std::string name(line.substr(keyword.size()));
+      std::erase(name, '\\');
+      files.find(name);
+    }
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+  }
+  files.require_found();
 }
 
-SceneFile import_obj(std::istream& stream, const std::filesystem::path& folder) {
-  std::istringstream lines(clean_lines(stream, vertex_lines, ""));
-  MaterialLibrary library(folder);
+}  // namespace
+
+SceneFile import_obj(SceneFiles& files) {
+  std::istringstream stream(files.bytes());
+  std::string text = clean_lines(stream, vertex_lines, "");
+  ask_for_libraries(text, files);
+  std::istringstream lines(std::move(text));
+  MaterialLibrary library(files);
   ObjBuilder builder;
   std::string warning, error;
   if (!tinyobj::LoadObjWithCallback(lines, ObjBuilder::callbacks(), &builder, &library, &warning, &error))
@@ -197,7 +208,7 @@ SceneFile import_obj(std::istream& stream, const std::filesystem::path& folder) 
   SceneFile file{std::move(builder.scene), {}};
   for (const std::string& missing : library.missing())
     file.warnings.push_back("material library '" + missing + "' cannot be read");
-  fill_materials(file, library, folder);
+  fill_materials(file, library, files);
   return file;
 }
 

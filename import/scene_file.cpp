@@ -1,140 +1,110 @@
 #include "import/scene_file.h"
 
-#include "import/assimp_import.h"
-#include "import/child_import.h"
-#include "import/gltf_import.h"
+#include "import/apart/run_importer.h"
 #include "import/import_error.h"
-#include "import/obj_import.h"
-#include "import/scene_format.h"
+#include "import/whole_file.h"
+#include "proto/codec.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <sstream>
+#include <array>
 #include <string_view>
 
 namespace alvor {
 
 namespace {
 
-/// A face is a line or a point if twice its area over the square of its outline's length is below this.
-constexpr double flat = 1e-14;
-constexpr std::size_t max_line = 400;
+namespace fs = std::filesystem;
 
-void refuse_unreadable(const std::filesystem::path& path) {
+/// The extensions of our own readers, then those of Assimp.
+constexpr std::array<std::string_view, 70> extensions{
+    ".obj",     ".gltf",   ".glb",   ".3d",   ".3ds",      ".3mf",  ".ac",   ".ac3d", ".acc", ".amf",  ".ase",     ".ask",
+    ".assbin",  ".b3d",    ".blend", ".bsp",  ".bvh",      ".cob",  ".csm",  ".dae",  ".dxf", ".enff", ".fbx",     ".hmp",
+    ".ifc",     ".ifczip", ".iqm",   ".irr",  ".irrmesh",  ".lwo",  ".lws",  ".lxo",  ".md2", ".md3",  ".md5anim", ".md5camera",
+    ".md5mesh", ".mdc",    ".mdl",   ".mesh", ".mesh.xml", ".mot",  ".ms3d", ".ndo",  ".nff", ".off",  ".ogex",    ".pk3",
+    ".ply",     ".pmx",    ".prj",   ".q3o",  ".q3s",      ".raw",  ".scn",  ".sib",  ".smd", ".step", ".stl",     ".stp",
+    ".ter",     ".uc",     ".vta",   ".x",    ".x3d",      ".x3db", ".xgl",  ".xml",  ".zae", ".zgl"};
+
+void refuse_unreadable(const fs::path& path) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) throw ImportError("file", "does not exist");
-  if (std::filesystem::is_directory(path, error)) throw ImportError("file", "is a directory");
-  const auto size = std::filesystem::file_size(path, error);
-  if (!error && size == 0) throw ImportError("file", "is empty");
+  if (!fs::exists(path, error)) throw ImportError("file", "does not exist");
+  if (fs::is_directory(path, error)) throw ImportError("file", "is a directory");
+  if (fs::file_size(path, error) == 0 && !error) throw ImportError("file", "is empty");
 }
 
-SceneFile import_by_extension(const std::filesystem::path& path) {
-  const std::string extension = lower_case_extension(path);
-  if (extension == ".obj") return import_obj(path);
-  if (extension == ".gltf" || extension == ".glb") return import_gltf(path);
-  return import_in_child(path, import_by_assimp);
-}
-
-SceneFile import_content(const EncodedScene& content) {
-  if (content.bytes.empty()) throw ImportError("file", "is empty");
-  const std::string& extension = content.extension;
-  if (extension == ".gltf" || extension == ".glb") return import_gltf(content.bytes, content.folder);
-  if (extension != ".obj") return import_in_child([&] { return import_by_assimp(content.bytes, extension, content.folder); });
-  std::istringstream stream(content.bytes);
-  return import_obj(stream, content.folder);
-}
-
-/// Returns a band of reflectance clamped to [0, 1). NaN stays as it is and is a fault.
-double clamped(double reflectance) {
-  if (reflectance < 0) return 0;
-  return reflectance >= 1 ? clamped_reflectance : reflectance;
-}
-
-std::string text_of(const Rgb& bands) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%g %g %g", bands.r, bands.g, bands.b);
-  return text;
-}
-
-void clamp_reflectance(SceneFile& file) {
-  for (Material& material : file.scene.materials) {
-    const Rgb given = material.reflectance;
-    if (!given.is_finite()) continue;
-    material.reflectance = {clamped(given.r), clamped(given.g), clamped(given.b)};
-    if (material.reflectance == given) continue;
-    file.warnings.push_back("material '" + material.name + "': reflectance " + text_of(given) + " is clamped to " +
-                            text_of(material.reflectance));
+/// Adds those of the missing files that are beside the scene, and names the others in the options. Throws ImportError if all of
+/// them are known.
+void add_missing(SceneFiles& files, v1::ImportOptions& options, const std::vector<std::string>& missing, const fs::path& folder) {
+  bool is_any_new = false;
+  for (const std::string& name : missing) {
+    const bool is_absent = std::ranges::find(options.absent_files(), name) != options.absent_files().end();
+    if (is_absent || files.beside().contains(name)) continue;
+    is_any_new = true;
+    if (auto bytes = read_beside(folder, name)) files.add(name, *std::move(bytes));
+    else options.add_absent_files(as_utf8(name));
   }
+  if (!is_any_new) throw ImportError("file '" + missing.front() + "'", "is asked for again and again");
 }
 
-bool has_area(const Scene& scene, const Face& face) {
-  const auto corners = scene.corners_of(face);
-  const Vec3 start = scene.vertices[corners[0]];
-  Vec3 double_area;
-  double outline = 0;
-  for (std::size_t c = 1; c < corners.size(); ++c) {
-    const Vec3 from = scene.vertices[corners[c - 1]] - start, to = scene.vertices[corners[c]] - start;
-    double_area += cross(from, to);
-    outline += length(to - from);
-  }
-  return length(double_area) > flat * outline * outline;
-}
-
-void refuse_faulty(const Scene& scene) {
+SceneFile checked(Scene scene, std::vector<std::string> warnings) {
   if (const auto fault = find_fault(scene)) throw ImportError(fault->place, fault->reason);
-  if (std::ranges::none_of(scene.faces, [&](const Face& face) { return has_area(scene, face); }))
-    throw ImportError("scene", "all " + std::to_string(scene.faces.size()) + " faces are degenerate");
+  return {std::move(scene), std::move(warnings)};
 }
 
-/// Returns `text` on one line of limited length: libraries report in several lines, and quote the file, which may hold anything.
-std::string one_line(std::string_view text) {
-  std::string line;
-  for (const char c : text) {
-    const bool blank = static_cast<unsigned char>(c) <= ' ' || c == '\x7f';
-    if (!blank) line += c;
-    else if (!line.empty() && line.back() != ' ') line += ' ';
+SceneFile read_apart(SceneFiles files, const fs::path& folder, const SceneImport& import) {
+  v1::ImportOptions options = import.options;
+  for (const auto& [name, bytes] : import.files) files.add(name, bytes);
+  for (;;) {
+    SceneAssembler assembler;
+    ImporterAnswer answer = run_importer(files, options, [&](const v1::GeometryChunk& chunk) {
+      if (const auto fault = assembler.add(chunk)) throw ImportError(fault->place, fault->reason);
+    });
+    if (answer.missing.empty()) return checked(assembler.take(), std::move(answer.warnings));
+    add_missing(files, options, answer.missing, folder);
   }
-  if (line.size() > max_line) line.resize(max_line);
-  while (line.ends_with(' ') || line.ends_with('.')) line.pop_back();
-  return line;
 }
 
-SceneFile import_file(const std::filesystem::path& path) {
-  refuse_unreadable(path);
-  return import_by_extension(path);
-}
-
-SceneFile checked(SceneFile file) {
-  clamp_reflectance(file);
-  refuse_faulty(file.scene);
-  for (std::string& warning : file.warnings) warning = one_line(warning);
-  return file;
-}
-
-/// Returns the checked result of `import`. Its errors become SceneFileError that begin with `name`.
-template <class Import>
-SceneFile naming(const std::string& name, Import import) {
+/// Returns the result of `read`. Its errors become SceneFileError that begin with `name`.
+template <class Read>
+auto naming(const std::string& name, Read read) {
   try {
-    return checked(import());
+    return read();
   } catch (const ImportError& error) {
-    throw SceneFileError(name + ": " + one_line(error.what()));
-  } catch (const std::exception& error) {  // thrown by the libraries
-    throw SceneFileError(name + ": file: " + one_line(error.what()));
+    throw SceneFileError(name + ": " + error.what());
+  } catch (const FileError& error) {  // names the file already
+    throw SceneFileError(error.what());
   }
 }
 
 }  // namespace
 
-SceneFile read_scene_file(const std::filesystem::path& path) {
-  return naming(path.string(), [&] { return import_file(path); });
+SceneFile read_scene_file(const fs::path& path, const SceneImport& import) {
+  return naming(path.string(), [&] {
+    return read_apart({path.filename().string(), read_scene_bytes(path)}, path.parent_path(), import);
+  });
 }
 
-SceneFile read_scene_content(const EncodedScene& content) {
-  return naming(content.name, [&] { return import_content(content); });
+std::string read_scene_bytes(const fs::path& path) {
+  return naming(path.string(), [&] {
+    refuse_unreadable(path);
+    return read_whole_file(path);
+  });
 }
 
-bool is_scene_extension(const std::string& extension) {
-  return extension == ".obj" || extension == ".gltf" || extension == ".glb" || is_read_by_assimp(extension);
+SceneFile read_scene_content(const EncodedScene& content, const SceneImport& import) {
+  return naming(content.name, [&] { return read_apart({"scene" + content.extension, content.bytes}, content.folder, import); });
 }
+
+std::optional<std::string> read_beside(const fs::path& folder, const std::string& name) {
+  if (!reason_against_name(name).empty()) return std::nullopt;
+  try {
+    return read_whole_file(folder / name);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
+}
+
+bool is_scene_extension(const std::string& extension) { return std::ranges::find(extensions, extension) != extensions.end(); }
+
+std::span<const std::string_view> scene_extensions() { return extensions; }
 
 }  // namespace alvor

@@ -1,7 +1,5 @@
 #include "import/texture_colour.h"
 
-#include "import/whole_file.h"
-
 // stb_image's functions are static here: libdraco, which Assimp loads, exports functions of the same names.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -67,13 +65,9 @@ std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded) {
   return is_deep ? mean_of_pixels<std::uint16_t>(rgba, count) : mean_of_pixels<std::uint8_t>(rgba, count);
 }
 
-std::optional<Rgb> mean_colour_of_file(const std::filesystem::path& path) {
-  try {
-    const std::string bytes = read_whole_file(path);
-    return mean_colour({reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()});
-  } catch (const FileError&) {
-    return std::nullopt;
-  }
+std::optional<Rgb> mean_colour(const std::string* encoded) {
+  if (!encoded) return std::nullopt;
+  return mean_colour({reinterpret_cast<const unsigned char*>(encoded->data()), encoded->size()});
 }
 
 Rgb textured(const Rgb& factor, const std::optional<Rgb>& mean, const std::string& texture, std::vector<std::string>& warnings) {

@@ -3,7 +3,6 @@
 
 #include "solution/rgb.h"
 
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +13,8 @@ namespace alvor {
 /// Returns the mean of the pixels of an encoded image (PNG, JPEG, ...), converted from sRGB to linear; alpha is ignored. Returns
 /// nothing if the image cannot be decoded.
 std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded);
-std::optional<Rgb> mean_colour_of_file(const std::filesystem::path& path);
+/// Returns the mean colour of a file's bytes; nothing if there are none.
+std::optional<Rgb> mean_colour(const std::string* encoded);
 
 /// Returns `factor` times the texture's mean colour, or `factor` itself if the texture could not be read. Appends a warning that
 /// names `texture`.

@@ -171,6 +171,7 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
   service.quota = options.quota;
   service.memory = alvor::MemoryGuard(options.memory_limit);
   service.archive = archive;
+  service.upload.importer.program = options.importer;
   service.identity_header = options.listen.identity_header;
   if (auto tokens = alvor::tokens_of(options.listen))
     service.tokens = std::make_shared<const alvor::BearerTokens>(*std::move(tokens));

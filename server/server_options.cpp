@@ -84,6 +84,7 @@ void declare(CLI::App& app, ServerOptions& options) {
                  "Start no server; check the --health HOST:PORT of a running one and fail unless it serves");
   app.add_option("--metrics", options.metrics, "HOST:PORT on which to serve Prometheus metrics at /metrics (not at all)");
   declare_web(app, options);
+  app.add_option("--importer", options.importer, "The program alvor-import, which reads scene files")->capture_default_str();
   app.add_option("--log-level", options.log_level, "Log messages of this level and above")
       ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str();

@@ -1,6 +1,7 @@
 #pragma once
 // The options of alvord, from its command line and from environment variables.
 
+#include "import/apart/run_importer.h"
 #include "server/access/front_door.h"
 #include "server/access/listening.h"
 #include "server/base/caller.h"
@@ -29,6 +30,7 @@ struct ServerOptions {
   std::uint64_t memory_limit = allowed_memory();
   std::vector<std::string> web_origins;
   std::string web, page = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "web").string();
+  std::string importer = importer_beside_program().string();
   Quota quota;
   std::string log_level = "info";
 };

@@ -1,5 +1,6 @@
 #include "client/rpc/client.h"
 
+#include "google/rpc/status.pb.h"
 #include "proto/codec.h"
 #include "proto/status_name.h"
 
@@ -62,9 +63,51 @@ void read_pages(Request request, Call&& call, Append&& append) {
   } while (!request.page_token().empty());
 }
 
+constexpr std::size_t piece_bytes = 1 << 20;
+
+/// Writes the bytes of a file after the first `start` ones, at least one message. Returns false if the server does not take them.
+bool write_pieces(grpc::ClientWriterInterface<v1::ImportSceneRequest>& writer, const std::string& name, const std::string& bytes,
+                  std::uint64_t start) {
+  std::uint64_t offset = start;
+  do {
+    v1::ImportSceneRequest request;
+    v1::FilePiece& piece = *request.mutable_piece();
+    piece.set_file(name);
+    piece.set_offset(offset);
+    piece.set_content(bytes.substr(offset, piece_bytes));
+    offset += piece.content().size();
+    if (!writer.Write(request)) return false;
+  } while (offset < bytes.size());
+  return true;
+}
+
+/// Adds those of the missing files that `find` returns, and names the others in the options. Returns false if all are known.
+bool add_missing(std::map<std::string, std::string>& files, v1::ImportOptions& options, const std::vector<std::string>& missing,
+                 const Client::FindFile& find) {
+  bool is_any_new = false;
+  for (const std::string& name : missing) {
+    const bool is_absent = std::ranges::find(options.absent_files(), name) != options.absent_files().end();
+    if (is_absent || files.contains(name)) continue;
+    is_any_new = true;
+    if (auto bytes = find(name)) files.emplace(name, *std::move(bytes));
+    else options.add_absent_files(name);
+  }
+  return is_any_new;
+}
+
+std::vector<std::string> missing_files_of(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (!details.ParseFromString(status.error_details())) return {};
+  v1::MissingFiles missing;
+  for (const google::protobuf::Any& detail : details.details())
+    if (detail.UnpackTo(&missing)) return {missing.names().begin(), missing.names().end()};
+  return {};
+}
+
 }  // namespace
 
-RpcError::RpcError(const grpc::Status& status) : std::runtime_error(text_of(status)), code(status.error_code()) {}
+RpcError::RpcError(const grpc::Status& status)
+    : std::runtime_error(text_of(status)), code(status.error_code()), missing_files(missing_files_of(status)) {}
 
 Client::Client(std::shared_ptr<grpc::Channel> channel, std::chrono::milliseconds patience)
     : channel_(std::move(channel)),
@@ -98,9 +141,9 @@ v1::Scene Client::create_scene(const Scene& scene, const std::string& display_na
   bool has_begun = false;
   return with_patience([&](Patience& patience) {
     if (has_begun) {
-      const std::uint64_t received = received_chunks(first.request_id());
-      if (received > first.resume_after_chunks()) patience.note_success();
-      first.set_resume_after_chunks(received);
+      const std::uint64_t chunks = received(first.request_id()).chunk_count();
+      if (chunks > first.resume_after_chunks()) patience.note_success();
+      first.set_resume_after_chunks(chunks);
     }
     has_begun = true;
     return upload(first, scene);
@@ -125,14 +168,57 @@ v1::Scene Client::upload(const v1::CreateSceneRequest& first, const Scene& scene
   return stored;
 }
 
-std::uint64_t Client::received_chunks(const std::string& request_id) {
+v1::Scene Client::import_scene(v1::ImportOptions options, std::string bytes, const FindFile& find) {
+  v1::ImportSceneRequest first;
+  first.set_request_id(random_id());
+  std::map<std::string, std::string> files;
+  files.emplace(options.scene_file(), std::move(bytes));
+  bool has_begun = false, has_repeated = false;
+  for (;;) {
+    *first.mutable_options() = options;
+    try {
+      return with_patience([&] {
+        const v1::Upload known = has_begun ? received(first.request_id()) : v1::Upload();
+        has_begun = true;
+        return upload(first, files, known);
+      });
+    } catch (const RpcError& error) {
+      // The server may have dropped what it had; then all is sent once more.
+      const bool is_news = add_missing(files, options, error.missing_files, find);
+      if (!is_news && (error.missing_files.empty() || has_repeated)) throw;
+      has_repeated = !is_news;
+    }
+  }
+}
+
+v1::Scene Client::upload(const v1::ImportSceneRequest& first, const std::map<std::string, std::string>& files,
+                         const v1::Upload& known) {
+  std::map<std::string, std::uint64_t> sizes;
+  for (const v1::UploadedFile& file : known.files()) sizes.emplace(file.name(), file.byte_count());
+  grpc::ClientContext context;
+  v1::Scene stored;
+  const auto writer = scenes_->ImportScene(&context, &stored);
+  // A write fails if the server has refused what came before; Finish then returns the reason.
+  bool is_taken = writer->Write(first);
+  for (const auto& [name, bytes] : files) {
+    const auto found = sizes.find(name);
+    if (found != sizes.end() && found->second == bytes.size()) continue;
+    const std::uint64_t start = found != sizes.end() && found->second < bytes.size() ? found->second : 0;
+    is_taken = is_taken && write_pieces(*writer, name, bytes, start);
+  }
+  writer->WritesDone();
+  check(writer->Finish());
+  return stored;
+}
+
+v1::Upload Client::received(const std::string& request_id) {
   v1::GetUploadRequest request;
   request.set_request_id(request_id);
   v1::Upload upload;
   Deadline context;
   const grpc::Status status = scenes_->GetUpload(&context, request, &upload);
   if (!status.ok() && status.error_code() != grpc::NOT_FOUND) throw RpcError(status);
-  return status.ok() ? upload.chunk_count() : 0;
+  return upload;
 }
 
 v1::Scene Client::get_scene(const std::string& name) {

@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,6 +25,7 @@ namespace alvor {
 struct RpcError : std::runtime_error {
   explicit RpcError(const grpc::Status& status);
   grpc::StatusCode code;
+  std::vector<std::string> missing_files;  ///< the names that ImportScene could not do without
 };
 
 /// A client with blocking calls; each throws RpcError. Safe to use from several threads.
@@ -69,6 +71,11 @@ class Client {
   /// Sends `scene` in chunks well below the message limit. After a lost connection it resumes, or starts again, and never creates
   /// two scenes.
   v1::Scene create_scene(const Scene& scene, const std::string& display_name);
+  /// Returns the bytes of a file that a scene names, or nothing if it is not there.
+  using FindFile = std::function<std::optional<std::string>(const std::string& name)>;
+  /// Sends a scene file, which the server reads, and those of the files that the server then asks for which `find` returns.
+  /// `options.scene_file` is the file's name. After a lost connection it resumes, and never creates two scenes.
+  v1::Scene import_scene(v1::ImportOptions options, std::string bytes, const FindFile& find);
   v1::Scene get_scene(const std::string& name);
   std::vector<v1::Scene> list_scenes();  ///< reads all pages of the list
   void delete_scene(const std::string& name);
@@ -98,7 +105,10 @@ class Client {
  private:
   /// Uploads the chunks after the first `first.resume_after_chunks`.
   v1::Scene upload(const v1::CreateSceneRequest& first, const Scene& scene);
-  std::uint64_t received_chunks(const std::string& request_id);
+  /// Returns what the server has of an upload; nothing if it has none.
+  v1::Upload received(const std::string& request_id);
+  /// Sends what the server does not have of the files; `known` is what it has.
+  v1::Scene upload(const v1::ImportSceneRequest& first, const std::map<std::string, std::string>& files, const v1::Upload& known);
 
   std::shared_ptr<grpc::Channel> channel_;
   std::chrono::milliseconds patience_;

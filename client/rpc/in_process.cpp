@@ -3,11 +3,23 @@
 #include "server/rpc/service.h"
 
 #include <chrono>
+#include <cstdint>
 
 namespace alvor {
 
+namespace {
+
+/// Files of the own disk may be larger than what a server takes from strangers.
+ServiceOptions own_options() {
+  ServiceOptions options;
+  options.upload.bytes = std::uint64_t{16} << 30;
+  return options;
+}
+
+}  // namespace
+
 struct InProcessServer::Parts {
-  Service service;
+  Service service{own_options()};
   std::unique_ptr<grpc::Server> server;
 };
 

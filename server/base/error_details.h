@@ -8,7 +8,7 @@
 namespace alvor {
 
 /// Returns a serialized google.rpc.Status: for INVALID_ARGUMENT with a BadRequest.FieldViolation that names the place, for
-/// UNAVAILABLE with a RetryInfo. Empty for other codes, whose message is enough.
+/// UNAVAILABLE with a RetryInfo, for MissingFilesError with MissingFiles. Empty for other codes, whose message is enough.
 std::string details_of(const StatusError& refusal);
 
 }  // namespace alvor

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace alvor {
 
@@ -15,6 +17,20 @@ struct StatusError : std::runtime_error {
   StatusError(grpc::StatusCode status_code, const std::string& text)
       : std::runtime_error(text.substr(0, 1000)), code(status_code) {}
   grpc::StatusCode code;
+};
+
+/// Tells which files of a scene were not sent.
+struct MissingFilesError : StatusError {
+  MissingFilesError(const std::string& scene, std::vector<std::string> missing)
+      : StatusError(grpc::FAILED_PRECONDITION, text_of(scene, missing)), names(std::move(missing)) {}
+  std::vector<std::string> names;
+
+ private:
+  static std::string text_of(const std::string& scene, const std::vector<std::string>& missing) {
+    std::string text = scene + ": needs files that were not sent";
+    for (std::size_t n = 0; n < missing.size(); ++n) text += (n == 0 ? ": " : ", ") + missing[n];
+    return text;
+  }
 };
 
 inline StatusError not_found(const std::string& name) {

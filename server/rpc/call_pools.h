@@ -10,6 +10,8 @@ namespace alvor {
 struct CallPools {
   /// For building and loading scenes.
   WorkPool building{{.threads = 4, .of_one = 2, .time = std::chrono::minutes(1)}};
+  /// For having files read, each by a process of its own, which takes memory.
+  WorkPool importing{{.threads = 2, .of_one = 1, .time = std::chrono::minutes(20)}};
   /// For all other work that may wait for a lock or the disk.
   WorkPool keeping{{.threads = 8, .of_one = 4}};
   /// For starting watches, which may have to load a solution.

@@ -16,14 +16,14 @@ namespace alvor {
 /// Implements the RPCs. All its arguments must outlive the server's calls.
 class SceneService final : public v1::SceneService::CallbackService {
  public:
-  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools, spdlog::logger& logger)
-      : scenes_(scenes), tenants_(tenants), limits_(limits), pools_(pools), logger_(logger) {}
+  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools, spdlog::logger& logger);
 
  private:
   using Context = grpc::CallbackServerContext;
   using Reactor = grpc::ServerUnaryReactor;
 
   grpc::ServerReadReactor<v1::CreateSceneRequest>* CreateScene(Context*, v1::Scene* scene) override;
+  grpc::ServerReadReactor<v1::ImportSceneRequest>* ImportScene(Context*, v1::Scene* scene) override;
   Reactor* GetUpload(Context*, const v1::GetUploadRequest* request, v1::Upload* upload) override;
   Reactor* GetScene(Context*, const v1::GetSceneRequest* request, v1::Scene* scene) override;
   Reactor* ListScenes(Context*, const v1::ListScenesRequest* request, v1::ListScenesResponse* response) override;
@@ -31,6 +31,9 @@ class SceneService final : public v1::SceneService::CallbackService {
   grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
   grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
 
+  /// Receives a scene, see UploadCall.
+  template <class Kind>
+  grpc::ServerReadReactor<typename Kind::Message>* receive(Context* context, v1::Scene* scene);
   /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
@@ -45,6 +48,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   CallPools& pools_;
   spdlog::logger& logger_;
   PageTokens tokens_;
+  std::shared_ptr<void> relief_;  ///< drops waiting uploads; uses `uploads_`
 };
 
 }  // namespace alvor

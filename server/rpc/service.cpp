@@ -8,11 +8,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 namespace alvor {
 
 namespace {
 
 constexpr int largest_message = 64 << 20;
+constexpr std::uint64_t least_importer_memory = 1 << 30;  ///< of address space; the libraries alone take a quarter of it
 
 SolveStoreOptions solve_options(const ServiceOptions& service, const std::string& epoch) {
   SolveStoreOptions options = service.solves;
@@ -27,6 +30,8 @@ SolveStoreOptions solve_options(const ServiceOptions& service, const std::string
 UploadLimits upload_limits(const ServiceOptions& service) {
   UploadLimits limits = service.upload;
   limits.memory = service.memory;
+  // Two importers at a time leave half of the memory to the server.
+  if (service.memory.limit() > 0) limits.importer.memory_bytes = std::max(service.memory.limit() / 4, least_importer_memory);
   return limits;
 }
 
@@ -78,7 +83,8 @@ void Service::register_with(grpc::ServerBuilder& builder) {
 std::shared_ptr<prometheus::Collectable> Service::metrics() const { return parts_->metrics; }
 
 void Service::shut_down() {
-  for (WorkPool* pool : {&parts_->pools.building, &parts_->pools.keeping, &parts_->pools.watching}) pool->stop();
+  for (WorkPool* pool : {&parts_->pools.building, &parts_->pools.importing, &parts_->pools.keeping, &parts_->pools.watching})
+    pool->stop();
   parts_->watches.stop_all();
   parts_->solves.shut_down();
 }

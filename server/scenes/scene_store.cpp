@@ -54,6 +54,15 @@ SceneRecord describe(const Scene& scene, const BaseMesh& mesh, const std::string
           .content_bytes = content.bytes};
 }
 
+/// Keeps the first warnings and counts the others: a page of a list of scenes must fit into a message.
+void keep_first(std::vector<std::string>& warnings) {
+  constexpr std::size_t most = 50;
+  if (warnings.size() <= most) return;
+  const std::size_t others = warnings.size() - most;
+  warnings.resize(most);
+  warnings.push_back("and " + std::to_string(others) + " further warnings");
+}
+
 /// Builds the mesh. Throws StatusError if `stop` ended it.
 BaseMesh build(const Scene& scene, const CallStop& stop) {
   try {
@@ -110,7 +119,7 @@ SceneStore::SceneStore(Archive* archive, const Quota& quota, MemoryGuard memory)
 }
 
 std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::string& display_name, const Caller& caller,
-                                                   const CallStop& stop) {
+                                                   const CallStop& stop, std::vector<std::string> warnings) {
   if (display_name.size() > longest_display_name)
     throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
   const std::string clamped = clamp_reflectance_of_one(scene);
@@ -121,6 +130,8 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
   if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");
   SceneRecord facts = describe(scene, mesh, display_name);
   if (!clamped.empty()) facts.warnings.push_back(clamped);
+  keep_first(warnings);
+  facts.warnings.insert(facts.warnings.begin(), warnings.begin(), warnings.end());
 
   Lock one(adding_);
   if (auto known = repeated(caller, facts)) return known;

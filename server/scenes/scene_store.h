@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace alvor {
 
@@ -80,9 +81,9 @@ class SceneStore {
 
   /// Stores a scene and returns it. INVALID_ARGUMENT names the fault in the scene; RESOURCE_EXHAUSTED names the limit or quota
   /// that is exceeded. The mesh is built on the calling thread unless `stop` ends it. A repeated request returns the same scene.
-  /// The scene is in the archive when this returns.
+  /// The scene is in the archive when this returns. `warnings` are told with it, before those about the scene.
   std::shared_ptr<const StoredScene> add(Scene scene, const std::string& display_name, const Caller& caller = {},
-                                         const CallStop& stop = {});
+                                         const CallStop& stop = {}, std::vector<std::string> warnings = {});
   /// Returns the scene of this name. Throws NOT_FOUND.
   std::shared_ptr<const StoredScene> find(const std::string& name, const std::string& tenant = {}) const;
   SceneUse use(const std::string& name, const std::string& tenant = {}) const;

@@ -46,9 +46,10 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
     check_limit(material.name().size(), limits_.bytes_of_name, "bytes in a material's name");
 }
 
-std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller, const CallStop& stop) {
+std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller, const CallStop& stop,
+                                                       std::vector<std::string> warnings) {
   if (!begun_) throw invalid_argument("scene: the first message must set it");
-  return store.add(assembler_.take(), display_name_, caller, stop);
+  return store.add(assembler_.take(), display_name_, caller, stop, std::move(warnings));
 }
 
 }  // namespace alvor

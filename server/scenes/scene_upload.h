@@ -1,11 +1,15 @@
 #pragma once
 // Receives a scene in pieces.
 
+#include "import/apart/run_importer.h"
 #include "proto/codec.h"
 #include "server/base/memory_guard.h"
+#include "server/scenes/resumable_upload.h"
 #include "server/scenes/scene_store.h"
 
 #include <chrono>
+#include <string>
+#include <vector>
 
 namespace alvor {
 
@@ -19,17 +23,21 @@ struct UploadLimits {
   std::uint64_t materials = 1'000'000;     ///< an empty material takes two bytes on the wire but more in memory
   std::uint64_t lights = 100'000;          ///< those that are not faces
   MemoryGuard memory;
+  ImporterOptions importer;
 };
 
 /// The logic of one CreateScene call, without the network. Not thread-safe. A StatusError that it throws ends the upload.
-class SceneUpload {
+class SceneUpload : public ResumableUpload {
  public:
   explicit SceneUpload(const UploadLimits& limits) : limits_(limits) {}
   void add(const v1::CreateSceneRequest& message);
   /// Checks and stores the scene after all messages have arrived, unless `stop` ends it.
-  std::shared_ptr<const StoredScene> finish(SceneStore& store, const Caller& caller = {}, const CallStop& stop = {});
+  /// `warnings` are told with the scene.
+  std::shared_ptr<const StoredScene> finish(SceneStore& store, const Caller& caller = {}, const CallStop& stop = {},
+                                            std::vector<std::string> warnings = {});
   std::uint64_t chunks() const { return chunks_; }
-  std::uint64_t bytes() const { return bytes_; }
+  std::uint64_t bytes() const override { return bytes_; }
+  void describe(v1::Upload& upload) const override { upload.set_chunk_count(chunks_); }
 
  private:
   void check_limits(const v1::GeometryChunk& chunk) const;

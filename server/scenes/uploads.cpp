@@ -17,7 +17,7 @@ void Uploads::close(const std::string& tenant) {
   if (--open_[tenant] == 0) open_.erase(tenant);
 }
 
-void Uploads::put(const Caller& caller, std::unique_ptr<SceneUpload> upload) {
+void Uploads::put(const Caller& caller, std::unique_ptr<ResumableUpload> upload) {
   if (caller.request_id.empty()) return;
   Lock hold(lock_);
   drop_expired();
@@ -77,19 +77,41 @@ std::map<Uploads::Key, Uploads::Waiting>::iterator Uploads::find(const Caller& c
   return found;
 }
 
-std::uint64_t Uploads::chunks(const Caller& caller) {
+v1::Upload Uploads::describe(const Caller& caller) {
   Lock hold(lock_);
-  return find(caller)->second.upload->chunks();
+  v1::Upload upload;
+  find(caller)->second.upload->describe(upload);
+  return upload;
+}
+
+/// Removes and returns the upload, whose type is known.
+template <class Upload>
+std::unique_ptr<Upload> Uploads::release(std::map<Key, Waiting>::iterator found) {
+  std::unique_ptr<Upload> upload(static_cast<Upload*>(found->second.upload.release()));
+  waiting_.erase(found);
+  return upload;
 }
 
 std::unique_ptr<SceneUpload> Uploads::take(const Caller& caller, std::uint64_t chunks) {
   Lock hold(lock_);
   const auto found = find(caller);
-  if (found->second.upload->chunks() != chunks)
+  const auto* upload = dynamic_cast<const SceneUpload*>(found->second.upload.get());
+  if (!upload || upload->chunks() != chunks)
     throw not_found("upload '" + caller.request_id + "' after " + std::to_string(chunks) + " chunks");
-  auto upload = std::move(found->second.upload);
-  waiting_.erase(found);
-  return upload;
+  return release<SceneUpload>(found);
+}
+
+std::unique_ptr<FileUpload> Uploads::take_files(const Caller& caller) {
+  Lock hold(lock_);
+  drop_expired();
+  const auto found = waiting_.find({caller.tenant, caller.request_id});
+  const bool is_found = found != waiting_.end() && dynamic_cast<const FileUpload*>(found->second.upload.get());
+  return is_found ? release<FileUpload>(found) : nullptr;
+}
+
+void Uploads::clear() {
+  Lock hold(lock_);
+  waiting_.clear();
 }
 
 }  // namespace alvor

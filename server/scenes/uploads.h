@@ -3,6 +3,7 @@
 
 #include "server/base/mutex.h"
 #include "server/base/request_ids.h"
+#include "server/scenes/file_upload.h"
 #include "server/scenes/scene_upload.h"
 
 #include <chrono>
@@ -35,15 +36,19 @@ class Uploads {
 
   /// Keeps an unfinished upload. Does nothing for a request without an id. If the tenant then exceeds its limits, its oldest
   /// uploads are dropped; if all tenants together exceed theirs, the oldest of the tenant that has most.
-  void put(const Caller& caller, std::unique_ptr<SceneUpload> upload);
-  /// Returns how many chunks of the caller's upload have arrived. Throws NOT_FOUND.
-  std::uint64_t chunks(const Caller& caller);
+  void put(const Caller& caller, std::unique_ptr<ResumableUpload> upload);
+  /// Returns how much of the caller's upload has arrived. Throws NOT_FOUND.
+  v1::Upload describe(const Caller& caller);
   /// Removes and returns the caller's upload. Throws NOT_FOUND if none waits, or if another number of chunks has arrived.
   std::unique_ptr<SceneUpload> take(const Caller& caller, std::uint64_t chunks);
+  /// Removes and returns the caller's upload of files, or null if none waits.
+  std::unique_ptr<FileUpload> take_files(const Caller& caller);
+  /// Drops all, to free memory. Their callers send them again.
+  void clear();
 
  private:
   struct Waiting {
-    std::unique_ptr<SceneUpload> upload;
+    std::unique_ptr<ResumableUpload> upload;
     Clock::time_point since;
   };
   using Key = std::pair<std::string, std::string>;
@@ -57,6 +62,8 @@ class Uploads {
   void keep_tenant_within_limits(const std::string& tenant) ALVOR_REQUIRES(lock_);
   void keep_all_within_limits() ALVOR_REQUIRES(lock_);
   std::map<Key, Waiting>::iterator find(const Caller& caller) ALVOR_REQUIRES(lock_);
+  template <class Upload>
+  std::unique_ptr<Upload> release(std::map<Key, Waiting>::iterator found) ALVOR_REQUIRES(lock_);
 
   const WaitingLimits limits_;
   Mutex lock_;

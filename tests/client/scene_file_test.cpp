@@ -1,18 +1,14 @@
 #include "import/scene_file.h"
 
-#include "import/child_import.h"
-#include "import/import_error.h"
-
 #include "meshing/base_mesh.h"
 #include "tests/client/faces.h"
 #include "tests/client/glb_file.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
+#include <assimp/Importer.hpp>
 
 #include <algorithm>
-#include <csignal>
 #include <numbers>
 
 namespace alvor {
@@ -185,29 +181,6 @@ TEST(SceneFile, AFileThatIsNoSceneIsRefusedWithTheLibrarysReason) {
             "file: requires the extension KHR_draco_mesh_compression, which is not supported");
 }
 
-SceneFile crash(const std::filesystem::path&) {
-  std::signal(SIGSEGV, SIG_DFL);  // a sanitizer's handler would not end the process by the signal
-  std::raise(SIGSEGV);
-  return {};
-}
-SceneFile give_up(const std::filesystem::path&) { _exit(3); }
-SceneFile refuse(const std::filesystem::path&) { throw ImportError("line 3", "is no line"); }
-
-std::string error_of_child(SceneFile (*import)(const std::filesystem::path&)) {
-  try {
-    import_in_child("room.fbx", import);
-    return "none";
-  } catch (const ImportError& error) {
-    return error.what();
-  }
-}
-
-TEST(SceneFile, ACrashOfAParsingLibraryIsAnError) {
-  EXPECT_EQ(error_of_child(crash), "file: the library that reads this format crashed (Segmentation fault)");
-  EXPECT_EQ(error_of_child(give_up), "file: the library that reads this format gave up");
-  EXPECT_EQ(error_of_child(refuse), "line 3: is no line");
-}
-
 TEST(SceneFile, FbxSaysItsUnitAndItsAxis) {
   const Scene inches = read_scene_file(good_files / "inches.fbx").scene;
   EXPECT_NEAR(length(area_vector(inches, 0)), 0.0254 * 0.0254, 1e-9);
@@ -218,6 +191,16 @@ TEST(SceneFile, DevicesAndPipesAreNoMaterialLibraries) {
   const auto warnings = read_scene_file(good_files / "devices.obj").warnings;
   ASSERT_FALSE(warnings.empty());
   EXPECT_EQ(warnings[0], "material library '/dev/zero' cannot be read");
+}
+
+TEST(SceneFile, ExtensionsAreThoseOfOurReadersAndOfAssimp) {
+  const Assimp::Importer assimp;
+  for (const std::string_view extension : scene_extensions()) {
+    const bool is_ours = extension == ".obj" || extension == ".gltf" || extension == ".glb";
+    EXPECT_TRUE(is_ours || assimp.IsExtensionSupported(std::string(extension))) << extension;
+  }
+  EXPECT_TRUE(is_scene_extension(".fbx"));
+  EXPECT_FALSE(is_scene_extension(".txt"));
 }
 
 TEST(SceneFile, FormatsThatSayWhichAxisPointsUpAreHeeded) {

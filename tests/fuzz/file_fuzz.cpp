@@ -2,7 +2,9 @@
 // solution.
 
 #include "client/export/solution_file.h"
-#include "import/scene_file.h"
+#include "import/import_error.h"
+#include "import/import_scene.h"
+#include "import/whole_file.h"
 #include "tests/fuzz/input.h"
 
 #include <unistd.h>
@@ -39,6 +41,16 @@ constexpr std::array<Kind, 8> kinds{{{"scene.obj", "scene.obj"},
                                      {"room.bin", "room.gltf"},
                                      {"wood.png", "room.obj"}}};
 
+/// Reads a scene in this process, with all files of the folder.
+void read_scene(const Kind& kind) {
+  alvor::SceneFiles files(kind.read, alvor::read_whole_file(directory() / kind.read));
+  for (const auto& entry : fs::directory_iterator(directory()))
+    files.add(entry.path().filename().string(), alvor::read_whole_file(entry.path()));
+  const auto missing = alvor::import_scene(files, {}).missing;
+  for (const std::string& name : missing) files.declare_absent(name);
+  if (!missing.empty()) (void)alvor::import_scene(files, {});
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -48,8 +60,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
   try {
     if (kind.is_solution) (void)alvor::read_solution_file(directory() / kind.read);
-    else (void)alvor::read_scene_file(directory() / kind.read);
-  } catch (const alvor::SceneFileError&) {
+    else read_scene(kind);
+  } catch (const alvor::ImportError&) {
   } catch (const alvor::SolutionFileError&) {}
   return 0;
 }

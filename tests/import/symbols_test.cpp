@@ -1,5 +1,5 @@
-// Checks in which library the linker finds each third-party symbol of `alvor`. Two libraries may export the same names: libdraco,
-// which Assimp loads, exports functions of its own version of tinygltf, and our calls once reached those.
+// Checks in which library the linker finds each third-party symbol of `alvor` and `alvor-import`. Two libraries may export the
+// same names: libdraco, which Assimp loads, exports functions of its own version of tinygltf, and our calls once reached those.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace alvor {
@@ -24,11 +25,10 @@ std::string file_name(const std::string& path) { return fs::path(path).filename(
 
 /// Returns all symbols as the dynamic linker binds them (LD_DEBUG, ld.so(8)): "binding file A [0] to B [0]: normal symbol `f'
 /// [V]".
-std::vector<Binding> bindings_of(const std::string& program) {
+std::vector<Binding> bindings_of(const std::string& command) {
   const fs::path log = fs::temp_directory_path() / ("alvor_bindings_" + std::to_string(getpid()));
-  const std::string command =
-      "LD_BIND_NOW=1 LD_DEBUG=bindings LD_DEBUG_OUTPUT='" + log.string() + "' " + program + " --version > /dev/null";
-  EXPECT_EQ(std::system(command.c_str()), 0);
+  const std::string whole = "LD_BIND_NOW=1 LD_DEBUG=bindings LD_DEBUG_OUTPUT='" + log.string() + "' " + command + " > /dev/null";
+  EXPECT_EQ(std::system(whole.c_str()), 0);
   std::vector<Binding> bindings;
   for (const auto& entry : fs::directory_iterator(log.parent_path())) {
     if (!entry.path().filename().string().starts_with(log.filename().string())) continue;
@@ -46,15 +46,26 @@ std::vector<Binding> bindings_of(const std::string& program) {
 
 bool has(const std::string& symbol, std::string_view part) { return symbol.find(part) != std::string::npos; }
 
-const std::vector<Binding>& alvor_bindings() {
-  static const std::vector<Binding> all = bindings_of(ALVOR_BINARIES "/alvor");
+/// The programs, with arguments after which they end at once.
+const std::array programs{std::pair{"alvor", "--version"}, std::pair{"alvor-import", "100000000000 1 < /dev/null"}};
+
+const std::vector<Binding>& all_bindings() {
+  static const std::vector<Binding> all = [] {
+    std::vector<Binding> both;
+    for (const auto& [program, arguments] : programs)
+      for (Binding& binding : bindings_of(std::string(ALVOR_BINARIES "/") + program + " " + arguments))
+        both.push_back(std::move(binding));
+    return both;
+  }();
   return all;
 }
 
+bool is_ours(const std::string& file) { return file == "alvor" || file == "alvor-import"; }
+
 TEST(Symbols, OfLibrariesInHeadersStayInTheirProgram) {
-  ASSERT_GT(alvor_bindings().size(), 1000u);
-  for (const Binding& binding : alvor_bindings()) {
-    if (binding.from != "alvor" && binding.to != "alvor") continue;
+  ASSERT_GT(all_bindings().size(), 1000u);
+  for (const Binding& binding : all_bindings()) {
+    if (!is_ours(binding.from) && !is_ours(binding.to)) continue;
     if (binding.from == binding.to) continue;
     for (const char* name : {"tinygltf", "tinyobj", "nlohmann", "stbi_"})
       EXPECT_FALSE(has(binding.symbol, name)) << binding.symbol << " of " << binding.from << " is found in " << binding.to;
@@ -77,8 +88,8 @@ TEST(Symbols, OfSharedLibrariesAreFoundInTheseAndNoOthers) {
                                  Library{"_ZN6google8protobuf", "libprotobuf.so"},
                                  Library{"_ZN3tbb6detail", "libtbb.so"}};
   std::size_t checked = 0;
-  for (const Binding& binding : alvor_bindings()) {
-    if (binding.from != "alvor" || binding.to == "alvor") continue;
+  for (const Binding& binding : all_bindings()) {
+    if (!is_ours(binding.from) || is_ours(binding.to)) continue;
     for (const auto& [prefix, file] : libraries) {
       if (!binding.symbol.starts_with(prefix)) continue;
       ++checked;

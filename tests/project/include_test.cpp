@@ -53,6 +53,7 @@ const std::map<std::string, std::string> kept_behind{
     {"sqlite3.h", "server/archive/"},
     {"boost/", "server/web/"},
     {"assimp/", "import/"},
+    {"seccomp.h", "import/program/"},
 };
 
 struct Include {

@@ -22,7 +22,7 @@ std::unique_ptr<SceneUpload> broken_upload(int vertices = 1) {
 }
 
 bool waits(Uploads& uploads, const Caller& caller) {
-  return refusal_of(grpc::NOT_FOUND, [&] { uploads.chunks(caller); }).empty();
+  return refusal_of(grpc::NOT_FOUND, [&] { uploads.describe(caller); }).empty();
 }
 
 /// Returns how many of `tenant`'s first `count` uploads wait to be resumed.

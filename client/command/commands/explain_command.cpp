@@ -57,9 +57,10 @@ void explain_form_factors(const ExplainCommand& command, const Scene& scene) {
 
 void run_explain(const ExplainCommand& command) {
   require_inputs({{InputKind::scene, command.scene}}, command.format);
-  SceneFile file = read_scene(command.scene, command.format);
+  SceneImport import;
+  take_light_options(command.light, import);
+  SceneFile file = read_scene(command.scene, command.format, import);
   take_absorption(command.absorption, file.scene);
-  take_light_options(command.light, file);
   warn(file.warnings);
   if (command.form_factors) explain_form_factors(command, file.scene);
   else explain_plan(command, file.scene);

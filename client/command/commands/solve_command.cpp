@@ -12,6 +12,7 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/command/output/notes.h"
+#include "client/picture/units.h"
 #include "proto/codec.h"
 
 #include <map>
@@ -77,44 +78,63 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
   return spec;
 }
 
-// Submits the scene. If the server refuses it, reports that as a fault of the file.
-v1::Scene submit(Client& client, const Scene& scene, const std::filesystem::path& path) {
+SceneImport import_of(const SolveCommand& command, const std::string& file) {
+  SceneImport import;
+  v1::ImportOptions& options = import.options;
+  take_light_options(command.light, import);
+  options.set_scene_file(file);
+  options.set_display_name(as_utf8(std::filesystem::path(name_of(command.scene)).filename().string()));
+  Scene given;
+  take_absorption(command.absorption, given);
+  if (!given.absorption.is_zero()) *options.mutable_absorption_per_meter() = encode(given.absorption);
+  if (is_axis(command.up)) options.set_up_axis(command.up == "z" ? v1::UP_AXIS_Z : v1::UP_AXIS_Y);
+  return import;
+}
+
+// Sends the scene's files. If the server refuses them, reports that as a fault of the file, which it knows by another name.
+v1::Scene submit(Client& client, RawScene scene, const SceneImport& import, const std::filesystem::path& path) {
+  const auto find = [&](const std::string& name) {
+    const auto luminaire = import.files.find(name);
+    return luminaire != import.files.end() ? std::optional(luminaire->second) : read_beside(scene.folder, name);
+  };
   try {
-    return client.create_scene(scene, std::filesystem::path(name_of(path)).filename().string());
+    return client.import_scene(import.options, std::move(scene.bytes), find);
   } catch (const RpcError& error) {
     if (error.code != grpc::StatusCode::INVALID_ARGUMENT) throw;
-    throw SceneFileError(name_of(path) + ": " + reason_of(error));
+    const std::string reason = reason_of(error), name = scene.file + ": ";
+    throw SceneFileError(name_of(path) + ": " + (reason.starts_with(name) ? reason.substr(name.size()) : reason));
   }
 }
 
-std::vector<std::string> warnings_about(const SceneFile& file, const v1::Scene& scene) {
-  std::vector<std::string> all = file.warnings;
-  all.insert(all.end(), scene.warnings().begin(), scene.warnings().end());
-  return all;
-}
+/// A solve that has been followed to its end.
+struct Solved {
+  Scene scene;
+  std::vector<std::string> warnings;
+  Followed followed;
+};
 
-Followed solve_and_follow(const SolveCommand& command, const SceneFile& file, std::vector<std::string>& warnings) {
+Solved solve_and_follow(const SolveCommand& command, RawScene bytes) {
+  const SceneImport import = import_of(command, bytes.file);
   Interrupt interrupt;
   Connection connection(command.server);
-  const v1::Scene scene = submit(connection.client(), file.scene, command.scene);
-  warnings = warnings_about(file, scene);
-  warn(warnings);
+  Client& client = connection.client();
+  const v1::Scene scene = submit(client, std::move(bytes), import, command.scene);
+  Solved solved;
+  solved.warnings.assign(scene.warnings().begin(), scene.warnings().end());
+  warn(solved.warnings);
+  solved.scene = client.with_patience([&] { return client.read_scene(scene.name()); });
   const FollowOptions options{std::chrono::steady_clock::now(), !command.outputs.frames.empty()};
-  const v1::Solve solve = connection.client().create_solve(scene.name(), spec_of(command));
+  const v1::Solve solve = client.create_solve(scene.name(), spec_of(command));
   if (connection.remote()) progress() << solve.name() << '\n';
-  return follow_own(connection.client(), solve, options, interrupt.token());
+  solved.followed = follow_own(client, solve, options, interrupt.token());
+  return solved;
 }
 
 void run_solve(const SolveCommand& command) {
   require_inputs({{InputKind::scene, command.scene}}, command.format);
   prepare_outputs(command.outputs);
-  SceneFile file = read_scene(command.scene, command.format);
-  take_absorption(command.absorption, file.scene);
-  take_up(command.up, file.scene.up);
-  take_light_options(command.light, file);
-  std::vector<std::string> warnings;
-  const Followed followed = solve_and_follow(command, file, warnings);
-  deliver(command.outputs, file.scene, followed, warnings);
+  const Solved solved = solve_and_follow(command, scene_bytes(command.scene, command.format));
+  deliver(command.outputs, solved.scene, solved.followed, solved.warnings);
 }
 
 void add_limits(CLI::App& command, SolveCommand& options) {

@@ -74,10 +74,11 @@ void require_outputs(const VerifyCommand& command) {
 void run_verify(const VerifyCommand& command) {
   require_inputs({{InputKind::scene, command.scene}, {InputKind::solution, command.solution}}, command.format);
   require_outputs(command);
-  SceneFile file = read_scene(command.scene, command.format);
+  SceneImport import;
+  take_light_options(command.light, import);
+  if (is_axis(command.up)) import.options.set_up_axis(command.up == "z" ? v1::UP_AXIS_Z : v1::UP_AXIS_Y);
+  SceneFile file = read_scene(command.scene, command.format, import);
   take_absorption(command.absorption, file.scene);
-  take_up(command.up, file.scene.up);
-  take_light_options(command.light, file);
   warn(file.warnings);
   DisplayMesh solution = read_solution(command.solution, command.format);
   take_up(command.up, solution.up);

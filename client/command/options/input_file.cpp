@@ -3,6 +3,7 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/export/solution_file.h"
+#include "import/scene_files.h"
 #include "import/whole_file.h"
 
 #include <unistd.h>
@@ -85,9 +86,16 @@ void require_inputs(std::initializer_list<InputFile> inputs, const std::string& 
     throw Failure(ExitStatus::usage, "--format is for scenes and solutions from - (stdin): the name of a file tells its format");
 }
 
-SceneFile read_scene(const std::filesystem::path& path, const std::string& format) {
-  if (!is_stream(path)) return read_scene_file(path);
-  return read_scene_content({name_of(path), read_stdin(), extension_of(format), {}});
+SceneFile read_scene(const std::filesystem::path& path, const std::string& format, const SceneImport& import) {
+  if (!is_stream(path)) return read_scene_file(path, import);
+  return read_scene_content({name_of(path), read_stdin(), extension_of(format), {}}, import);
+}
+
+RawScene scene_bytes(const std::filesystem::path& path, const std::string& format) {
+  if (is_stream(path)) return {"scene" + extension_of(format), read_stdin(), {}};
+  const std::string name = path.filename().string();
+  return {reason_against_name(name).empty() ? name : "scene" + path.extension().string(), read_scene_bytes(path),
+          path.parent_path()};
 }
 
 DisplayMesh read_solution(const std::filesystem::path& path, const std::string& format) {

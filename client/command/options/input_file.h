@@ -28,11 +28,21 @@ void add_format_option(CLI::App& command, std::string& format);
 /// exactly if that one is a scene or a solution.
 void require_inputs(std::initializer_list<InputFile> inputs, const std::string& format);
 
-// For the three functions below: `format` is the format of stdin. Requires: require_inputs has returned.
+// For the functions below: `format` is the format of stdin. Requires: require_inputs has returned.
 
 /// Reads a scene. Files that a scene from stdin names are read from the working folder. Throws SceneFileError, and Failure
 /// (bad_scene) if stdin cannot be read.
-SceneFile read_scene(const std::filesystem::path& path, const std::string& format);
+SceneFile read_scene(const std::filesystem::path& path, const std::string& format, const SceneImport& import = {});
+
+/// A scene file as it is, to be sent to a server.
+struct RawScene {
+  std::string file;  ///< a name for the server, with the extension of the format
+  std::string bytes;
+  std::filesystem::path folder;  ///< the folder of the files that the scene names
+};
+
+/// Returns the bytes of a scene file. Throws SceneFileError, and Failure (bad_scene) if stdin cannot be read.
+RawScene scene_bytes(const std::filesystem::path& path, const std::string& format);
 
 /// Reads a solution. Throws Failure (bad_scene) if the file is no solution or has no surface.
 DisplayMesh read_solution(const std::filesystem::path& path, const std::string& format);

@@ -3,8 +3,6 @@
 #include "client/command/options/luminaire_option.h"
 #include "client/picture/units.h"
 
-#include <cstdio>
-#include <map>
 #include <utility>
 
 namespace alvor {
@@ -30,29 +28,14 @@ void add_light_options(CLI::App& command, LightOptions& options) {
   add_sky_options(command, options.sky);
 }
 
-void take_light_options(const LightOptions& options, SceneFile& file) {
-  Scene& scene = file.scene;
-  for (Light& light : scene.lights) light.intensity *= options.scale;
-  if (!options.quantity.empty()) scene.quantity = quantity_of(options.quantity);
-  take_sky_options(options.sky, options.efficacy, scene, file.warnings);
-  std::map<std::filesystem::path, LuminaireFile> luminaires;
-  for (const std::string& text : options.luminaires) {
-    const LuminairePlace place = parse_luminaire_place(text);
-    const auto known = luminaires.find(place.file);
-    const LuminaireFile& luminaire =
-        known != luminaires.end() ? known->second : luminaires.emplace(place.file, read_luminaire_file(place.file)).first->second;
-    if (known == luminaires.end())
-      for (const std::string& warning : luminaire.warnings) file.warnings.push_back(place.file.string() + ": " + warning);
-    scene.lights.push_back(hang(luminaire, place, scene.up));
-    if (scene.quantity == Quantity::radiometric) scene.lights.back().intensity *= 1 / options.efficacy;
-  }
-  if (luminaires.empty() || scene.quantity == Quantity::photometric) return;
-  char told[200];
-  std::snprintf(told, sizeof told,
-                "the scene is radiometric: a lumen of its luminaires counts as 1/%g W (--luminous-efficacy); "
-                "--quantity photometric computes in lx",
-                options.efficacy);
-  file.warnings.push_back(told);
+void take_light_options(const LightOptions& options, SceneImport& import) {
+  if (options.scale != 1) import.options.set_light_scale(options.scale);
+  if (!options.quantity.empty())
+    import.options.set_quantity(quantity_of(options.quantity) == Quantity::photometric ? v1::QUANTITY_PHOTOMETRIC
+                                                                                       : v1::QUANTITY_RADIOMETRIC);
+  import.options.set_lumens_per_watt(options.efficacy);
+  if (auto daylight = daylight_of(options.sky)) *import.options.mutable_daylight() = *std::move(daylight);
+  import.files = add_luminaires(options.luminaires, import.options);
 }
 
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Options for what a scene file says about light.
+// Options for what a scene file says about light, and for light that is added to it.
 
 #include "client/command/options/sky_options.h"
 #include "import/scene_file.h"
@@ -15,13 +15,14 @@ struct LightOptions {
   double scale = 1;                     ///< of all lights that are not faces
   std::string quantity;                 ///< "radiometric" or "photometric"; empty: what the format says
   std::vector<std::string> luminaires;  ///< FILE@x,y,z[:turn,tilt,spin]
-  double efficacy = 179;                ///< lm/W of the light of luminaires in a radiometric scene; as in Radiance
+  double efficacy = 179;                ///< lm/W of luminaires, sun and sky in a radiometric scene; as in Radiance
   SkyOptions sky;
 };
 
 void add_light_options(CLI::App& command, LightOptions& options);
 
-/// Changes the scene as the options say, and appends to its warnings. Throws Failure for a luminaire that cannot be read.
-void take_light_options(const LightOptions& options, SceneFile& file);
+/// Sets what the options say about how a scene is read. Throws Failure for options that do not fit together and luminaires that
+/// cannot be read.
+void take_light_options(const LightOptions& options, SceneImport& import);
 
 }  // namespace alvor

@@ -2,22 +2,19 @@
 
 #include "client/command/output/failure.h"
 #include "client/command/output/numbers.h"
-#include "client/picture/units.h"
 #include "meshing/sun_position.h"
 
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <numbers>
+#include <vector>
 
 namespace alvor {
 
 namespace {
 
-constexpr double radians = std::numbers::pi / 180;
-constexpr double diameter_of_sun = 0.533 * radians;
-// Illuminance of an open horizontal surface by an overcast or uniform sky, if nothing is said: a bright cloudy day.
-constexpr double overcast_lux = 10'000;
+// The CIE sky that is called clear: number 12, a low-turbidity clear sky (ISO 15469).
+constexpr std::uint32_t clear_sky_number = 12;
 
 [[noreturn]] void refuse(const std::string& reason) { throw Failure(ExitStatus::usage, reason); }
 
@@ -61,109 +58,30 @@ std::optional<SunPosition> position_of(const SkyOptions& options) {
   return SunPosition{sun[0], sun[1]};
 }
 
-/// The sky that was asked for: its distribution, and its light if the sky says it.
-struct Sky {
-  SkyDistribution distribution;
-  std::optional<double> light;  // horizontal, unit of the scene
-};
+void set_perez(const std::string& text, v1::Daylight& wanted) {
+  const auto light = two_numbers("--sky perez", text, "DIRECT,DIFFUSE in W/m2");
+  if (light[0] < 0 || !(light[1] > 0)) refuse("--sky perez: needs direct >= 0 and diffuse > 0, in W/m2");
+  wanted.set_sky(v1::Daylight::PEREZ);
+  wanted.set_direct_normal_watts(light[0]);
+  wanted.set_diffuse_horizontal_watts(light[1]);
+}
 
-/// Makes the lights of one scene.
-class SkyMaker {
- public:
-  SkyMaker(const SkyOptions& options, double lumens_per_watt, Scene& scene)
-      : options_(options),
-        scene_(scene),
-        of_lux_(scene.quantity == Quantity::photometric ? 1 : 1 / lumens_per_watt),
-        of_watts_(of_lux_ * lumens_per_watt),
-        up_(scene.up == UpAxis::y ? Vec3{0, 1, 0} : Vec3{0, 0, 1}),
-        sun_(position_of(options)) {
-    if (!sun_) return;
-    to_sun_ = direction_of(*sun_);
-    if (options.sky.starts_with("perez:")) direct_of_sky_ = of_watts_ * perez_light()[0];
-  }
+void set_cie(const std::string& name, v1::Daylight& wanted) {
+  const auto number = name.starts_with("cie") ? parse_numbers(name.substr(3), 1) : std::nullopt;
+  const bool is_known = number && (*number)[0] == std::floor((*number)[0]) && (*number)[0] >= 1 && (*number)[0] <= 15;
+  if (!is_known && name != "clear")
+    refuse("--sky: '" + name + "' is not uniform, overcast, clear, cie1 to cie15, or perez:DIRECT,DIFFUSE");
+  wanted.set_sky(v1::Daylight::CIE);
+  wanted.set_cie_number(is_known ? static_cast<std::uint32_t>((*number)[0]) : clear_sky_number);
+}
 
-  void add(std::vector<std::string>& warnings) {
-    const bool sun_shines = sun_ && sun_->elevation > 0;
-    if (sun_ && !sun_shines) {
-      char text[120];
-      std::snprintf(text, sizeof text, "the sun is %.2f degrees below the horizon: it does not shine", -sun_->elevation);
-      warnings.push_back(text);
-    }
-    if (options_.sun_light && !sun_) refuse("--sun-light needs --sun, or --place and --time");
-    if (sun_shines) add_sun();
-    if (!options_.sky.empty()) add_sky();
-    else if (options_.sky_light) refuse("--sky-light needs --sky");
-    if (options_.ground > 0) add_ground();
-  }
-
- private:
-  Vec3 direction_of(const SunPosition& sun) const {
-    const double turn = (sun.azimuth + options_.north) * radians, h = sun.elevation * radians;
-    const Vec3 north = scene_.up == UpAxis::y ? Vec3{0, 0, -1} : Vec3{0, 1, 0}, east{1, 0, 0};
-    return std::cos(h) * (std::cos(turn) * north + std::sin(turn) * east) + std::sin(h) * up_;
-  }
-  Light& add_light(const char* name, LightKind kind, double intensity) {
-    Light light;
-    light.name = name;
-    light.kind = kind;
-    light.intensity = {intensity, intensity, intensity};
-    scene_.lights.push_back(light);
-    return scene_.lights.back();
-  }
-  void add_sun() {
-    const double direct = direct_of_sky_ ? *direct_of_sky_ : of_lux_ * clear_sky(sun_->elevation).sun;
-    Light& sun = add_light("sun", LightKind::directional, options_.sun_light.value_or(direct));
-    sun.direction = -to_sun_;
-    sun.angular_diameter = diameter_of_sun;
-    horizontal_ += sun.intensity.g * std::sin(sun_->elevation * radians);
-  }
-  void add_sky() {
-    const Sky made = make_sky();
-    const double model = made.light ? *made.light : of_lux_ * overcast_lux;
-    Light& sky = add_light("sky", LightKind::sky, options_.sky_light.value_or(model));
-    sky.direction = -up_;
-    sky.sky = made.distribution;
-    horizontal_ += sky.intensity.g;
-  }
-  void add_ground() {
-    if (horizontal_ == 0) refuse("--ground needs a sun or a sky that lights it");
-    Light& ground = add_light("ground", LightKind::sky, options_.ground * horizontal_);
-    ground.direction = up_;
-  }
-  Sky make_sky() const {
-    const std::string& name = options_.sky;
-    if (name == "uniform") return {};
-    if (name == "overcast") return {{.g = 2}, {}};
-    if (!sun_) refuse("--sky " + name + " needs the sun's place: --sun, or --place and --time");
-    const double light = of_lux_ * clear_sky(std::max(0.0, sun_->elevation)).sky;
-    const std::optional<double> if_clear = light > 0 ? std::optional(light) : std::nullopt;
-    if (name == "clear") return {cie_sky(12, to_sun_), if_clear};
-    if (name.starts_with("perez:")) return make_perez();
-    const auto number = name.starts_with("cie") ? parse_numbers(name.substr(3), 1) : std::nullopt;
-    if (!number || (*number)[0] != std::floor((*number)[0]) || (*number)[0] < 1 || (*number)[0] > 15)
-      refuse("--sky: '" + name + "' is not uniform, overcast, clear, cie1 to cie15, or perez:DIRECT,DIFFUSE");
-    const int which = static_cast<int>((*number)[0]);
-    return {cie_sky(which, to_sun_), which >= 11 ? if_clear : std::nullopt};
-  }
-  std::vector<double> perez_light() const {
-    const auto light = two_numbers("--sky perez", options_.sky.substr(6), "DIRECT,DIFFUSE in W/m2");
-    if (light[0] < 0 || !(light[1] > 0)) refuse("--sky perez: needs direct >= 0 and diffuse > 0, in W/m2");
-    return light;
-  }
-  Sky make_perez() const {
-    const auto light = perez_light();
-    return {perez_sky(light[0], light[1], (90 - sun_->elevation) * radians, to_sun_), of_watts_ * light[1]};
-  }
-
-  const SkyOptions& options_;
-  Scene& scene_;
-  const double of_lux_, of_watts_;  ///< the scene's unit per lx and per W/m2
-  const Vec3 up_;
-  const std::optional<SunPosition> sun_;
-  Vec3 to_sun_{0, 1, 0};
-  std::optional<double> direct_of_sky_;  ///< irradiance from the sun that the sky's model was given
-  double horizontal_ = 0;                ///< irradiance of an open horizontal surface
-};
+void set_sky(const std::string& name, v1::Daylight& wanted) {
+  if (name == "uniform") return wanted.set_sky(v1::Daylight::UNIFORM);
+  if (name == "overcast") return wanted.set_sky(v1::Daylight::OVERCAST);
+  if (name.starts_with("perez:")) set_perez(name.substr(6), wanted);
+  else set_cie(name, wanted);
+  if (!wanted.has_sun_azimuth_degrees()) refuse("--sky " + name + " needs the sun's place: --sun, or --place and --time");
+}
 
 }  // namespace
 
@@ -193,8 +111,24 @@ void add_sky_options(CLI::App& command, SkyOptions& options) {
       ->check(CLI::Range(-360.0, 360.0));
 }
 
-void take_sky_options(const SkyOptions& options, double lumens_per_watt, Scene& scene, std::vector<std::string>& warnings) {
-  SkyMaker(options, lumens_per_watt, scene).add(warnings);
+std::optional<v1::Daylight> daylight_of(const SkyOptions& options) {
+  v1::Daylight wanted;
+  if (const auto sun = position_of(options)) {
+    wanted.set_sun_azimuth_degrees(std::fmod(sun->azimuth, 360));
+    wanted.set_sun_elevation_degrees(sun->elevation);
+  }
+  if (options.sun_light && !wanted.has_sun_azimuth_degrees()) refuse("--sun-light needs --sun, or --place and --time");
+  if (options.sky_light && options.sky.empty()) refuse("--sky-light needs --sky");
+  if (options.sun_light) wanted.set_sun_irradiance(*options.sun_light);
+  if (options.sky_light) wanted.set_sky_irradiance(*options.sky_light);
+  if (!options.sky.empty()) set_sky(options.sky, wanted);
+  wanted.set_ground_reflectance(options.ground);
+  wanted.set_north_degrees(options.north);
+  if (!wanted.has_sun_azimuth_degrees() && options.sky.empty()) {
+    if (options.ground > 0) refuse("--ground needs a sun or a sky that lights it");
+    return std::nullopt;
+  }
+  return wanted;
 }
 
 }  // namespace alvor

@@ -1,13 +1,12 @@
 #pragma once
 // Sun, sky and ground that the command line adds to a scene.
 
-#include "meshing/scene.h"
+#include "alvor/v1/scene_service.pb.h"
 
 #include <CLI/CLI.hpp>
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace alvor {
 
@@ -24,8 +23,7 @@ struct SkyOptions {
 
 void add_sky_options(CLI::App& command, SkyOptions& options);
 
-/// Appends sun, sky and ground to the scene's lights as the options say. `lumens_per_watt` converts what the models say for
-/// scenes of the other quantity. Throws Failure (usage) for options that do not fit together.
-void take_sky_options(const SkyOptions& options, double lumens_per_watt, Scene& scene, std::vector<std::string>& warnings);
+/// Returns what the options say; nothing if they say nothing. Throws Failure (usage) for options that do not fit together.
+std::optional<v1::Daylight> daylight_of(const SkyOptions& options);
 
 }  // namespace alvor

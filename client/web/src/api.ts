@@ -2,12 +2,15 @@
 
 import { Code, ConnectError, createClient, type Interceptor } from "@connectrpc/connect";
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
-import { fromBinary, toBinary } from "@bufbuild/protobuf";
+import { findTrailerError } from "@connectrpc/connect/protocol-grpc";
+import { create, fromBinary, toBinary, type DescMessage, type MessageInitShape, type MessageShape } from "@bufbuild/protobuf";
 import {
   CreateSceneRequestSchema,
+  ImportSceneRequestSchema,
   SceneSchema,
   SceneService,
   type CreateSceneRequest,
+  type ImportOptionsSchema,
   type Scene,
 } from "./gen/alvor/v1/scene_service_pb";
 import { SolveService } from "./gen/alvor/v1/solve_service_pb";
@@ -22,8 +25,34 @@ export function connect(origin: string, token: () => string, onBytes: (count: nu
   return {
     scenes: createClient(SceneService, transport),
     solves: createClient(SolveService, transport),
-    createScene: (messages: CreateSceneRequest[]) => createScene(origin, token(), messages),
+    createScene: (messages: CreateSceneRequest[]) =>
+      send(origin, token(), "CreateScene", messages.map((message) => framed(CreateSceneRequestSchema, message))),
+    importScene: async (options: MessageInitShape<typeof ImportOptionsSchema>, requestId: string, files: NamedFile[]) =>
+      send(origin, token(), "ImportScene", [framed(ImportSceneRequestSchema, beginning(options, requestId)), ...(await piecesOf(files))]),
   };
+}
+
+/** A file, by the name that the scene uses for it. */
+export interface NamedFile {
+  name: string;
+  content: Blob;
+}
+
+const PIECE_BYTES = 4 << 20;
+
+function beginning(options: MessageInitShape<typeof ImportOptionsSchema>, requestId: string) {
+  return create(ImportSceneRequestSchema, { content: { case: "options", value: options }, requestId });
+}
+
+async function piecesOf(files: NamedFile[]): Promise<Blob[]> {
+  const pieces: Blob[] = [];
+  for (const { name, content } of files)
+    for (let offset = 0; offset === 0 || offset < content.size; offset += PIECE_BYTES) {
+      const bytes = new Uint8Array(await content.slice(offset, offset + PIECE_BYTES).arrayBuffer());
+      const value = { file: name, offset: BigInt(offset), content: bytes };
+      pieces.push(framed(ImportSceneRequestSchema, create(ImportSceneRequestSchema, { content: { case: "piece", value } })));
+    }
+  return pieces;
 }
 
 /** `scenes/{scene}` of `scenes/{scene}/solves/{solve}`. */
@@ -45,13 +74,13 @@ function counted(onBytes: (count: number) => void): typeof fetch {
 }
 
 // Browsers cannot stream upwards, but a request may well hold several messages.
-async function createScene(origin: string, token: string, messages: CreateSceneRequest[]): Promise<Scene> {
-  const body = new Blob(messages.flatMap((message) => framed(toBinary(CreateSceneRequestSchema, message))));
+async function send(origin: string, token: string, call: string, messages: Blob[]): Promise<Scene> {
+  const body = new Blob(messages);
   const headers: Record<string, string> = { "Content-Type": "application/grpc-web+proto", "X-Grpc-Web": "1" };
   if (token) headers.Authorization = `Bearer ${token}`;
   let response: Response;
   try {
-    response = await fetch(`${origin}/${SceneService.typeName}/CreateScene`, { method: "POST", headers, body });
+    response = await fetch(`${origin}/${SceneService.typeName}/${call}`, { method: "POST", headers, body });
   } catch {
     throw new ConnectError("the server cannot be reached", Code.Unavailable);
   }
@@ -64,17 +93,18 @@ async function createScene(origin: string, token: string, messages: CreateSceneR
         const colon = line.indexOf(":");
         trailers.set(line.slice(0, colon), line.slice(colon + 1).trim());
       }
-  const status = Number(trailers.get("grpc-status") ?? Code.Unknown);
-  if (status !== 0) throw new ConnectError(decodeURIComponent(trailers.get("grpc-message") ?? ""), status as Code);
+  const refusal = findTrailerError(trailers);
+  if (refusal) throw refusal;
   const message = frames.find(({ flags }) => flags === 0);
   if (!message) throw new ConnectError("the server did not answer", Code.Internal);
   return fromBinary(SceneSchema, message.bytes);
 }
 
-function framed(message: Uint8Array): BlobPart[] {
+function framed<Schema extends DescMessage>(schema: Schema, message: MessageShape<Schema>): Blob {
+  const bytes = toBinary(schema, message) as Uint8Array<ArrayBuffer>;
   const header = new Uint8Array(5);
-  new DataView(header.buffer).setUint32(1, message.length);
-  return [header, message as Uint8Array<ArrayBuffer>];
+  new DataView(header.buffer).setUint32(1, bytes.length);
+  return new Blob([header, bytes]);
 }
 
 function unframed(body: Uint8Array): { flags: number; bytes: Uint8Array }[] {

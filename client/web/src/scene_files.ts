@@ -1,68 +1,146 @@
-// Scene files that a person drops, as the API's scene. What is read of them, and the words for what is not, are those of `alvor`: client/*_import.cpp.
+// Sends the scene files that a person drops to the server, which reads them.
 
-import type { CreateSceneRequest } from "./gen/alvor/v1/scene_service_pb";
-import { DroppedFiles } from "./files/dropped_files";
-import { readGltf } from "./files/gltf";
-import { MissingParts } from "./files/gltf_file";
-import { ImportError } from "./files/import_error";
-import { readObj } from "./files/obj";
-import { readPly } from "./files/ply";
-import type { SceneBuilder } from "./files/scene_builder";
-import { readStl } from "./files/stl";
+import { ConnectError } from "@connectrpc/connect";
+import type { Api, NamedFile } from "./api";
+import { MissingFilesSchema, type MissingFiles, type Scene } from "./gen/alvor/v1/scene_service_pb";
 
-/** A file that is not a scene. The message is one line that names it. */
+/** Files among which no scene can be found. The message is one line that names them. */
 export class SceneFileError extends Error {}
 
-export interface SceneFile {
-  /** Of CreateScene. */
-  messages: CreateSceneRequest[];
-  /** One sentence each: clamped reflectance, averaged texture, ... */
-  warnings: string[];
-}
-
-const READERS: Record<string, (files: DroppedFiles) => Promise<SceneBuilder>> = {
-  obj: readObj,
-  gltf: readGltf,
-  glb: readGltf,
-  stl: ({ scene }) => readStl(scene),
-  ply: ({ scene }) => readPly(scene),
-};
-// `alvor` reads these through Assimp.
-const FOR_ALVOR = ["dae", "fbx", "3ds"];
-
-/** Reads the one scene among the files; the others are its parts. Throws SceneFileError. */
-export async function readSceneFiles(files: File[]): Promise<SceneFile> {
-  const scene = sceneAmong(files);
-  try {
-    if (scene.size === 0) throw new ImportError("file", "is empty");
-    const builder = await READERS[extensionOf(scene)](new DroppedFiles(files, scene));
-    return { messages: builder.messages(scene.name), warnings: builder.warnings };
-  } catch (error) {
-    throw new SceneFileError(refusalOf(scene.name, error));
+/** A scene that names files which were not dropped. */
+export class MissingParts extends Error {
+  constructor(
+    scene: string,
+    readonly names: string[],
+  ) {
+    super(`${scene} needs ${listOf(names)}, which ${names.length === 1 ? "was" : "were"} not dropped with it`);
   }
 }
+
+// What files that scenes name, and not scenes themselves, end in.
+const PARTS = ["mtl", "bin", "png", "jpg", "jpeg", "gif", "bmp", "tga", "txt", "md"];
+// Of several candidates these are the scene.
+const SCENES = ["obj", "gltf", "glb", "stl", "ply", "fbx", "dae", "3ds"];
 
 const extensionOf = (file: File) => /\.([^.]+)$/.exec(file.name)?.[1].toLowerCase() ?? "";
 
-function sceneAmong(files: File[]): File {
-  const scenes = files.filter((file) => extensionOf(file) in READERS);
-  if (scenes.length === 1) return scenes[0];
+/** The file's path within the dropped folder, or its name alone. */
+const pathOf = (file: File): string => file.webkitRelativePath || file.name;
+
+/** Returns the one scene among the files, or nothing if there are only parts of one. Throws SceneFileError. */
+function sceneAmong(files: File[]): File | undefined {
+  const known = files.filter((file) => SCENES.includes(extensionOf(file)));
+  const scenes = known.length > 0 ? known : files.filter((file) => !PARTS.includes(extensionOf(file)));
   if (scenes.length > 1) throw new SceneFileError(`${listOf(scenes.map(({ name }) => name))} are ${scenes.length} scenes: drop one at a time`);
-  const readable = "The page reads OBJ, glTF, GLB, STL and PLY.";
-  const foreign = files.find((file) => FOR_ALVOR.includes(extensionOf(file)));
-  if (foreign) throw new SceneFileError(`${foreign.name}: only the command 'alvor solve' reads .${extensionOf(foreign)}. ${readable}`);
-  throw new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}. ${readable}`);
+  return scenes[0];
 }
 
-function refusalOf(name: string, error: unknown): string {
-  if (error instanceof MissingParts) {
-    const { names } = error;
-    return `${name} needs ${listOf(names)}, which ${names.length === 1 ? "was" : "were"} not dropped with it`;
+/** A scene on its way to the server: the files that were dropped for it so far. */
+export class SceneUpload {
+  private readonly byPath = new Map<string, File>();
+  private readonly folder: string;
+  private readonly absent: string[] = [];
+  /** The server keeps the files of earlier calls with this id. */
+  private readonly requestId = Array.from(crypto.getRandomValues(new Uint32Array(4))).join("-");
+  private unsent: NamedFile[];
+  private readonly sent: NamedFile[] = [];
+  private missing: string[] = [];
+
+  constructor(
+    files: File[],
+    private readonly scene: File,
+  ) {
+    this.unsent = [{ name: scene.name, content: scene }];
+    const path = pathOf(scene);
+    this.folder = path.slice(0, path.lastIndexOf("/") + 1);
+    this.add(files);
   }
-  if (error instanceof ImportError) return `${name}: ${error.message}`;
-  // A browser gives a file up when it has changed since it was dropped.
-  if (error instanceof DOMException) return `${name}: cannot be read: ${error.message}`;
-  return `${name}: is not built as its format asks for`;
+
+  /** Adds parts that were missing. */
+  add(files: File[]): void {
+    for (const file of files) this.byPath.set(pathOf(file), file);
+  }
+
+  /** Does without what is missing and was not dropped, where the format allows it. */
+  renounce(): void {
+    this.absent.push(...this.missing.filter((name) => !this.find(name)));
+  }
+
+  /** Sends what the server asks for. Throws MissingParts if it was not dropped, and ConnectError. */
+  async send(api: Api): Promise<Scene> {
+    for (;;) {
+      this.take(this.missing);
+      try {
+        return await this.sendOnce(api);
+      } catch (error) {
+        const [detail] = error instanceof ConnectError ? error.findDetails(MissingFilesSchema) : [];
+        if (!detail) throw error;
+        this.note(detail);
+      }
+    }
+  }
+
+  private sendOnce(api: Api): Promise<Scene> {
+    const files = this.unsent;
+    this.sent.push(...files);
+    this.unsent = [];
+    const { name } = this.scene;
+    return api.importScene({ sceneFile: name, displayName: name, absentFiles: this.absent }, this.requestId, files);
+  }
+
+  private note({ names }: MissingFiles): void {
+    this.missing = names;
+    if (names.includes(this.scene.name)) {
+      // The server has dropped what was sent.
+      this.unsent = this.sent.splice(0);
+      this.missing = [];
+      return;
+    }
+    const lacking = names.filter((name) => !this.find(name));
+    if (lacking.length > 0) throw new MissingParts(this.scene.name, lacking);
+  }
+
+  /** Puts what is missing among the files to send, if it was dropped. */
+  private take(names: string[]): void {
+    for (const name of names) {
+      const content = this.find(name);
+      if (content) this.unsent.push({ name, content });
+    }
+    this.missing = [];
+  }
+
+  /** Files that were dropped without their folders are found by the name alone. */
+  private find(name: string): File | undefined {
+    return this.byPath.get(this.folder + name) ?? this.byPath.get(name.slice(name.lastIndexOf("/") + 1));
+  }
+}
+
+let waiting: SceneUpload | undefined;
+
+/** Sends a scene with its parts, or the parts that the last one lacked. Throws SceneFileError, MissingParts and ConnectError. */
+export async function sendSceneFiles(api: Api, files: File[]): Promise<Scene> {
+  const scene = sceneAmong(files);
+  if (scene) waiting = new SceneUpload(files, scene);
+  else if (waiting) waiting.add(files);
+  else throw new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}`);
+  return sendWaiting(api);
+}
+
+/** Sends the last scene without the parts that it lacks. */
+export async function sendWithoutParts(api: Api): Promise<Scene> {
+  waiting?.renounce();
+  return sendWaiting(api);
+}
+
+async function sendWaiting(api: Api): Promise<Scene> {
+  try {
+    const scene = await waiting!.send(api);
+    waiting = undefined;
+    return scene;
+  } catch (error) {
+    if (!(error instanceof MissingParts)) waiting = undefined;
+    throw error;
+  }
 }
 
 function listOf(names: string[]): string {

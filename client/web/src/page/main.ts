@@ -4,6 +4,7 @@ import { Code, ConnectError } from "@connectrpc/connect";
 import { connect, reasonOf, sceneOf } from "../api";
 import type { Scene } from "../gen/alvor/v1/scene_service_pb";
 import { Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
+import { MissingParts, sendSceneFiles, sendWithoutParts } from "../scene_files";
 import type { Brightness, Counters, FromWorker, ToWorker } from "../messages";
 import { Cameras } from "../view/cameras";
 import { Room } from "../view/room";
@@ -99,10 +100,19 @@ async function attempt(action: () => Promise<void>): Promise<void> {
 
 async function open(files: File[]): Promise<void> {
   openedAt = performance.now();
-  say(`Reading ${files.map((file) => file.name).join(", ")}`);
-  const { readSceneFiles } = await import("../scene_files");
-  const { messages, warnings } = await readSceneFiles(files);
-  setScene(await api.createScene(messages), warnings);
+  say(`Sending ${files.map((file) => file.name).join(", ")}`);
+  await openSent(() => sendSceneFiles(api, files));
+}
+
+/** Solves a scene that is sent. Where parts of it are missing, offers to do without them. */
+async function openSent(send: () => Promise<Scene>): Promise<void> {
+  button("without-parts").hidden = true;
+  try {
+    setScene(await send());
+  } catch (error) {
+    button("without-parts").hidden = !(error instanceof MissingParts);
+    throw error;
+  }
   await start();
   void listStored();
 }
@@ -118,11 +128,10 @@ async function openExample(name: string): Promise<void> {
   await open(parts);
 }
 
-/** `changes`: what reading its files left out or changed. */
-function setScene(next: Scene, changes: string[] = []): void {
+function setScene(next: Scene): void {
   scene = next;
   byId("title").textContent = `${next.displayName || next.name}, ${next.faceCount} faces`;
-  byId("warnings").replaceChildren(...[...changes, ...next.warnings].map(listItem));
+  byId("warnings").replaceChildren(...next.warnings.map(listItem));
   button("start").disabled = false;
 }
 
@@ -401,6 +410,7 @@ function listen(): void {
   const stale = () => (isStale = true);
   input("files").addEventListener("change", () => attempt(() => open([...(input("files").files ?? [])])));
   select("examples").append(...EXAMPLES.map((name) => new Option(name.replaceAll("_", " "), name)));
+  button("without-parts").addEventListener("click", () => attempt(() => openSent(() => sendWithoutParts(api))));
   listenToChoice("examples", "open-example", openExample);
   listenToChoice("stored", "open-stored", openStored);
   input("token").addEventListener("change", () => {

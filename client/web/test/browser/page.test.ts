@@ -4,7 +4,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
-import type { Material } from "../../src/gen/alvor/v1/scene_service_pb";
+import { Light_Kind, type Material } from "../../src/gen/alvor/v1/scene_service_pb";
 import { Solve_State } from "../../src/gen/alvor/v1/solve_service_pb";
 import { createScene, Server } from "./server";
 import { meanBrightness, measuredBy, openBrowser, openPage, pauseSeenBy, pixelAt, stateOf, waitForEnd, waitForFrames, waitForState, watchPause, type Page } from "./viewer";
@@ -46,6 +46,13 @@ async function materialsOf(name: string): Promise<Material[]> {
   const materials: Material[] = [];
   for await (const { chunk } of server.api.scenes.readScene({ name })) materials.push(...chunk!.materials);
   return materials;
+}
+
+/** The kinds of a scene's lights that are not faces. */
+async function lampsOf(name: string): Promise<Light_Kind[]> {
+  const kinds: Light_Kind[] = [];
+  for await (const { chunk } of server.api.scenes.readScene({ name })) kinds.push(...chunk!.lights.map(({ kind }) => kind));
+  return kinds;
 }
 
 // Where things are in the first view of the Cornell box.
@@ -244,7 +251,8 @@ describe("the page", () => {
     await page.setInputFiles("#files", ["room.gltf", ...ROOM_PARTS].map((part) => BLENDER + part));
     await waitForState(page, "Done");
     expect(await page.locator("#title").textContent()).toBe("room.gltf, 765 faces");
-    expect(await warningsOf(page)).toContain("1 spot light is ignored");
+    expect(await warningsOf(page)).toContain("2 materials with alpha are taken for opaque");
+    expect(await lampsOf((await server.api.scenes.listScenes({})).scenes[0].name)).toEqual([Light_Kind.POINT, Light_Kind.SPOT, Light_Kind.DIRECTIONAL]);
     const jpeg = await page.evaluate(async () => {
       const canvas = new OffscreenCanvas(1500, 40); // wider than what is looked at in one piece
       const pen = canvas.getContext("2d")!;
@@ -312,19 +320,29 @@ describe("the page", () => {
 
   it("says what is wrong with a file, and where", async () => {
     const page = await openPage(browser, server.url);
+    await page.fill("#tolerance", "20");
     const file = (name: string, text: string) => ({ name, mimeType: "text/plain", buffer: Buffer.from(text) });
     const triangle = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl white\nf 1 2 3\n";
     await page.setInputFiles("#files", [file("empty.obj", "v 0 0 0\n")]);
-    await waitForState(page, "empty.obj: has no faces");
+    await waitForState(page, "empty.obj: scene: has no faces");
     await page.setInputFiles("#files", [file("a.obj", triangle), file("a.mtl", "newmtl white\nKd 1.5 1 1\n")]);
     await waitForState(page, "Done");
     await expect.poll(() => warningsOf(page)).toContain("material 'white': reflectance 1.5 1 1 is clamped to 0.95 0.95 0.95");
     await page.setInputFiles("#files", [file("picture.png", "")]);
-    await waitForState(page, "No scene among these files: picture.png. The page reads OBJ, glTF, GLB, STL and PLY.");
+    await waitForState(page, "No scene among these files: picture.png");
     await page.setInputFiles("#files", [file("room.glb", "glTF but no more")]);
-    await waitForState(page, "room.glb: is GLB of version");
+    await waitForState(page, "room.glb: file: is GLB of version");
     await page.setInputFiles("#files", [`${BLENDER}room.gltf`]);
-    await waitForState(page, "room.gltf needs room.bin, ");
+    await waitForState(page, "room.gltf needs floor_checker.png, leaf.png, room.bin, screen.png, ");
+    await page.setInputFiles("#files", [file("notes.txt", "")]);
+    await waitForState(page, "room.gltf needs floor_checker.png, leaf.png, room.bin, screen.png, ");
+    await page.setInputFiles("#files", ROOM_PARTS.map((part) => BLENDER + part));
+    await waitForState(page, "Done");
+    await page.setInputFiles("#files", [file("a.obj", triangle)]);
+    await waitForState(page, "a.obj needs a.mtl, which was not dropped with it");
+    await page.locator("#without-parts").click();
+    await waitForState(page, "Done");
+    await expect.poll(() => warningsOf(page)).toContain("material library 'a.mtl' cannot be read");
     await page.close();
   });
 
