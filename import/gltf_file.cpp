@@ -25,7 +25,8 @@ constexpr int max_depth = 200;
 bool is_harmless(const std::string& extension) {
   if (extension == "KHR_materials_pbrSpecularGlossiness") return false;  // it has its own reflectance
   return extension.starts_with("KHR_materials_") || extension.starts_with("KHR_texture_") ||
-         extension.starts_with("EXT_texture_") || extension == "KHR_mesh_quantization" || extension == "KHR_lights_punctual";
+         extension.starts_with("EXT_texture_") || extension == "KHR_mesh_quantization" || extension == "KHR_lights_punctual" ||
+         extension == "EXT_lights_ies";
 }
 
 void refuse_unknown_extensions(const tinygltf::Model& model) {
@@ -210,6 +211,11 @@ void ask_for_files(const json& gltf, SceneFiles& files) {
   if (buffers && buffers->is_array())
     for (const json& buffer : *buffers) ask_for(buffer, files);
   ask_for_images(gltf, files);
+  const json* const extensions = member(gltf, "extensions");
+  const json* const luminaires = extensions ? member(*extensions, "EXT_lights_ies") : nullptr;
+  const json* const profiles = luminaires ? member(*luminaires, "lights") : nullptr;
+  if (profiles && profiles->is_array())
+    for (const json& profile : *profiles) ask_for(profile, files);
 }
 
 /// Returns the images that give materials a colour. Others (bump maps, roughness) may be missing.

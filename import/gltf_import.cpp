@@ -3,6 +3,7 @@
 #include "import/gltf_accessor.h"
 #include "import/gltf_file.h"
 #include "import/gltf_lights.h"
+#include "import/gltf_luminaires.h"
 #include "import/gltf_material.h"
 #include "import/import_error.h"
 #include "import/placement.h"
@@ -103,7 +104,8 @@ bool draws_no_surface(int mode) { return mode >= TINYGLTF_MODE_POINTS && mode <=
 /// Reads the default scene of one model.
 class GltfReader {
  public:
-  explicit GltfReader(const tinygltf::Model& model) : model_(model), seen_(model.nodes.size()), lights_(model) {}
+  GltfReader(const tinygltf::Model& model, SceneFiles& files)
+      : model_(model), seen_(model.nodes.size()), lights_(model), luminaires_(model, files) {}
 
   SceneFile read() {
     file_.scene.materials = read_gltf_materials(model_, file_.warnings);
@@ -111,6 +113,7 @@ class GltfReader {
     count_unsupported_materials();
     unsupported_.append_warnings(file_.warnings);
     lights_.append_warnings(file_.warnings);
+    file_.warnings.insert(file_.warnings.end(), luminaires_.warnings().begin(), luminaires_.warnings().end());
     file_.scene.quantity = Quantity::photometric;
     return std::move(file_);
   }
@@ -149,6 +152,7 @@ class GltfReader {
       const auto [node, placement] = enter(next);
       if (node->mesh >= 0) add_mesh(node->mesh, placement);
       lights_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
+      luminaires_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
       push(node->children, placement);
     }
   }
@@ -235,6 +239,7 @@ class GltfReader {
   const tinygltf::Model& model_;
   std::vector<bool> seen_;
   GltfLights lights_;
+  GltfLuminaires luminaires_;
   Unsupported unsupported_;
   SceneFile file_;
   std::optional<std::uint32_t> default_material_;
@@ -244,7 +249,7 @@ class GltfReader {
 
 SceneFile import_gltf(SceneFiles& files) {
   const tinygltf::Model model = load_gltf(files);
-  return GltfReader(model).read();
+  return GltfReader(model, files).read();
 }
 
 }  // namespace alvor

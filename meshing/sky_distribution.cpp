@@ -109,7 +109,8 @@ SkyDistribution perez_sky(double direct_normal, double diffuse_horizontal, doubl
     c = std::exp(std::pow(brightness * (row[2][0] + row[2][1] * zenith), row[2][2])) - row[2][3];
     d = -std::exp(brightness * (row[3][0] + row[3][1] * zenith)) + row[3][2] + brightness * row[3][3];
   }
-  return {fit(row[0]), fit(row[1]), c, d, fit(row[4]), 0, to_sun};
+  // For weather that does not occur b comes out positive, and the horizon would grow without bound.
+  return {fit(row[0]), std::min(0.0, fit(row[1])), c, d, fit(row[4]), 0, to_sun};
 }
 
 std::optional<std::string> fault_in(const SkyDistribution& sky) {

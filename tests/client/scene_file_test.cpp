@@ -300,6 +300,36 @@ TEST(SceneFile, LightsOfAGlbStandWhereTheirNodesAre) {
             std::vector<std::string>{"1 light has a range, which is ignored: light fades with the square of the distance only"});
 }
 
+/// Returns the JSON of a file with a luminaire whose photometric file is `uri`, below a node that turns -z to -x.
+std::string with_luminaire(const std::string& uri) {
+  return R"("scene": 0, "scenes": [{"nodes": [0, 1]}], "extensionsUsed": ["EXT_lights_ies"],
+            "extensions": {"EXT_lights_ies": {"lights": [{"uri": ")" +
+         uri + R"("}]}},
+            "nodes": [{"mesh": 0}, {"name": "panel.001", "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476],
+                       "translation": [1, 2, 3],
+                       "extensions": {"EXT_lights_ies": {"light": 0, "multiplier": 2, "color": [1, 0.5, 0.25]}}}], )" +
+         lamp_material + ", " + square_mesh;
+}
+
+TEST(SceneFile, LuminairesOfAGlbStandWhereTheirNodesAre) {
+  // "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0.5 1 0\n1 1 1\n0 90\n0\n100 0\n"
+  const std::string file_of_two_angles =
+      "data:application/x-ies-lm-63;base64,"
+      "SUVTTkE5MQpUSUxUPU5PTkUKMSAtMSAxIDIgMSAxIDIgMC41IDEgMAoxIDEgMQowIDkwCjAKMTAwIDAK";
+  const Scene scene = read_scene_file(GlbFile(with_luminaire(file_of_two_angles), square_bytes())).scene;
+  ASSERT_EQ(scene.lights.size(), 1u);
+  const Light& panel = scene.lights[0];
+  EXPECT_EQ(panel.kind, LightKind::luminaire);
+  EXPECT_EQ(panel.name, "panel.001");
+  expect_near(panel.intensity, {2, 1, 0.5});
+  EXPECT_NEAR(length(panel.direction - Vec3{-1, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(length(panel.across - Vec3{0, 0, -1}), 0, 1e-12);
+  EXPECT_EQ(panel.opening, (LuminousOpening{LuminousOpening::Shape::rectangle, 1, 0.5, 0}));
+  EXPECT_EQ(panel.web->greatest(), 100);
+  EXPECT_EQ(refusal(GlbFile(with_luminaire("data:text/plain;base64,aGVsbG8="), square_bytes())),
+            "light profile 0: file: is not a luminaire: it has no line TILT=");
+}
+
 TEST(SceneFile, HostileLightsAreRefusedByName) {
   const auto refusal_of = [&](const std::string& light) { return refusal(GlbFile(with_light(light), square_bytes())); };
   EXPECT_EQ(refusal_of(R"({"type": "candle"})"), "node 1: its light is of the unknown type 'candle'");

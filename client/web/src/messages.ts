@@ -51,6 +51,7 @@ export type FromWorker =
       counts: Uint8Array;
       materials: Float32Array;
       isZUp: boolean;
+      isPhotometric: boolean;
     }
   | { kind: "change"; change: SurfaceChange; brightness: Brightness; counters: Counters }
   | { kind: "steps"; steps: Step[]; isFirst: boolean }

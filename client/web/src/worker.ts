@@ -95,12 +95,12 @@ class Watch {
     for await (const message of this.api.scenes.readMesh({ name: sceneOf(this.solve) })) messages.push(message);
     this.mesh = new BaseMesh(messages);
     this.forget();
-    const { centre, extent, isZUp } = this.mesh;
+    const { centre, extent, isZUp, isPhotometric } = this.mesh;
     const materials = Float32Array.from(
       this.mesh.materials.flatMap(({ emission: e, reflectance: r }) => [e!.r, e!.g, e!.b, 0, r!.r, r!.g, r!.b, 0]),
     );
     const counts = Uint8Array.from({ length: this.mesh.rootCount }, (_, root) => this.mesh.cornersOf(root));
-    tell({ kind: "mesh", centre, extent, corners: Float32Array.from(this.mesh.corners), counts, materials, isZUp });
+    tell({ kind: "mesh", centre, extent, corners: Float32Array.from(this.mesh.corners), counts, materials, isZUp, isPhotometric });
   }
 
   private forget(): void {

@@ -1,6 +1,6 @@
 // The root patches that patch ids refer to, as ReadMesh sends them.
 
-import { UpAxis, type Material, type ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
+import { Quantity, UpAxis, type Material, type ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
 import { GRID } from "./mirror";
 
 /** Corners are numbered through all roots: corner c of root r is firstCorner[r] + c, and so is the edge that begins there. */
@@ -18,6 +18,8 @@ export class BaseMesh {
   private readonly secondSceneFace: Uint32Array;
   /** Or y. */
   readonly isZUp: boolean;
+  /** Light is in lumens and lx, not in watts and W/m2. */
+  readonly isPhotometric: boolean;
   readonly materials: Material[];
   /** Of each root, m2. */
   readonly area: Float64Array;
@@ -37,6 +39,7 @@ export class BaseMesh {
     this.sceneFace = Uint32Array.from(messages.flatMap((message) => message.sceneFaces));
     this.secondSceneFace = Uint32Array.from(messages.flatMap((message) => message.secondSceneFaces));
     this.isZUp = messages[0]?.upAxis === UpAxis.Z;
+    this.isPhotometric = messages[0]?.quantity === Quantity.PHOTOMETRIC;
     this.materials = messages.flatMap((message) => message.sceneMaterials);
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));

@@ -4,6 +4,7 @@ import { PlannedFeature_Kind, type Plan, type Step } from "../gen/alvor/v1/solve
 import type { Counters, Reading } from "../messages";
 import { byId, bytes, listItem, round } from "./dom";
 import { secondsOf } from "./time";
+import { irradianceName, irradianceUnit, radiosityName, radiosityUnit } from "./units";
 
 const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
@@ -48,8 +49,8 @@ export function showReading(reading: Reading | null): void {
   const { x, y, z } = reading.place;
   const faces = reading.faces.length > 1 ? `Faces ${reading.faces.join(" and ")}` : `Face ${reading.faces}`;
   byId("reading").textContent = [
-    `Irradiance ${bands(reading.irradiance)} W/m²`,
-    `Radiosity ${bands(reading.radiosity)} W/m²`,
+    `${irradianceName()} ${bands(reading.irradiance)} ${irradianceUnit()}`,
+    `${radiosityName()} ${bands(reading.radiosity)} ${radiosityUnit()}`,
     `${faces}, level ${reading.level}, ${reading.material}`,
     `at ${bands([x, y, z])} m`,
   ].join("\n");

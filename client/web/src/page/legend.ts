@@ -2,20 +2,21 @@
 
 import { colourMap } from "../view/colour_map";
 import { byId, listItem, round } from "./dom";
+import { irradianceName, irradianceUnit } from "./units";
 
 const TICKS = 5;
 
-export function showLegend(low: number, high: number, logarithmic: boolean, unit: { name: string; factor: number }): void {
+export function showLegend(low: number, high: number, logarithmic: boolean): void {
   const bar = byId<HTMLCanvasElement>("legend-bar");
   const pen = bar.getContext("2d")!;
   for (let y = 0; y < bar.height; ++y) {
     pen.fillStyle = `rgb(${colourMap(1 - y / (bar.height - 1)).join()})`;
     pen.fillRect(0, y, bar.width, 1);
   }
-  byId("legend-title").textContent = `Irradiance, ${unit.name}`;
+  byId("legend-title").textContent = `${irradianceName()}, ${irradianceUnit()}`;
   const values = Array.from({ length: TICKS }, (_, n) => {
     const place = 1 - n / (TICKS - 1);
-    return unit.factor * (logarithmic ? low * (high / low) ** place : low + place * (high - low));
+    return logarithmic ? low * (high / low) ** place : low + place * (high - low);
   });
   byId("legend-ticks").replaceChildren(...values.map((value) => listItem(round(value))));
 }

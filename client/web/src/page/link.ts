@@ -3,7 +3,7 @@
 import { input, select } from "./dom";
 import { heldExposure, holdExposure } from "./viewing";
 
-const SELECTS = ["show", "tone", "scale", "unit", "camera", "comparison"];
+const SELECTS = ["show", "tone", "scale", "camera", "comparison"];
 const CHECKS = ["automatic", "mesh", "ambient"];
 const RANGES = ["exposure", "split"];
 const DIGITS = 5;

@@ -14,6 +14,7 @@ import { glbOf, reportOf } from "./downloads";
 import { showCounters, showPlan, showReading } from "./figures";
 import { listenToDrops } from "./drops";
 import { addressOf, applyView, solveIn, viewIn } from "./link";
+import { setPhotometric } from "./units";
 import { draw, lookOf } from "./viewing";
 
 const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "enfilade"];
@@ -335,6 +336,7 @@ function take(message: FromWorker): void {
       room.setMaterials(materials);
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
       isZUp = message.isZUp;
+      setPhotometric(message.isPhotometric);
       room.setUp(isZUp);
       if (framedScene !== sceneOf(solve!.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
       framedScene = sceneOf(solve!.name);

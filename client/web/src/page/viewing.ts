@@ -32,13 +32,11 @@ function comparison(): "off" | "ambient" | "pinned" {
   return select("comparison").value as "off" | "ambient" | "pinned";
 }
 
-const UNITS = { w: { name: "W/m²", factor: 1 }, lx: { name: "lx-like", factor: 179 } };
-
 export function draw(room: Room, brightness: Brightness): void {
   const now = lookOf(brightness);
   room.render(now, comparison(), input("split").valueAsNumber);
   byId("legend").hidden = !now.falseColour;
-  if (now.falseColour) showLegend(now.low, now.high, now.logarithmic, UNITS[select("unit").value as keyof typeof UNITS]);
+  if (now.falseColour) showLegend(now.low, now.high, now.logarithmic);
   byId("compare").hidden = comparison() === "off";
   byId("split-left").textContent = comparison() === "ambient" ? "Without ambient term" : "The moment kept";
   byId("split-right").textContent = comparison() === "ambient" ? "With ambient term" : "Now";
