@@ -10,7 +10,7 @@ targets=(scene_upload frame watch checkpoint file web)
 PRESET=fuzz scripts/build.sh seeds "${targets[@]/%/_fuzz}"
 cd build/fuzz
 mkdir -p found
-bin/seeds seeds ../../tests/client/{good,bad}_files/* ../../tests/import/blender/files/* ../../scenes/cornell_box.*
+bin/seeds seeds ../../tests/client/{good,bad}_files/* ../../tests/import/blender/files/* ../../scenes/cornell_box.* ../../scenes/luminaires/*
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=0 UBSAN_OPTIONS=halt_on_error=1
 fuzz() {
   local target=$1 length=$2 megabytes=$3

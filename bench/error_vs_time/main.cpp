@@ -1,8 +1,8 @@
 // error_vs_time [--help]: measures error against run time and writes docs/error-vs-time.md, except its pictures.
 
-#include "bench/error_vs_time/curves.h"
-#include "bench/error_vs_time/page.h"
-#include "import/whole_file.h"
+#include "bench/error_vs_time/page/curves.h"
+#include "bench/error_vs_time/page/page.h"
+#include "import/base/whole_file.h"
 
 #include <exception>
 #include <iostream>

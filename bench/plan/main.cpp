@@ -1,6 +1,6 @@
 // Prints docs/plan.md: the cost of scenes that do not need a feature, with it and without. See scripts/plan.sh.
 
-#include "bench/error_vs_time/figures.h"
+#include "bench/error_vs_time/contest/figures.h"
 #include "bench/plan/measured.h"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 #include "bench/plan/measured.h"
 
-#include "bench/error_vs_time/stopwatch.h"
+#include "bench/error_vs_time/contest/stopwatch.h"
 #include "bench/plan/heap.h"
 #include "meshing/patch_place.h"
 

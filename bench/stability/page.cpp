@@ -1,6 +1,6 @@
 #include "bench/stability/page.h"
 
-#include "bench/error_vs_time/figures.h"
+#include "bench/error_vs_time/contest/figures.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Compares with face means of boxes, plates and spheres that are known to many digits.
 
-#include "bench/error_vs_time/figures.h"
+#include "bench/error_vs_time/contest/figures.h"
 #include "bench/stability/case.h"
 #include "bench/stability/enclosures.h"
 #include "bench/stability/solved_scene.h"

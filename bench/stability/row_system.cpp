@@ -1,6 +1,6 @@
 #include "bench/stability/row_system.h"
 
-#include "bench/error_vs_time/stopwatch.h"
+#include "bench/error_vs_time/contest/stopwatch.h"
 #include "bench/stability/dense_solve.h"
 #include "bench/stability/solved_scene.h"
 #include "radiosity/solve/pass.h"

@@ -1,6 +1,6 @@
 #include "bench/stability/solved_scene.h"
 
-#include "bench/error_vs_time/stopwatch.h"
+#include "bench/error_vs_time/contest/stopwatch.h"
 #include "meshing/patch_place.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "bench/error_vs_time/figures.h"
+#include "bench/error_vs_time/contest/figures.h"
 #include "bench/stability/case.h"
 #include "bench/stability/enclosures.h"
 #include "bench/stability/row_system.h"

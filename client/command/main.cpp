@@ -5,7 +5,7 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/notes.h"
 #include "client/export/solution_file.h"
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 
 #include <google/protobuf/stubs/common.h>
 

@@ -4,8 +4,8 @@
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
 #include "client/picture/units.h"
-#include "import/bytes.h"
-#include "import/glb_format.h"
+#include "import/base/bytes.h"
+#include "import/base/glb_format.h"
 
 #include <nlohmann/json.hpp>
 

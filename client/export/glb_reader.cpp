@@ -2,8 +2,8 @@
 #include "client/export/light_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/units.h"
-#include "import/bytes.h"
-#include "import/glb_format.h"
+#include "import/base/bytes.h"
+#include "import/base/glb_format.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 #include "client/export/light_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
-#include "import/bytes.h"
+#include "import/base/bytes.h"
 
 #include <charconv>
 #include <limits>

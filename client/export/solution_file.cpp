@@ -2,8 +2,8 @@
 
 #include "client/export/glb_file.h"
 #include "client/export/ply_file.h"
-#include "import/scene_format.h"
-#include "import/whole_file.h"
+#include "import/base/scene_format.h"
+#include "import/base/whole_file.h"
 
 #include <cmath>
 

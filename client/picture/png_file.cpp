@@ -1,6 +1,6 @@
 #include "client/picture/png_file.h"
 
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 
 #include <png.h>
 

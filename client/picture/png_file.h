@@ -15,7 +15,7 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-/// Returns the bytes of a PNG file. Throws FileError (import/whole_file.h) that begins with `name`.
+/// Returns the bytes of a PNG file. Throws FileError (import/base/whole_file.h) that begins with `name`.
 std::string encode_png(const Image& image, const std::string& name);
 
 /// Writes a PNG file, which appears whole or not at all. Throws FileError.

@@ -2,7 +2,7 @@
 // Draws the luminous intensity of a luminaire by direction.
 
 #include "client/picture/png_file.h"
-#include "import/luminaire_file.h"
+#include "import/photometry/luminaire_file.h"
 
 namespace alvor {
 

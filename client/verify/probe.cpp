@@ -1,7 +1,7 @@
 #include "client/verify/probe.h"
 
 #include "client/verify/gather.h"
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 #include "radiosity/rays/visibility.h"
 
 #include <tbb/parallel_for.h>

@@ -43,8 +43,8 @@ std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoi
 /// none, the distance is infinite and the values are NaN.
 std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const ProbePoint> points);
 
-/// Reads lines `x,y,z,nx,ny,nz`; a header line and blank lines are skipped. Throws FileError (import/whole_file.h) that names the
-/// line.
+/// Reads lines `x,y,z,nx,ny,nz`; a header line and blank lines are skipped. Throws FileError (import/base/whole_file.h) that
+/// names the line.
 std::vector<ProbePoint> read_points(const std::filesystem::path& path);
 
 /// Reads points from the text of such a file, which errors call `name`.

@@ -1,6 +1,6 @@
 #include "import/apart/records.h"
 
-#include "import/bytes.h"
+#include "import/base/bytes.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,8 +1,8 @@
 #include "import/apart/run_importer.h"
 
 #include "import/apart/records.h"
-#include "import/import_error.h"
-#include "import/one_line.h"
+#include "import/base/import_error.h"
+#include "import/base/one_line.h"
 #include "proto/codec.h"
 
 #include <fcntl.h>

@@ -2,7 +2,7 @@
 // Has a scene read by the program alvor-import, in a process of its own.
 
 #include "alvor/v1/scene_service.pb.h"
-#include "import/scene_files.h"
+#include "import/base/scene_files.h"
 
 #include <chrono>
 #include <cstdint>

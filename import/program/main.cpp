@@ -1,8 +1,8 @@
 // The main program of alvor-import: reads the files of one scene from stdin and writes the scene to stdout, both as records
 // (import/apart/records.h). Other programs start it; it is of no use by itself.
 
-#include "import/import_error.h"
-#include "import/import_scene.h"
+#include "import/base/import_error.h"
+#include "import/formats/import_scene.h"
 #include "import/program/sandbox.h"
 #include "import/program/standard_stream.h"
 #include "proto/codec.h"

@@ -88,10 +88,10 @@ void join_meeting(std::vector<Rectangle>& list) {
     Rectangle next = list.back();
     list.pop_back();
     // What the next one meets is joined with it and looked at again, as it may have grown into others.
-    const auto met = std::ranges::partition(apart, [&](const Rectangle& other) { return !other.meets(next); });
-    for (const Rectangle& other : met) next.add(other);
-    const bool has_grown = !met.empty();
-    apart.erase(met.begin(), met.end());
+    const auto met = std::partition(apart.begin(), apart.end(), [&](const Rectangle& other) { return !other.meets(next); });
+    const bool has_grown = met != apart.end();
+    std::for_each(met, apart.end(), [&](const Rectangle& other) { next.add(other); });
+    apart.erase(met, apart.end());
     (has_grown ? list : apart).push_back(next);
   }
   list = std::move(apart);

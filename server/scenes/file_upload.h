@@ -1,7 +1,7 @@
 #pragma once
 // Receives the files of a scene and has them read.
 
-#include "import/scene_files.h"
+#include "import/base/scene_files.h"
 #include "server/base/error_details.h"
 #include "server/scenes/resumable_upload.h"
 #include "server/scenes/scene_upload.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Checks that every scene of ours must pass.
 
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 #include "tests/bench/light_walk.h"
 
 #include <gtest/gtest.h>

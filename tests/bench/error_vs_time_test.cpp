@@ -1,12 +1,12 @@
 // Tests of the statistics of measurements, and of the programs with which the solver is compared.
 
-#include "bench/error_vs_time/comparisons.h"
-#include "bench/error_vs_time/figures.h"
-#include "bench/error_vs_time/fixed_mesh_shooting.h"
-#include "bench/error_vs_time/targets.h"
-#include "bench/error_vs_time/truth.h"
-#include "bench/error_vs_time/truth_file.h"
-#include "import/scene_file.h"
+#include "bench/error_vs_time/contest/figures.h"
+#include "bench/error_vs_time/contest/fixed_mesh_shooting.h"
+#include "bench/error_vs_time/contest/truth.h"
+#include "bench/error_vs_time/contest/truth_file.h"
+#include "bench/error_vs_time/page/comparisons.h"
+#include "bench/error_vs_time/page/targets.h"
+#include "import/apart/scene_file.h"
 
 #include <gtest/gtest.h>
 

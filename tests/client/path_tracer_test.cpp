@@ -2,7 +2,7 @@
 
 #include "client/verify/irradiance_estimate.h"
 #include "client/verify/surface_points.h"
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Tests of probing: irradiance and radiosity at points.
 
 #include "client/verify/probe.h"
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
 
 #include <gtest/gtest.h>

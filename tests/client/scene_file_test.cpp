@@ -1,4 +1,4 @@
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 
 #include "meshing/base_mesh.h"
 #include "tests/client/faces.h"

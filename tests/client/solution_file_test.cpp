@@ -3,7 +3,7 @@
 #include "client/export/solution_file.h"
 #include "client/export/glb_file.h"
 #include "client/export/ply_file.h"
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
 
 #include <gtest/gtest.h>

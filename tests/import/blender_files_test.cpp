@@ -1,6 +1,6 @@
 // Compares files that Blender's exporters wrote with the room as Blender describes it: blender/README.md.
 
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 #include "meshing/base_mesh.h"
 #include "radiosity/solve/solver.h"
 

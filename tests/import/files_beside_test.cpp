@@ -1,6 +1,6 @@
 // Tests of glTF files in several parts: which parts are read, and which refused.
 
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // Photometric files: what is read agrees with what the file says, and bad files are refused with their line.
 
-#include "import/luminaire_file.h"
-#include "import/import_error.h"
+#include "import/photometry/luminaire_file.h"
+#include "import/base/import_error.h"
 
 #include <gtest/gtest.h>
 

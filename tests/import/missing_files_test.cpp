@@ -1,7 +1,7 @@
 // Tests which files an importer asks for.
 
-#include "import/import_error.h"
-#include "import/import_scene.h"
+#include "import/base/import_error.h"
+#include "import/formats/import_scene.h"
 
 #include <gtest/gtest.h>
 

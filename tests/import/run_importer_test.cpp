@@ -2,7 +2,7 @@
 
 #include "import/apart/run_importer.h"
 
-#include "import/import_error.h"
+#include "import/base/import_error.h"
 
 #include <gtest/gtest.h>
 

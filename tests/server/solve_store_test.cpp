@@ -1,7 +1,7 @@
 #include "server/solves/solve_store.h"
 
 #include "server/archive/record_codec.h"
-#include "tests/server/kept_directory.h"
+#include "tests/server/kept/kept_directory.h"
 #include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"

@@ -16,7 +16,7 @@
 #include "client/command/output/numbers.h"
 #include "client/command/output/table.h"
 #include "client/picture/render.h"
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 
 #include <cmath>
 #include <iostream>

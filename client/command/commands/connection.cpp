@@ -1,7 +1,7 @@
 #include "client/command/commands/connection.h"
 
 #include "client/command/output/failure.h"
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 
 namespace alvor {
 

@@ -3,8 +3,8 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/export/solution_file.h"
-#include "import/scene_files.h"
-#include "import/whole_file.h"
+#include "import/base/scene_files.h"
+#include "import/base/whole_file.h"
 
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t most_bytes = 0xffffffff;  // the limit for files (import/whole_file.cpp)
+constexpr std::size_t most_bytes = 0xffffffff;  // the limit for files (import/base/whole_file.cpp)
 constexpr std::size_t piece = 1 << 20;
 
 std::string read_stdin() {

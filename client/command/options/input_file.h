@@ -2,7 +2,7 @@
 // The input files of a command, one of which may come from stdin.
 
 #include "client/verify/probe.h"
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 #include "meshing/display_mesh.h"
 
 #include <CLI/CLI.hpp>

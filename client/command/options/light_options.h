@@ -2,7 +2,7 @@
 // Options for what a scene file says about light, and for light that is added to it.
 
 #include "client/command/options/sky_options.h"
-#include "import/scene_file.h"
+#include "import/apart/scene_file.h"
 
 #include <CLI/CLI.hpp>
 

@@ -2,10 +2,10 @@
 
 #include "client/command/output/failure.h"
 #include "client/command/output/numbers.h"
-#include "import/import_error.h"
-#include "import/scene_files.h"
-#include "import/scene_format.h"
-#include "import/whole_file.h"
+#include "import/base/import_error.h"
+#include "import/base/scene_files.h"
+#include "import/base/scene_format.h"
+#include "import/base/whole_file.h"
 
 namespace alvor {
 

@@ -2,7 +2,7 @@
 // Luminaires that the command line adds to a scene.
 
 #include "alvor/v1/scene_service.pb.h"
-#include "import/luminaire_file.h"
+#include "import/photometry/luminaire_file.h"
 
 #include <filesystem>
 #include <map>

@@ -1,6 +1,6 @@
 #include "client/command/output/compare_plots.h"
 
-#include "import/whole_file.h"
+#include "import/base/whole_file.h"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -3,8 +3,8 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/command/output/notes.h"
-#include "import/scene_format.h"
-#include "import/whole_file.h"
+#include "import/base/scene_format.h"
+#include "import/base/whole_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,68 @@
+#include "bench/error_vs_time/contest/contenders.h"
+
+#include "bench/error_vs_time/contest/fixed_mesh_shooting.h"
+#include "bench/error_vs_time/contest/stopwatch.h"
+#include "client/verify/irradiance_estimate.h"
+#include "radiosity/solve/solver.h"
+
+namespace alvor::bench {
+
+namespace {
+
+Strategy strategy_of(Contender contender) {
+  switch (contender) {
+    case Contender::gather: return Strategy::gather;
+    case Contender::shoot: return Strategy::shoot;
+    case Contender::sorted: return Strategy::sorted;
+    case Contender::overshoot: return Strategy::overshoot;
+    default: return Strategy::automatic;
+  }
+}
+
+Confidence error_of(const Arena& arena, std::span<const LeafValue> leaves) {
+  return errors_of(build_display_mesh(arena.mesh, leaves), arena.truth).nrmse;
+}
+
+}  // namespace
+
+MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance, int threads, std::uint64_t seed) {
+  SolutionLog log;
+  const SolveOptions options{.tolerance = tolerance,
+                             .max_leaves = 1'000'000,
+                             .time_limit_s = arena.time_limit_s,
+                             .threads = threads,
+                             .seed = seed,
+                             .strategy = strategy_of(contender)};
+  const SolveOutcome outcome = solve(arena.mesh, options, log, {});
+  const Step last = log.last_step();
+  MeasuredRun run{arena.settings.name, contender, tolerance, threads, seed, outcome.cpu_s, outcome.solve_s};
+  run.rays = last.rays, run.leaves = last.leaves, run.estimated = last.estimated_error;
+  run.nrmse = error_of(arena, log.leaves());
+  run.is_done = outcome.reason == StopReason::tolerance;
+  return run;
+}
+
+MeasuredRun shoot_with(const Arena& arena, int cells) {
+  const FixedMeshSolution solution = shoot_on_fixed_mesh(arena.mesh, {.cells = cells, .time_limit_s = arena.fixed_mesh_limit_s});
+  MeasuredRun run{arena.settings.name, Contender::fixed_mesh, double(cells), 1, 1, solution.cpu_s, solution.wall_s};
+  run.rays = solution.rays, run.leaves = solution.leaves.size();
+  run.nrmse = error_of(arena, solution.leaves);
+  run.is_done = solution.is_done;
+  return run;
+}
+
+MeasuredRun trace_with(const Arena& arena, std::uint64_t paths) {
+  constexpr std::uint64_t seed = 1;  // another seed than the truth's
+  const Stopwatch watch;
+  const PathTracer tracer(arena.scene);
+  std::vector<SurfacePoint> points;
+  for (const TruePoint& point : arena.truth.points) points.push_back(point.at);
+  const auto traced = trace_irradiance(tracer, points, {.paths = paths, .seed = seed, .threads = 1});
+  MeasuredRun run{arena.settings.name, Contender::path_tracing, double(paths), 1, seed, watch.cpu_s(), watch.wall_s()};
+  std::vector<double> estimates;
+  for (const IrradianceEstimate& estimate : traced) estimates.push_back(estimate.mean().mean());
+  run.nrmse = errors_of(estimates, arena.truth).nrmse;
+  return run;
+}
+
+}  // namespace alvor::bench

@@ -1,0 +1,64 @@
+#pragma once
+// One run of one program on one scene, and groups of runs that differ only in their seed.
+
+#include "bench/error_vs_time/contest/statistics.h"
+#include "client/verify/error_statistics.h"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alvor::bench {
+
+enum class Contender { alvor, gather, shoot, sorted, overshoot, fixed_mesh, path_tracing };
+inline constexpr Contender strategies[]{Contender::gather, Contender::shoot, Contender::sorted, Contender::overshoot};
+
+std::string_view text(Contender contender);
+
+struct MeasuredRun {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  std::string scene;
+  Contender contender = Contender::alvor;
+  double setting = 0;  ///< tolerance; fixed mesh: cells on the longest side; path tracing: paths per point
+  int threads = 1;
+  std::uint64_t seed = 1;
+  double cpu_s = 0, wall_s = 0;
+  std::uint64_t rays = 0, leaves = 0;  ///< 0 if not counted
+  double estimated = unknown;          ///< nRMSE as estimated by the program itself
+  Confidence nrmse;                    ///< against the truth
+  bool is_done = true;                 ///< false: the time limit ended it
+};
+
+/// Returns a CSV text with a header and a line for each run.
+std::string runs_csv(std::span<const MeasuredRun> runs);
+
+/// The runs of one contender, setting and number of threads.
+struct RunGroup {
+  Contender contender = Contender::alvor;
+  double setting = 0;
+  int threads = 1;
+  std::vector<MeasuredRun> runs;  ///< not empty
+
+  Spread cpu_s() const;
+  Spread wall_s() const;
+  Spread nrmse() const;
+  Spread estimated() const;
+  Spread rays() const;
+  Spread leaves() const;
+  bool is_done() const;
+};
+
+/// Returns the runs in groups, in the order in which settings first appear.
+std::vector<RunGroup> grouped(std::span<const MeasuredRun> runs);
+
+/// Returns the groups of one contender and number of threads.
+std::vector<RunGroup> of(std::span<const RunGroup> groups, Contender contender, int threads = 1);
+
+/// Returns the medians of CPU time and error, one point per group.
+std::vector<CurvePoint> error_by_cpu(std::span<const RunGroup> groups);
+
+}  // namespace alvor::bench

@@ -1,0 +1,82 @@
+#include "bench/error_vs_time/contest/truth.h"
+
+#include "bench/error_vs_time/contest/truth_file.h"
+#include "client/verify/irradiance_estimate.h"
+#include "client/verify/probe.h"
+#include "client/verify/surface_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+
+namespace alvor::bench {
+
+namespace {
+
+constexpr std::uint64_t look_around_stream = ~1ull;  // no path uses this stream
+constexpr std::uint32_t look_around_rays = 256;
+
+TruePoint true_point(const PathTracer& tracer, const SurfacePoint& at, const IrradianceEstimate& found, PathRandom random) {
+  TruePoint point{at, found.mean().mean(), found.variance_of_band_mean()};
+  point.is_hidden = found.mean().is_zero() && tracer.is_enclosed(at, look_around_rays, random);
+  return point;
+}
+
+Truth traced(const Scene& scene, const SceneSettings& wanted, std::uint64_t seed) {
+  const std::clock_t begin = std::clock();
+  const PathTracer tracer(scene);
+  const auto points = draw_surface_points(scene, wanted.truth_points, seed);
+  const auto found = trace_irradiance(tracer, points, {.paths = wanted.truth_paths, .seed = seed});
+  Truth truth;
+  for (std::size_t n = 0; n < points.size(); ++n)
+    truth.points.push_back(true_point(tracer, points[n], found[n], PathRandom(seed, n, look_around_stream)));
+  truth.paths = std::uint64_t{found.front().rounds()} * RoundPlan(wanted.truth_paths).paths_per_round;
+  truth.cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return truth;
+}
+
+}  // namespace
+
+std::size_t Truth::hidden() const { return static_cast<std::size_t>(std::ranges::count(points, true, &TruePoint::is_hidden)); }
+
+Truth find_truth(const Scene& scene, const SceneSettings& scene_settings, const Settings& settings) {
+  const auto path = settings.truth_folder / (scene_settings.name + ".txt");
+  const std::string question = truth_question(scene, scene_settings, settings.truth_seed);
+  if (auto kept = read_truth(path, question)) return *std::move(kept);
+  Truth truth = traced(scene, scene_settings, settings.truth_seed);
+  write_truth(path, question, truth);
+  return truth;
+}
+
+ErrorStatistics errors_of(std::span<const double> estimates, const Truth& truth) {
+  // NaN would otherwise look like no error in the statistics.
+  if (!std::ranges::all_of(estimates, [](double estimate) { return std::isfinite(estimate); }))
+    throw std::runtime_error("a solution has irradiance that is not finite");
+  std::vector<ComparedPoint> compared;
+  for (std::size_t n = 0; n < truth.points.size(); ++n) {
+    const TruePoint& point = truth.points[n];
+    const bool is_dark = point.irradiance == 0 && estimates[n] == 0;
+    if (!point.is_hidden && !is_dark) compared.push_back({estimates[n], point.irradiance, point.variance});
+  }
+  return error_statistics(compared);
+}
+
+ErrorStatistics errors_of(const DisplayMesh& solution, const Truth& truth) {
+  std::vector<ProbePoint> asked;
+  for (const TruePoint& point : truth.points) asked.push_back({point.at.position, point.at.normal});
+  std::vector<double> estimates;
+  for (const ProbeSample& sample : probe_surfaces(solution, asked)) {
+    if (std::isinf(sample.distance)) throw std::runtime_error("a solution has no surface where its scene has one");
+    estimates.push_back(widen(sample.irradiance).mean());
+  }
+  return errors_of(estimates, truth);
+}
+
+ErrorStatistics errors_of_itself(const Truth& truth) {
+  std::vector<double> same;
+  for (const TruePoint& point : truth.points) same.push_back(point.irradiance);
+  return errors_of(same, truth);
+}
+
+}  // namespace alvor::bench

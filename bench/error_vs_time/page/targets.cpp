@@ -1,0 +1,155 @@
+#include "bench/error_vs_time/page/targets.h"
+
+#include "bench/error_vs_time/contest/figures.h"
+#include "bench/error_vs_time/page/comparisons.h"
+
+#include <algorithm>
+
+namespace alvor::bench {
+
+namespace {
+
+constexpr double faster_than_path_tracing = 100, faster_than_fixed_mesh = 30;
+constexpr double tolerance_kept = 0.02;
+constexpr double halved = 1.8;  // speedup with two threads that counts as half the time
+
+struct TimeTarget {
+  double error, yardsticks;
+};
+constexpr TimeTarget time_targets[]{{0.02, 0.12}, {0.01, 0.3}, {0.005, 2}};
+constexpr const char* tolerance_scenes[]{"slats_and_boxes", "vault", "enfilade"};
+
+const SceneContest* find(std::span<const SceneContest> contests, std::string_view name) {
+  const auto found =
+      std::ranges::find(contests, name, [](const SceneContest& held) -> std::string_view { return held.settings.name; });
+  return found == contests.end() ? nullptr : &*found;
+}
+
+std::string cost_text(const std::optional<Reached>& reached, double yardstick_s) {
+  if (!reached) return "not reached";
+  return (reached->at_most ? "at most " : "") + plain(reached->cost) + " s, " + plain(reached->cost / yardstick_s) +
+         " yardsticks";
+}
+
+Judgement judge_time(const SceneContest* cornell, const TimeTarget& target, double yardstick_s) {
+  Judgement judgement{"Cornell box: " + tolerance_percent(target.error) + " within " + figure(target.yardsticks) + " yardsticks"};
+  if (!cornell) return judgement;
+  const auto reached = cost_to_reach(error_by_cpu(of(cornell->groups, Contender::alvor)), target.error);
+  judgement.measured = cost_text(reached, yardstick_s);
+  judgement.verdict = at_most(reached, target.yardsticks * yardstick_s);
+  return judgement;
+}
+
+void judge_speed(Judgement& judgement, const std::optional<Comparison>& comparison, double times) {
+  if (!comparison) return;
+  judgement.verdict = Verdict::missed;
+  judgement.measured = "Alvor does not reach " + percent(comparison->error);
+  if (!comparison->ours) return;
+  judgement.measured = (comparison->ours->at_most ? "at least " : "") + plain(comparison->times_faster()) + " times, at " +
+                       percent(comparison->error) + ": " + plain(comparison->theirs_s) + " s to " +
+                       plain(comparison->ours->cost) + " s";
+  if (comparison->times_faster() >= times) judgement.verdict = Verdict::met;
+  if (comparison->is_extrapolated) judgement.note = "path tracing extrapolated";
+}
+
+Judgement judge_path_tracing(const SceneContest* cornell) {
+  Judgement judgement{"Cornell box: at least " + figure(faster_than_path_tracing) + " times faster than path tracing " +
+                      "10 000 points to " + tolerance_percent(path_tracing_error)};
+  if (cornell)
+    judge_speed(judgement, with_path_tracing(cornell->groups, cornell->truth.drawn, path_tracing_error),
+                faster_than_path_tracing);
+  return judgement;
+}
+
+Judgement judge_fixed_mesh(const SceneContest* cornell) {
+  Judgement judgement{"Cornell box: at least " + figure(faster_than_fixed_mesh) +
+                      " times faster than textbook shooting at the best error that it reaches"};
+  if (cornell) judge_speed(judgement, with_fixed_mesh(cornell->groups), faster_than_fixed_mesh);
+  return judgement;
+}
+
+/// Returns the error of the run with the median error.
+Confidence middle_error(const RunGroup& group) {
+  std::vector<MeasuredRun> runs = group.runs;
+  std::ranges::sort(runs, {}, [](const MeasuredRun& run) { return run.nrmse.value; });
+  return runs[(runs.size() - 1) / 2].nrmse;
+}
+
+Judgement judge_tolerance(const SceneContest* held, std::string_view name) {
+  Judgement judgement = held ? keeps_tolerance(held->groups, tolerance_kept) : Judgement{};
+  judgement.aim = std::string(name) + ": error at most " + tolerance_percent(tolerance_kept) + " at that tolerance";
+  return judgement;
+}
+
+ThreadGain gain_over_all(std::span<const SceneContest> contests) {
+  ThreadGain sum;
+  for (const SceneContest& held : contests) {
+    const ThreadGain gain = gain_of_two_threads(held.groups);
+    sum.one_s += gain.one_s, sum.two_s += gain.two_s;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::string_view text(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::met: return "met";
+    case Verdict::missed: return "**missed**";
+    case Verdict::not_measured: return "not measured";
+  }
+  return "unknown";
+}
+
+Verdict at_most(const std::optional<Reached>& cost, double limit) {
+  return cost && cost->cost <= limit ? Verdict::met : Verdict::missed;
+}
+
+Judgement keeps(const Confidence& error, double limit) {
+  Judgement judgement;
+  judgement.measured = percent(error.value) + ", 95 %: " + plain(100 * error.low) + " to " + plain(100 * error.high);
+  judgement.verdict = error.value <= limit ? Verdict::met : Verdict::missed;
+  if (error.low <= limit && limit < error.high) judgement.note = "the interval holds " + tolerance_percent(limit);
+  return judgement;
+}
+
+Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance) {
+  const auto ours = of(groups, Contender::alvor);
+  const auto group = std::ranges::find(ours, tolerance, &RunGroup::setting);
+  if (group == ours.end()) {
+    if (ours.empty() || ours.back().is_done()) return {};
+    const std::string measured =
+        "out of time at " + tolerance_percent(ours.back().setting) + ", with " + percent(ours.back().nrmse().median);
+    return {"", measured, Verdict::missed};
+  }
+  Judgement judgement = keeps(middle_error(*group), tolerance);
+  if (group->is_done()) return judgement;
+  judgement.verdict = Verdict::missed;
+  judgement.note = "out of time before its estimate was within the tolerance";
+  return judgement;
+}
+
+Judgement judge_thread_gain(double one_s, double two_s, double machine_gain) {
+  Judgement judgement{"Two threads halve the wall time (" + figure(halved) + " times faster or more), all solves together"};
+  if (!(two_s > 0)) return judgement;
+  judgement.measured = plain(one_s / two_s) + " times: " + plain(one_s) + " s to " + plain(two_s) + " s";
+  judgement.verdict = one_s >= halved * two_s ? Verdict::met : Verdict::missed;
+  if (machine_gain >= halved || judgement.verdict == Verdict::met) return judgement;
+  judgement.verdict = Verdict::not_measured;
+  judgement.note = "the machine was busy: path tracing gained " + plain(machine_gain) + " times";
+  return judgement;
+}
+
+std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain) {
+  const SceneContest* cornell = find(contests, "cornell_box");
+  std::vector<Judgement> judgements;
+  for (const TimeTarget& target : time_targets) judgements.push_back(judge_time(cornell, target, yardstick_s));
+  judgements.push_back(judge_path_tracing(cornell));
+  judgements.push_back(judge_fixed_mesh(cornell));
+  for (const char* name : tolerance_scenes) judgements.push_back(judge_tolerance(find(contests, name), name));
+  const ThreadGain gain = gain_over_all(contests);
+  judgements.push_back(judge_thread_gain(gain.one_s, gain.two_s, machine_gain));
+  return judgements;
+}
+
+}  // namespace alvor::bench

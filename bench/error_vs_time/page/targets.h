@@ -1,0 +1,34 @@
+#pragma once
+// The targets for Alvor's speed and accuracy, and whether they are met.
+
+#include "bench/error_vs_time/contest/contest.h"
+
+#include <string>
+#include <vector>
+
+namespace alvor::bench {
+
+enum class Verdict { met, missed, not_measured };
+std::string_view text(Verdict verdict);
+
+struct Judgement {
+  std::string aim, measured;
+  Verdict verdict = Verdict::not_measured;
+  std::string note;  ///< reason why the verdict is uncertain; may be empty
+};
+
+/// Returns whether the cost is at most `limit`. A cost that is never reached is a miss, and so is an upper bound above the limit.
+Verdict at_most(const std::optional<Reached>& cost, double limit);
+/// Returns whether a measured error is at most `limit`, with a note if its 95 % interval contains the limit.
+Judgement keeps(const Confidence& error, double limit);
+
+/// Returns whether the default strategy's runs at `tolerance` have at most that error. A tolerance that was not tried because a
+/// larger one ran out of time is a miss.
+Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance);
+
+/// Returns the judgements of all targets, in order. `machine_gain` is the median of Measurements::two_threads_faster.
+std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain);
+/// Compares solves with two threads and with one. If even fully parallel work gained too little, a miss is blamed on the machine.
+Judgement judge_thread_gain(double one_s, double two_s, double machine_gain);
+
+}  // namespace alvor::bench

@@ -1,0 +1,239 @@
+#include "import/formats/assimp_import.h"
+
+#include "import/base/import_error.h"
+#include "import/base/scene_format.h"
+#include "import/formats/placement.h"
+#include "import/formats/texture_colour.h"
+#include "import/formats/unsupported.h"
+
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <sstream>
+
+namespace alvor {
+
+namespace {
+
+Vec3 vec3_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+Placement placement_of(const aiMatrix4x4& m) {
+  return {{m.a1, m.b1, m.c1}, {m.a2, m.b2, m.c2}, {m.a3, m.b3, m.c3}, {m.a4, m.b4, m.c4}};
+}
+
+/// Returns the mean colour of a texture embedded in encoded form. Returns nothing for raw texels, which only games use.
+std::optional<Rgb> mean_of_embedded(const aiTexture& texture) {
+  if (texture.mHeight != 0) return std::nullopt;
+  return mean_colour({reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth});
+}
+
+/// The up axis and unit of a format's coordinates: given by the file, or usual for programs that write the format.
+struct Convention {
+  UpAxis up = UpAxis::y;
+  double metres_per_unit = 1;
+};
+
+Convention convention_of(const aiScene& source, const std::string& extension) {
+  Convention convention;
+  // Collada files state their unit and up axis, and Assimp converts the scene to y-up metres.
+  if (extension == ".stl" || extension == ".3ds" || extension == ".ply") convention.up = UpAxis::z;
+  if (extension == ".fbx" && source.mMetaData) {
+    int up = 1;
+    float centimetres = 1;  // the type in which Assimp stores it; Get() refuses another
+    source.mMetaData->Get("UpAxis", up);
+    source.mMetaData->Get("UnitScaleFactor", centimetres);
+    convention.up = up == 2 ? UpAxis::z : UpAxis::y;
+    if (centimetres > 0) convention.metres_per_unit = double{centimetres} / 100;
+  }
+  return convention;
+}
+
+/// Reads one file's materials and meshes into a scene.
+class AssimpReader {
+ public:
+  AssimpReader(const aiScene& source, SceneFiles& files, const Convention& convention)
+      : source_(source), files_(files), convention_(convention) {}
+
+  SceneFile read() {
+    for (const aiMaterial* material : std::span(source_.mMaterials, source_.mNumMaterials)) add_material(*material);
+    if (source_.mRootNode) add_tree(*source_.mRootNode);
+    Unsupported unsupported;
+    count_lights(unsupported);
+    count_materials(unsupported);
+    unsupported.append_warnings(file_.warnings);
+    file_.scene.up = convention_.up;
+    return std::move(file_);
+  }
+
+ private:
+  void add_material(const aiMaterial& source) {
+    const std::string given_name = source.GetName().C_Str();
+    // For files without materials Assimp makes one with this name or none, in a colour of its own choice.
+    const bool made_up = given_name.empty() || given_name == AI_DEFAULT_MATERIAL_NAME;
+    const std::string name = made_up ? "default" : given_name;
+    int two_sided = 0;
+    source.Get(AI_MATKEY_TWOSIDED, two_sided);
+    const Rgb grey = default_reflectance;
+    const Rgb reflectance = made_up ? grey : colour(source, name, AI_MATKEY_COLOR_DIFFUSE, aiTextureType_DIFFUSE, grey);
+    const Rgb radiance = colour(source, name, AI_MATKEY_COLOR_EMISSIVE, aiTextureType_EMISSIVE, {});
+    file_.scene.materials.push_back({name, emission_of_radiance(radiance), reflectance, two_sided != 0});
+  }
+
+  Rgb colour(const aiMaterial& source, const std::string& name, const char* key, unsigned type, unsigned index, aiTextureType map,
+             const Rgb& fallback) {
+    aiColor3D found;
+    const Rgb factor = source.Get(key, type, index, found) == AI_SUCCESS ? Rgb{found.r, found.g, found.b} : fallback;
+    aiString texture;
+    if (factor.is_zero() || source.GetTexture(map, 0, &texture) != AI_SUCCESS) return factor;
+    const std::string place = "material '" + name + "': texture '" + texture.C_Str() + "'";
+    return textured(factor, mean_of_texture(texture), place, file_.warnings);
+  }
+
+  std::optional<Rgb> mean_of_texture(const aiString& name) const {
+    if (const aiTexture* embedded = source_.GetEmbeddedTexture(name.C_Str())) return mean_of_embedded(*embedded);
+    return mean_colour(files_.find(name.C_Str()));
+  }
+
+  /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
+  void add_tree(const aiNode& root) {
+    struct Pending {
+      const aiNode* node;
+      Placement parent;
+    };
+    const double unit = convention_.metres_per_unit;
+    std::vector<Pending> stack{{&root, {{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}, {}}}};
+    while (!stack.empty()) {
+      const Pending next = stack.back();
+      stack.pop_back();
+      const Placement placement = next.parent * placement_of(next.node->mTransformation);
+      for (const unsigned mesh : std::span(next.node->mMeshes, next.node->mNumMeshes)) add_mesh(mesh, placement);
+      for (unsigned c = next.node->mNumChildren; c-- > 0;) stack.push_back({next.node->mChildren[c], placement});
+    }
+  }
+
+  void add_mesh(unsigned index, const Placement& placement) {
+    if (index >= source_.mNumMeshes) throw ImportError("mesh " + std::to_string(index), "is not in the file");
+    const aiMesh& mesh = *source_.mMeshes[index];
+    std::vector<Vec3> vertices;
+    for (const aiVector3D& vertex : std::span(mesh.mVertices, mesh.mNumVertices)) vertices.push_back(vec3_of(vertex));
+    const std::uint32_t first = add_placed_vertices(file_.scene, vertices, placement);
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) add_face(face, mesh, first, placement);
+  }
+
+  void add_face(const aiFace& face, const aiMesh& mesh, std::uint32_t first_vertex, const Placement& placement) {
+    if (face.mNumIndices < 3) return;
+    std::vector<std::uint32_t> polygon;
+    for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+      if (index >= mesh.mNumVertices)
+        throw ImportError("face " + std::to_string(file_.scene.faces.size()),
+                          "vertex index " + std::to_string(index) + " is out of range, there are " +
+                              std::to_string(mesh.mNumVertices) + " vertices");
+      polygon.push_back(first_vertex + index);
+    }
+    add_placed_face(file_.scene, polygon, material_of(mesh), placement);
+  }
+
+  std::uint32_t material_of(const aiMesh& mesh) {
+    if (mesh.mMaterialIndex < source_.mNumMaterials) return mesh.mMaterialIndex;
+    if (!default_material_) default_material_ = add_default_material(file_.scene);
+    return *default_material_;
+  }
+
+  void count_lights(Unsupported& unsupported) const {
+    for (const aiLight* light : std::span(source_.mLights, source_.mNumLights)) switch (light->mType) {
+        case aiLightSource_POINT: ++unsupported.point_lights; break;
+        case aiLightSource_SPOT: ++unsupported.spot_lights; break;
+        case aiLightSource_DIRECTIONAL: ++unsupported.directional_lights; break;
+        case aiLightSource_AREA: ++unsupported.area_lights; break;
+        default: ++unsupported.other_lights;
+      }
+  }
+
+  void count_materials(Unsupported& unsupported) const {
+    const std::vector<bool> used = used_materials(file_.scene);
+    for (unsigned m = 0; m < source_.mNumMaterials; ++m) {
+      if (!used[m]) continue;
+      float opacity = 1, metallic = 0;
+      source_.mMaterials[m]->Get(AI_MATKEY_OPACITY, opacity);
+      source_.mMaterials[m]->Get(AI_MATKEY_METALLIC_FACTOR, metallic);
+      unsupported.transparent_materials += opacity < 1;
+      unsupported.metals += metallic > 0.5F;
+    }
+  }
+
+  const aiScene& source_;
+  SceneFiles& files_;
+  Convention convention_;
+  SceneFile file_;
+  std::optional<std::uint32_t> default_material_;
+};
+
+/// Refuses PLY headers that Assimp's reader cannot handle: it waits for ever for a missing end, and allocates as many elements as
+/// the header promises.
+void check_ply_header(std::istream& stream, std::uintmax_t file_size) {
+  std::string word, name;
+  while (stream >> word && word != "end_header") {
+    if (word == "comment" || word == "obj_info") std::getline(stream, word);
+    std::uintmax_t count = 0;
+    if (word == "element" && stream >> name >> count && count > file_size)
+      throw ImportError("element " + name, "the file is too short for " + std::to_string(count) + " of them");
+  }
+  if (word != "end_header") throw ImportError("file", "its header has no end_header");
+}
+
+void refuse_what_assimp_cannot_survive(std::istream& stream, std::uintmax_t file_size) {
+  std::string first;
+  std::getline(stream, first);
+  first.resize(std::min<std::size_t>(first.size(), 3));  // Assimp looks only at these, in either case
+  std::ranges::transform(first, first.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (first == "ply") check_ply_header(stream, file_size);
+}
+
+/// No post-processing: every step of Assimp that joins, sorts or triangulates loses the file's faces or their order.
+constexpr unsigned as_it_is = 0;
+
+/// Gives Assimp the files of a scene, and no others.
+class MemoryFiles : public Assimp::IOSystem {
+ public:
+  explicit MemoryFiles(const SceneFiles& files) : files_(files) {}
+
+  bool Exists(const char* name) const override { return find(name) != nullptr; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    const std::string* const bytes = mode[0] == 'r' ? find(name) : nullptr;
+    if (!bytes) return nullptr;
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  /// Formats look for files that need not exist. So what is not found here does not count as missing.
+  const std::string* find(const char* name) const {
+    const std::string plain = plain_name(name);
+    if (plain == files_.scene()) return &files_.bytes();
+    const auto found = files_.beside().find(plain);
+    return found == files_.beside().end() ? nullptr : &found->second;
+  }
+
+  const SceneFiles& files_;
+};
+
+}  // namespace
+
+SceneFile import_by_assimp(SceneFiles& files) {
+  std::istringstream stream(files.bytes());
+  refuse_what_assimp_cannot_survive(stream, files.bytes().size());
+  Assimp::Importer importer;
+  importer.SetIOHandler(new MemoryFiles(files));  // the importer deletes it
+  const aiScene* const source = importer.ReadFile(files.scene(), as_it_is);
+  if (!source) throw ImportError("file", importer.GetErrorString());
+  return AssimpReader(*source, files, convention_of(*source, lower_case_extension(files.scene()))).read();
+}
+
+}  // namespace alvor

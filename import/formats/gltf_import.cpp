@@ -1,0 +1,255 @@
+#include "import/formats/gltf_import.h"
+
+#include "import/base/import_error.h"
+#include "import/formats/gltf_accessor.h"
+#include "import/formats/gltf_file.h"
+#include "import/formats/gltf_lights.h"
+#include "import/formats/gltf_luminaires.h"
+#include "import/formats/gltf_material.h"
+#include "import/formats/placement.h"
+#include "import/formats/tiny_gltf.h"
+#include "import/formats/unsupported.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <optional>
+
+namespace alvor {
+
+namespace {
+
+std::string place_of(const char* kind, std::size_t index) { return std::string(kind) + " " + std::to_string(index); }
+
+template <class T>
+const T& element(const std::vector<T>& list, int index, const char* kind, const std::string& user) {
+  if (index < 0 || static_cast<std::size_t>(index) >= list.size())
+    throw ImportError(user, std::string(kind) + " " + std::to_string(index) + " is not in the file");
+  return list[static_cast<std::size_t>(index)];
+}
+
+/// Returns the rotation of a quaternion x, y, z, w of any length but 0.
+Placement rotation_of(const std::vector<double>& q, const std::string& place) {
+  const double norm = std::inner_product(q.begin(), q.end(), q.begin(), 0.0);
+  if (!(norm > 0)) throw ImportError(place, "its rotation is no rotation");
+  const double s = 2 / norm, x = q[0], y = q[1], z = q[2], w = q[3];
+  return {{1 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w)},
+          {s * (x * y - z * w), 1 - s * (x * x + z * z), s * (y * z + x * w)},
+          {s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y)},
+          {}};
+}
+
+Placement placement_of_matrix(const std::vector<double>& m) {  // in column-major order
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
+void check_length(const std::vector<double>& list, std::size_t length, const std::string& place) {
+  if (!list.empty() && list.size() != length) throw ImportError(place, "its transform has the wrong number of numbers");
+}
+
+Placement placement_of(const tinygltf::Node& node, const std::string& place) {
+  check_length(node.matrix, 16, place);
+  check_length(node.translation, 3, place);
+  check_length(node.rotation, 4, place);
+  check_length(node.scale, 3, place);
+  if (!node.matrix.empty()) return placement_of_matrix(node.matrix);
+  Placement placement = node.rotation.empty() ? Placement{} : rotation_of(node.rotation, place);
+  if (!node.scale.empty()) {
+    placement.x = placement.x * node.scale[0];
+    placement.y = placement.y * node.scale[1];
+    placement.z = placement.z * node.scale[2];
+  }
+  if (!node.translation.empty()) placement.origin = {node.translation[0], node.translation[1], node.translation[2]};
+  return placement;
+}
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+std::vector<Triangle> plain_triangles(std::span<const std::uint32_t> indices, const std::string& place) {
+  if (indices.size() % 3 != 0) throw ImportError(place, std::to_string(indices.size()) + " indices are not whole triangles");
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < indices.size(); i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  return triangles;
+}
+
+/// Returns the triangles of a strip. Strips are joined by triangles that name a vertex twice; these are left out.
+std::vector<Triangle> strip_triangles(std::span<const std::uint32_t> indices) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 2; i < indices.size(); ++i) {
+    const std::uint32_t a = indices[i - 2], b = indices[i - 1], c = indices[i];
+    if (a == b || b == c || c == a) continue;
+    triangles.push_back(i % 2 == 0 ? Triangle{a, b, c} : Triangle{a, c, b});
+  }
+  return triangles;
+}
+
+std::vector<Triangle> fan_triangles(std::span<const std::uint32_t> indices) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 2; i < indices.size(); ++i) triangles.push_back({indices[i - 1], indices[i], indices[0]});
+  return triangles;
+}
+
+std::vector<Triangle> triangles_of(int mode, std::span<const std::uint32_t> indices, const std::string& place) {
+  switch (mode) {
+    case TINYGLTF_MODE_TRIANGLES: return plain_triangles(indices, place);
+    case TINYGLTF_MODE_TRIANGLE_STRIP: return strip_triangles(indices);
+    case TINYGLTF_MODE_TRIANGLE_FAN: return fan_triangles(indices);
+  }
+  throw ImportError(place, "mode " + std::to_string(mode) + " is unknown");
+}
+
+bool draws_no_surface(int mode) { return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP; }
+
+/// Reads the default scene of one model.
+class GltfReader {
+ public:
+  GltfReader(const tinygltf::Model& model, SceneFiles& files)
+      : model_(model), seen_(model.nodes.size()), lights_(model), luminaires_(model, files) {}
+
+  SceneFile read() {
+    file_.scene.materials = read_gltf_materials(model_, file_.warnings);
+    add_tree(root_nodes());
+    count_unsupported_materials();
+    unsupported_.append_warnings(file_.warnings);
+    lights_.append_warnings(file_.warnings);
+    file_.warnings.insert(file_.warnings.end(), luminaires_.warnings().begin(), luminaires_.warnings().end());
+    file_.scene.quantity = Quantity::photometric;
+    return std::move(file_);
+  }
+
+ private:
+  std::vector<int> root_nodes() const {
+    if (!model_.scenes.empty()) return element(model_.scenes, std::max(model_.defaultScene, 0), "scene", "file").nodes;
+    // A file without scenes is a library of nodes; all nodes without a parent are shown.
+    std::vector<bool> hangs(model_.nodes.size());
+    for (const tinygltf::Node& node : model_.nodes)
+      for (const int child : node.children) {
+        element(model_.nodes, child, "node", "scene");
+        hangs[static_cast<std::size_t>(child)] = true;
+      }
+    std::vector<int> roots;
+    for (std::size_t n = 0; n < hangs.size(); ++n)
+      if (!hangs[n]) roots.push_back(static_cast<int>(n));
+    return roots;
+  }
+
+  struct Pending {
+    int node;
+    Placement parent;
+  };
+
+  /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
+  void add_tree(const std::vector<int>& roots) {
+    std::vector<Pending> stack;
+    const auto push = [&](const std::vector<int>& nodes, const Placement& parent) {
+      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.push_back({*node, parent});
+    };
+    push(roots, {});
+    while (!stack.empty()) {
+      const Pending next = stack.back();
+      stack.pop_back();
+      const auto [node, placement] = enter(next);
+      if (node->mesh >= 0) add_mesh(node->mesh, placement);
+      lights_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
+      luminaires_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
+      push(node->children, placement);
+    }
+  }
+
+  /// Returns a node with its placement. Throws ImportError if the node was met before: then it has two parents or is its own
+  /// ancestor, which glTF forbids and which might never end.
+  std::pair<const tinygltf::Node*, Placement> enter(const Pending& next) {
+    const tinygltf::Node& node = element(model_.nodes, next.node, "node", "scene");
+    const auto index = static_cast<std::size_t>(next.node);
+    if (seen_[index]) throw ImportError(place_of("node", index), "hangs from more than one node");
+    seen_[index] = true;
+    return {&node, next.parent * placement_of(node, place_of("node", index))};
+  }
+
+  void add_mesh(int index, const Placement& placement) {
+    const tinygltf::Mesh& mesh = element(model_.meshes, index, "mesh", "scene");
+    std::map<int, Vertices> shared;  // primitives often share their vertices
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
+      if (!draws_no_surface(mesh.primitives[p].mode))
+        add_primitive(mesh.primitives[p], "mesh " + std::to_string(index) + " primitive " + std::to_string(p), placement, shared);
+  }
+
+  struct Vertices {
+    std::uint32_t first, count;
+  };
+
+  Vertices add_vertices(int accessor, const Placement& placement, std::map<int, Vertices>& shared) {
+    const auto known = shared.find(accessor);
+    if (known != shared.end()) return known->second;
+    const std::vector<Vec3> positions = read_positions(model_, accessor);
+    const Vertices added{add_placed_vertices(file_.scene, positions, placement), static_cast<std::uint32_t>(positions.size())};
+    return shared.emplace(accessor, added).first->second;
+  }
+
+  std::vector<std::uint32_t> indices_of(const tinygltf::Primitive& primitive, std::uint32_t vertex_count) const {
+    if (primitive.indices >= 0) return read_indices(model_, primitive.indices);
+    std::vector<std::uint32_t> all(vertex_count);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+  }
+
+  void add_primitive(const tinygltf::Primitive& primitive, const std::string& place, const Placement& placement,
+                     std::map<int, Vertices>& shared) {
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end()) throw ImportError(place, "has no POSITION");
+    const Vertices vertices = add_vertices(position->second, placement, shared);
+    const std::uint32_t material = material_of(primitive, place);
+    for (Triangle triangle : triangles_of(primitive.mode, indices_of(primitive, vertices.count), place)) {
+      for (std::uint32_t& vertex : triangle) vertex = checked(vertex, vertices, place);
+      add_placed_face(file_.scene, triangle, material, placement);
+    }
+  }
+
+  static std::uint32_t checked(std::uint32_t index, Vertices vertices, const std::string& place) {
+    if (index < vertices.count) return vertices.first + index;
+    throw ImportError(place, "vertex index " + std::to_string(index) + " is out of range, there are " +
+                                 std::to_string(vertices.count) + " vertices");
+  }
+
+  std::uint32_t material_of(const tinygltf::Primitive& primitive, const std::string& place) {
+    if (primitive.material >= 0) {
+      element(model_.materials, primitive.material, "material", place);
+      return static_cast<std::uint32_t>(primitive.material);
+    }
+    if (!default_material_) default_material_ = add_default_material(file_.scene);
+    return *default_material_;
+  }
+
+  void count_unsupported_materials() {
+    const std::vector<bool> used = used_materials(file_.scene);
+    for (std::size_t m = 0; m < model_.materials.size(); ++m) {
+      if (!used[m]) continue;
+      const tinygltf::Material& material = model_.materials[m];
+      const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+      // With a texture, metallicFactor is usually left at its default 1, also for materials that are no metals.
+      const bool is_metal = surface.metallicFactor > 0.5 && surface.metallicRoughnessTexture.index < 0;
+      unsupported_.transparent_materials += !material.alphaMode.empty() && material.alphaMode != "OPAQUE";
+      unsupported_.metals += is_metal;
+      unsupported_.transmissive_materials += material.extensions.contains("KHR_materials_transmission") ||
+                                             material.extensions.contains("KHR_materials_diffuse_transmission");
+    }
+  }
+
+  const tinygltf::Model& model_;
+  std::vector<bool> seen_;
+  GltfLights lights_;
+  GltfLuminaires luminaires_;
+  Unsupported unsupported_;
+  SceneFile file_;
+  std::optional<std::uint32_t> default_material_;
+};
+
+}  // namespace
+
+SceneFile import_gltf(SceneFiles& files) {
+  const tinygltf::Model model = load_gltf(files);
+  return GltfReader(model, files).read();
+}
+
+}  // namespace alvor

@@ -1,0 +1,128 @@
+#include "import/formats/import_scene.h"
+
+#include "import/base/one_line.h"
+#include "import/base/scene_format.h"
+#include "import/formats/assimp_import.h"
+#include "import/formats/daylight.h"
+#include "import/formats/gltf_import.h"
+#include "import/formats/obj_import.h"
+#include "import/formats/placed_luminaires.h"
+#include "proto/codec.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <new>
+
+namespace alvor {
+
+namespace {
+
+/// A face is a line or a point if twice its area over the square of its outline's length is below this.
+constexpr double flat = 1e-14;
+// Luminous efficacy of white light in Radiance, lm/W.
+constexpr double radiance_lumens_per_watt = 179;
+
+SceneFile import_by_extension(SceneFiles& files) {
+  if (files.bytes().empty()) throw ImportError("file", "is empty");
+  const std::string extension = lower_case_extension(files.scene());
+  if (extension == ".obj") return import_obj(files);
+  if (extension == ".gltf" || extension == ".glb") return import_gltf(files);
+  return import_by_assimp(files);
+}
+
+void take_options(const v1::ImportOptions& options, Scene& scene) {
+  if (options.has_light_scale())
+    for (Light& light : scene.lights) light.intensity *= options.light_scale();
+  if (options.has_absorption_per_meter()) scene.absorption = decode(options.absorption_per_meter());
+  if (options.quantity() != v1::QUANTITY_UNSPECIFIED)
+    scene.quantity = options.quantity() == v1::QUANTITY_PHOTOMETRIC ? Quantity::photometric : Quantity::radiometric;
+  if (options.up_axis() != v1::UP_AXIS_UNSPECIFIED) scene.up = options.up_axis() == v1::UP_AXIS_Z ? UpAxis::z : UpAxis::y;
+}
+
+/// Adds the lights that the options tell, after the scene has its quantity and its up axis.
+void add_lights(const v1::ImportOptions& options, SceneFiles& files, SceneFile& file) {
+  const double lumens_per_watt = options.has_lumens_per_watt() ? options.lumens_per_watt() : radiance_lumens_per_watt;
+  if (!(lumens_per_watt >= 1e-3 && lumens_per_watt <= 683)) throw ImportError("lumens per watt", "is outside [0.001, 683]");
+  if (options.has_daylight()) add_daylight(options.daylight(), lumens_per_watt, file.scene, file.warnings);
+  add_luminaires(options, lumens_per_watt, files, file.scene, file.warnings);
+}
+
+/// Returns a band of reflectance clamped to [0, 1). NaN stays as it is and is a fault.
+double clamped(double reflectance) {
+  if (reflectance < 0) return 0;
+  return reflectance >= 1 ? clamped_reflectance : reflectance;
+}
+
+std::string text_of(const Rgb& bands) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%g %g %g", bands.r, bands.g, bands.b);
+  return text;
+}
+
+void clamp_reflectance(SceneFile& file) {
+  for (Material& material : file.scene.materials) {
+    const Rgb given = material.reflectance;
+    if (!given.is_finite()) continue;
+    material.reflectance = {clamped(given.r), clamped(given.g), clamped(given.b)};
+    if (material.reflectance == given) continue;
+    file.warnings.push_back("material '" + material.name + "': reflectance " + text_of(given) + " is clamped to " +
+                            text_of(material.reflectance));
+  }
+}
+
+bool has_area(const Scene& scene, const Face& face) {
+  const auto corners = scene.corners_of(face);
+  const Vec3 start = scene.vertices[corners[0]];
+  Vec3 double_area;
+  double outline = 0;
+  for (std::size_t c = 1; c < corners.size(); ++c) {
+    const Vec3 from = scene.vertices[corners[c - 1]] - start, to = scene.vertices[corners[c]] - start;
+    double_area += cross(from, to);
+    outline += length(to - from);
+  }
+  return length(double_area) > flat * outline * outline;
+}
+
+void refuse_faulty(const Scene& scene) {
+  if (const auto fault = find_fault(scene)) throw ImportError(fault->place, fault->reason);
+  if (std::ranges::none_of(scene.faces, [&](const Face& face) { return has_area(scene, face); }))
+    throw ImportError("scene", "all " + std::to_string(scene.faces.size()) + " faces are degenerate");
+}
+
+SceneFile checked(SceneFile file) {
+  clamp_reflectance(file);
+  refuse_faulty(file.scene);
+  for (std::string& warning : file.warnings) warning = one_line_of(warning);
+  return file;
+}
+
+ImportedScene imported(SceneFiles& files, const v1::ImportOptions& options) {
+  for (const std::string& name : options.absent_files()) files.declare_absent(name);
+  try {
+    SceneFile file = import_by_extension(files);
+    for (const v1::PlacedLuminaire& luminaire : options.luminaires()) files.find(luminaire.file());
+    files.require_found();
+    take_options(options, file.scene);
+    add_lights(options, files, file);
+    return {checked(std::move(file)), {}};
+  } catch (const MissingFileError&) {
+    if (files.missing().empty()) throw;  // it is absent
+    return {{}, {files.missing().begin(), files.missing().end()}};
+  }
+}
+
+}  // namespace
+
+ImportedScene import_scene(SceneFiles& files, const v1::ImportOptions& options) {
+  try {
+    return imported(files, options);
+  } catch (const ImportError& error) {
+    throw ImportError(one_line_of(error.what()));
+  } catch (const std::bad_alloc&) {
+    throw ImportError("file", "needs too much memory");
+  } catch (const std::exception& error) {  // thrown by the libraries
+    throw ImportError("file", one_line_of(error.what()));
+  }
+}
+
+}  // namespace alvor

@@ -1,0 +1,42 @@
+#include "import/formats/placement.h"
+
+#include "import/base/import_error.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t max_vertices = 200'000'000, max_corners = 800'000'000;
+
+void refuse_beyond(std::size_t count, std::size_t limit, const std::string& what) {
+  if (count > limit) throw ImportError("scene", "has more than " + std::to_string(limit) + " " + what);
+}
+
+}  // namespace
+
+Placement operator*(const Placement& outer, const Placement& inner) {
+  return {outer.direction(inner.x), outer.direction(inner.y), outer.direction(inner.z), outer.point(inner.origin)};
+}
+
+std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, const Placement& placement) {
+  const std::size_t first = scene.vertices.size();
+  refuse_beyond(first + vertices.size(), max_vertices, "vertices");
+  for (const Vec3& vertex : vertices) scene.vertices.push_back(placement.point(vertex));
+  return static_cast<std::uint32_t>(first);
+}
+
+void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement) {
+  refuse_beyond(scene.corners.size() + polygon.size(), max_corners, "corners");
+  scene.add_face(polygon, material);
+  const auto second = scene.corners.end() - static_cast<std::ptrdiff_t>(polygon.size()) + 1;
+  if (placement.mirrors()) std::reverse(second, scene.corners.end());
+}
+
+std::uint32_t add_default_material(Scene& scene) {
+  scene.materials.push_back({"default", {}, default_reflectance, false});
+  return static_cast<std::uint32_t>(scene.materials.size() - 1);
+}
+
+}  // namespace alvor

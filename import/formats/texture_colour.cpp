@@ -1,0 +1,78 @@
+#include "import/formats/texture_colour.h"
+
+// stb_image's functions are static here: libdraco, which Assimp loads, exports functions of the same names.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace alvor {
+
+namespace {
+
+/// Limit of decoded pixels: a file of a few kilobytes can ask for any number. Textures have at most 16 384 x 16 384.
+constexpr std::size_t most_pixels = 1 << 28;
+
+/// Returns the linear value of an sRGB value (IEC 61966-2-1).
+double linear_of_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
+
+template <class Sample>
+std::vector<double> linear_table() {
+  std::vector<double> table(std::size_t{std::numeric_limits<Sample>::max()} + 1);
+  for (std::size_t i = 0; i < table.size(); ++i)
+    table[i] = linear_of_srgb(static_cast<double>(i) / std::numeric_limits<Sample>::max());
+  return table;
+}
+
+using Pixels = std::unique_ptr<void, decltype(&stbi_image_free)>;
+
+/// Returns the mean of `count` pixels of four samples each. The fourth sample, alpha, is ignored. Requires: count > 0.
+template <class Sample>
+Rgb mean_of_pixels(const Pixels& rgba, std::size_t count) {
+  const std::vector<double> linear = linear_table<Sample>();
+  const Sample* pixel = static_cast<const Sample*>(rgba.get());
+  Rgb sum;
+  for (std::size_t i = 0; i < count; ++i, pixel += 4) sum += {linear[pixel[0]], linear[pixel[1]], linear[pixel[2]]};
+  return sum * (1.0 / static_cast<double>(count));
+}
+
+}  // namespace
+
+std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded) {
+  if (encoded.empty() || encoded.size() > std::numeric_limits<int>::max()) return std::nullopt;
+  const unsigned char* const bytes = encoded.data();
+  const int size = static_cast<int>(encoded.size());
+  int width = 0, height = 0, channels = 0;
+  if (!stbi_info_from_memory(bytes, size, &width, &height, &channels) || width <= 0 || height <= 0) return std::nullopt;
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (count > most_pixels) return std::nullopt;
+  const bool is_deep = stbi_is_16_bit_from_memory(bytes, size) != 0;
+  const Pixels rgba(is_deep ? static_cast<void*>(stbi_load_16_from_memory(bytes, size, &width, &height, &channels, 4))
+                            : stbi_load_from_memory(bytes, size, &width, &height, &channels, 4),
+                    stbi_image_free);
+  if (!rgba) return std::nullopt;
+  return is_deep ? mean_of_pixels<std::uint16_t>(rgba, count) : mean_of_pixels<std::uint8_t>(rgba, count);
+}
+
+std::optional<Rgb> mean_colour(const std::string* encoded) {
+  if (!encoded) return std::nullopt;
+  return mean_colour({reinterpret_cast<const unsigned char*>(encoded->data()), encoded->size()});
+}
+
+Rgb textured(const Rgb& factor, const std::optional<Rgb>& mean, const std::string& texture, std::vector<std::string>& warnings) {
+  warnings.push_back(texture + (mean ? " counts by its mean colour" : " cannot be read and is left out"));
+  return mean ? factor * *mean : factor;
+}
+
+}  // namespace alvor
