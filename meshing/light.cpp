@@ -11,6 +11,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double max_intensity = 1e30, max_coordinate = 1e9;
+constexpr double least_opening = 1e-6;  // metres; the area of smaller ones is lost in rounding
 // Smallest difference of the cosines of the two cones (KHR_lights_punctual), so that a spot with a sharp edge is a steep one.
 constexpr double least_width = 1e-3;
 
@@ -25,12 +26,12 @@ bool is_unit(Vec3 v) { return std::abs(dot(v, v) - 1) < 1e-6; }
 
 std::optional<std::string> fault_in_luminaire(const Light& light) {
   if (!light.web) return "it has no photometric web";
-  if (auto fault = fault_in(*light.web)) return fault;
   if (!is_unit(light.across) || std::abs(dot(light.across, light.direction)) > 1e-6)
     return "its axis across is not a unit vector perpendicular to its direction";
   const LuminousOpening& opening = light.opening;
   for (const double size : {opening.across, opening.along, opening.height})
-    if (!(size >= 0 && size <= max_coordinate)) return sentence("size of its opening", size, "is outside [0, 1e9] m");
+    if (!(size == 0 || (size >= least_opening && size <= max_coordinate)))
+      return sentence("size of its opening", size, "is neither 0 nor within [1e-6, 1e9] m");
   using Shape = LuminousOpening::Shape;
   const bool has_area = opening.shape == Shape::sphere || (opening.across > 0 && opening.along > 0);
   if (opening.shape != Shape::point && !(has_area && opening.across > 0)) return "its opening has no area";
@@ -75,6 +76,12 @@ Rgb radiated_power(const Light& light) {
 }
 
 std::optional<std::string> fault_in(const Light& light) {
+  if (light.web)
+    if (auto fault = fault_in(*light.web)) return fault;
+  return fault_in_all_but_web(light);
+}
+
+std::optional<std::string> fault_in_all_but_web(const Light& light) {
   for (const double band : {light.intensity.r, light.intensity.g, light.intensity.b})
     if (!(band >= 0 && band <= max_intensity)) return sentence("intensity", band, "is outside [0, 1e30]");
   for (const double x : {light.position.x, light.position.y, light.position.z})

@@ -113,5 +113,7 @@ Rgb radiated_power(const Light& light);
 
 /// Returns why the light cannot be used; nothing if it can.
 std::optional<std::string> fault_in(const Light& light);
+/// Returns what fault_in() does, without looking into the light's web, which may be large and shared.
+std::optional<std::string> fault_in_all_but_web(const Light& light);
 
 }  // namespace alvor

@@ -16,6 +16,8 @@ constexpr double full_turn = 360;
 // Files round angles: an angle beyond its range by less is at its end, degrees.
 constexpr double rounding = 1e-6;
 constexpr double max_intensity = 1e30;
+// Smallest step between angles, degrees: no goniometer is finer, and sums over smaller ones would lose their digits.
+constexpr double smallest_step = 1e-3;
 // Goniometers measure at 361 x 181 angles at most. A web is sent in one message.
 constexpr std::size_t most_intensities = 200'000;
 
@@ -42,8 +44,11 @@ double integral_with_sine(double from, double to, double a, double b) {
   return a * std::cos(from) - b * std::cos(to) + slope * (std::sin(to) - std::sin(from));
 }
 
+/// Returns whether each angle is a number and larger than the one before by more than rounding. NaN compares as not larger.
 bool is_ascending(std::span<const double> list) {
-  return std::ranges::adjacent_find(list, std::ranges::greater_equal{}) == list.end();
+  for (std::size_t n = 1; n < list.size(); ++n)
+    if (!(list[n] - list[n - 1] >= smallest_step)) return false;
+  return std::isfinite(list.front());
 }
 
 }  // namespace
@@ -79,22 +84,16 @@ double PhotometricWeb::flux() const {
     return sum;
   };
   if (planes.size() == 1) return 2 * pi * of_plane(0);
-  double sum = 0;
-  for (std::size_t p = 0; p + 1 < planes.size(); ++p)
-    sum += (planes[p + 1] - planes[p]) / degrees * (of_plane(p) + of_plane(p + 1)) / 2;
+  double sum = 0, last = of_plane(0);
+  for (std::size_t p = 1; p < planes.size(); ++p) {
+    const double next = of_plane(p);
+    sum += (planes[p] - planes[p - 1]) / degrees * (last + next) / 2;
+    last = next;
+  }
   return sum;
 }
 
 float PhotometricWeb::greatest() const { return *std::ranges::max_element(intensities); }
-
-bool PhotometricWeb::shines_forward_only() const {
-  for (std::size_t p = 0; p < planes.size(); ++p)
-    for (std::size_t a = 0; a < angles.size(); ++a) {
-      const bool is_behind = axis == Axis::aim ? angles[a] > 90.01 : std::abs(planes[p]) > 90.01;
-      if (is_behind && intensities[p * angles.size() + a] > 0) return false;
-    }
-  return true;
-}
 
 std::optional<std::string> fault_in(const PhotometricWeb& web) {
   if (web.angles.size() < 2) return "its photometric web has fewer than two angles";

@@ -33,8 +33,6 @@ struct PhotometricWeb {
   /// Returns the integral of the intensity over all directions, lm or W. Exact for the bilinear intensities.
   double flux() const;
   float greatest() const;
-  /// Returns whether light leaves only at less than 90.01 degrees from the aim.
-  bool shines_forward_only() const;
 
   friend bool operator==(const PhotometricWeb&, const PhotometricWeb&) = default;
 

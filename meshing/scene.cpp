@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <unordered_set>
 
 namespace alvor {
 
@@ -77,9 +78,14 @@ std::optional<Fault> find_fault(const Scene& scene) {
       return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};
   if (const auto count = std::ranges::count_if(scene.lights, &Light::is_distant); count > most_distant_lights)
     return Fault{"scene", "has " + std::to_string(count) + " distant lights, at most 64 are possible"};
-  for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (auto reason = fault_in(scene.lights[i]))
-      return Fault{"light " + std::to_string(i) + " '" + scene.lights[i].name + "'", *reason};
+  std::unordered_set<const PhotometricWeb*> sound_webs;  // many lights share one
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    const bool is_new_web = light.web && sound_webs.insert(light.web.get()).second;
+    auto reason = is_new_web ? fault_in(*light.web) : std::nullopt;
+    if (!reason) reason = fault_in_all_but_web(light);
+    if (reason) return Fault{"light " + std::to_string(i) + " '" + light.name + "'", *reason};
+  }
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)
     if (auto reason = fault_in(scene.vertices[i])) return Fault{"vertex " + std::to_string(i), *reason};
   for (std::size_t i = 0; i < scene.faces.size(); ++i)

@@ -109,8 +109,10 @@ SkyDistribution perez_sky(double direct_normal, double diffuse_horizontal, doubl
     c = std::exp(std::pow(brightness * (row[2][0] + row[2][1] * zenith), row[2][2])) - row[2][3];
     d = -std::exp(brightness * (row[3][0] + row[3][1] * zenith)) + row[3][2] + brightness * row[3][3];
   }
+  // Perez has 1 + c exp(d chi) + e cos2 chi, without the term c exp(d pi / 2) of the CIE skies: the same up to a factor with
+  const double factor = 1 / (1 + c * std::exp(std::min(largest_exponent, d * pi / 2)));
   // For weather that does not occur b comes out positive, and the horizon would grow without bound.
-  return {fit(row[0]), std::min(0.0, fit(row[1])), c, d, fit(row[4]), 0, to_sun};
+  return {fit(row[0]), std::min(0.0, fit(row[1])), factor * c, d, factor * fit(row[4]), 0, to_sun};
 }
 
 std::optional<std::string> fault_in(const SkyDistribution& sky) {

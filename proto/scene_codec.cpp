@@ -204,16 +204,19 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
 
 std::optional<Fault> SceneAssembler::fault_in_lights(const v1::GeometryChunk& chunk) const {
   const std::size_t webs = webs_.size() + static_cast<std::size_t>(chunk.webs_size());
+  for (int i = 0; i < chunk.webs_size(); ++i)
+    if (!v1::PhotometricWeb::Axis_IsValid(chunk.webs(i).axis()))
+      return Fault{place_in_chunk("webs"), "axis " + std::to_string(chunk.webs(i).axis()) + " of a web is not known"};
   for (int i = 0; i < chunk.lights_size(); ++i) {
     const v1::Light& light = chunk.lights(i);
-    const auto fault = [&](const char* what, int number) {
+    const auto fault = [&](const char* what, std::int64_t number) {
       const std::size_t which = scene_.lights.size() + static_cast<std::size_t>(i);
       return Fault{"light " + std::to_string(which) + " '" + light.name() + "'",
                    std::string("its ") + what + " " + std::to_string(number) + " is not known"};
     };
     if (!v1::Light::Kind_IsValid(light.kind()) || light.kind() == v1::Light::KIND_UNSPECIFIED) return fault("kind", light.kind());
     if (!v1::LuminousOpening::Shape_IsValid(light.opening().shape())) return fault("opening's shape", light.opening().shape());
-    if (light.kind() == v1::Light::LUMINAIRE && light.web() >= webs) return fault("web", static_cast<int>(light.web()));
+    if (light.kind() == v1::Light::LUMINAIRE && light.web() >= webs) return fault("web", light.web());
   }
   return std::nullopt;
 }

@@ -44,7 +44,7 @@ Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<cons
     for (double* size : {&lamp.opening.across, &lamp.opening.along, &lamp.opening.height}) *size /= extent.longest_side;
     if (lamp.opening.shape == LuminousOpening::Shape::sphere) lamp.radius = lamp.opening.across / 2;
     Opening& opening = openings_.emplace_back();
-    if (lamp.kind == LightKind::luminaire) opening.faces = faces_of_opening(lamp);
+    if (lamp.kind == LightKind::luminaire) opening.faces = faces_of_opening(lamp), opening.greatest = lamp.web->greatest();
     for (const OpeningFace& face : opening.faces) opening.area += face.area;
     if (!lamp.is_distant()) lamp.intensity *= 1 / (extent.longest_side * extent.longest_side);
     lamps_.push_back(lamp);
@@ -52,7 +52,8 @@ Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<cons
 }
 
 // A sphere that is partly below the horizon brings light although its middle does not: its top counts here.
-Rgb Lamps::unblocked(const Light& lamp, Vec3 point, Vec3 normal) const {
+Rgb Lamps::unblocked(std::size_t which, Vec3 point, Vec3 normal) const {
+  const Light& lamp = lamps_[which];
   if (lamp.is_distant()) {
     const double cosine = dot(normal, -lamp.direction) + std::sin(lamp.angular_diameter / 2);
     return std::max(0.0, cosine) * lamp.intensity;
@@ -62,19 +63,19 @@ Rgb Lamps::unblocked(const Light& lamp, Vec3 point, Vec3 normal) const {
   const double height = dot(way, normal) + radius;
   if (height <= 0) return {};
   // Parts of an opening are seen from other directions than its middle: some light is expected from everywhere.
-  const double least = lamp.kind == LightKind::luminaire ? 0.05 * lamp.web->greatest() : 0;
+  const double least = lamp.kind == LightKind::luminaire ? 0.05 * openings_[which].greatest : 0;
   const double share = std::max(least, share_of_intensity(lamp, -way / std::max(length(way), nearest_place)));
   return share * std::min(1.0, height / distance) / (distance * distance) * lamp.intensity;
 }
 
 std::optional<Lamps::Sample> Lamps::sample(Vec3 point, Vec3 normal, double choice, UnitPair at) const {
   double all = 0;
-  for (const Light& lamp : lamps_) all += unblocked(lamp, point, normal).sum();
+  for (std::size_t lamp = 0; lamp < lamps_.size(); ++lamp) all += unblocked(lamp, point, normal).sum();
   if (all <= 0) return std::nullopt;
   double left = choice * all, share = 0;
   std::size_t chosen = 0;
   for (std::size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
-    const double brings = unblocked(lamps_[lamp], point, normal).sum();
+    const double brings = unblocked(lamp, point, normal).sum();
     if (brings <= 0) continue;
     chosen = lamp, share = brings / all;
     if (left < brings) break;

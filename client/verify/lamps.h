@@ -47,9 +47,10 @@ class Lamps {
   struct Opening {
     std::vector<OpeningFace> faces;
     double area = 0;
+    double greatest = 0;  ///< intensity of the web
   };
   Sample sample_of_opening(std::size_t lamp, Vec3 point, Vec3 normal, UnitPair at) const;
-  Rgb unblocked(const Light& lamp, Vec3 point, Vec3 normal) const;
+  Rgb unblocked(std::size_t which, Vec3 point, Vec3 normal) const;
 
   std::vector<Opening> openings_;  ///< by lamp
   std::vector<Light> lamps_;       ///< places and radii in local units; intensity so that E = I cos / d2 holds in them

@@ -106,7 +106,7 @@ class DaylightMaker {
   }
   double sky_by_model() const {
     if (daylight_.sky() == v1::Daylight::PEREZ) return of_watts_ * daylight_.diffuse_horizontal_watts();
-    const bool is_clear = daylight_.sky() == v1::Daylight::CIE && daylight_.cie_number() >= first_clear && clear().sky > 0;
+    const bool is_clear = daylight_.sky() == v1::Daylight::CIE && daylight_.cie_number() >= first_clear;
     return of_lux_ * (is_clear ? clear().sky : cloudy_lux);
   }
   SkyDistribution distribution() const {

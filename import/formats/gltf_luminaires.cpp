@@ -18,6 +18,12 @@ double number_in(const tinygltf::Value& object, const char* name, double otherwi
   return object.Get(name).GetNumberAsDouble();
 }
 
+/// Returns an index; -1 if there is none that an int holds.
+int index_in(const tinygltf::Value& object, const char* name) {
+  const double index = number_in(object, name, -1);
+  return index >= 0 && index < 1e9 ? static_cast<int>(index) : -1;
+}
+
 Rgb colour_in(const tinygltf::Value& object) {
   if (!object.IsObject() || !object.Has("color")) return {1, 1, 1};
   const tinygltf::Value& colour = object.Get("color");
@@ -43,7 +49,7 @@ void GltfLuminaires::add(const tinygltf::Node& node, std::size_t index, const Pl
   const auto extension = node.extensions.find(extension_name);
   if (extension == node.extensions.end()) return;
   const std::string place = "node " + std::to_string(index);
-  const int which = static_cast<int>(number_in(extension->second, "light", -1));
+  const int which = index_in(extension->second, "light");
   const LuminaireFile& file = profile(which, place);
   Light light;
   light.kind = LightKind::luminaire;
@@ -83,7 +89,7 @@ std::string GltfLuminaires::bytes_of(const tinygltf::Value& profile, const std::
     const auto& uri = profile.Get("uri").Get<std::string>();
     return uri.starts_with("data:") ? decoded_data(uri, place) : file_of_uri(files_, uri, place);
   }
-  const auto bytes = bytes_of_view(model_, static_cast<int>(number_in(profile, "bufferView", -1)));
+  const auto bytes = bytes_of_view(model_, index_in(profile, "bufferView"));
   return {bytes.begin(), bytes.end()};
 }
 

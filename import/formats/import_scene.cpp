@@ -43,6 +43,10 @@ void take_options(const v1::ImportOptions& options, Scene& scene) {
 void add_lights(const v1::ImportOptions& options, SceneFiles& files, SceneFile& file) {
   const double lumens_per_watt = options.has_lumens_per_watt() ? options.lumens_per_watt() : radiance_lumens_per_watt;
   if (!(lumens_per_watt >= 1e-3 && lumens_per_watt <= 683)) throw ImportError("lumens per watt", "is outside [0.001, 683]");
+  // What the file itself has of photometric files is in cd.
+  if (file.scene.quantity == Quantity::radiometric)
+    for (Light& light : file.scene.lights)
+      if (light.kind == LightKind::luminaire) light.intensity *= 1 / lumens_per_watt;
   if (options.has_daylight()) add_daylight(options.daylight(), lumens_per_watt, file.scene, file.warnings);
   add_luminaires(options, lumens_per_watt, files, file.scene, file.warnings);
 }

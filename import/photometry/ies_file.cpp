@@ -50,8 +50,9 @@ std::string read_labels(PhotometricText& text, LuminaireFile& file) {
     const std::string_view line = text.line("line TILT=");
     if (file.format.empty()) file.format = edition_of(line);
     const std::string upper = upper_case(line);
-    if (upper.starts_with("TILT")) {
-      const auto value = upper.find_first_not_of(" =", 4);
+    const auto equals = upper.starts_with("TILT") ? upper.find_first_not_of(" \t", 4) : upper.npos;
+    if (equals != upper.npos && upper[equals] == '=') {
+      const auto value = upper.find_first_not_of(" \t", equals + 1);
       if (file.format.empty()) file.format = "LM-63-1986";
       return value == upper.npos ? "NONE" : std::string(line.substr(value));
     }
@@ -190,7 +191,7 @@ LuminaireFile read_ies(std::string_view bytes) {
   const double factor = multiplier * ballast * ballast_lamp * tilt_factor;
   if (!(factor > 0)) throw ImportError(text.place(), "multiplier and ballast factors give a product that is not positive");
   Table table = read_table(text, verticals, horizontals, factor);
-  if (lumens >= 0) file.lamp_lumens = std::abs(lamps) * lumens * multiplier * ballast * ballast_lamp;
+  if (lumens >= 0) file.lamp_lumens = std::abs(lamps) * lumens * ballast * ballast_lamp;
   auto web = std::make_shared<PhotometricWeb>();
   if (file.type == 'C') set_type_c(table, *web, file);
   else set_type_a_or_b(std::move(table), *web, file);

@@ -22,6 +22,16 @@ void add_mirrored(std::vector<PhotometricPlane>& planes, double sum_of_angles) {
   for (std::size_t n = 0; n < count; ++n) planes.push_back({wrapped(sum_of_angles - planes[n].angle), planes[n].intensities});
 }
 
+/// Returns the plane at 0 degrees between the last and the first plane of a full turn.
+PhotometricPlane plane_at_0(const std::vector<PhotometricPlane>& planes) {
+  const PhotometricPlane &before = planes.back(), &after = planes.front();
+  const double gap = full_turn - before.angle, share = gap / (gap + after.angle);
+  PhotometricPlane plane{0, before.intensities};
+  for (std::size_t a = 0; a < plane.intensities.size(); ++a)
+    plane.intensities[a] += static_cast<float>(share) * (after.intensities[a] - before.intensities[a]);
+  return plane;
+}
+
 }  // namespace
 
 void complete(PhotometricWeb& web, std::vector<PhotometricPlane> planes, PlaneMirrors mirrors) {
@@ -38,6 +48,7 @@ void complete(PhotometricWeb& web, std::vector<PhotometricPlane> planes, PlaneMi
   std::ranges::stable_sort(planes, {}, &PhotometricPlane::angle);
   const auto is_same = [](const PhotometricPlane& a, const PhotometricPlane& b) { return b.angle - a.angle < same_plane; };
   planes.erase(std::unique(planes.begin(), planes.end(), is_same), planes.end());
+  if (planes.front().angle > same_plane) planes.insert(planes.begin(), plane_at_0(planes));
   planes.front().angle = 0;
   planes.push_back({full_turn, planes.front().intensities});
   for (const PhotometricPlane& plane : planes) {

@@ -19,9 +19,10 @@ struct PlaneMirrors {
   bool at_90_and_270 = false;
 };
 
-/// Sets planes and intensities of a web about its aim: the planes given, those that the mirrors add, and the first again at 360
-/// degrees. One plane stands for all directions. Where a mirrored plane falls on one that is given, the given one counts.
-/// Requires: web.axis == aim; the planes have as many intensities as web.angles.
+/// Sets planes and intensities of a web about its aim: the planes given, those that the mirrors add, one at 0 degrees between its
+/// neighbours if there is none, and the first again at 360 degrees. One plane stands for all directions. Where a mirrored plane
+/// falls on one that is given, the given one counts. Requires: web.axis == aim; the planes have as many intensities as
+/// web.angles.
 void complete(PhotometricWeb& web, std::vector<PhotometricPlane> planes, PlaneMirrors mirrors);
 
 }  // namespace alvor

@@ -5,6 +5,7 @@
 #include "solution/relative_light.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace alvor {
 
@@ -18,12 +19,14 @@ class EmissionUnit {
  public:
   explicit EmissionUnit(const BaseMesh& mesh) {
     double brightest = 0;
+    std::unordered_map<const PhotometricWeb*, double> greatest;  // many lights may share a web
     for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
       brightest = std::max(brightest, mesh.material_of(root).emission.max());
     for (const Light& light : mesh.lights()) {
       const double squared = light.is_distant() ? 1 : mesh.extent() * mesh.extent();
-      const double greatest = light.web ? light.web->greatest() : 1;
-      brightest = std::max(brightest, light.intensity.max() * greatest / squared);
+      const auto [web, is_new] = greatest.try_emplace(light.web.get(), 1);
+      if (is_new && light.web) web->second = light.web->greatest();
+      brightest = std::max(brightest, light.intensity.max() * web->second / squared);
     }
     if (brightest > 0) watts_per_m2_ = brightest;
   }

@@ -28,7 +28,7 @@ class FaceIntegral {
   // larger pieces are cut into four. Chosen: a Lambertian light is within 0.1 % and, 5 cm before it, within 2 % of Lambert's
   // formula.
   static constexpr double small_piece = 0.1, medium_piece = 0.25;
-  static constexpr int most_cuts = 5;
+  static constexpr int most_cuts = 8;
 
   double of_piece(const Piece& piece, int depth) const {
     const double u = piece.high.u - piece.low.u, v = piece.high.v - piece.low.v;

@@ -21,14 +21,16 @@ double radius_of_sphere(const Light& lamp) { return lamp.kind == LightKind::lumi
 
 }  // namespace
 
-LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power)
+LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power,
+                     double greatest)
     : LightSource(number, colour, power),
       lamp_(lamp),
       cone_(lamp.kind == LightKind::spot ? std::optional(SpotCone(lamp)) : std::nullopt),
       web_(lamp.kind == LightKind::luminaire ? std::optional(HungWeb(lamp)) : std::nullopt),
       place_(scene.frame().to_local(lamp.position)),
       radius_(radius_of_sphere(lamp) / scene.frame().metres_per_unit),
-      nearest_(std::max(radius_, nearest_lamp)) {}
+      nearest_(std::max(radius_, nearest_lamp)),
+      greatest_(greatest) {}
 
 /// Returns the lamp's intensity in a direction (unit), in multiples of its own.
 double LampLight::share(Vec3 direction) const {
@@ -66,7 +68,7 @@ void LampLight::aim(const ShadowAim& aim, int first, int last) const {
 
 std::optional<LightExtent> LampLight::extent() const {
   const Vec3 around{radius_, radius_, radius_};
-  const double intensity = colour().sum() * (web_ ? web_->web().greatest() : 1);
+  const double intensity = colour().sum() * greatest_;
   return LightExtent{place_, place_ - around, place_ + around, {}, std::numbers::pi * intensity, intensity / squared(nearest_)};
 }
 

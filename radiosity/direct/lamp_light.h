@@ -15,8 +15,10 @@ class LampLight final : public LightSource {
  public:
   /// `colour` is the irradiance, in the middle of a spot's cone or for a web's
   /// intensity of 1, of a surface that faces the lamp at a distance of one local
-  /// unit. `power` is that of LightSource. Requires: `lamp` is of these kinds; !fault_in(lamp).
-  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power);
+  /// unit. `power` is that of LightSource,
+  /// `greatest` the greatest intensity of its web, or 1. Requires: `lamp` is of these kinds; !fault_in(lamp).
+  LampLight(const LocalScene& scene, std::uint32_t number, const Light& lamp, const RelativeLight& colour, double power,
+            double greatest);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, int first, int last) const override;
@@ -32,6 +34,7 @@ class LampLight final : public LightSource {
   const std::optional<HungWeb> web_;    ///< of a luminaire
   const Vec3 place_;                    // local units, as all lengths below
   const double radius_, nearest_;
+  const double greatest_;
 };
 
 }  // namespace alvor

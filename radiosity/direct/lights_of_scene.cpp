@@ -6,6 +6,10 @@
 #include "radiosity/direct/opening_light.h"
 #include "radiosity/direct/sky_light.h"
 
+#include <algorithm>
+#include <numbers>
+#include <unordered_map>
+
 namespace alvor {
 
 namespace {
@@ -36,16 +40,37 @@ class LightMaker {
   void add_lamp(const Light& lamp) {
     const double metres = scene_.frame().metres_per_unit;
     const RelativeLight at_one_local_unit = unit_.from_watts_per_m2((1 / (metres * metres)) * lamp.intensity);
-    const double power = unit_.from_watts_per_m2(radiated_power(lamp)).sum();
-    if (shines_from_area(lamp)) make<OpeningLight>(lamp, at_one_local_unit, power);
-    else make<LampLight>(lamp, at_one_local_unit, power);
+    const WebSums sums = lamp.web ? sums_of(*lamp.web) : WebSums{};
+    const double power = unit_.from_watts_per_m2(lamp.web ? sums.flux * lamp.intensity : radiated_power(lamp)).sum();
+    if (shines_from_area(lamp)) make<OpeningLight>(lamp, at_one_local_unit, power, sums.greatest);
+    else make<LampLight>(lamp, at_one_local_unit, power, sums.greatest);
+  }
+  /// Sums over a whole web. Many lamps may share one.
+  struct WebSums {
+    double flux = 0, greatest = 1;
+  };
+  const WebSums& sums_of(const PhotometricWeb& web) {
+    const auto [sums, is_new] = sums_.try_emplace(&web);
+    if (is_new) sums->second = {web.flux(), web.greatest()};
+    return sums->second;
   }
   /// Where skies enter the scene is found once for all of them.
   void add_sky(const Light& sky) {
-    if (!exits_) exits_ = std::make_shared<SkyExits>(scene_);
+    if (!exits_) exits_ = std::make_shared<SkyExits>(scene_, ways_out_);
     const RelativeLight colour = unit_.from_watts_per_m2(sky.intensity);
-    if (exits_->any_open) make<DomeLight>(sky, colour, exits_);
-    for (std::size_t which = 0; which < exits_->exits.size(); ++which) make<ExitLight>(sky, colour, exits_, which);
+    const SkyDome dome(sky);
+    if (exits_->any_open) make<DomeLight>(dome, colour, colour.sum() * area_of_sky(dome, true), exits_);
+    const auto count = static_cast<double>(exits_->exits.size());
+    const double power = colour.sum() * area_of_sky(dome, false) / std::max(1.0, count);
+    for (std::size_t which = 0; which < exits_->exits.size(); ++which) make<ExitLight>(dome, colour, power, exits_, which);
+  }
+  /// Returns what a sky of intensity 1 sends to open or to closed faces: by as much area, m2, as it would light if it shone
+  /// straight.
+  double area_of_sky(const SkyDome& dome, bool is_of_open) const {
+    double sum = 0;
+    for (const SkyExits::WayOut& way : ways_out_)
+      if (way.is_of_open == is_of_open) sum += std::numbers::pi * way.area * dome.radiance(way.direction);
+    return sum * scene_.frame().metres_per_unit * scene_.frame().metres_per_unit;
   }
 
   const LocalScene& scene_;
@@ -53,6 +78,8 @@ class LightMaker {
   std::uint32_t number_;
   OwnedLights lights_;
   std::shared_ptr<const SkyExits> exits_;
+  std::vector<SkyExits::WayOut> ways_out_;
+  std::unordered_map<const PhotometricWeb*, WebSums> sums_;
 };
 
 }  // namespace

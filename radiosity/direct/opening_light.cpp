@@ -18,10 +18,11 @@ constexpr double nearest_opening = 1e-5;
 }  // namespace
 
 OpeningLight::OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const RelativeLight& colour,
-                           double power)
+                           double power, double greatest)
     : LightSource(number, colour, power),
       web_(luminaire),
       faces_(faces_of_opening(luminaire)),
+      greatest_(greatest),
       place_(scene.frame().to_local(luminaire.position)),
       low_(place_),
       high_(place_) {
@@ -97,7 +98,7 @@ void OpeningLight::aim(const ShadowAim& aim, int first, int last) const {
 }
 
 std::optional<LightExtent> OpeningLight::extent() const {
-  const double intensity = colour().sum() * web_.web().greatest();
+  const double intensity = colour().sum() * greatest_;
   return LightExtent{place_, low_, high_, {}, std::numbers::pi * intensity, intensity / (nearest_opening * nearest_opening)};
 }
 

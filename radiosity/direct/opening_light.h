@@ -16,9 +16,10 @@ namespace alvor {
 /// their distance; shadow rays go to points that are uniform by area.
 class OpeningLight final : public LightSource {
  public:
-  /// `colour` and `power` are as for LampLight. Requires: `luminaire` shines from faces (see faces_of_opening());
+  /// `colour`, `power` and `greatest` are as for LampLight. Requires: `luminaire` shines from faces (see faces_of_opening());
   /// !fault_in(luminaire).
-  OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const RelativeLight& colour, double power);
+  OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const RelativeLight& colour, double power,
+               double greatest);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, int first, int last) const override;
@@ -32,6 +33,7 @@ class OpeningLight final : public LightSource {
 
   const HungWeb web_;
   std::vector<OpeningFace> faces_;  // local units, as all lengths below
+  const double greatest_;
   double area_ = 0;
   Vec3 place_, low_, high_;
 };

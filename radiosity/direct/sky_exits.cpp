@@ -199,7 +199,7 @@ class FaceRays {
 
 }  // namespace
 
-SkyExits::SkyExits(const LocalScene& scene) : is_open(scene.mesh().roots().size()) {
+SkyExits::SkyExits(const LocalScene& scene, std::vector<WayOut>& ways_out) : is_open(scene.mesh().roots().size()) {
   const auto roots = static_cast<std::uint32_t>(is_open.size());
   const SceneBox box(scene);
   const std::uint32_t packets =

@@ -22,19 +22,19 @@ struct SkyExit {
 /// the exits: rectangles about the places where their rays left the bounding box. A hole that no ray found is left out; of 2^18
 /// rays it would bring less than one in 2^18 of the light.
 struct SkyExits {
-  explicit SkyExits(const LocalScene& scene);
-
-  std::vector<bool> is_open;   ///< by root
-  std::vector<SkyExit> exits;  ///< empty if no closed face sees the sky
-  bool any_open = false;
-  /// The way out of one ray, and the part of the irradiance of its face that the ray stands for, times the face's area, local
-  /// units squared. For estimates of power.
+  /// The way out of one ray, and the part of its face's area that the ray stands for, local units squared. For estimates of
+  /// power.
   struct WayOut {
     Vec3 direction;
     double area;
     bool is_of_open;
   };
-  std::vector<WayOut> ways_out;
+  /// Appends the ways out of all rays to `ways_out`.
+  SkyExits(const LocalScene& scene, std::vector<WayOut>& ways_out);
+
+  std::vector<bool> is_open;   ///< by root
+  std::vector<SkyExit> exits;  ///< empty if no closed face sees the sky
+  bool any_open = false;
 };
 
 }  // namespace alvor

@@ -19,22 +19,12 @@ constexpr double nearest_exit = 1e-5;
 // Cosine of the angle between a zenith and the side of an exit within which the side stands upright.
 constexpr double aligned = 1 - 1e-9;
 
-/// Returns the power that a sky sends through exits, or onto open faces, in local units squared times its colour.
-double power_of(const SkyDome& dome, const SkyExits& exits, bool is_of_open) {
-  double sum = 0;
-  for (const SkyExits::WayOut& way : exits.ways_out)
-    if (way.is_of_open == is_of_open) sum += pi * way.area * dome.radiance(way.direction);
-  return sum;
-}
-
-double square_metres(const LocalScene& scene) { return scene.frame().metres_per_unit * scene.frame().metres_per_unit; }
-
 }  // namespace
 
-DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
-                     std::shared_ptr<const SkyExits> exits)
-    : LightSource(number, colour, colour.sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, true)),
-      dome_(sky),
+DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour,
+                     double power, std::shared_ptr<const SkyExits> exits)
+    : LightSource(number, colour, power),
+      dome_(dome),
       exits_(std::move(exits)),
       side_(normalized(cross(dome_.zenith(), std::abs(dome_.zenith().x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}))),
       other_(cross(dome_.zenith(), side_)),
@@ -91,14 +81,9 @@ void DomeLight::aim(const ShadowAim& aim, int first, int last) const {
   }
 }
 
-ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
+ExitLight::ExitLight(const LocalScene&, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour, double power,
                      std::shared_ptr<const SkyExits> exits, std::size_t which)
-    : LightSource(
-          number, colour,
-          colour.sum() * square_metres(scene) * power_of(SkyDome(sky), *exits, false) / static_cast<double>(exits->exits.size())),
-      dome_(sky),
-      exits_(std::move(exits)),
-      exit_(exits_->exits[which]) {}
+    : LightSource(number, colour, power), dome_(dome), exits_(std::move(exits)), exit_(exits_->exits[which]) {}
 
 /// Returns the irradiance that a point of the exit brings, per area of the exit.
 double ExitLight::brings(Vec3 from, Vec3 at, Vec3 normal) const {

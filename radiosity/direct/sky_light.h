@@ -17,8 +17,8 @@ namespace alvor {
 /// shadow rays are cosine-distributed about the receiver's normal.
 class DomeLight final : public LightSource {
  public:
-  /// `colour` is the irradiance of an open surface that faces the zenith. Requires: `sky` is a sky; !fault_in(sky).
-  DomeLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
+  /// `colour` is the irradiance of an open surface that faces the zenith; `power` is that of LightSource.
+  DomeLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour, double power,
             std::shared_ptr<const SkyExits> exits);
 
   bool may_reach(std::uint32_t root) const override { return exits_->is_open[root]; }
@@ -41,8 +41,8 @@ class DomeLight final : public LightSource {
 /// rays go to points that are uniform by area.
 class ExitLight final : public LightSource {
  public:
-  /// `colour` is the irradiance of an open surface that faces the zenith. Requires: `sky` is a sky; !fault_in(sky).
-  ExitLight(const LocalScene& scene, std::uint32_t number, const Light& sky, const RelativeLight& colour,
+  /// `colour` is the irradiance of an open surface that faces the zenith; `power` is that of LightSource.
+  ExitLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour, double power,
             std::shared_ptr<const SkyExits> exits, std::size_t which);
 
   bool may_reach(std::uint32_t root) const override { return !exits_->is_open[root]; }

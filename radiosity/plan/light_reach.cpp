@@ -50,14 +50,14 @@ class Zones {
     add(0);
     return zone;
   }
-  /// Marks the zones that a light may be in. Distant light comes from outside of all rooms. A lamp in a room within a room counts
-  /// for both, which is safe.
+  /// Marks the zones that a light may be in. Distant light comes from outside of all rooms. A lamp counts for each room that a
+  /// sphere about all of it meets, which is safe.
   void light_zones_of(const Light& light) {
     bool is_inside = false;
     for (std::uint32_t room = 0; room < rooms_.size() && !light.is_distant(); ++room) {
-      if (!rooms_[room].holds(light.position)) continue;
+      if (!rooms_[room].holds(light.position, radius_of(light))) continue;
       is_lit_[find(room + 1)] = true;
-      is_inside = true;
+      is_inside = is_inside || rooms_[room].holds(light.position, -radius_of(light));
     }
     if (!is_inside) is_lit_[find(0)] = true;
   }
@@ -79,22 +79,23 @@ double height_of(const RootPatch& face, Vec3 centre) {
   return height;
 }
 
-bool faces_distant_light(const BaseMesh& mesh, Vec3 normal) {
-  return std::ranges::any_of(mesh.lights(), [&](const Light& light) {
-    if (light.kind == LightKind::sky) return dot(normal, light.direction) < looks_away;
-    return light.is_distant() && dot(normal, light.direction) < std::sin(light.angular_diameter / 2);
-  });
+bool faces(const Light& distant, Vec3 normal) {
+  if (distant.kind == LightKind::sky) return dot(normal, distant.direction) < looks_away;
+  return dot(normal, distant.direction) < std::sin(distant.angular_diameter / 2);
 }
 
 }  // namespace
 
 LightReach::LightReach(const BaseMesh& mesh, const PointTree& corners) : is_dark(mesh.roots().size()) {
   const Zones zones(mesh);
+  std::vector<const Light*> distant;  // few, of maybe many lights
+  for (const Light& light : mesh.lights())
+    if (light.is_distant()) distant.push_back(&light);
   for (std::uint32_t root = 0; root < is_dark.size(); ++root) {
     const RootPatch& face = mesh.roots()[root];
     const double height = height_of(face, mesh.centre());
-    const bool faces_nothing =
-        !corners.any_above(face.normal, height + flat_tolerance * mesh.extent()) && !faces_distant_light(mesh, face.normal);
+    const bool faces_nothing = !corners.any_above(face.normal, height + flat_tolerance * mesh.extent()) &&
+                               std::ranges::none_of(distant, [&](const Light* light) { return faces(*light, face.normal); });
     const bool is_shut_off = !faces_nothing && !zones.may_be_lit(root);
     facing_nothing += faces_nothing;
     shut_off += is_shut_off;

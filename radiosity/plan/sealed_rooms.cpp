@@ -116,9 +116,9 @@ SealedRoom::Side SealedRoom::side_of(const RootPatch& face) const {
   return is_inside ? Side::inside : Side::both;
 }
 
-bool SealedRoom::holds(Vec3 point) const {
-  return std::ranges::all_of(planes,
-                             [&](const Plane& plane) { return dot(plane.normal, point - origin) >= plane.height - tolerance; });
+bool SealedRoom::holds(Vec3 point, double margin) const {
+  return std::ranges::all_of(
+      planes, [&](const Plane& plane) { return dot(plane.normal, point - origin) >= plane.height - tolerance - margin; });
 }
 
 std::vector<SealedRoom> find_sealed_rooms(const BaseMesh& mesh) { return RoomFinder(mesh).find(); }

@@ -19,8 +19,9 @@ struct SealedRoom {
   /// Returns on which side of the walls the front of a face is. Walls of the room are inside; faces that touch them from without
   /// are outside.
   Side side_of(const RootPatch& face) const;
-  /// Returns whether a point is in the room or on its walls.
-  bool holds(Vec3 point) const;
+  /// Returns whether a point is in the room, on its walls, or outside by at most `margin`, m. A negative margin asks for that
+  /// distance from all walls.
+  bool holds(Vec3 point, double margin) const;
 
   Vec3 origin;
   std::vector<Plane> planes;

@@ -14,8 +14,7 @@ constexpr double held_by_floats = 1e37;
 
 /// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max rho). If every surface emitted and
 /// reflected like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth does
-/// not. Near a lamp, and where a sky is brighter beside
-/// its zenith, irradiance has no such bound.
+/// not. Near a lamp, and under a sky that is brighter beside its zenith, irradiance has no such bound.
 Rgb largest_irradiance(const BaseMesh& mesh) {
   Rgb emission, reflectance;
   for (const RootPatch& root : mesh.roots()) {
@@ -23,7 +22,8 @@ Rgb largest_irradiance(const BaseMesh& mesh) {
     reflectance = upper(reflectance, mesh.materials()[root.material].reflectance);
   }
   for (const Light& light : mesh.lights()) {
-    if (light.kind != LightKind::directional && !light.intensity.is_zero()) return {held_by_floats, held_by_floats, held_by_floats};
+    if (light.kind != LightKind::directional && !light.intensity.is_zero())
+      return {held_by_floats, held_by_floats, held_by_floats};
     emission += light.intensity;
   }
   const Rgb most{emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};

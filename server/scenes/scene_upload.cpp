@@ -15,10 +15,11 @@ void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
 }  // namespace
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
-  // Sizes in memory; an empty material or light takes only a few bytes on the wire.
-  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 300;
+  // Sizes in memory; an empty material, light or web takes only a few bytes on the wire.
+  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 300, bytes_of_web = 150;
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size()) +
-            bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size());
+            bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size()) +
+            bytes_of_web * static_cast<std::uint64_t>(message.chunk().webs_size());
   check_limit(bytes_, limits_.bytes, "bytes");
   limits_.memory.refuse_without_room("scene", message.ByteSizeLong());
   if (message.has_scene() == begun_)
@@ -38,6 +39,7 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
   check_limit(scene.corners.size() + static_cast<std::uint64_t>(chunk.corner_vertices_size()), limits_.corners, "corners");
   check_limit(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
   check_limit(scene.lights.size() + static_cast<std::uint64_t>(chunk.lights_size()), limits_.lights, "lights");
+  check_limit(assembler_.web_count() + static_cast<std::uint64_t>(chunk.webs_size()), limits_.lights, "photometric webs");
   for (const v1::Light& light : chunk.lights())
     check_limit(light.name().size(), limits_.bytes_of_name, "bytes in a light's name");
   for (const std::uint32_t corners : chunk.face_corner_counts())

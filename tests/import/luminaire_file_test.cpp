@@ -85,7 +85,7 @@ TEST(IesFile, FactorsMultiplyTheIntensities) {
   ies.lamps = "2 1000 3";
   ies.factors = "0.9 0.5 40";
   EXPECT_NEAR(ies.read().web->greatest(), 100 * 3 * 0.9, 1e-3);  // the third factor is reserved since 2002
-  EXPECT_NEAR(*ies.read().lamp_lumens, 2 * 1000 * 3 * 0.9, 1e-9);
+  EXPECT_NEAR(*ies.read().lamp_lumens, 2 * 1000 * 0.9, 1e-9);    // the multiplier is for candelas
   ies.head = "IESNA:LM-63-1995\n";
   EXPECT_NEAR(ies.read().web->greatest(), 100 * 3 * 0.9 * 0.5, 1e-3);
   EXPECT_EQ(ies.read().watts, 40);

@@ -2,6 +2,7 @@
 
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lights_of_scene.h"
+#include "radiosity/plan/plan.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -114,6 +115,18 @@ TEST(Luminaire, TurnsItsWebWithItsAxes) {
   EXPECT_NEAR(HungWeb(light).intensity({1, 0, 0}), 20, 1e-6);
 }
 
+// Its photometric centre lies above the ceiling, its lower face below.
+TEST(Luminaire, HalfRecessedInACeilingLightsTheRoom) {
+  Scene room;
+  room.materials = {test::grey(0, 0.5)};
+  test::add_box(room, {-2, 0, -2}, {2, 1.98, 2}, true);
+  room.lights = {luminaire({Shape::box, 0.3, 0.3, 0.1}, axial_web([](double cosine) { return cosine; }))};
+  EXPECT_TRUE(Plan(BaseMesh(room), {}).may_be_lit(0));
+  room.lights[0].opening.height = 0.01;
+  room.lights[0].opening.across = room.lights[0].opening.along = 0.01;
+  EXPECT_FALSE(Plan(BaseMesh(room), {}).may_be_lit(0));
+}
+
 TEST(Luminaire, FaultsAreTold) {
   const auto web = axial_web([](double) { return 1.0; });
   Light light = luminaire({Shape::rectangle, 0.6, 0, 0}, web);
@@ -128,6 +141,15 @@ TEST(Luminaire, FaultsAreTold) {
   auto bad = std::make_shared<PhotometricWeb>(*web);
   bad->intensities[3] = std::nanf("");
   light.web = bad;
+  EXPECT_TRUE(fault_in(light));
+  for (const double angle : {std::nan(""), 0.0, 1e-300}) {
+    auto crooked = std::make_shared<PhotometricWeb>(*web);
+    crooked->angles[1] = angle;
+    light.web = crooked;
+    EXPECT_EQ(fault_in(light), "the angles of its photometric web do not ascend") << angle;
+  }
+  light.web = web;
+  light.opening = {Shape::rectangle, 1e-170, 1e-170, 0};
   EXPECT_TRUE(fault_in(light));
 }
 

@@ -91,6 +91,28 @@ TEST(Sky, OfPerezIsBrighterAboutTheSunAndSoundForAllWeather) {
       }
 }
 
+// Perez et al. (1993): (1 + a exp(b / cos Z)) (1 + c exp(d chi) + e cos2 chi). Their table gives, for clearness 1 (no direct
+// light), brightness 0.2 and the sun at z = 1 radian from the zenith, these coefficients.
+TEST(Sky, OfPerezHasTheRatiosOfItsFormula) {
+  const double z = 1, brightness = 0.2;
+  const auto fit = [&](double x1, double x2, double x3, double x4) { return x1 + x2 * z + brightness * (x3 + x4 * z); };
+  const double a = fit(1.3525, -0.2576, -0.2690, -1.4366), b = fit(-0.7670, 0.0007, 1.2734, -0.1233);
+  const double c = std::exp(std::pow(brightness * (2.8 + 0.6004 * z), 1.2375)) - 1;
+  const double d = -std::exp(brightness * (1.8734 + 0.6297 * z)) + 0.9738 + brightness * 0.2809;
+  const double e = fit(0.0356, -0.1246, -0.5718, 0.9938);
+  const double elevation = 90 - z * 180 / pi, air_mass = 1 / (std::cos(z) + 0.15 * std::pow(93.885 - z * 180 / pi, -1.253));
+  const SkyDome dome(sky_light(perez_sky(0, brightness * 1367 / air_mass, z, direction_at(elevation, 0))));
+  const auto expected = [&](Vec3 direction) {
+    const double chi = std::acos(dot(direction, direction_at(elevation, 0)));
+    return (1 + a * std::exp(b / direction.y)) * (1 + c * std::exp(d * chi) + e * std::cos(chi) * std::cos(chi));
+  };
+  const Vec3 zenith{0, 1, 0};
+  for (const Vec3 direction : {direction_at(30, 0), direction_at(30, 180), direction_at(60, 90), direction_at(10, 120)}) {
+    const double ratio = expected(direction) / expected(zenith);
+    EXPECT_NEAR(dome.radiance(direction) / dome.radiance(zenith), ratio, 1e-6 * ratio);
+  }
+}
+
 /// Returns the light of the sky that reaches a root, in multiples of its intensity.
 class OnOpenGround : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(CieSkies, OnOpenGround, testing::Values(1, 5, 12), testing::PrintToStringParamName());

@@ -76,12 +76,12 @@ void run_verify(const VerifyCommand& command) {
   require_outputs(command);
   SceneImport import;
   take_light_options(command.light, import);
-  if (is_axis(command.up)) import.options.set_up_axis(command.up == "z" ? v1::UP_AXIS_Z : v1::UP_AXIS_Y);
+  DisplayMesh solution = read_solution(command.solution, command.format);
+  take_up(command.up, solution.up);
+  import.options.set_up_axis(solution.up == UpAxis::z ? v1::UP_AXIS_Z : v1::UP_AXIS_Y);
   SceneFile file = read_scene(command.scene, command.format, import);
   take_absorption(command.absorption, file.scene);
   warn(file.warnings);
-  DisplayMesh solution = read_solution(command.solution, command.format);
-  take_up(command.up, solution.up);
   VerifyTimes times;
   const Verification verification = verify_timed(command, file.scene, solution, times);
   if (!command.csv.empty()) write_output(command.csv, verified_csv(verification.points));

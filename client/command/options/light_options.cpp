@@ -8,7 +8,9 @@
 namespace alvor {
 
 void add_light_options(CLI::App& command, LightOptions& options) {
-  command.add_option("--light-scale", options.scale, "Multiply the intensity of all lamps and suns, not of emissive faces (1)")
+  command
+      .add_option("--light-scale", options.scale,
+                  "Multiply the intensity of the lamps and suns in the scene file, not of emissive faces (1)")
       ->check(CLI::Range(0.0, 1e12));
   command
       .add_option("--quantity", options.quantity,

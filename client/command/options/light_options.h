@@ -12,7 +12,7 @@
 namespace alvor {
 
 struct LightOptions {
-  double scale = 1;                     ///< of all lights that are not faces
+  double scale = 1;                     ///< of the file's lights that are not faces
   std::string quantity;                 ///< "radiometric" or "photometric"; empty: what the format says
   std::vector<std::string> luminaires;  ///< FILE@x,y,z[:turn,tilt,spin]
   double efficacy = 179;                ///< lm/W of luminaires, sun and sky in a radiometric scene; as in Radiance

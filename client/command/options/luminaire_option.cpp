@@ -23,9 +23,10 @@ std::string bytes_of(const std::filesystem::path& path) {
 
 /// Returns the file's name for the options: without folders, and with a number if another file has that name.
 std::string name_for(const std::filesystem::path& path, const std::map<std::string, std::filesystem::path>& taken) {
-  std::string name = path.filename().string();
-  if (!reason_against_name(name).empty()) name = "luminaire" + lower_case_extension(path);
-  for (int n = 2; taken.contains(name) && taken.at(name) != path; ++n) name = std::to_string(n) + "_" + path.filename().string();
+  const std::string plain = path.filename().string();
+  const std::string first = reason_against_name(plain).empty() ? plain : "luminaire" + lower_case_extension(path);
+  std::string name = first;
+  for (int n = 2; taken.contains(name) && taken.at(name) != path; ++n) name = std::to_string(n) + "_" + first;
   return name;
 }
 

@@ -28,14 +28,21 @@ double seconds_of(const std::string& text) {
   int second = 0, length = 0;
   if (std::sscanf(rest.c_str(), ":%2d%n", &second, &length) == 1) rest.erase(0, static_cast<std::size_t>(length));
   int hours = 0, minutes = 0;
-  char sign = '+';
-  const bool is_utc = rest == "Z", has_offset = std::sscanf(rest.c_str(), "%1[+-]%2d:%2d", &sign, &hours, &minutes) == 3;
-  const bool is_day = day.tm_mon >= 1 && day.tm_mon <= 12 && day.tm_mday >= 1 && day.tm_mday <= 31 && day.tm_hour < 24;
-  if (fields != 5 || !is_day || !(is_utc || has_offset))
+  char sign[2] = "+";
+  int end = 0;
+  const bool has_offset = std::sscanf(rest.c_str(), "%1[+-]%2d:%2d%n", sign, &hours, &minutes, &end) == 3 &&
+                          static_cast<std::size_t>(end) == rest.size() && hours <= 14 && minutes < 60 && hours >= 0 &&
+                          minutes >= 0;
+  const auto is_in = [](int value, int low, int high) { return value >= low && value <= high; };
+  const bool is_time = is_in(day.tm_mon, 1, 12) && is_in(day.tm_mday, 1, 31) && is_in(day.tm_hour, 0, 23) &&
+                       is_in(day.tm_min, 0, 59) && is_in(second, 0, 59);
+  if (fields != 5 || !is_time || !(rest == "Z" || has_offset))
     refuse("--time: '" + text + "' is not like 2026-06-21T12:00Z or 2026-06-21T14:00+02:00");
   day.tm_year -= 1900, day.tm_mon -= 1, day.tm_sec = second;
-  const int offset = 60 * (60 * hours + minutes);
-  return static_cast<double>(timegm(&day)) - (sign == '-' ? -offset : offset);
+  const int month_day = day.tm_mday, offset = 60 * (60 * hours + minutes);
+  const auto seconds = static_cast<double>(timegm(&day));  // changes a day that its month does not have
+  if (day.tm_mday != month_day) refuse("--time: '" + text + "' is a day that its month does not have");
+  return seconds - (sign[0] == '-' ? -offset : offset);
 }
 
 std::vector<double> two_numbers(const std::string& option, const std::string& text, const char* what) {
