@@ -1,5 +1,4 @@
-"""Makes a room with a bulb, a spot and the sun, for docs/lights.md: exports OUT/room.glb, draws it with Cycles as OUT/cycles.png, and prints
-the mean irradiance of all surfaces by Cycles, which bakes it to the vertices of a fine mesh.
+"""Makes a room with a bulb, a spot and the sun, for docs/lights.md: exports OUT/room.glb, and draws it with Cycles as OUT/cycles.png.
 
 Run: blender -b -P docs/lights/room.py -- OUT
 """
@@ -82,24 +81,3 @@ scene.render.resolution_x, scene.render.resolution_y = 640, 480
 scene.view_settings.view_transform = "Standard"
 scene.render.filepath = str(out / "cycles.png")
 bpy.ops.render.render(write_still=True)
-
-# A baked value without colour is the radiance of a white surface: the irradiance over pi.
-scene.cycles.samples = 64
-irradiance = area = 0
-for node in [node for node in scene.objects if node.type == "MESH"]:
-    bpy.ops.object.select_all(action="DESELECT")
-    node.select_set(True)
-    bpy.context.view_layer.objects.active = node
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
-    bpy.ops.mesh.subdivide(number_cuts=23)
-    bpy.ops.mesh.edge_split(type="EDGE") if len(node.data.polygons) > 24 * 24 else None
-    bpy.ops.object.mode_set(mode="OBJECT")
-    node.data.attributes.new("light", "FLOAT_COLOR", "CORNER")
-    node.data.attributes.active_color_index = 0
-    bpy.ops.object.bake(type="DIFFUSE", pass_filter={"DIRECT", "INDIRECT"}, target="VERTEX_COLORS")
-    for face in node.data.polygons:
-        corners = [node.data.attributes["light"].data[loop].color[:3] for loop in face.loop_indices]
-        irradiance += math.pi * face.area * sum(map(sum, corners)) / (3 * len(corners))
-        area += face.area
-print(f"mean irradiance by Cycles: {irradiance / area:.4g} W/m2 over {area:.4g} m2")
