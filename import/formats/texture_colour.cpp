@@ -1,5 +1,23 @@
 #include "import/formats/texture_colour.h"
 
+#include <cstddef>
+#include <cstdlib>
+
+namespace {
+
+/// The largest allocation of stb_image while it reads the image at hand. It believes the lengths that a file claims: a PNG of a
+/// hundred bytes can ask for a gigabyte.
+thread_local std::size_t most_bytes = 0;
+
+void* allocate(std::size_t bytes) { return bytes <= most_bytes ? std::malloc(bytes) : nullptr; }
+void* reallocate(void* old, std::size_t bytes) { return bytes <= most_bytes ? std::realloc(old, bytes) : nullptr; }
+
+}  // namespace
+
+#define STBI_MALLOC(bytes) allocate(bytes)
+#define STBI_REALLOC(old, bytes) reallocate(old, bytes)
+#define STBI_FREE(old) std::free(old)
+
 // stb_image's functions are static here: libdraco, which Assimp loads, exports functions of the same names.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -22,7 +40,13 @@ namespace alvor {
 namespace {
 
 /// Limit of decoded pixels: a file of a few kilobytes can ask for any number. Textures have at most 16 384 x 16 384.
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+constexpr std::size_t most_pixels = 1 << 20;  // a fuzzer soon asks for the most, and would only fill memory
+#else
 constexpr std::size_t most_pixels = 1 << 28;
+#endif
+/// Allocations of stb_image beside the file and the pixels: tables, and blocks of 16 x 16 pixels at the edges.
+constexpr std::size_t bytes_beside = 1 << 24;
 
 /// Returns the linear value of an sRGB value (IEC 61966-2-1).
 double linear_of_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
@@ -54,9 +78,11 @@ std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded) {
   const unsigned char* const bytes = encoded.data();
   const int size = static_cast<int>(encoded.size());
   int width = 0, height = 0, channels = 0;
+  most_bytes = bytes_beside;
   if (!stbi_info_from_memory(bytes, size, &width, &height, &channels) || width <= 0 || height <= 0) return std::nullopt;
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (count > most_pixels) return std::nullopt;
+  most_bytes += 2 * (encoded.size() + count * 4 * sizeof(std::uint16_t));  // buffers that are too small are doubled
   const bool is_deep = stbi_is_16_bit_from_memory(bytes, size) != 0;
   const Pixels rgba(is_deep ? static_cast<void*>(stbi_load_16_from_memory(bytes, size, &width, &height, &channels, 4))
                             : stbi_load_from_memory(bytes, size, &width, &height, &channels, 4),

@@ -1,5 +1,5 @@
 // Fuzzes the files that our own importers read: OBJ, MTL, glTF and GLB with their parts; GLB and PLY of a solution; IES and
-// EULUMDAT.
+// EULUMDAT. The first byte of an input chooses what the others are.
 
 #include "client/export/solution_file.h"
 #include "import/base/import_error.h"
@@ -8,47 +8,47 @@
 #include "import/photometry/luminaire_file.h"
 #include "tests/fuzz/input.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
+#include <map>
+#include <string>
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns a folder with files of Blender's exporters, so that a made-up scene can name existing parts.
-const fs::path& directory() {
-  static const auto made = [] {
-    auto path = fs::path("/dev/shm") / ("alvor_fuzz_" + std::to_string(getpid()));
-    fs::create_directories(path);
-    fs::copy(ALVOR_TEST_FILES "/import/blender/files", path, fs::copy_options::overwrite_existing);
-    return path;
+/// A made-up file, and the scene file that is read with it. They are the same if the scene file is made up.
+struct SceneKind {
+  const char *made_up, *scene;
+};
+// The numbers of kinds are those of tests/fuzz/seeds.cpp.
+constexpr std::array<SceneKind, 6> scenes{{{"scene.obj", "scene.obj"},
+                                           {"scene.gltf", "scene.gltf"},
+                                           {"scene.glb", "scene.glb"},
+                                           {"room_z_up.mtl", "room_z_up.obj"},
+                                           {"room.bin", "room.gltf"},
+                                           {"wood.png", "room.obj"}}};
+constexpr std::array<const char*, 2> solutions{".glb", ".ply"};   // numbered after the scenes
+constexpr std::array<const char*, 2> luminaires{".ies", ".ldt"};  // numbered after the solutions
+
+/// Returns the files of Blender's exporters by name. A made-up scene can name them as its parts.
+const std::map<std::string, std::string>& parts() {
+  static const auto read = [] {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(ALVOR_TEST_FILES "/import/blender/files"))
+      files.emplace(entry.path().filename().string(), alvor::read_whole_file(entry.path()));
+    return files;
   }();
-  return made;
+  return read;
 }
 
-/// A file that is written, and the file that is then read.
-struct Kind {
-  const char *written, *read;
-  bool is_solution = false;
-};
-constexpr std::array<const char*, 2> luminaires{".ies", ".ldt"};  // numbered after the kinds
-constexpr std::array<Kind, 8> kinds{{{"scene.obj", "scene.obj"},
-                                     {"scene.gltf", "scene.gltf"},
-                                     {"scene.glb", "scene.glb"},
-                                     {"solution.glb", "solution.glb", true},
-                                     {"solution.ply", "solution.ply", true},
-                                     {"room_z_up.mtl", "room_z_up.obj"},
-                                     {"room.bin", "room.gltf"},
-                                     {"wood.png", "room.obj"}}};
-
-/// Reads a scene in this process, with all files of the folder.
-void read_scene(const Kind& kind) {
-  alvor::SceneFiles files(kind.read, alvor::read_whole_file(directory() / kind.read));
-  for (const auto& entry : fs::directory_iterator(directory()))
-    files.add(entry.path().filename().string(), alvor::read_whole_file(entry.path()));
+/// Reads a scene in this process, where one of its files is made up. Files that are missing are then declared absent.
+void read_scene(const SceneKind& kind, const std::string& bytes) {
+  const bool is_scene = kind.made_up == std::string_view(kind.scene);
+  alvor::SceneFiles files(kind.scene, is_scene ? bytes : parts().at(kind.scene));
+  for (const auto& [name, part] : parts()) files.add(name, part);
+  files.add(kind.made_up, bytes);
   const auto missing = alvor::import_scene(files, {}).missing;
   for (const std::string& name : missing) files.declare_absent(name);
   if (!missing.empty()) (void)alvor::import_scene(files, {});
@@ -63,23 +63,20 @@ void read_luminaire(std::string_view bytes, const char* extension) {
   if (!(sum > 0)) std::abort();
 }
 
+void read_file(std::size_t kind, const std::string& bytes) {
+  if (kind < scenes.size()) return read_scene(scenes[kind], bytes);
+  kind -= scenes.size();
+  if (kind < solutions.size()) return (void)alvor::decode_solution(bytes, solutions[kind], "made up");
+  read_luminaire(bytes, luminaires[kind - solutions.size()]);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const std::size_t number = data[0] % (kinds.size() + luminaires.size());
-  if (number >= kinds.size()) {
-    try {
-      read_luminaire({reinterpret_cast<const char*>(data + 1), size - 1}, luminaires[number - kinds.size()]);
-    } catch (const alvor::ImportError&) {}
-    return 0;
-  }
-  const Kind& kind = kinds[number];
-  std::ofstream(directory() / kind.written, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
   try {
-    if (kind.is_solution) (void)alvor::read_solution_file(directory() / kind.read);
-    else read_scene(kind);
+    read_file(data[0] % (scenes.size() + solutions.size() + luminaires.size()),
+              {reinterpret_cast<const char*>(data + 1), size - 1});
   } catch (const alvor::ImportError&) {
   } catch (const alvor::SolutionFileError&) {}
   return 0;

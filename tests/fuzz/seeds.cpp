@@ -99,7 +99,7 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
     write(directory / "frame" / (detail == Detail::exact ? "exact" : "display"), frames_of(log, detail));
   write(directory / "watch" / "ordinary", std::string("\1\3\7\0\1\3\5\0\1\3\5\1\0\2\3\5\1\6\0\x09\1\3", 22));
   write_web_seeds(directory / "web");
-  const std::string kinds[] = {".obj", ".gltf", ".glb", "solution.glb", ".ply", ".mtl", ".bin", ".png", ".ies", ".ldt"};
+  const std::string kinds[] = {".obj", ".gltf", ".glb", ".mtl", ".bin", ".png", "solution.glb", ".ply", ".ies", ".ldt"};
   for (char* file : files)
     for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
       if (!std::string_view(file).ends_with(kinds[kind])) continue;
