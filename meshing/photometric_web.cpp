@@ -19,7 +19,6 @@ constexpr double max_intensity = 1e30;
 // Smallest step between angles, degrees: no goniometer is finer, and sums over smaller ones would lose their digits.
 constexpr double smallest_step = 1e-3;
 // Goniometers measure at 361 x 181 angles at most. A web is sent in one message.
-constexpr std::size_t most_intensities = 200'000;
 
 /// A place between two entries of a list: the first of them, and the share of the second.
 struct Between {
@@ -99,7 +98,7 @@ std::optional<std::string> fault_in(const PhotometricWeb& web) {
   if (web.angles.size() < 2) return "its photometric web has fewer than two angles";
   if (web.planes.empty()) return "its photometric web has no planes";
   const std::size_t count = web.angles.size() * web.planes.size();
-  if (count > most_intensities)
+  if (count > PhotometricWeb::most_intensities)
     return "its photometric web has " + std::to_string(count) + " intensities, at most 200000 are possible";
   if (web.intensities.size() != count)
     return "its photometric web has " + std::to_string(web.intensities.size()) + " intensities, needs " + std::to_string(count);

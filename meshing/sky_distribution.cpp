@@ -1,5 +1,7 @@
 #include "meshing/sky_distribution.h"
 
+#include "meshing/tangent_frame.h"
+
 #include "meshing/light.h"
 
 #include <algorithm>
@@ -132,14 +134,13 @@ SkyDome::SkyDome(const Light& sky)
       e_(sky.sky.e),
       g_(sky.sky.g),
       at_right_angle_(std::exp(std::min(largest_exponent, sky.sky.d * pi / 2))) {
-  const Vec3 side = normalized(cross(zenith_, std::abs(zenith_.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
-  const Vec3 other = cross(zenith_, side);
+  const TangentFrame level(zenith_);
   double sum = 0;
   for (int ring = 0; ring < rings; ++ring)
     for (int sector = 0; sector < sectors; ++sector) {
       const double squared_sine = (ring + 0.5) / rings, turn = 2 * pi * (sector + 0.5) / sectors;
       const double sine = std::sqrt(squared_sine);
-      sum += relative(std::sqrt(1 - squared_sine) * zenith_ + sine * std::cos(turn) * side + sine * std::sin(turn) * other);
+      sum += relative(std::sqrt(1 - squared_sine) * zenith_ + sine * std::cos(turn) * level.s + sine * std::sin(turn) * level.t);
     }
   // The integral of cos Z over a step is pi / (rings sectors).
   const double integral = pi * sum / (rings * sectors);

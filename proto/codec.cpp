@@ -61,6 +61,21 @@ double decode_seconds(const google::protobuf::Duration& duration) {
   return static_cast<double>(duration.seconds()) + duration.nanos() / 1e9;
 }
 
+v1::UpAxis encode(UpAxis axis) { return axis == UpAxis::z ? v1::UP_AXIS_Z : v1::UP_AXIS_Y; }
+
+v1::Quantity encode(Quantity quantity) {
+  return quantity == Quantity::photometric ? v1::QUANTITY_PHOTOMETRIC : v1::QUANTITY_RADIOMETRIC;
+}
+
+void decode(v1::UpAxis message, UpAxis& axis) {
+  if (message != v1::UP_AXIS_UNSPECIFIED) axis = message == v1::UP_AXIS_Z ? UpAxis::z : UpAxis::y;
+}
+
+void decode(v1::Quantity message, Quantity& quantity) {
+  if (message == v1::QUANTITY_UNSPECIFIED) return;
+  quantity = message == v1::QUANTITY_PHOTOMETRIC ? Quantity::photometric : Quantity::radiometric;
+}
+
 v1::Rgb encode(const Rgb& value) {
   v1::Rgb message;
   message.set_r(value.r);

@@ -26,6 +26,11 @@ std::string as_utf8(std::string_view text);
 google::protobuf::Duration encode_seconds(double seconds);  ///< NaN becomes 0, infinities the longest Duration
 double decode_seconds(const google::protobuf::Duration& duration);
 
+v1::UpAxis encode(UpAxis axis);
+v1::Quantity encode(Quantity quantity);
+/// Sets `axis` or `quantity` to what the message says; leaves it unchanged if that is UNSPECIFIED.
+void decode(v1::UpAxis message, UpAxis& axis);
+void decode(v1::Quantity message, Quantity& quantity);
 v1::Rgb encode(const Rgb& value);
 Rgb decode(const v1::Rgb& message);
 v1::Material encode(const Material& material);

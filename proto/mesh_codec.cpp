@@ -33,8 +33,7 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
 bool MeshSlicer::next(v1::ReadMeshResponse& message) {
   message.Clear();
   const bool is_first = next_ == 0 && next_material_ == 0;
-  if (is_first && mesh_.up() == UpAxis::z) message.set_up_axis(v1::UP_AXIS_Z);
-  if (is_first && mesh_.quantity() == Quantity::photometric) message.set_quantity(v1::QUANTITY_PHOTOMETRIC);
+  if (is_first) message.set_up_axis(encode(mesh_.up())), message.set_quantity(encode(mesh_.quantity()));
   const std::span<const Material> materials = mesh_.materials();
   std::size_t bytes = 0;  // counted because names may be long
   for (; next_material_ < materials.size(); ++next_material_) {

@@ -154,9 +154,8 @@ PhotometricWeb decode(const v1::PhotometricWeb& message) {
 std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   if (auto fault = fault_in(chunk)) return fault;
   if (chunk.has_absorption_per_meter()) scene_.absorption = decode(chunk.absorption_per_meter());
-  if (chunk.up_axis() != v1::UP_AXIS_UNSPECIFIED) scene_.up = chunk.up_axis() == v1::UP_AXIS_Z ? UpAxis::z : UpAxis::y;
-  if (chunk.quantity() != v1::QUANTITY_UNSPECIFIED)
-    scene_.quantity = chunk.quantity() == v1::QUANTITY_PHOTOMETRIC ? Quantity::photometric : Quantity::radiometric;
+  decode(chunk.up_axis(), scene_.up);
+  decode(chunk.quantity(), scene_.quantity);
   for (const v1::PhotometricWeb& web : chunk.webs()) webs_.push_back(std::make_shared<PhotometricWeb>(decode(web)));
   for (const v1::Light& light : chunk.lights()) {
     scene_.lights.push_back(decode_light(light));
@@ -232,8 +231,7 @@ bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   std::int64_t budget = max_bytes_ - 96;
   const bool is_first = material_ == 0 && light_ == 0 && vertex_ == 0;
   if (is_first && !scene_.absorption.is_zero()) *chunk.mutable_absorption_per_meter() = encode(scene_.absorption);
-  if (is_first && scene_.up == UpAxis::z) chunk.set_up_axis(v1::UP_AXIS_Z);
-  if (is_first && scene_.quantity == Quantity::photometric) chunk.set_quantity(v1::QUANTITY_PHOTOMETRIC);
+  if (is_first) chunk.set_up_axis(encode(scene_.up)), chunk.set_quantity(encode(scene_.quantity));
   take_materials(chunk, budget);
   take_lights(chunk, budget);
   take_vertices(chunk, budget);

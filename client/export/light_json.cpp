@@ -1,6 +1,7 @@
 #include "client/export/light_json.h"
 
 #include "client/export/solution_file.h"
+#include "client/picture/units.h"
 
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array kinds{"point", "spot", "directional", "luminaire", "sky"};
-constexpr std::array shapes{"point", "rectangle", "ellipse", "box", "cylinder", "sphere"};
 
 /// Returns the number of `name` in a list of names. Throws SolutionFileError.
 template <class Value>
@@ -62,7 +62,7 @@ void add_luminaire(std::span<const Light> lights, std::size_t which, json& objec
   const Light& light = lights[which];
   const LuminousOpening& opening = light.opening;
   object["across"] = {light.across.x, light.across.y, light.across.z};
-  object["opening"] = {{"shape", shapes[static_cast<std::size_t>(opening.shape)]},
+  object["opening"] = {{"shape", name_of(opening.shape)},
                        {"across_meters", opening.across},
                        {"along_meters", opening.along},
                        {"height_meters", opening.height}};
@@ -74,7 +74,7 @@ void add_luminaire(std::span<const Light> lights, std::size_t which, json& objec
 void read_luminaire_fields(const json& source, std::span<const Light> before, Light& light) {
   light.across = vector_of(source, "across");
   const json& opening = source.at("opening");
-  light.opening = {value_named<LuminousOpening::Shape>(shapes, opening.at("shape")), opening.at("across_meters"),
+  light.opening = {value_named<LuminousOpening::Shape>(names_of_shapes, opening.at("shape")), opening.at("across_meters"),
                    opening.at("along_meters"), opening.at("height_meters")};
   if (!source.contains("web_of")) {
     light.web = web_of(source.at("web"));

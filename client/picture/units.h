@@ -3,6 +3,8 @@
 
 #include "meshing/scene.h"
 
+#include <array>
+#include <cstddef>
 #include <string_view>
 
 namespace alvor {
@@ -15,6 +17,11 @@ constexpr const char* name_of(Quantity quantity) { return quantity == Quantity::
 constexpr Quantity quantity_of(std::string_view name) {
   return name == name_of(Quantity::photometric) ? Quantity::photometric : Quantity::radiometric;
 }
+
+/// Names of LuminousOpening::Shape in files and tables, in the order of its values.
+inline constexpr std::array names_of_shapes{"point", "rectangle", "ellipse", "box", "cylinder", "sphere"};
+
+constexpr const char* name_of(LuminousOpening::Shape shape) { return names_of_shapes[static_cast<std::size_t>(shape)]; }
 
 /// Returns what one number says about three bands: their mean, or in a photometric scene the luminous value (Rec. 709).
 constexpr double one_number(const Rgb& bands, Quantity quantity) {

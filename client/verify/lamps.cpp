@@ -21,12 +21,6 @@ Vec3 direction_in_cone(Vec3 axis, double cosine, UnitPair at) {
   return z * axis + r * std::cos(turn) * side + r * std::sin(turn) * up;
 }
 
-/// Returns the intensity of a lamp in a direction (unit), as a factor of Light::intensity.
-double share_of_intensity(const Light& lamp, Vec3 direction) {
-  if (lamp.kind == LightKind::spot) return SpotCone(lamp).share(dot(direction, lamp.direction));
-  return lamp.kind == LightKind::luminaire ? HungWeb(lamp).intensity(direction) : 1;
-}
-
 }  // namespace
 
 Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<const Vec3> surface_points) {
@@ -44,11 +38,20 @@ Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<cons
     for (double* size : {&lamp.opening.across, &lamp.opening.along, &lamp.opening.height}) *size /= extent.longest_side;
     if (lamp.opening.shape == LuminousOpening::Shape::sphere) lamp.radius = lamp.opening.across / 2;
     Opening& opening = openings_.emplace_back();
-    if (lamp.kind == LightKind::luminaire) opening.faces = faces_of_opening(lamp), opening.greatest = lamp.web->greatest();
+    if (lamp.kind == LightKind::luminaire) {
+      opening.faces = faces_of_opening(lamp), opening.greatest = lamp.web->greatest();
+      opening.web.emplace(lamp);
+    }
     for (const OpeningFace& face : opening.faces) opening.area += face.area;
     if (!lamp.is_distant()) lamp.intensity *= 1 / (extent.longest_side * extent.longest_side);
     lamps_.push_back(lamp);
   }
+}
+
+double Lamps::share_of_intensity(std::size_t which, Vec3 direction) const {
+  const Light& lamp = lamps_[which];
+  if (lamp.kind == LightKind::spot) return SpotCone(lamp).share(dot(direction, lamp.direction));
+  return openings_[which].web ? openings_[which].web->intensity(direction) : 1;
 }
 
 // A sphere that is partly below the horizon brings light although its middle does not: its top counts here.
@@ -64,7 +67,7 @@ Rgb Lamps::unblocked(std::size_t which, Vec3 point, Vec3 normal) const {
   if (height <= 0) return {};
   // Parts of an opening are seen from other directions than its middle: some light is expected from everywhere.
   const double least = lamp.kind == LightKind::luminaire ? 0.05 * openings_[which].greatest : 0;
-  const double share = std::max(least, share_of_intensity(lamp, -way / std::max(length(way), nearest_place)));
+  const double share = std::max(least, share_of_intensity(which, -way / std::max(length(way), nearest_place)));
   return share * std::min(1.0, height / distance) / (distance * distance) * lamp.intensity;
 }
 
@@ -98,7 +101,7 @@ Lamps::Sample Lamps::sample_of(std::size_t which, Vec3 point, Vec3 normal, UnitP
   if (!openings_[which].faces.empty()) return sample_of_opening(which, point, normal, at);
   const Vec3 way = lamp.position - point;
   const double distance = std::max(length(way), nearest_place);
-  const double share = share_of_intensity(lamp, -way / distance);
+  const double share = share_of_intensity(which, -way / distance);
   if (lamp.radius == 0 || distance <= lamp.radius) {
     const double most = std::max(distance, lamp.radius);
     return {share * std::max(0.0, dot(way, normal) / distance) / (most * most) * lamp.intensity, nearly_there * way, distance};
@@ -129,7 +132,7 @@ Lamps::Sample Lamps::sample_of_opening(std::size_t which, Vec3 point, Vec3 norma
     const double own = std::max(0.0, dot(face->normal, out));
     share = own > 0 ? opening.area * own / shown : 0;
   }
-  const double scale = share * share_of_intensity(lamp, out) * std::max(0.0, -dot(out, normal)) / (distance * distance);
+  const double scale = share * share_of_intensity(which, out) * std::max(0.0, -dot(out, normal)) / (distance * distance);
   return {scale * lamp.intensity, nearly_there * way, distance};
 }
 

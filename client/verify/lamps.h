@@ -43,13 +43,16 @@ class Lamps {
   double way_out(Vec3 point, Vec3 direction) const;
 
  private:
-  /// Where a luminaire shines from; no faces for other lamps.
+  /// The faces from which a luminaire shines, and its intensities by direction. Other lamps have no faces and no web.
   struct Opening {
     std::vector<OpeningFace> faces;
     double area = 0;
+    std::optional<HungWeb> web;
     double greatest = 0;  ///< intensity of the web
   };
   Sample sample_of_opening(std::size_t lamp, Vec3 point, Vec3 normal, UnitPair at) const;
+  /// Returns the intensity of a lamp in a direction (unit), as a factor of Light::intensity.
+  double share_of_intensity(std::size_t which, Vec3 direction) const;
   Rgb unblocked(std::size_t which, Vec3 point, Vec3 normal) const;
 
   std::vector<Opening> openings_;  ///< by lamp

@@ -23,9 +23,10 @@ std::uint64_t memory_of_machine();
 
 struct ImporterOptions {
   std::filesystem::path program = importer_beside_program();
-  std::uint64_t memory_bytes = memory_of_machine();                         ///< address space of the process
-  std::chrono::seconds cpu = std::chrono::minutes(10);                      ///< processor time
-  std::chrono::steady_clock::duration patience = std::chrono::minutes(15);  ///< then the process is ended
+  std::uint64_t memory_bytes = memory_of_machine();     ///< address space of the process
+  std::chrono::seconds cpu = std::chrono::minutes(10);  ///< processor time
+  std::chrono::steady_clock::duration patience =
+      std::chrono::minutes(15);  ///< longest time that the process may run; it is ended then
 };
 
 /// What an importer answers besides the geometry.

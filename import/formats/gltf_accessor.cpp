@@ -121,4 +121,9 @@ std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int access
   return indices;
 }
 
+double number_in(const tinygltf::Value& object, const char* name, double otherwise) {
+  if (!object.IsObject() || !object.Has(name) || !object.Get(name).IsNumber()) return otherwise;
+  return object.Get(name).GetNumberAsDouble();
+}
+
 }  // namespace alvor

@@ -1,5 +1,5 @@
 #pragma once
-// Reads numbers out of glTF buffers. Checks every range before reading, as the file may be hostile.
+// Reads numbers out of glTF buffers and JSON values. Checks every range before reading, as the file may be hostile.
 
 #include "meshing/vec3.h"
 
@@ -9,7 +9,8 @@
 
 namespace alvor_tinygltf {
 class Model;
-}
+class Value;
+}  // namespace alvor_tinygltf
 namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
@@ -22,5 +23,8 @@ std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, int v
 std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor);
 /// Returns the indices in an accessor. Throws ImportError as read_positions does.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);
+
+/// Returns the number `name` of a JSON object; `otherwise` if it is no object or has no such number.
+double number_in(const tinygltf::Value& object, const char* name, double otherwise);
 
 }  // namespace alvor

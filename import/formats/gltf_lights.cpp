@@ -1,6 +1,7 @@
 #include "import/formats/gltf_lights.h"
 
 #include "import/base/import_error.h"
+#include "import/formats/gltf_accessor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +9,6 @@
 namespace alvor {
 
 namespace {
-
-/// Returns the number `name` of an object's extras; 0 if it has none.
-double extra(const tinygltf::Value& extras, const char* name) {
-  if (!extras.IsObject() || !extras.Has(name) || !extras.Get(name).IsNumber()) return 0;
-  return extras.Get(name).GetNumberAsDouble();
-}
 
 LightKind kind_of(const std::string& type, const std::string& place) {
   if (type == "point") return LightKind::point;
@@ -51,7 +46,7 @@ void GltfLights::add(const tinygltf::Node& node, std::size_t index, const Placem
     light.outer_cone = source.spot.outerConeAngle;
     light.inner_cone = std::min(source.spot.innerConeAngle, light.outer_cone);
   }
-  if (!light.is_distant()) light.radius = std::max(extra(source.extras, "radius"), extra(node.extras, "radius"));
+  if (!light.is_distant()) light.radius = std::max(number_in(source.extras, "radius", 0), number_in(node.extras, "radius", 0));
   ranges_ += source.range > 0;
   ++lights_;
   scene.lights.push_back(std::move(light));

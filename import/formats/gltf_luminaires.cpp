@@ -12,12 +12,6 @@ namespace {
 
 constexpr const char* extension_name = "EXT_lights_ies";
 
-/// Returns the number `name` of an object, or `otherwise`.
-double number_in(const tinygltf::Value& object, const char* name, double otherwise) {
-  if (!object.IsObject() || !object.Has(name) || !object.Get(name).IsNumber()) return otherwise;
-  return object.Get(name).GetNumberAsDouble();
-}
-
 /// Returns an index; -1 if there is none that an int holds.
 int index_in(const tinygltf::Value& object, const char* name) {
   const double index = number_in(object, name, -1);

@@ -34,16 +34,15 @@ void take_options(const v1::ImportOptions& options, Scene& scene) {
   if (options.has_light_scale())
     for (Light& light : scene.lights) light.intensity *= options.light_scale();
   if (options.has_absorption_per_meter()) scene.absorption = decode(options.absorption_per_meter());
-  if (options.quantity() != v1::QUANTITY_UNSPECIFIED)
-    scene.quantity = options.quantity() == v1::QUANTITY_PHOTOMETRIC ? Quantity::photometric : Quantity::radiometric;
-  if (options.up_axis() != v1::UP_AXIS_UNSPECIFIED) scene.up = options.up_axis() == v1::UP_AXIS_Z ? UpAxis::z : UpAxis::y;
+  decode(options.quantity(), scene.quantity);
+  decode(options.up_axis(), scene.up);
 }
 
 /// Adds the lights that the options tell, after the scene has its quantity and its up axis.
 void add_lights(const v1::ImportOptions& options, SceneFiles& files, SceneFile& file) {
   const double lumens_per_watt = options.has_lumens_per_watt() ? options.lumens_per_watt() : radiance_lumens_per_watt;
   if (!(lumens_per_watt >= 1e-3 && lumens_per_watt <= 683)) throw ImportError("lumens per watt", "is outside [0.001, 683]");
-  // What the file itself has of photometric files is in cd.
+  // Luminaires that the scene file itself names are in cd, as their photometric files are.
   if (file.scene.quantity == Quantity::radiometric)
     for (Light& light : file.scene.lights)
       if (light.kind == LightKind::luminaire) light.intensity *= 1 / lumens_per_watt;

@@ -11,7 +11,6 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t most_angles = 10'000, most_intensities = 200'000;
 constexpr double metres_per_millimetre = 1e-3;
 constexpr double intensities_per_lumens = 1e-3;  // intensities are cd per 1000 lm of the lamps
 constexpr std::size_t most_lamp_sets = 20, direct_ratios = 10, lines_of_lamp_set = 6;
@@ -35,7 +34,6 @@ LuminousOpening read_opening(PhotometricText& text) {
 /// Returns the lumens of the first set of lamps.
 double read_lamps(PhotometricText& text, LuminaireFile& file) {
   const std::size_t sets = text.count_line("number of lamp sets", 1, most_lamp_sets);
-  file.watts = 0;
   text.line("number of lamps");
   text.line("type of lamps");
   const double lumens = std::abs(text.number_line("lumens of the lamps"));
@@ -74,8 +72,7 @@ LuminaireFile read_eulumdat(std::string_view bytes) {
   const std::size_t planes = text.count_line("number of C planes", 1, most_angles);
   text.number_line("distance of C planes");
   const std::size_t angles = text.count_line("number of angles", 2, most_angles);
-  if (planes * angles > most_intensities)
-    throw ImportError(text.place(), "has more than " + std::to_string(most_intensities) + " intensities");
+  text.require_table(planes, angles);
   skip(text, 2, "distance of angles");
   file.name = text.line("name");
   skip(text, 6, "sizes of the luminaire");
@@ -99,11 +96,8 @@ LuminaireFile read_eulumdat(std::string_view bytes) {
   for (std::size_t n = 0; n < symmetry.count; ++n) {
     PhotometricPlane& plane = given.emplace_back();
     plane.angle = all_planes[(symmetry.first + n) % planes];
-    for (std::size_t a = 0; a < angles; ++a) {
-      const double intensity = factor * text.number_line("intensities");
-      if (intensity < 0) throw ImportError(text.place(), "an intensity is negative");
-      plane.intensities.push_back(static_cast<float>(intensity));
-    }
+    for (std::size_t a = 0; a < angles; ++a)
+      plane.intensities.push_back(text.intensity(factor * text.number_line("intensities")));
   }
   complete(*web, std::move(given), symmetry.mirrors);
   file.lamp_lumens = lamp_lumens;

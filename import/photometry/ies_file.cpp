@@ -12,8 +12,6 @@ namespace alvor {
 namespace {
 
 constexpr double metres_per_foot = 0.3048;
-// More angles than any goniometer measures.
-constexpr std::size_t most_angles = 10'000, most_intensities = 200'000;
 // Angles that symmetry decides are compared to this, degrees.
 constexpr double angle_tolerance = 0.01;
 // A luminaire that shines from a line is that wide, metres.
@@ -107,11 +105,7 @@ Table read_table(PhotometricText& text, std::size_t verticals, std::size_t horiz
   table.horizontal = text.numbers(horizontals, "horizontal angles");
   for (std::size_t h = 0; h < horizontals; ++h) {
     std::vector<float>& row = table.rows.emplace_back();
-    for (std::size_t v = 0; v < verticals; ++v) {
-      const double intensity = factor * text.number("intensities");
-      if (intensity < 0) throw ImportError(text.place(), "an intensity is negative");
-      row.push_back(static_cast<float>(intensity));
-    }
+    for (std::size_t v = 0; v < verticals; ++v) row.push_back(text.intensity(factor * text.number("intensities")));
   }
   return table;
 }
@@ -177,8 +171,7 @@ LuminaireFile read_ies(std::string_view bytes) {
   const double multiplier = text.number("multiplier");
   const std::size_t verticals = text.count("number of vertical angles", 2, most_angles);
   const std::size_t horizontals = text.count("number of horizontal angles", 1, most_angles);
-  if (verticals * horizontals > most_intensities)
-    throw ImportError(text.place(), "has more than " + std::to_string(most_intensities) + " intensities");
+  text.require_table(horizontals, verticals);
   file.type = "CBA"[text.count("photometric type", 1, 3) - 1];
   const double metres = text.count("type of units", 1, 2) == 1 ? metres_per_foot : 1;
   const double width = text.number("width"), length = text.number("length"), height = text.number("height");

@@ -1,6 +1,7 @@
 #include "import/photometry/photometric_text.h"
 
 #include "import/base/import_error.h"
+#include "meshing/photometric_web.h"
 
 #include <algorithm>
 #include <charconv>
@@ -68,6 +69,16 @@ std::vector<double> PhotometricText::numbers(std::size_t size, const char* what)
   std::vector<double> values;
   while (values.size() < size) values.push_back(number(what));
   return values;
+}
+
+void PhotometricText::require_table(std::size_t planes, std::size_t angles) const {
+  if (planes * angles > PhotometricWeb::most_intensities)
+    throw ImportError(place(), "has more than " + std::to_string(PhotometricWeb::most_intensities) + " intensities");
+}
+
+float PhotometricText::intensity(double value) const {
+  if (value < 0) throw ImportError(place(), "an intensity is negative");
+  return static_cast<float>(value);
 }
 
 double PhotometricText::parse(std::string_view word, const char* what) const {

@@ -8,13 +8,15 @@
 
 namespace alvor {
 
+/// More angles than any goniometer measures.
+constexpr std::size_t most_angles = 10'000;
+
 /// The lines of a text, ended by LF, CRLF or CR, with the white space at both ends removed.
 class PhotometricText {
  public:
   explicit PhotometricText(std::string_view text);
 
   bool is_at_end() const { return next_ >= lines_.size(); }
-  std::size_t lines_left() const { return lines_.size() - next_; }
   /// Returns the next line. `what` tells what the caller needs. Throws ImportError at the end of the file.
   std::string_view line(const char* what);
   /// Returns the next line as a number; a comma counts as a decimal point. Throws ImportError.
@@ -27,6 +29,10 @@ class PhotometricText {
   std::size_t count_line(const char* what, std::size_t low, std::size_t high);
   /// Returns `size` numbers. Throws ImportError, before it takes memory for more than the file can hold.
   std::vector<double> numbers(std::size_t size, const char* what);
+  /// Throws ImportError, which names the line read last, if a table of these sizes is larger than a PhotometricWeb may be.
+  void require_table(std::size_t planes, std::size_t angles) const;
+  /// Returns an intensity, cd, that the line read last told. Throws ImportError if it is negative.
+  float intensity(double value) const;
   /// Returns "line 12" for the line that was read last.
   std::string place() const { return "line " + std::to_string(next_); }
 

@@ -49,7 +49,7 @@ void set_limits(const SandboxLimits& limits) {
   if (!has_sanitizer) limit(RLIMIT_AS, limits.memory_bytes, "RLIMIT_AS");
 }
 
-/// What the C and C++ libraries call to allocate memory, to abort, and to read the clock.
+/// System calls with which the C and C++ libraries allocate memory, abort, and read the clock.
 constexpr std::array allowed{SCMP_SYS(read),
                              SCMP_SYS(write),
                              SCMP_SYS(close),
@@ -77,10 +77,10 @@ constexpr std::array allowed{SCMP_SYS(read),
                              SCMP_SYS(sched_yield),
                              SCMP_SYS(sched_getaffinity),
                              SCMP_SYS(getrusage)};
-/// Calls that make memory, allowed unless the memory could hold code.
+/// System calls that map memory. They are allowed unless the memory could hold code.
 constexpr std::array allowed_without_code{SCMP_SYS(mmap), SCMP_SYS(mprotect)};
 
-/// What sanitizers call besides: UBSan looks through a pipe whether memory can be read.
+/// Further system calls of sanitizers: UBSan finds out through a pipe whether memory can be read.
 constexpr std::array allowed_for_sanitizers{SCMP_SYS(pipe), SCMP_SYS(pipe2), SCMP_SYS(prctl)};
 
 void allow(scmp_filter_ctx filter, int call) {

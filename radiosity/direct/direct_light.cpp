@@ -234,15 +234,13 @@ class ShadowBatch {
     std::array<RelativeLight, packets_of_rest * RayPacket::width> brings{};
     for (std::size_t packet = 0; packet < packets_of_rest; ++packet) {
       ShadowAim aim = aim_of(r, packet);
-      for (int o = 0; o < RayPacket::width; ++o) {
+      for (std::size_t o = 0; o < RayPacket::width; ++o) {
         const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);
         const LightSource& light = *lights_[drawn.light];
         const double u = random.next(), v = random.next();
-        aim.at[static_cast<std::size_t>(o)] = {u, v};
+        aim.at[o] = {u, v};
         light.aim(aim, o, o + 1);
-        if (drawn.probability > 0)
-          brings[packet * RayPacket::width + static_cast<std::size_t>(o)] =
-              light.sample_scale(drawn.probability) * light.colour();
+        if (drawn.probability > 0) brings[packet * RayPacket::width + o] = light.sample_scale(drawn.probability) * light.colour();
       }
       hide(packet, receiver);
     }

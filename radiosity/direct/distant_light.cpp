@@ -15,19 +15,17 @@ namespace {
 constexpr std::uint32_t trial_packets = 256;
 // Radius of a sphere about the local origin that holds the scene: half the diagonal of the unit cube, rounded up.
 constexpr double scene_radius = 0.867;
+// Length of a way that begins outside of the scene and leads through all of it, local units.
+constexpr float way_through = 4;
 
 /// Returns the area, m2, across which parallel light from `towards` meets fronts first; never 0.
 double area_met(const LocalScene& scene, Vec3 towards) {
   std::vector<RayPacket> rays(trial_packets);
   std::vector<HitPacket> hits(trial_packets);
+  const TangentFrame across(towards);
   for (std::uint32_t n = 0; n < trial_packets * RayPacket::width; ++n) {
-    const Vec3 from = scene_radius * (towards + disk_point(towards, sobol_point(n, 0, 0)));
-    RayPacket& packet = rays[n / RayPacket::width];
-    const auto lane = n % RayPacket::width;
-    packet.origin_x[lane] = static_cast<float>(from.x), packet.direction_x[lane] = static_cast<float>(-towards.x);
-    packet.origin_y[lane] = static_cast<float>(from.y), packet.direction_y[lane] = static_cast<float>(-towards.y);
-    packet.origin_z[lane] = static_cast<float>(from.z), packet.direction_z[lane] = static_cast<float>(-towards.z);
-    packet.t_min[lane] = 0, packet.t_max[lane] = 4;
+    const Vec3 from = scene_radius * (towards + disk_point(across, sobol_point(n, 0, 0)));
+    rays[n / RayPacket::width].set(n % RayPacket::width, from, -towards, way_through);
   }
   scene.visibility().closest_hits(rays, hits);
   double fronts = 0.5;
@@ -48,16 +46,13 @@ DistantLight::DistantLight(const LocalScene& scene, std::uint32_t number, const 
 
 double DistantLight::unblocked(Vec3, Vec3 normal) const { return std::max(0.0, dot(towards_, normal)); }
 
-void DistantLight::aim(const ShadowAim& aim, int first, int last) const {
-  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
-  for (int o = first; o < last; ++o) {
-    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
+void DistantLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
+  const Vec3 normal = aim.facing();
+  const TangentFrame across(towards_);
+  for (std::size_t o = first; o < last; ++o) {
     Vec3 direction = towards_;
-    if (half_width_ > 0)
-      direction = normalized(towards_ + half_width_ * disk_point(towards_, aim.at[static_cast<std::size_t>(o)]));
-    const Vec3 way = box_.way_out(from, direction) * direction;
-    set_ray(aim, o, way, 1);
-    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(std::max(0.0, dot(direction, normal)));
+    if (half_width_ > 0) direction = normalized(towards_ + half_width_ * disk_point(across, aim.at[o]));
+    aim.set(o, box_.way_out(aim.start(o), direction) * direction, 1, std::max(0.0, dot(direction, normal)));
   }
 }
 

@@ -18,7 +18,7 @@ class DistantLight final : public LightSource {
   DistantLight(const LocalScene& scene, std::uint32_t number, const Light& light, const RelativeLight& colour);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
-  void aim(const ShadowAim& aim, int first, int last) const override;
+  void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override { return 1 / probability; }
   std::optional<LightExtent> extent() const override { return std::nullopt; }
 

@@ -7,14 +7,6 @@
 
 namespace alvor {
 
-namespace {
-
-// Share of the way to the face at which a shadow ray ends, so that it does not hit the face itself. Chosen; half and double give
-// the same solutions (docs/design/constants.md).
-constexpr float short_of_face = 1 - 1e-4f;
-
-}  // namespace
-
 FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission)
     : LightSource(root, emission, emission.sum() * scene.mesh().roots()[root].area), scene_(scene) {}
 
@@ -23,11 +15,11 @@ double FaceLight::unblocked(Vec3 at, Vec3 normal) const {
   return dot(at - corners[0], scene_.mesh().roots()[root()].normal) > 0 ? point_to_polygon(at, normal, corners) : 0;
 }
 
-void FaceLight::aim(const ShadowAim& aim, int first, int last) const {
+void FaceLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
   const LocalRoot& to = scene_.root(root());
   RayPacket& rays = aim.rays;
-  for (int o = first; o < last; ++o) {
-    Uv target = aim.at[static_cast<std::size_t>(o)];
+  for (std::size_t o = first; o < last; ++o) {
+    Uv target = aim.at[o];
     if (!to.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
     const auto u = static_cast<float>(target.u), v = static_cast<float>(target.v);
     const auto at = [&](float origin, float edge_u, float edge_v, float twist) {
@@ -38,14 +30,14 @@ void FaceLight::aim(const ShadowAim& aim, int first, int last) const {
     rays.direction_y[o] = at(to.origin.y, to.edge_u.y, to.edge_v.y, to.twist.y) - aim.from.y[o];
     rays.direction_z[o] = at(to.origin.z, to.edge_u.z, to.edge_v.z, to.twist.z) - aim.from.z[o];
     rays.t_min[o] = 0;
-    rays.t_max[o] = short_of_face;
+    rays.t_max[o] = short_of_light;
   }
   const Float3 &n = aim.normal, &m = to.normal;
-  for (int o = first; o < last; ++o) {
+  for (std::size_t o = first; o < last; ++o) {
     const float x = rays.direction_x[o], y = rays.direction_y[o], z = rays.direction_z[o];
     const float squared = x * x + y * y + z * z;
     const float here = std::max(0.0f, x * n.x + y * n.y + z * n.z), there = std::max(0.0f, -(x * m.x + y * m.y + z * m.z));
-    aim.weights[static_cast<std::size_t>(o)] = here * there / (squared * squared + 1e-30f);
+    aim.weights[o] = here * there / (squared * squared + 1e-30f);
   }
 }
 

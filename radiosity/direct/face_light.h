@@ -16,7 +16,7 @@ class FaceLight final : public LightSource {
   std::uint32_t root() const { return number(); }
   bool may_reach(std::uint32_t receiver) const override { return receiver != root(); }
   double unblocked(Vec3 at, Vec3 normal) const override;
-  void aim(const ShadowAim& aim, int first, int last) const override;
+  void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override;
   std::optional<LightExtent> extent() const override;
 

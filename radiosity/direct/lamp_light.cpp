@@ -10,11 +10,6 @@ namespace alvor {
 
 namespace {
 
-// Share of the way to the lamp at which a shadow ray ends, so that a lamp on a ceiling is not in the ceiling's shadow.
-constexpr float short_of_lamp = 1 - 1e-4f;
-// Smallest distance from which a lamp is looked at, local units: closer, its light would grow without bound.
-constexpr double nearest_lamp = 1e-5;
-
 double squared(double x) { return x * x; }
 
 double radius_of_sphere(const Light& lamp) { return lamp.kind == LightKind::luminaire ? lamp.opening.across / 2 : lamp.radius; }
@@ -29,7 +24,7 @@ LampLight::LampLight(const LocalScene& scene, std::uint32_t number, const Light&
       web_(lamp.kind == LightKind::luminaire ? std::optional(HungWeb(lamp)) : std::nullopt),
       place_(scene.frame().to_local(lamp.position)),
       radius_(radius_of_sphere(lamp) / scene.frame().metres_per_unit),
-      nearest_(std::max(radius_, nearest_lamp)),
+      nearest_(std::max(radius_, nearest_look)),
       greatest_(greatest) {}
 
 /// Returns the lamp's intensity in a direction (unit), in multiples of its own.
@@ -49,20 +44,18 @@ double LampLight::unblocked(Vec3 at, Vec3 normal) const {
   return height / std::sqrt(distance_squared) * share_over_distance_squared(-way, distance_squared);
 }
 
-void LampLight::aim(const ShadowAim& aim, int first, int last) const {
-  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
-  for (int o = first; o < last; ++o) {
-    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]}, way = place_ - from;
+void LampLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
+  for (std::size_t o = first; o < last; ++o) {
+    const Vec3 way = place_ - aim.start(o);
     const double distance_squared = std::max(dot(way, way), 1e-30), distance = std::sqrt(distance_squared);
     Vec3 target = way;
     if (radius_ > 0) {
       // The disk is as wide as the cone in which the sphere is seen.
       const double sine = std::min(0.99, radius_ / distance), edge = distance * sine / std::sqrt(1 - sine * sine);
-      target += edge * disk_point(way / distance, aim.at[static_cast<std::size_t>(o)]);
+      target += edge * disk_point(TangentFrame(way / distance), aim.at[o]);
     }
-    set_ray(aim, o, target, short_of_lamp);
-    const double cosine = std::max(0.0, dot(target, normal) / distance);
-    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(cosine * share_over_distance_squared(-way, distance_squared));
+    const double cosine = std::max(0.0, dot(target, aim.facing()) / distance);
+    aim.set(o, target, short_of_light, cosine * share_over_distance_squared(-way, distance_squared));
   }
 }
 

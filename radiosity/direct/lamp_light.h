@@ -21,7 +21,7 @@ class LampLight final : public LightSource {
             double greatest);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
-  void aim(const ShadowAim& aim, int first, int last) const override;
+  void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override { return 1 / probability; }
   std::optional<LightExtent> extent() const override;
 

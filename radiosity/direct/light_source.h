@@ -22,18 +22,21 @@ struct ShadowAim {
   std::array<Uv, RayPacket::width> at;
   RayPacket& rays;
   std::array<float, RayPacket::width>& weights;  ///< light that arrives by each ray if nothing blocks it, see sample_scale()
+
+  Vec3 start(std::size_t o) const { return {from.x[o], from.y[o], from.z[o]}; }
+  Vec3 facing() const { return {normal.x, normal.y, normal.z}; }
+  /// Sets ray `o` along `way` (local units), of which it may be blocked up to the share `end`, and its weight.
+  void set(std::size_t o, Vec3 way, float end, double weight) const {
+    rays.set(o, start(o), way, end);
+    weights[o] = static_cast<float>(weight);
+  }
 };
 
-/// Sets ray `o` of the packet: from its origin along `way` (local units), of which it may be blocked up to the share `end`.
-inline void set_ray(const ShadowAim& aim, int o, Vec3 way, float end) {
-  RayPacket& rays = aim.rays;
-  rays.origin_x[o] = aim.from.x[o], rays.origin_y[o] = aim.from.y[o], rays.origin_z[o] = aim.from.z[o];
-  rays.direction_x[o] = static_cast<float>(way.x);
-  rays.direction_y[o] = static_cast<float>(way.y);
-  rays.direction_z[o] = static_cast<float>(way.z);
-  rays.t_min[o] = 0;
-  rays.t_max[o] = end;
-}
+/// Share of the way to a light at which a shadow ray ends, so that the light and what it is fixed to do not block it. Chosen;
+/// half and double give the same solutions (docs/design/constants.md).
+constexpr float short_of_light = 1 - 1e-4f;
+/// Smallest distance from which a light is looked at, local units: closer, that of a point would grow without bound.
+constexpr double nearest_look = 1e-5;
 
 /// Bounds on what a light brings, for the LightTree. Local units (see LocalFrame).
 struct LightExtent {
@@ -68,7 +71,7 @@ class LightSource {
   virtual double unblocked(Vec3 at, Vec3 normal) const = 0;
   /// Sets rays and weights of the lanes [first, last). The mean weight over the unit square, times sample_scale(1), is
   /// unblocked(). A weight is 0 where the light is below the horizon of the surface.
-  virtual void aim(const ShadowAim& aim, int first, int last) const = 0;
+  virtual void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const = 0;
   /// Returns the factor from a weight to irradiance, in multiples of colour(), if the light was chosen with `probability`.
   virtual double sample_scale(double probability) const = 0;
   /// Returns nothing if the light comes from outside of the scene.

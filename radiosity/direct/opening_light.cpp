@@ -8,15 +8,6 @@
 
 namespace alvor {
 
-namespace {
-
-// Share of the way to the opening at which a shadow ray ends, so that an opening in a ceiling is not in the ceiling's shadow.
-constexpr float short_of_opening = 1 - 1e-4f;
-// Smallest distance from which the opening is looked at, local units.
-constexpr double nearest_opening = 1e-5;
-
-}  // namespace
-
 OpeningLight::OpeningLight(const LocalScene& scene, std::uint32_t number, const Light& luminaire, const RelativeLight& colour,
                            double power, double greatest)
     : LightSource(number, colour, power),
@@ -52,7 +43,7 @@ double OpeningLight::shown_area(Vec3 direction) const {
 /// Returns the irradiance that a face brings per area of the face, from one of its points.
 double OpeningLight::brings(const OpeningFace& face, Vec3 from, Vec3 at, Vec3 normal) const {
   const Vec3 way = from - at;
-  const double squared = std::max(dot(way, way), nearest_opening * nearest_opening), distance = std::sqrt(squared);
+  const double squared = std::max(dot(way, way), nearest_look * nearest_look), distance = std::sqrt(squared);
   const double cosine = dot(way, normal) / distance;
   if (cosine <= 0) return 0;
   const Vec3 direction = -way / distance;
@@ -85,21 +76,19 @@ const OpeningFace& OpeningLight::choose(Uv& at) const {
   return faces_[chosen];
 }
 
-void OpeningLight::aim(const ShadowAim& aim, int first, int last) const {
-  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
-  for (int o = first; o < last; ++o) {
-    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
-    Uv at = aim.at[static_cast<std::size_t>(o)];
+void OpeningLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
+  for (std::size_t o = first; o < last; ++o) {
+    const Vec3 from = aim.start(o);
+    Uv at = aim.at[o];
     const OpeningFace& face = choose(at);
     const Vec3 target = face.at(at);
-    set_ray(aim, o, target - from, short_of_opening);
-    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(area_ * brings(face, target, from, normal));
+    aim.set(o, target - from, short_of_light, area_ * brings(face, target, from, aim.facing()));
   }
 }
 
 std::optional<LightExtent> OpeningLight::extent() const {
   const double intensity = colour().sum() * greatest_;
-  return LightExtent{place_, low_, high_, {}, std::numbers::pi * intensity, intensity / (nearest_opening * nearest_opening)};
+  return LightExtent{place_, low_, high_, {}, std::numbers::pi * intensity, intensity / (nearest_look * nearest_look)};
 }
 
 }  // namespace alvor

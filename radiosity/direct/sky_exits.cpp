@@ -180,14 +180,11 @@ class FaceRays {
  private:
   // Height above the face at which rays start, local units: some roundings of float32.
   static constexpr double off_surface = 1e-6;
+  // Length of a way that leads out of the scene from any place in it, local units.
+  static constexpr float way_through = 4;
 
   void set(std::uint32_t n, Vec3 from, Vec3 direction) {
-    RayPacket& packet = rays_[n / RayPacket::width];
-    const auto lane = n % RayPacket::width;
-    packet.origin_x[lane] = static_cast<float>(from.x), packet.direction_x[lane] = static_cast<float>(direction.x);
-    packet.origin_y[lane] = static_cast<float>(from.y), packet.direction_y[lane] = static_cast<float>(direction.y);
-    packet.origin_z[lane] = static_cast<float>(from.z), packet.direction_z[lane] = static_cast<float>(direction.z);
-    packet.t_min[lane] = 0, packet.t_max[lane] = 4;
+    rays_[n / RayPacket::width].set(n % RayPacket::width, from, direction, way_through);
     from_.push_back(from);
     way_.push_back(direction);
   }

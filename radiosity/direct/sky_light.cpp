@@ -1,5 +1,6 @@
 #include "radiosity/direct/sky_light.h"
 
+#include "radiosity/direct/disk_point.h"
 #include "radiosity/direct/face_integral.h"
 
 #include <algorithm>
@@ -14,8 +15,6 @@ using std::numbers::pi;
 
 // Steps of the table over normals: angles from the zenith and azimuths; and of the sum over directions that fills it.
 constexpr int tilts = 48, turns = 96, rings = 32, sectors = 128;
-// Smallest distance from which an exit is looked at, local units.
-constexpr double nearest_exit = 1e-5;
 // Cosine of the angle between a zenith and the side of an exit within which the side stands upright.
 constexpr double aligned = 1 - 1e-9;
 
@@ -23,12 +22,7 @@ constexpr double aligned = 1 - 1e-9;
 
 DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour,
                      double power, std::shared_ptr<const SkyExits> exits)
-    : LightSource(number, colour, power),
-      dome_(dome),
-      exits_(std::move(exits)),
-      side_(normalized(cross(dome_.zenith(), std::abs(dome_.zenith().x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}))),
-      other_(cross(dome_.zenith(), side_)),
-      box_(scene) {
+    : LightSource(number, colour, power), dome_(dome), exits_(std::move(exits)), axes_(dome_.zenith()), box_(scene) {
   fill_table();
 }
 
@@ -42,13 +36,14 @@ void DomeLight::fill_table() {
     for (int sector = 0; sector < sectors; ++sector) {
       // Even by solid angle, so that the horizon, which tilted faces look at, is as fine as the zenith.
       const double cosine = (ring + 0.5) / rings, sine = std::sqrt(1 - cosine * cosine), turn = 2 * pi * (sector + 0.5) / sectors;
-      const Vec3 direction = cosine * dome_.zenith() + sine * std::cos(turn) * side_ + sine * std::sin(turn) * other_;
+      const Vec3 direction = cosine * dome_.zenith() + sine * std::cos(turn) * axes_.s + sine * std::sin(turn) * axes_.t;
       rays.push_back({direction, dome_.radiance(direction) * 2 * pi / (rings * sectors)});
     }
   for (int tilt = 0; tilt <= tilts; ++tilt)
     for (int turn = 0; turn < turns; ++turn) {
       const double a = pi * tilt / tilts, b = 2 * pi * turn / turns;
-      const Vec3 normal = std::cos(a) * dome_.zenith() + std::sin(a) * std::cos(b) * side_ + std::sin(a) * std::sin(b) * other_;
+      const Vec3 normal =
+          std::cos(a) * dome_.zenith() + std::sin(a) * std::cos(b) * axes_.s + std::sin(a) * std::sin(b) * axes_.t;
       double sum = 0;
       for (const Ray& ray : rays) sum += ray.brings * std::max(0.0, dot(ray.direction, normal));
       table_.push_back(static_cast<float>(sum));
@@ -57,7 +52,7 @@ void DomeLight::fill_table() {
 
 double DomeLight::unblocked(Vec3, Vec3 normal) const {
   const double tilt = std::acos(std::clamp(dot(normal, dome_.zenith()), -1.0, 1.0)) / pi * tilts;
-  double turn = std::atan2(dot(normal, other_), dot(normal, side_)) / (2 * pi) * turns;
+  double turn = std::atan2(dot(normal, axes_.t), dot(normal, axes_.s)) / (2 * pi) * turns;
   if (turn < 0) turn += turns;
   const int row = std::min(tilts - 1, static_cast<int>(tilt)), column = std::min(turns - 1, static_cast<int>(turn));
   const auto at = [&](int r, int c) { return double{table_[static_cast<std::size_t>(r * turns + c % turns)]}; };
@@ -66,18 +61,13 @@ double DomeLight::unblocked(Vec3, Vec3 normal) const {
          v * ((1 - u) * at(row + 1, column) + u * at(row + 1, column + 1));
 }
 
-void DomeLight::aim(const ShadowAim& aim, int first, int last) const {
-  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
-  const Vec3 tangent = normalized(cross(normal, std::abs(normal.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
-  const Vec3 bitangent = cross(normal, tangent);
-  for (int o = first; o < last; ++o) {
-    const Uv at = aim.at[static_cast<std::size_t>(o)];
-    const double radius = std::sqrt(at.u), angle = 2 * pi * at.v;
-    const Vec3 direction = normalized(radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent +
-                                      std::sqrt(std::max(0.0, 1 - at.u)) * normal);
-    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
-    set_ray(aim, o, box_.way_out(from, direction) * direction, 1);
-    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(pi * dome_.radiance(direction));
+void DomeLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
+  const Vec3 normal = aim.facing();
+  const TangentFrame tangents(normal);
+  for (std::size_t o = first; o < last; ++o) {
+    const Uv at = aim.at[o];
+    const Vec3 direction = normalized(disk_point(tangents, at) + std::sqrt(std::max(0.0, 1 - at.u)) * normal);
+    aim.set(o, box_.way_out(aim.start(o), direction) * direction, 1, pi * dome_.radiance(direction));
   }
 }
 
@@ -88,7 +78,7 @@ ExitLight::ExitLight(const LocalScene&, std::uint32_t number, const SkyDome& dom
 /// Returns the irradiance that a point of the exit brings, per area of the exit.
 double ExitLight::brings(Vec3 from, Vec3 at, Vec3 normal) const {
   const Vec3 way = from - at;
-  const double squared = std::max(dot(way, way), nearest_exit * nearest_exit), distance = std::sqrt(squared);
+  const double squared = std::max(dot(way, way), nearest_look * nearest_look), distance = std::sqrt(squared);
   const double here = dot(way, normal), there = -dot(way, exit_.inwards);
   return here > 0 && there > 0 ? here * there / (squared * squared) * dome_.radiance(way / distance) : 0;
 }
@@ -120,15 +110,13 @@ double ExitLight::unblocked(Vec3 at, Vec3 normal) const {
   return part.area() * FaceIntegral(point, brings_here, size_u, size_v, at).mean();
 }
 
-void ExitLight::aim(const ShadowAim& aim, int first, int last) const {
-  const Vec3 normal{aim.normal.x, aim.normal.y, aim.normal.z};
-  for (int o = first; o < last; ++o) {
-    const Uv at = aim.at[static_cast<std::size_t>(o)];
-    const Vec3 from{aim.from.x[o], aim.from.y[o], aim.from.z[o]};
+void ExitLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
+  for (std::size_t o = first; o < last; ++o) {
+    const Uv at = aim.at[o];
+    const Vec3 from = aim.start(o);
     const SkyExit part = above_horizon(from);
     const Vec3 target = part.at(at.u, at.v);
-    set_ray(aim, o, target - from, 1);
-    aim.weights[static_cast<std::size_t>(o)] = static_cast<float>(part.area() * brings(target, from, normal));
+    aim.set(o, target - from, 1, part.area() * brings(target, from, aim.facing()));
   }
 }
 

@@ -2,6 +2,7 @@
 // Light of the sky: from all directions for faces in the open, through exits for the others (see SkyExits).
 
 #include "meshing/light.h"
+#include "meshing/tangent_frame.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/direct/scene_box.h"
 #include "radiosity/direct/sky_exits.h"
@@ -23,7 +24,7 @@ class DomeLight final : public LightSource {
 
   bool may_reach(std::uint32_t root) const override { return exits_->is_open[root]; }
   double unblocked(Vec3 at, Vec3 normal) const override;
-  void aim(const ShadowAim& aim, int first, int last) const override;
+  void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override { return 1 / probability; }
   std::optional<LightExtent> extent() const override { return std::nullopt; }
 
@@ -32,7 +33,7 @@ class DomeLight final : public LightSource {
 
   const SkyDome dome_;
   const std::shared_ptr<const SkyExits> exits_;
-  Vec3 side_, other_;  // with the zenith the axes of the table
+  const TangentFrame axes_;  // with the zenith the axes of the table
   const SceneBox box_;
   std::vector<float> table_;  // by angle from the zenith, then by azimuth
 };
@@ -47,7 +48,7 @@ class ExitLight final : public LightSource {
 
   bool may_reach(std::uint32_t root) const override { return !exits_->is_open[root]; }
   double unblocked(Vec3 at, Vec3 normal) const override;
-  void aim(const ShadowAim& aim, int first, int last) const override;
+  void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override { return 1 / probability; }
   std::optional<LightExtent> extent() const override { return std::nullopt; }
 

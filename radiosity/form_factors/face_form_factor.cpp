@@ -76,12 +76,7 @@ class RaySums {
   RaySums(const LocalScene& scene, std::uint32_t face, std::size_t sets) : scene_(scene), face_(face), sums_(sets) {}
 
   void add(Vec3 origin, Vec3 direction, double weight, std::size_t set) {
-    packet_.origin_x[used_] = static_cast<float>(origin.x), packet_.origin_y[used_] = static_cast<float>(origin.y);
-    packet_.origin_z[used_] = static_cast<float>(origin.z);
-    packet_.direction_x[used_] = static_cast<float>(direction.x), packet_.direction_y[used_] = static_cast<float>(direction.y);
-    packet_.direction_z[used_] = static_cast<float>(direction.z);
-    packet_.t_min[used_] = 0;
-    packet_.t_max[used_] = std::numeric_limits<float>::infinity();
+    packet_.set(used_, origin, direction, std::numeric_limits<float>::infinity());
     weight_[used_] = weight;
     set_[used_] = set;
     ++rays_;
@@ -97,11 +92,11 @@ class RaySums {
  private:
   void trace() {
     scene_.visibility().closest_hits({&packet_, 1}, {&hit_, 1});
-    for (int lane = 0; lane < RayPacket::width; ++lane)
+    for (std::size_t lane = 0; lane < RayPacket::width; ++lane)
       if (arrives(lane)) sums_[set_[lane]] += weight_[lane];
     used_ = 0;
   }
-  bool arrives(int lane) const {
+  bool arrives(std::size_t lane) const {
     if (hit_.root[lane] == HitPacket::nothing || scene_.mesh().roots()[hit_.root[lane]].input.first != face_) return false;
     const Float3& n = scene_.root(hit_.root[lane]).normal;
     return packet_.direction_x[lane] * n.x + packet_.direction_y[lane] * n.y + packet_.direction_z[lane] * n.z < 0;
@@ -114,7 +109,7 @@ class RaySums {
   HitPacket hit_;
   std::array<double, RayPacket::width> weight_;
   std::array<std::size_t, RayPacket::width> set_;
-  int used_ = 0;
+  std::size_t used_ = 0;
   std::uint64_t rays_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "meshing/base_mesh.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,6 +18,14 @@ struct alignas(64) RayPacket {
   float origin_x[width], origin_y[width], origin_z[width];
   float direction_x[width], direction_y[width], direction_z[width];  ///< need not be unit
   float t_min[width], t_max[width];
+
+  /// Sets a ray that begins at `from` and ends where it has gone `end` times `way`.
+  void set(std::size_t lane, Vec3 from, Vec3 way, float end) {
+    origin_x[lane] = static_cast<float>(from.x), direction_x[lane] = static_cast<float>(way.x);
+    origin_y[lane] = static_cast<float>(from.y), direction_y[lane] = static_cast<float>(way.y);
+    origin_z[lane] = static_cast<float>(from.z), direction_z[lane] = static_cast<float>(way.z);
+    t_min[lane] = 0, t_max[lane] = end;
+  }
 };
 
 /// The hits of a packet of rays. `root` is `nothing` where a ray left the scene. Otherwise u, v are Embree's coordinates on the

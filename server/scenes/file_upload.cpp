@@ -13,12 +13,6 @@ constexpr std::size_t most_files = 10'000, most_luminaires = 10'000;
 /// What a file takes in memory besides its bytes.
 constexpr std::uint64_t bytes_of_file = 200;
 
-void refuse_beyond(std::uint64_t count, std::uint64_t limit, const char* unit) {
-  if (count > limit)
-    throw StatusError(grpc::RESOURCE_EXHAUSTED,
-                      "scene: more than " + std::to_string(limit) + " " + unit + ", the limit of this server");
-}
-
 void check(const v1::ImportOptions& options) {
   if (options.has_light_scale() && !(options.light_scale() >= 0 && options.light_scale() <= largest_light_scale))
     throw invalid_field("options.light_scale", options.light_scale(), "is not in [0, 1e12]");

@@ -4,15 +4,11 @@
 
 namespace alvor {
 
-namespace {
-
-void check_limit(std::uint64_t count, std::uint64_t limit, const char* unit) {
+void refuse_beyond(std::uint64_t count, std::uint64_t limit, const char* unit) {
   if (count <= limit) return;
   const std::string most = std::to_string(limit) + " " + unit;
   throw StatusError(grpc::RESOURCE_EXHAUSTED, "scene: more than " + most + ", the limit of this server");
 }
-
-}  // namespace
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
   // Sizes in memory; an empty material, light or web takes only a few bytes on the wire.
@@ -20,7 +16,7 @@ void SceneUpload::add(const v1::CreateSceneRequest& message) {
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size()) +
             bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size()) +
             bytes_of_web * static_cast<std::uint64_t>(message.chunk().webs_size());
-  check_limit(bytes_, limits_.bytes, "bytes");
+  refuse_beyond(bytes_, limits_.bytes, "bytes");
   limits_.memory.refuse_without_room("scene", message.ByteSizeLong());
   if (message.has_scene() == begun_)
     throw invalid_argument(begun_ ? "scene: only the first message may set it" : "scene: the first message must set it");
@@ -36,16 +32,16 @@ void SceneUpload::add(const v1::CreateSceneRequest& message) {
 
 void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
   const Scene& scene = assembler_.scene();
-  check_limit(scene.corners.size() + static_cast<std::uint64_t>(chunk.corner_vertices_size()), limits_.corners, "corners");
-  check_limit(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
-  check_limit(scene.lights.size() + static_cast<std::uint64_t>(chunk.lights_size()), limits_.lights, "lights");
-  check_limit(assembler_.web_count() + static_cast<std::uint64_t>(chunk.webs_size()), limits_.lights, "photometric webs");
+  refuse_beyond(scene.corners.size() + static_cast<std::uint64_t>(chunk.corner_vertices_size()), limits_.corners, "corners");
+  refuse_beyond(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
+  refuse_beyond(scene.lights.size() + static_cast<std::uint64_t>(chunk.lights_size()), limits_.lights, "lights");
+  refuse_beyond(assembler_.web_count() + static_cast<std::uint64_t>(chunk.webs_size()), limits_.lights, "photometric webs");
   for (const v1::Light& light : chunk.lights())
-    check_limit(light.name().size(), limits_.bytes_of_name, "bytes in a light's name");
+    refuse_beyond(light.name().size(), limits_.bytes_of_name, "bytes in a light's name");
   for (const std::uint32_t corners : chunk.face_corner_counts())
-    check_limit(corners, limits_.corners_of_face, "corners in a face");
+    refuse_beyond(corners, limits_.corners_of_face, "corners in a face");
   for (const v1::Material& material : chunk.materials())
-    check_limit(material.name().size(), limits_.bytes_of_name, "bytes in a material's name");
+    refuse_beyond(material.name().size(), limits_.bytes_of_name, "bytes in a material's name");
 }
 
 std::shared_ptr<const StoredScene> SceneUpload::finish(SceneStore& store, const Caller& caller, const CallStop& stop,

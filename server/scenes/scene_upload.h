@@ -26,6 +26,9 @@ struct UploadLimits {
   ImporterOptions importer;
 };
 
+/// Throws a StatusError RESOURCE_EXHAUSTED if an upload has more of something than the limit.
+void refuse_beyond(std::uint64_t count, std::uint64_t limit, const char* unit);
+
 /// The logic of one CreateScene call, without the network. Not thread-safe. A StatusError that it throws ends the upload.
 class SceneUpload : public ResumableUpload {
  public:

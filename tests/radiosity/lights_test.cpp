@@ -4,7 +4,7 @@
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/plan/plan.h"
-#include "radiosity/solve/solver.h"
+#include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -50,12 +50,6 @@ Scene floor_under(const Light& light) {
   return scene;
 }
 
-std::vector<LeafValue> solved(const BaseMesh& mesh, SolveOptions options) {
-  SolutionLog log;
-  solve(mesh, options, log, {});
-  return log.leaves();
-}
-
 /// Returns the mean irradiance over the area of all leaves, mean of the bands.
 double mean_irradiance(const BaseMesh& mesh, const std::vector<LeafValue>& leaves) {
   double sum = 0, all = 0;
@@ -72,7 +66,7 @@ template <class Expected>
 void expect_on_leaves(const Scene& scene, int depth, double tolerance, Expected&& expected) {
   const BaseMesh mesh(scene);
   std::size_t compared = 0;
-  for (const LeafValue& leaf : solved(mesh, {.tolerance = 1e-5, .max_depth = depth})) {
+  for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-5, .max_depth = depth})) {
     const double there = expected(centre_of(mesh, shape_of(mesh, leaf.patch)));
     if (std::isnan(there)) continue;
     EXPECT_NEAR(leaf.irradiance.g, there, tolerance);
@@ -141,7 +135,7 @@ TEST_P(LampInACube, HasTheKnownMeanIlluminance) {
   scene.lights = {point_lamp({2, 2, 2}, 10'000 / (4 * pi))};
   const BaseMesh mesh(scene);
   const double expected = 10'000 / (96 * (1 - GetParam()));
-  EXPECT_NEAR(mean_irradiance(mesh, solved(mesh, {.tolerance = 0.01})), expected, 0.005 * expected);
+  EXPECT_NEAR(mean_irradiance(mesh, test::solved(mesh, {.tolerance = 0.01})), expected, 0.005 * expected);
 }
 
 /// Returns each kind of light that there is, over the floor of a room with two blocks.
@@ -234,7 +228,7 @@ TEST(ManyLamps, AreAsBrightByTheTreeAsOneByOne) {
   const BaseMesh mesh(scene);
   // All light of the lamps meets the walls; none is reflected.
   const double expected = 64 * 4 * pi * 10 / (2 * 64 + 4 * 24);
-  EXPECT_NEAR(mean_irradiance(mesh, solved(mesh, {.tolerance = 0.02})), expected, 0.01 * expected);
+  EXPECT_NEAR(mean_irradiance(mesh, test::solved(mesh, {.tolerance = 0.02})), expected, 0.01 * expected);
 }
 
 TEST(PlanOfLamps, LightsTheRoomThatTheLampIsInAndNoOther) {

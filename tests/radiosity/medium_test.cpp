@@ -1,7 +1,7 @@
 // Light that fades on its way, against independent Monte Carlo and closed forms.
 
 #include "meshing/patch_place.h"
-#include "radiosity/solve/solver.h"
+#include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -14,11 +14,7 @@ namespace {
 
 /// The mean irradiance over the area, and the irradiance of the leaf whose centre is nearest to a point, W/m2.
 struct Solved {
-  Solved(const Scene& scene, const SolveOptions& options) : mesh(scene) {
-    SolutionLog log;
-    solve(mesh, options, log, {});
-    leaves = log.leaves();
-  }
+  Solved(const Scene& scene, const SolveOptions& options) : mesh(scene), leaves(test::solved(mesh, options)) {}
   Rgb mean() const {
     Rgb sum;
     double area = 0;

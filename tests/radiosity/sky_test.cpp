@@ -4,7 +4,7 @@
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/form_factors/form_factor.h"
 #include "radiosity/plan/plan.h"
-#include "radiosity/solve/solver.h"
+#include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -134,12 +134,6 @@ TEST_P(OnOpenGround, TiltedFacesGetTheIntegralOverWhatTheySee) {
   }
 }
 
-std::vector<LeafValue> solved(const BaseMesh& mesh, SolveOptions options) {
-  SolutionLog log;
-  solve(mesh, options, log, {});
-  return log.leaves();
-}
-
 /// Returns a black room of 4 x 3 x 4 m whose ceiling (`is_roof`) or wall z = 0 has a hole of 2 x 1.5 m in its middle.
 Scene room_with_hole(bool is_roof, std::vector<Vec3>& hole) {
   Scene scene;
@@ -169,7 +163,7 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
     const BaseMesh mesh(scene);
     std::size_t compared = 0;
     double error = 0, mean = 0;
-    for (const LeafValue& leaf : solved(mesh, {.tolerance = 1e-4, .max_depth = 5})) {
+    for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-4, .max_depth = 5})) {
       const PatchShape shape = shape_of(mesh, leaf.patch);
       const RootPatch& root = mesh.roots()[shape.root];
       if (root.normal.y < 0.9) continue;  // the floor: all of the hole is above its horizon
@@ -204,7 +198,7 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAnOvercastSky) {
     return 1000 * sum * 2 * 1.5 / (n * n);
   };
   double error = 0, mean = 0;
-  for (const LeafValue& leaf : solved(mesh, {.tolerance = 1e-4, .max_depth = 5})) {
+  for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-4, .max_depth = 5})) {
     const PatchShape shape = shape_of(mesh, leaf.patch);
     if (mesh.roots()[shape.root].normal.y < 0.9) continue;
     const double expected = expected_at(centre_of(mesh, shape));

@@ -11,11 +11,7 @@ namespace {
 
 RayPacket packet(Vec3 origin, Vec3 direction, float t_max) {
   RayPacket rays;
-  for (int r = 0; r < RayPacket::width; ++r) {
-    rays.origin_x[r] = float(origin.x), rays.origin_y[r] = float(origin.y), rays.origin_z[r] = float(origin.z);
-    rays.direction_x[r] = float(direction.x), rays.direction_y[r] = float(direction.y), rays.direction_z[r] = float(direction.z);
-    rays.t_min[r] = 0, rays.t_max[r] = t_max;
-  }
+  for (std::size_t r = 0; r < RayPacket::width; ++r) rays.set(r, origin, direction, t_max);
   return rays;
 }
 

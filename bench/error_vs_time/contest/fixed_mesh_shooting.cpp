@@ -22,11 +22,7 @@ class ShadowRays {
       : visibility_(visibility), form_factor_(form_factor) {}
 
   void add(std::size_t receiver, Vec3 from, Vec3 to, double weight) {
-    const Vec3 along = to - from;
-    packet_.origin_x[used_] = static_cast<float>(from.x), packet_.origin_y[used_] = static_cast<float>(from.y);
-    packet_.origin_z[used_] = static_cast<float>(from.z), packet_.direction_x[used_] = static_cast<float>(along.x);
-    packet_.direction_y[used_] = static_cast<float>(along.y), packet_.direction_z[used_] = static_cast<float>(along.z);
-    packet_.t_min[used_] = 0, packet_.t_max[used_] = 1;
+    packet_.set(used_, from, to - from, 1);
     receiver_[used_] = receiver, weight_[used_] = weight;
     if (++used_ == RayPacket::width) trace();
   }
@@ -34,12 +30,12 @@ class ShadowRays {
   void trace() {
     if (used_ == 0) return;
     // Unused rays of the packet get no length.
-    for (int ray = used_; ray < RayPacket::width; ++ray) packet_.t_min[ray] = 0, packet_.t_max[ray] = 0;
+    for (std::size_t ray = used_; ray < RayPacket::width; ++ray) packet_.t_min[ray] = 0, packet_.t_max[ray] = 0;
     std::uint16_t blocked = 0;
     visibility_.occlusions({&packet_, 1}, {&blocked, 1});
-    for (int ray = 0; ray < used_; ++ray)
+    for (std::size_t ray = 0; ray < used_; ++ray)
       if (!(blocked >> ray & 1)) form_factor_[receiver_[ray]] += weight_[ray];
-    rays_ += static_cast<std::uint64_t>(used_);
+    rays_ += used_;
     used_ = 0;
   }
 
@@ -51,7 +47,7 @@ class ShadowRays {
   RayPacket packet_{};
   std::size_t receiver_[RayPacket::width]{};
   double weight_[RayPacket::width]{};
-  int used_ = 0;
+  std::size_t used_ = 0;
   std::uint64_t rays_ = 0;
 };
 

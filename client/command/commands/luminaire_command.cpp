@@ -7,6 +7,7 @@
 #include "client/command/output/numbers.h"
 #include "client/command/output/output_file.h"
 #include "client/picture/polar_plot.h"
+#include "client/picture/units.h"
 
 #include <nlohmann/json.hpp>
 
@@ -23,13 +24,9 @@ struct LuminaireCommand {
   bool json = false;
 };
 
-constexpr std::array shapes{"point", "rectangle", "ellipse", "box", "cylinder", "sphere"};
-
-const char* shape_of(const LuminousOpening& opening) { return shapes[static_cast<std::size_t>(opening.shape)]; }
-
 std::string opening_text(const LuminousOpening& opening) {
   using Shape = LuminousOpening::Shape;
-  std::string text = shape_of(opening);
+  std::string text = name_of(opening.shape);
   if (opening.shape == Shape::point) return text;
   text += ", " + shortest(opening.across) + " m";
   if (opening.shape == Shape::sphere) return text;
@@ -88,7 +85,7 @@ std::string json_of(const LuminaireFile& file) {
   json["symmetry"] = file.symmetry;
   json["planes"] = file.web->planes.size();
   json["angles"] = file.web->angles.size();
-  json["opening"] = {{"shape", shape_of(file.opening)},
+  json["opening"] = {{"shape", name_of(file.opening.shape)},
                      {"across_m", file.opening.across},
                      {"along_m", file.opening.along},
                      {"height_m", file.opening.height}};

@@ -87,7 +87,7 @@ SceneImport import_of(const SolveCommand& command, const std::string& file) {
   Scene given;
   take_absorption(command.absorption, given);
   if (!given.absorption.is_zero()) *options.mutable_absorption_per_meter() = encode(given.absorption);
-  if (is_axis(command.up)) options.set_up_axis(command.up == "z" ? v1::UP_AXIS_Z : v1::UP_AXIS_Y);
+  if (is_axis(command.up)) options.set_up_axis(encode(command.up == "z" ? UpAxis::z : UpAxis::y));
   return import;
 }
 

@@ -15,6 +15,7 @@
 #include "client/command/output/status_line.h"
 #include "client/command/output/verify_report.h"
 #include "client/verify/error_picture.h"
+#include "proto/codec.h"
 
 #include <chrono>
 #include <ctime>
@@ -78,7 +79,7 @@ void run_verify(const VerifyCommand& command) {
   take_light_options(command.light, import);
   DisplayMesh solution = read_solution(command.solution, command.format);
   take_up(command.up, solution.up);
-  import.options.set_up_axis(solution.up == UpAxis::z ? v1::UP_AXIS_Z : v1::UP_AXIS_Y);
+  import.options.set_up_axis(encode(solution.up));
   SceneFile file = read_scene(command.scene, command.format, import);
   take_absorption(command.absorption, file.scene);
   warn(file.warnings);

@@ -2,6 +2,7 @@
 
 #include "client/command/options/luminaire_option.h"
 #include "client/picture/units.h"
+#include "proto/codec.h"
 
 #include <utility>
 
@@ -32,10 +33,8 @@ void add_light_options(CLI::App& command, LightOptions& options) {
 
 void take_light_options(const LightOptions& options, SceneImport& import) {
   if (options.scale != 1) import.options.set_light_scale(options.scale);
-  if (!options.quantity.empty())
-    import.options.set_quantity(quantity_of(options.quantity) == Quantity::photometric ? v1::QUANTITY_PHOTOMETRIC
-                                                                                       : v1::QUANTITY_RADIOMETRIC);
-  import.options.set_lumens_per_watt(options.efficacy);
+  if (!options.quantity.empty()) import.options.set_quantity(encode(quantity_of(options.quantity)));
+  if (options.efficacy) import.options.set_lumens_per_watt(*options.efficacy);
   if (auto daylight = daylight_of(options.sky)) *import.options.mutable_daylight() = *std::move(daylight);
   import.files = add_luminaires(options.luminaires, import.options);
 }

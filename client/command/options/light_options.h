@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct LightOptions {
   double scale = 1;                     ///< of the file's lights that are not faces
   std::string quantity;                 ///< "radiometric" or "photometric"; empty: what the format says
   std::vector<std::string> luminaires;  ///< FILE@x,y,z[:turn,tilt,spin]
-  double efficacy = 179;                ///< lm/W of luminaires, sun and sky in a radiometric scene; as in Radiance
+  std::optional<double> efficacy;       ///< lm/W of luminaires, sun and sky in a radiometric scene
   SkyOptions sky;
 };
 

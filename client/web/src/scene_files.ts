@@ -17,9 +17,9 @@ export class MissingParts extends Error {
   }
 }
 
-// What files that scenes name, and not scenes themselves, end in.
+// Extensions of files that a scene names and that are no scenes themselves.
 const PARTS = ["mtl", "bin", "png", "jpg", "jpeg", "gif", "bmp", "tga", "txt", "md"];
-// Of several candidates these are the scene.
+// Extensions of scene files that are taken first if several files could be the scene.
 const SCENES = ["obj", "gltf", "glb", "stl", "ply", "fbx", "dae", "3ds"];
 
 const extensionOf = (file: File) => /\.([^.]+)$/.exec(file.name)?.[1].toLowerCase() ?? "";
