@@ -134,6 +134,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
     : materials_(scene.materials),
       absorption_(scene.absorption),
       lights_(scene.lights),
+      objects_(scene.objects),
       up_(scene.up),
       quantity_(scene.quantity) {
   Box used;

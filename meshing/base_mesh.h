@@ -82,6 +82,7 @@ class BaseMesh {
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
   const Rgb& absorption() const { return absorption_; }      ///< absorption coefficient of the medium, see Scene
   std::span<const Light> lights() const { return lights_; }  ///< those that are not faces
+  std::span<const SceneObject> objects() const { return objects_; }
   UpAxis up() const { return up_; }
   Quantity quantity() const { return quantity_; }
   const WeldReport& weld_report() const { return report_; }
@@ -99,6 +100,7 @@ class BaseMesh {
   std::vector<Material> materials_;
   Rgb absorption_;
   std::vector<Light> lights_;
+  std::vector<SceneObject> objects_;
   UpAxis up_;
   Quantity quantity_;
   std::vector<std::array<std::optional<Neighbour>, 4>> neighbours_;

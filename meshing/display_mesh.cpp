@@ -76,6 +76,8 @@ class Triangulation {
     out_.up = mesh_.up();
     out_.quantity = mesh_.quantity();
     out_.lights.assign(mesh_.lights().begin(), mesh_.lights().end());
+    out_.materials.assign(mesh_.materials().begin(), mesh_.materials().end());
+    out_.objects.assign(mesh_.objects().begin(), mesh_.objects().end());
     for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);
     for (std::size_t n = 0; n < leaves_.size(); ++n) emit(n);
     return std::move(out_);
@@ -129,6 +131,14 @@ class Triangulation {
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
+    count_triangles(mesh_.roots()[shape.root], static_cast<std::uint32_t>(ring.size()));
+  }
+
+  void count_triangles(const RootPatch& root, std::uint32_t count) {
+    const bool continues =
+        !out_.faces.empty() && out_.faces.back().faces == root.input && out_.faces.back().material == root.material;
+    if (!continues) out_.faces.push_back({root.input, root.material, 0});
+    out_.faces.back().count += count;
   }
 
   std::uint32_t corner_vertex(std::uint32_t root, GridPoint p) {

@@ -11,6 +11,15 @@
 
 namespace alvor {
 
+/// A run of triangles that were drawn on one face of the scene, or on two triangles joined into a quad.
+struct FaceTriangles {
+  InputFaces faces;
+  std::uint32_t material = 0;  ///< of the scene
+  std::uint32_t count = 0;     ///< of triangles
+
+  friend bool operator==(const FaceTriangles&, const FaceTriangles&) = default;
+};
+
 /// A triangle mesh with irradiance and radiosity per vertex. Each triangle is (centre of a leaf, corner, next corner),
 /// counter-clockwise, so the side opposite its first vertex lies on the leaf's outline. Triangles share a vertex only where the
 /// surface is smooth and has one material.
@@ -20,9 +29,12 @@ struct DisplayMesh {
   std::vector<RgbF> irradiance;  ///< H, W/m2
   std::vector<RgbF> radiosity;   ///< B = E + rho H, W/m2
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<FaceTriangles> faces;  ///< whence the triangles come, in their order; none if that is not known
   UpAxis up = UpAxis::y;
   Quantity quantity = Quantity::radiometric;  ///< photometric: lx instead of W/m2
   std::vector<Light> lights;                  ///< of the scene, those that are not faces
+  std::vector<Material> materials;            ///< of the scene, as all below
+  std::vector<SceneObject> objects;
 };
 
 /// Triangulates `leaves` (sorted by id, together covering every root of `mesh`), with a vertex at every hanging corner so that no

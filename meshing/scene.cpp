@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <unordered_set>
 
 namespace alvor {
@@ -54,6 +55,16 @@ std::optional<std::string> fault_in(const Face& face, const Scene& scene) {
   return std::nullopt;
 }
 
+std::optional<Fault> fault_in_objects(const Scene& scene) {
+  std::unordered_set<std::string_view> names;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    auto reason = fault_in(scene.objects, i, scene.faces.size());
+    if (!reason && !names.insert(scene.objects[i].name).second) reason = "has the name of another object";
+    if (reason) return Fault{"object " + std::to_string(i) + " '" + scene.objects[i].name + "'", *reason};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t material) {
@@ -72,6 +83,7 @@ void Scene::add_polygon(std::span<const Vec3> polygon, std::uint32_t material) {
 
 std::optional<Fault> find_fault(const Scene& scene) {
   if (scene.faces.empty()) return Fault{"scene", "has no faces"};
+  if (!std::isfinite(scene.north_degrees)) return Fault{"scene", "its north is not a finite number of degrees"};
   if (!scene.absorption.is_finite() || scene.absorption.min() < 0) return Fault{"absorption", "is not a finite number >= 0"};
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (auto reason = fault_in(scene.materials[i]))
@@ -90,7 +102,7 @@ std::optional<Fault> find_fault(const Scene& scene) {
     if (auto reason = fault_in(scene.vertices[i])) return Fault{"vertex " + std::to_string(i), *reason};
   for (std::size_t i = 0; i < scene.faces.size(); ++i)
     if (auto reason = fault_in(scene.faces[i], scene)) return Fault{"face " + std::to_string(i), *reason};
-  return std::nullopt;
+  return fault_in_objects(scene);
 }
 
 }  // namespace alvor

@@ -2,6 +2,7 @@
 // A scene as it was submitted: faces and materials, before welding and any other processing.
 
 #include "meshing/light.h"
+#include "meshing/scene_object.h"
 #include "meshing/vec3.h"
 #include "solution/rgb.h"
 
@@ -47,8 +48,11 @@ struct Scene {
   /// Absorption coefficient of the medium that fills the scene, 1/m per band, >= 0. Light fades by exp(-absorption r); 0 means no
   /// medium.
   Rgb absorption;
-  std::vector<Light> lights;  ///< those that are not faces
+  std::vector<Light> lights;         ///< those that are not faces
+  std::vector<SceneObject> objects;  ///< none if the faces have no names; a face may belong to no object
   UpAxis up = UpAxis::y;
+  /// The angle from -z (if z is up: from y) to north, clockwise seen from above. It does not affect the light.
+  double north_degrees = 0;
   Quantity quantity = Quantity::radiometric;
 
   std::span<const std::uint32_t> corners_of(const Face& face) const {
@@ -70,10 +74,11 @@ struct Fault {
   std::string text() const { return place + ": " + reason; }
 };
 
-/// Returns the first fault of the scene; looks at counts, then materials, lights, vertices and faces in order. Linear in the size
-/// of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face, finite
-/// coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite absorption >= 0
-/// and reflectance in [0, 1). Degenerate faces are no fault.
+/// Returns the first fault of the scene; looks at counts, then materials, lights, vertices, faces and objects in order. Linear in
+/// the size of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face,
+/// finite coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite
+/// absorption >= 0, reflectance in [0, 1), and objects of different names in an order that fits the faces. Degenerate faces are
+/// no fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

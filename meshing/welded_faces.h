@@ -15,6 +15,8 @@ struct InputFaces {
   static constexpr std::uint32_t none = ~0u;
   std::uint32_t first = 0;
   std::uint32_t second = none;
+
+  friend bool operator==(const InputFaces&, const InputFaces&) = default;
 };
 
 struct WeldedFace {

@@ -37,6 +37,7 @@ v1::Material encode(const Material& material);
 v1::Light encode(const Light& light);  ///< without the number of its web
 v1::PhotometricWeb encode(const PhotometricWeb& web);
 PhotometricWeb decode(const v1::PhotometricWeb& message);  ///< unchecked, see fault_in()
+v1::SceneObject encode(const SceneObject& object);
 v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
 
@@ -72,7 +73,7 @@ class SceneAssembler {
   std::uint64_t chunks_ = 0;
 };
 
-/// Cuts a scene into chunks: materials, lights with their webs, then vertices, then faces. The scene must outlive it.
+/// Cuts a scene into chunks: materials, lights with their webs, objects, vertices, faces. The scene must outlive it.
 class SceneSlicer {
  public:
   /// Each chunk stays below `max_bytes` (256 or more), but holds at least one item and never cuts a face.
@@ -83,12 +84,13 @@ class SceneSlicer {
  private:
   void take_materials(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_lights(v1::GeometryChunk& chunk, std::int64_t& budget);
+  void take_objects(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_faces(v1::GeometryChunk& chunk, std::int64_t& budget);
 
   const Scene& scene_;
   std::int64_t max_bytes_;
-  std::size_t material_ = 0, light_ = 0, vertex_ = 0, face_ = 0;
+  std::size_t material_ = 0, light_ = 0, object_ = 0, vertex_ = 0, face_ = 0;
   std::unordered_map<const PhotometricWeb*, std::uint32_t> webs_;  // those that were sent, and their numbers
 };
 

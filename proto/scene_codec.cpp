@@ -97,8 +97,22 @@ Light decode_light(const v1::Light& message) {
   return light;
 }
 
+/// Requires: no transform, or 12 numbers.
+SceneObject decode_object(const v1::SceneObject& message) {
+  SceneObject object{message.name(), std::nullopt, {}, message.first_face(), message.face_count()};
+  if (message.has_parent()) object.parent = message.parent();
+  const auto& t = message.transform();
+  if (!t.empty()) object.placement = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}, {t[9], t[10], t[11]}};
+  return object;
+}
+
 Material decode_material(const v1::Material& message) {
   return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided()};
+}
+
+int items_in(const v1::GeometryChunk& chunk) {
+  return chunk.materials_size() + chunk.lights_size() + chunk.objects_size() + chunk.vertex_coordinates_size() +
+         chunk.face_corner_counts_size();
 }
 
 }  // namespace
@@ -151,6 +165,19 @@ PhotometricWeb decode(const v1::PhotometricWeb& message) {
   return web;
 }
 
+v1::SceneObject encode(const SceneObject& object) {
+  v1::SceneObject message;
+  message.set_name(as_utf8(object.name));
+  if (object.parent) message.set_parent(*object.parent);
+  const Placement& placement = object.placement;
+  if (placement != Placement{})
+    for (const Vec3& part : {placement.x, placement.y, placement.z, placement.origin})
+      for (const double number : {part.x, part.y, part.z}) message.add_transform(number);
+  message.set_first_face(object.first_face);
+  message.set_face_count(object.face_count);
+  return message;
+}
+
 std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   if (auto fault = fault_in(chunk)) return fault;
   if (chunk.has_absorption_per_meter()) scene_.absorption = decode(chunk.absorption_per_meter());
@@ -161,6 +188,8 @@ std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
     scene_.lights.push_back(decode_light(light));
     if (scene_.lights.back().kind == LightKind::luminaire) scene_.lights.back().web = webs_[light.web()];
   }
+  if (chunk.north_degrees() != 0) scene_.north_degrees = chunk.north_degrees();
+  for (const v1::SceneObject& object : chunk.objects()) scene_.objects.push_back(decode_object(object));
   for (const v1::Material& material : chunk.materials()) scene_.materials.push_back(decode_material(material));
   for (int i = 0; i < chunk.vertex_coordinates_size(); i += 3)
     scene_.vertices.push_back({chunk.vertex_coordinates(i), chunk.vertex_coordinates(i + 1), chunk.vertex_coordinates(i + 2)});
@@ -184,6 +213,10 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
   if (materials != faces)
     return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
   if (auto fault = fault_in_lights(chunk)) return fault;
+  for (const v1::SceneObject& object : chunk.objects())
+    if (!object.transform().empty() && object.transform_size() != 12)
+      return Fault{"object '" + object.name() + "'",
+                   "its transform has " + count_of(static_cast<std::uint64_t>(object.transform_size()), "numbers, needs 12")};
   std::uint64_t promised = 0;  // a sum of 2^31 counts of 32 bits does not overflow
   for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
     const std::uint32_t count = chunk.face_corner_counts(i);
@@ -229,15 +262,16 @@ bool SceneSlicer::next(v1::GeometryChunk& chunk) {
   chunk.Clear();
   // 96 bytes are kept for the absorption, the tags and lengths of the fields, and the enclosing message.
   std::int64_t budget = max_bytes_ - 96;
-  const bool is_first = material_ == 0 && light_ == 0 && vertex_ == 0;
+  const bool is_first = material_ == 0 && light_ == 0 && object_ == 0 && vertex_ == 0;
   if (is_first && !scene_.absorption.is_zero()) *chunk.mutable_absorption_per_meter() = encode(scene_.absorption);
   if (is_first) chunk.set_up_axis(encode(scene_.up)), chunk.set_quantity(encode(scene_.quantity));
+  if (is_first) chunk.set_north_degrees(scene_.north_degrees);
   take_materials(chunk, budget);
   take_lights(chunk, budget);
+  take_objects(chunk, budget);
   take_vertices(chunk, budget);
   take_faces(chunk, budget);
-  return chunk.materials_size() > 0 || chunk.lights_size() > 0 || chunk.vertex_coordinates_size() > 0 ||
-         chunk.face_corner_counts_size() > 0;
+  return items_in(chunk) > 0;
 }
 
 // An item that does not fit is left for the next chunk. In an empty chunk the first item is always taken.
@@ -246,7 +280,7 @@ void SceneSlicer::take_materials(v1::GeometryChunk& chunk, std::int64_t& budget)
   for (; material_ < scene_.materials.size(); ++material_) {
     v1::Material message = encode(scene_.materials[material_]);
     const auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 6;
-    if (bytes > budget && chunk.materials_size() > 0) break;
+    if (bytes > budget && items_in(chunk) > 0) break;
     *chunk.add_materials() = std::move(message);
     budget -= bytes;
   }
@@ -264,7 +298,7 @@ void SceneSlicer::take_lights(v1::GeometryChunk& chunk, std::int64_t& budget) {
       web = encode(*light.web);
       bytes += static_cast<std::int64_t>(web.ByteSizeLong()) + 6;
     }
-    if (bytes > budget && chunk.materials_size() + chunk.lights_size() > 0) break;
+    if (bytes > budget && items_in(chunk) > 0) break;
     if (light.web && sent == webs_.end()) *chunk.add_webs() = std::move(web);
     if (light.web) message.set_web(webs_.try_emplace(light.web.get(), static_cast<std::uint32_t>(webs_.size())).first->second);
     *chunk.add_lights() = std::move(message);
@@ -272,8 +306,19 @@ void SceneSlicer::take_lights(v1::GeometryChunk& chunk, std::int64_t& budget) {
   }
 }
 
-void SceneSlicer::take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget) {
+void SceneSlicer::take_objects(v1::GeometryChunk& chunk, std::int64_t& budget) {
   if (light_ < scene_.lights.size()) return;
+  for (; object_ < scene_.objects.size(); ++object_) {
+    v1::SceneObject message = encode(scene_.objects[object_]);
+    const auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 6;
+    if (bytes > budget && items_in(chunk) > 0) break;
+    *chunk.add_objects() = std::move(message);
+    budget -= bytes;
+  }
+}
+
+void SceneSlicer::take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget) {
+  if (object_ < scene_.objects.size()) return;
   constexpr std::int64_t bytes = 24;
   for (; vertex_ < scene_.vertices.size() && bytes <= budget; ++vertex_, budget -= bytes) {
     const Vec3& place = scene_.vertices[vertex_];
@@ -286,9 +331,7 @@ void SceneSlicer::take_faces(v1::GeometryChunk& chunk, std::int64_t& budget) {
   for (; face_ < scene_.faces.size(); ++face_) {
     const Face& face = scene_.faces[face_];
     const std::int64_t bytes = 5 * (std::int64_t{face.corner_count} + 2);  // each varint has at most 5 bytes
-    const bool is_empty =
-        chunk.materials_size() + chunk.lights_size() + chunk.vertex_coordinates_size() + chunk.face_corner_counts_size() == 0;
-    if (bytes > budget && !is_empty) break;
+    if (bytes > budget && items_in(chunk) > 0) break;
     chunk.add_face_corner_counts(face.corner_count);
     chunk.add_face_materials(face.material);
     for (const std::uint32_t vertex : scene_.corners_of(face)) chunk.add_corner_vertices(vertex);

@@ -1,6 +1,7 @@
 #include "client/export/glb_file.h"
 
 #include "client/export/light_json.h"
+#include "client/export/scene_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
 #include "client/picture/units.h"
@@ -50,6 +51,11 @@ class BinaryChunk {
       for (const std::uint32_t vertex : triangle) append_value(bytes_, vertex);
     return add_accessor(triangles.size() * 3, "SCALAR", uint_component);
   }
+  std::size_t add_numbers(std::size_t count, const std::string& bytes) {
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}});
+    bytes_ += bytes;
+    return add_accessor(count, "SCALAR", uint_component);
+  }
   /// Sets min and max of a VEC3 accessor; POSITION needs them.
   void set_bounds(std::size_t accessor) {
     Float3 low, high;
@@ -81,6 +87,10 @@ class BinaryChunk {
   std::string bytes_;
 };
 
+std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
+
+bool is_short(const json& part) { return text_of(part).size() < largest_json / 4; }
+
 json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin) {
   const std::size_t count = mesh.positions.size();
   const double exposure = automatic_exposure(mesh);
@@ -105,10 +115,27 @@ json unlit_material() {
           {"extensions", {{"KHR_materials_unlit", json::object()}}}};
 }
 
+std::size_t add_faces(BinaryChunk& chunk, const std::vector<FaceTriangles>& faces) {
+  std::string bytes;
+  for (const FaceTriangles& run : faces)
+    for (const std::uint32_t number : {run.faces.first, run.faces.second, run.material, run.count}) append_value(bytes, number);
+  return chunk.add_numbers(4 * faces.size(), bytes);
+}
+
+/// Adds the scene's materials and objects, as far as they leave the JSON readable: a scene may have a million objects.
+void add_parts(const DisplayMesh& mesh, json& extras) {
+  json materials = json::array(), objects = json::array();
+  for (const Material& material : mesh.materials) materials.push_back(json_of(material));
+  for (const SceneObject& object : mesh.objects) objects.push_back(json_of(object));
+  if (!mesh.materials.empty() && is_short(materials)) extras[materials_key] = std::move(materials);
+  if (!mesh.objects.empty() && is_short(objects)) extras[objects_key] = std::move(objects);
+}
+
 json node_of(const Vec3& origin, const DisplayMesh& mesh) {
   json node = {{"name", "solution"}, {"mesh", 0}, {"translation", {origin.x, origin.y, origin.z}}};
   json& extras = node["extras"] = {{quantity_key, name_of(mesh.quantity)}};
   for (std::size_t which = 0; which < mesh.lights.size(); ++which) extras[lights_key].push_back(json_of(mesh.lights, which));
+  add_parts(mesh, extras);
   if (mesh.up == UpAxis::y) return node;
   node["translation"] = {origin.x, origin.z, -origin.y};
   node["rotation"] = z_up_rotation;
@@ -150,8 +177,9 @@ std::string encode_glb(const DisplayMesh& mesh) {
   BinaryChunk chunk;
   const json attributes = add_attributes(chunk, mesh, origin);
   const std::size_t indices = chunk.add_indices(mesh.triangles);
-  std::string text =
-      document(chunk, attributes, indices, node_of(origin, mesh)).dump(-1, ' ', false, json::error_handler_t::replace);
+  json node = node_of(origin, mesh);
+  if (!mesh.faces.empty()) node["extras"][faces_key] = add_faces(chunk, mesh.faces);
+  std::string text = text_of(document(chunk, attributes, indices, node));
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

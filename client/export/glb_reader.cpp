@@ -1,5 +1,6 @@
 #include "client/export/glb_file.h"
 #include "client/export/light_json.h"
+#include "client/export/scene_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/units.h"
 #include "import/base/bytes.h"
@@ -150,16 +151,36 @@ std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::
   return triangles;
 }
 
+std::vector<FaceTriangles> read_faces(const json& root, std::string_view binary, const json& extras) {
+  if (!extras.contains(faces_key)) return {};
+  const Elements numbers = elements_of(root, binary, whole_number(extras, faces_key, "nodes[0].extras"),
+                                       {"SCALAR", uint_component, sizeof(std::uint32_t)});
+  std::vector<FaceTriangles> faces;
+  for (std::size_t i = 0; i + 3 < numbers.count; i += 4) {
+    const auto number = [&](std::size_t n) { return numbers.at<std::uint32_t>(i + n); };
+    faces.push_back({{number(0), number(1)}, number(2), number(3)});
+  }
+  return faces;
+}
+
+/// Returns a list in the extras; an empty one if they have none.
+json list_in(const json& extras, const char* key) {
+  json list = extras.value(key, json::array());
+  if (!list.is_array()) fail("nodes[0].extras", std::string("its ") + key + " are no list");
+  return list;
+}
+
 /// Sets what the extras of the solution's node say about its scene. Files of older versions say less.
-void read_extras(const json& root, DisplayMesh& mesh) {
+void read_extras(const json& root, std::string_view binary, DisplayMesh& mesh) {
   const json& node = element(root, "nodes", 0);
   const auto extras = node.is_object() ? node.find("extras") : node.end();
   if (!node.is_object() || extras == node.end() || !extras->is_object()) return;
   if (extras->value(up_key, json()) == "z") mesh.up = UpAxis::z;
   if (extras->value(quantity_key, json()) == name_of(Quantity::photometric)) mesh.quantity = Quantity::photometric;
-  const json lights = extras->value(lights_key, json::array());
-  if (!lights.is_array()) fail("nodes[0].extras", "its lights are no list");
-  for (const json& light : lights) mesh.lights.push_back(light_of(light, mesh.lights));
+  for (const json& light : list_in(*extras, lights_key)) mesh.lights.push_back(light_of(light, mesh.lights));
+  for (const json& source : list_in(*extras, materials_key)) mesh.materials.push_back(material_of(source, mesh.materials.size()));
+  for (const json& source : list_in(*extras, objects_key)) mesh.objects.push_back(object_of(source, mesh.objects));
+  mesh.faces = read_faces(root, binary, *extras);
 }
 
 Vec3 translation(const json& root) {
@@ -178,7 +199,7 @@ DisplayMesh decode_glb(std::string_view bytes) {
   const Chunks chunks = chunks_of(bytes);
   const json root = parse_text(chunks.text);
   DisplayMesh mesh;
-  read_extras(root, mesh);
+  read_extras(root, chunks.binary, mesh);
   const Vec3 shown = translation(root);
   const Vec3 origin = mesh.up == UpAxis::z ? Vec3{shown.x, -shown.z, shown.y} : shown;
   mesh.positions = read_vectors<Vec3>(root, chunks.binary, "POSITION", origin);

@@ -1,6 +1,7 @@
 #include "client/export/ply_file.h"
 
 #include "client/export/light_json.h"
+#include "client/export/scene_json.h"
 #include "client/export/solution_file.h"
 #include "client/picture/tone_map.h"
 #include "import/base/bytes.h"
@@ -8,6 +9,7 @@
 #include <charconv>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 namespace alvor {
 namespace {
@@ -21,11 +23,14 @@ constexpr std::string_view vertex_properties =
     "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 constexpr std::string_view face_properties = "property list uchar int vertex_indices\n";
+// The face of the scene on which a triangle lies, the second of two triangles joined into a quad or -1, and the material.
+constexpr std::string_view source_properties = "property int scene_face\nproperty int second_scene_face\nproperty int material\n";
 constexpr std::string_view z_up_comment = "comment z up\n", photometric_comment = "comment photometric\n";
-constexpr std::string_view light_comment = "comment light ";
+constexpr std::string_view light_comment = "comment light ", material_comment = "comment material ",
+                           object_comment = "comment object ";
 constexpr std::string_view last_line = "end_header\n";
 constexpr std::size_t vertex_size = 3 * sizeof(double) + 9 * sizeof(float) + 3;
-constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
+constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t), source_size = 3 * sizeof(std::int32_t);
 
 [[noreturn]] void fail(const std::string& place, const std::string& reason) { throw SolutionFileError(place + ": " + reason); }
 
@@ -34,12 +39,15 @@ std::string header(const DisplayMesh& mesh) {
   text += "comment Alvor solution: metres, W/m2 or, if photometric, lx\n";
   if (mesh.up == UpAxis::z) text += z_up_comment;
   if (mesh.quantity == Quantity::photometric) text += photometric_comment;
-  for (std::size_t which = 0; which < mesh.lights.size(); ++which)
-    text.append(light_comment)
-        .append(json_of(mesh.lights, which).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))
-        .append("\n");
+  const auto comment = [&](std::string_view begin, const nlohmann::json& json) {
+    text.append(begin).append(json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)).append("\n");
+  };
+  for (std::size_t which = 0; which < mesh.lights.size(); ++which) comment(light_comment, json_of(mesh.lights, which));
+  for (const Material& material : mesh.materials) comment(material_comment, json_of(material));
+  for (const SceneObject& object : mesh.objects) comment(object_comment, json_of(object));
   text.append(vertex_element).append(std::to_string(mesh.positions.size())).append("\n").append(vertex_properties);
   text.append(face_element).append(std::to_string(mesh.triangles.size())).append("\n").append(face_properties);
+  if (!mesh.faces.empty()) text.append(source_properties);
   return text.append(last_line);
 }
 
@@ -87,7 +95,22 @@ struct Parts {
   UpAxis up = UpAxis::y;
   Quantity quantity = Quantity::radiometric;
   std::vector<Light> lights;
+  std::vector<Material> materials;
+  std::vector<SceneObject> objects;
 };
+
+/// Reads a comment that holds a part of the scene, if it is one.
+void read_comment(std::string_view line, Parts& parts) {
+  const auto json_behind = [&](std::string_view begin) {
+    return nlohmann::json::parse(line.substr(begin.size()), nullptr, /*allow_exceptions=*/false);
+  };
+  if (line == z_up_comment) parts.up = UpAxis::z;
+  if (line == photometric_comment) parts.quantity = Quantity::photometric;
+  if (line.starts_with(light_comment)) parts.lights.push_back(light_of(json_behind(light_comment), parts.lights));
+  if (line.starts_with(material_comment))
+    parts.materials.push_back(material_of(json_behind(material_comment), parts.materials.size()));
+  if (line.starts_with(object_comment)) parts.objects.push_back(object_of(json_behind(object_comment), parts.objects));
+}
 
 Parts parts_of(std::string_view bytes) {
   constexpr std::size_t longest_header = 1 << 26;  // a hundred thousand lights
@@ -96,10 +119,7 @@ Parts parts_of(std::string_view bytes) {
   Parts parts{{}, bytes.substr(end + 1 + last_line.size())};
   for (std::string_view rest = bytes.substr(0, end + 1); !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n') + 1);
-    if (line == z_up_comment) parts.up = UpAxis::z;
-    if (line == photometric_comment) parts.quantity = Quantity::photometric;
-    if (line.starts_with(light_comment))
-      parts.lights.push_back(light_of(nlohmann::json::parse(line.substr(light_comment.size()), nullptr, false), parts.lights));
+    read_comment(line, parts);
     if (!line.starts_with("comment")) parts.header += line;
     rest.remove_prefix(line.size());
   }
@@ -124,6 +144,7 @@ std::size_t take_count(std::string_view& text) {
 
 struct Counts {
   std::size_t vertices = 0, faces = 0;
+  bool has_sources = false;
 };
 
 Counts counts_of(std::string_view text) {
@@ -135,6 +156,8 @@ Counts counts_of(std::string_view text) {
   take(text, face_element);
   counts.faces = take_count(text);
   take(text, face_properties);
+  counts.has_sources = text.starts_with(source_properties);
+  if (counts.has_sources) take(text, source_properties);
   if (!text.empty()) fail("header", "more than vertices and faces");
   return counts;
 }
@@ -153,13 +176,43 @@ void read_vertices(Reader& reader, std::size_t count, DisplayMesh& mesh) {
   }
 }
 
-void read_faces(Reader& reader, std::size_t count, DisplayMesh& mesh) {
-  mesh.triangles.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
+/// Reads on which face of the scene a triangle lies.
+void read_source(Reader& reader, DisplayMesh& mesh) {
+  FaceTriangles source;
+  source.faces.first = reader.next<std::uint32_t>();
+  source.faces.second = reader.next<std::uint32_t>();  // -1 is InputFaces::none
+  source.material = reader.next<std::uint32_t>();
+  const bool continues =
+      !mesh.faces.empty() && mesh.faces.back().faces == source.faces && mesh.faces.back().material == source.material;
+  if (!continues) mesh.faces.push_back(source);
+  ++mesh.faces.back().count;
+}
+
+void read_faces(Reader& reader, const Counts& counts, DisplayMesh& mesh) {
+  mesh.triangles.resize(counts.faces);
+  for (std::size_t i = 0; i < counts.faces; ++i) {
     if (reader.next<std::uint8_t>() != 3) fail("face " + std::to_string(i), "not a triangle");
     for (std::uint32_t& vertex : mesh.triangles[i]) vertex = reader.next<std::uint32_t>();
+    if (counts.has_sources) read_source(reader, mesh);
   }
 }
+
+/// Walks through the runs of triangles, a triangle at a time.
+class SourceOfTriangles {
+ public:
+  explicit SourceOfTriangles(std::span<const FaceTriangles> runs) : left_(runs) {}
+  /// Returns the run of the next triangle; null if none is known.
+  const FaceTriangles* next() {
+    while (!left_.empty() && taken_ == left_.front().count) left_ = left_.subspan(1), taken_ = 0;
+    if (left_.empty()) return nullptr;
+    ++taken_;
+    return &left_.front();
+  }
+
+ private:
+  std::span<const FaceTriangles> left_;
+  std::uint32_t taken_ = 0;
+};
 
 }  // namespace
 
@@ -176,25 +229,31 @@ std::string encode_ply(const DisplayMesh& mesh) {
     append_rgb(bytes, mesh.radiosity[i]);
     append_colour(bytes, tone_map(exposure * widen(mesh.radiosity[i])));
   }
+  SourceOfTriangles source(mesh.faces);
   for (const auto& triangle : mesh.triangles) {
     append_value(bytes, std::uint8_t{3});
     for (const std::uint32_t vertex : triangle) append_value(bytes, static_cast<std::int32_t>(vertex));
+    if (const FaceTriangles* run = source.next())
+      for (const std::uint32_t number : {run->faces.first, run->faces.second, run->material}) append_value(bytes, number);
   }
   return bytes;
 }
 
 DisplayMesh decode_ply(std::string_view bytes) {
-  const Parts parts = parts_of(bytes);
+  Parts parts = parts_of(bytes);
   const Counts counts = counts_of(parts.header);
-  if (parts.body.size() != counts.vertices * vertex_size + counts.faces * face_size)
+  const std::size_t bytes_of_face = face_size + (counts.has_sources ? source_size : 0);
+  if (parts.body.size() != counts.vertices * vertex_size + counts.faces * bytes_of_face)
     fail("body", "the size is not that of the vertices and faces the header counts");
   DisplayMesh mesh;
   mesh.up = parts.up;
   mesh.quantity = parts.quantity;
-  mesh.lights = parts.lights;
+  mesh.lights = std::move(parts.lights);
+  mesh.materials = std::move(parts.materials);
+  mesh.objects = std::move(parts.objects);
   Reader reader(parts.body);
   read_vertices(reader, counts.vertices, mesh);
-  read_faces(reader, counts.faces, mesh);
+  read_faces(reader, counts, mesh);
   return mesh;
 }
 

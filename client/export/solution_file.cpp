@@ -47,9 +47,23 @@ void check_triangles(const DisplayMesh& mesh) {
         throw SolutionFileError("triangle " + std::to_string(i) + ": there is no vertex " + std::to_string(vertex));
 }
 
+/// Throws SolutionFileError unless the runs of triangles on faces add up to all triangles, and name materials that there are.
+void check_faces(const DisplayMesh& mesh) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    sum += mesh.faces[i].count;
+    if (!mesh.materials.empty() && mesh.faces[i].material >= mesh.materials.size())
+      throw SolutionFileError("face " + std::to_string(i) + ": there is no material " + std::to_string(mesh.faces[i].material));
+  }
+  if (!mesh.faces.empty() && sum != mesh.triangles.size())
+    throw SolutionFileError("faces: have " + std::to_string(sum) + " triangles, but there are " +
+                            std::to_string(mesh.triangles.size()));
+}
+
 DisplayMesh checked(DisplayMesh mesh) {
   check_vertices(mesh);
   check_triangles(mesh);
+  check_faces(mesh);
   return mesh;
 }
 

@@ -104,16 +104,22 @@ class AssimpReader {
   void add_tree(const aiNode& root) {
     struct Pending {
       const aiNode* node;
-      Placement parent;
+      Placement parent_placement;
+      std::optional<std::uint32_t> parent;  // its object
     };
     const double unit = convention_.metres_per_unit;
-    std::vector<Pending> stack{{&root, {{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}, {}}}};
+    std::vector<Pending> stack{{&root, {{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}, {}}, std::nullopt}};
     while (!stack.empty()) {
       const Pending next = stack.back();
       stack.pop_back();
-      const Placement placement = next.parent * placement_of(next.node->mTransformation);
+      const Placement placement = next.parent_placement * placement_of(next.node->mTransformation);
+      // Assimp makes a root of its own above all nodes of the file.
+      const bool is_made_up = next.node == &root && root.mNumMeshes == 0;
+      std::optional<std::uint32_t> object;
+      if (!is_made_up) object = add_object(file_.scene, next.node->mName.C_Str(), next.parent, placement);
       for (const unsigned mesh : std::span(next.node->mMeshes, next.node->mNumMeshes)) add_mesh(mesh, placement);
-      for (unsigned c = next.node->mNumChildren; c-- > 0;) stack.push_back({next.node->mChildren[c], placement});
+      if (object) take_new_faces(file_.scene, *object);
+      for (unsigned c = next.node->mNumChildren; c-- > 0;) stack.push_back({next.node->mChildren[c], placement, object});
     }
   }
 

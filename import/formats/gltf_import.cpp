@@ -136,25 +136,34 @@ class GltfReader {
 
   struct Pending {
     int node;
-    Placement parent;
+    Placement parent_placement;
+    std::optional<std::uint32_t> parent;  // its object
   };
 
   /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
   void add_tree(const std::vector<int>& roots) {
     std::vector<Pending> stack;
-    const auto push = [&](const std::vector<int>& nodes, const Placement& parent) {
-      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.push_back({*node, parent});
+    const auto push = [&](const std::vector<int>& nodes, const Placement& placement, std::optional<std::uint32_t> parent) {
+      for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) stack.push_back({*node, placement, parent});
     };
-    push(roots, {});
+    push(roots, {}, std::nullopt);
     while (!stack.empty()) {
       const Pending next = stack.back();
       stack.pop_back();
       const auto [node, placement] = enter(next);
+      const std::uint32_t object = add_object(file_.scene, name_of(*node), next.parent, placement);
       if (node->mesh >= 0) add_mesh(node->mesh, placement);
+      take_new_faces(file_.scene, object);
       lights_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
       luminaires_.add(*node, static_cast<std::size_t>(next.node), placement, file_.scene);
-      push(node->children, placement);
+      push(node->children, placement, object);
     }
+  }
+
+  /// Returns a node's name; that of its mesh if it has none.
+  std::string name_of(const tinygltf::Node& node) const {
+    const bool has_mesh = node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < model_.meshes.size();
+    return node.name.empty() && has_mesh ? model_.meshes[static_cast<std::size_t>(node.mesh)].name : node.name;
   }
 
   /// Returns a node with its placement. Throws ImportError if the node was met before: then it has two parents or is its own
@@ -164,7 +173,7 @@ class GltfReader {
     const auto index = static_cast<std::size_t>(next.node);
     if (seen_[index]) throw ImportError(place_of("node", index), "hangs from more than one node");
     seen_[index] = true;
-    return {&node, next.parent * placement_of(node, place_of("node", index))};
+    return {&node, next.parent_placement * placement_of(node, place_of("node", index))};
   }
 
   void add_mesh(int index, const Placement& placement) {

@@ -2,6 +2,7 @@
 
 #include "import/base/one_line.h"
 #include "import/base/scene_format.h"
+#include "import/base/unique_names.h"
 #include "import/formats/assimp_import.h"
 #include "import/formats/daylight.h"
 #include "import/formats/gltf_import.h"
@@ -36,6 +37,7 @@ void take_options(const v1::ImportOptions& options, Scene& scene) {
   if (options.has_absorption_per_meter()) scene.absorption = decode(options.absorption_per_meter());
   decode(options.quantity(), scene.quantity);
   decode(options.up_axis(), scene.up);
+  scene.north_degrees = options.daylight().north_degrees();
 }
 
 /// Adds the lights that the options tell, after the scene has its quantity and its up axis.
@@ -92,7 +94,19 @@ void refuse_faulty(const Scene& scene) {
     throw ImportError("scene", "all " + std::to_string(scene.faces.size()) + " faces are degenerate");
 }
 
+void make_names_unique(Scene& scene) {
+  const auto of = [](auto& list, const char* otherwise) {
+    std::vector<std::string*> names;
+    for (auto& item : list) names.push_back(&item.name);
+    make_unique(names, otherwise);
+  };
+  of(scene.materials, "material");
+  of(scene.lights, "light");
+  of(scene.objects, "object");
+}
+
 SceneFile checked(SceneFile file) {
+  make_names_unique(file.scene);
   clamp_reflectance(file);
   refuse_faulty(file.scene);
   for (std::string& warning : file.warnings) warning = one_line_of(warning);

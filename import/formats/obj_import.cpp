@@ -2,6 +2,7 @@
 
 #include "import/base/import_error.h"
 #include "import/formats/obj_lines.h"
+#include "import/formats/obj_objects.h"
 #include "import/formats/placement.h"
 #include "import/formats/texture_colour.h"
 #include "import/formats/unsupported.h"
@@ -99,6 +100,10 @@ class ObjBuilder {
     calls.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
       of(self).add_polygon({corners, static_cast<std::size_t>(count)});
     };
+    calls.object_cb = [](void* self, const char* name) { of(self).objects_.begin_object(name); };
+    calls.group_cb = [](void* self, const char** names, int count) {
+      of(self).objects_.begin_group(joined({names, static_cast<std::size_t>(count)}));
+    };
     calls.usemtl_cb = [](void* self, const char* name, int) { of(self).use_material(name); };
     return calls;
   }
@@ -110,11 +115,19 @@ class ObjBuilder {
 
   void use_material(const std::string& name) { material_ = name; }
 
+  static std::string joined(std::span<const char*> words) {
+    std::string text;
+    for (const char* word : words) text += (text.empty() ? "" : " ") + std::string(word);
+    return text;
+  }
+
   void add_polygon(std::span<const tinyobj::index_t> corners) {
     if (corners.size() < 3) return;
     polygon_.clear();
     for (const tinyobj::index_t& corner : corners) polygon_.push_back(vertex_of(corner.vertex_index));
+    objects_.before_face();
     add_placed_face(scene, polygon_, material_index(), {});
+    objects_.after_face();
   }
 
   /// Returns the vertex of an OBJ index, which counts from 1, or backwards from the newest vertex (-1). Indices beyond the end
@@ -135,6 +148,7 @@ class ObjBuilder {
     return slot->second;
   }
 
+  ObjObjects objects_{scene};
   std::string material_;
   std::map<std::string, std::uint32_t> slots_;
   std::vector<std::uint32_t> polygon_;

@@ -16,10 +16,6 @@ void refuse_beyond(std::size_t count, std::size_t limit, const std::string& what
 
 }  // namespace
 
-Placement operator*(const Placement& outer, const Placement& inner) {
-  return {outer.direction(inner.x), outer.direction(inner.y), outer.direction(inner.z), outer.point(inner.origin)};
-}
-
 std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, const Placement& placement) {
   const std::size_t first = scene.vertices.size();
   refuse_beyond(first + vertices.size(), max_vertices, "vertices");
@@ -32,6 +28,17 @@ void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::
   scene.add_face(polygon, material);
   const auto second = scene.corners.end() - static_cast<std::ptrdiff_t>(polygon.size()) + 1;
   if (placement.mirrors()) std::reverse(second, scene.corners.end());
+}
+
+std::uint32_t add_object(Scene& scene, std::string name, std::optional<std::uint32_t> parent, const Placement& placement) {
+  const auto number = static_cast<std::uint32_t>(scene.objects.size());
+  scene.objects.push_back({std::move(name), parent, placement, static_cast<std::uint32_t>(scene.faces.size()), 0});
+  return number;
+}
+
+void take_new_faces(Scene& scene, std::uint32_t which) {
+  SceneObject& object = scene.objects[which];
+  object.face_count = static_cast<std::uint32_t>(scene.faces.size()) - object.first_face;
 }
 
 std::uint32_t add_default_material(Scene& scene) {

@@ -1,25 +1,15 @@
 #pragma once
-// Places meshes in a scene by node transforms.
+// Adds meshes and objects to a scene, placed by node transforms.
 
+#include "meshing/placement.h"
 #include "meshing/scene.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 
 namespace alvor {
-
-/// An affine map, given by the images of the axes and of the origin. The identity changes no bit of a point.
-struct Placement {
-  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin;
-
-  Vec3 direction(Vec3 d) const { return d.x * x + d.y * y + d.z * z; }
-  Vec3 point(Vec3 p) const { return direction(p) + origin; }
-  /// Returns whether the map turns counter-clockwise into clockwise.
-  bool mirrors() const { return dot(cross(x, y), z) < 0; }
-};
-
-/// Returns the map that applies `inner`, then `outer`.
-Placement operator*(const Placement& outer, const Placement& inner);
 
 /// Appends the placed vertices and returns the index of the first. Throws ImportError when instances of meshes add up to too many
 /// vertices: a file of a few kilobytes can ask for any number.
@@ -28,6 +18,11 @@ std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, 
 /// Appends a face. Reverses its corners if the placement mirrors, so that its front stays its front. Throws ImportError when
 /// there are too many.
 void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement);
+
+/// Appends an object that has no faces yet, and returns its number.
+std::uint32_t add_object(Scene& scene, std::string name, std::optional<std::uint32_t> parent, const Placement& placement);
+/// Gives object `which` the faces that were added since it was. Requires: none of them belongs to an object.
+void take_new_faces(Scene& scene, std::uint32_t which);
 
 /// Adds the grey material for faces that name none, and returns its index.
 std::uint32_t add_default_material(Scene& scene);

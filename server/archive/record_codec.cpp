@@ -150,6 +150,11 @@ v1::Scene encode(const SceneRecord& record) {
   message.set_vertex_count(record.vertex_count);
   message.set_face_count(record.face_count);
   message.set_material_count(record.material_count);
+  message.set_object_count(record.object_count);
+  message.set_light_count(record.light_count);
+  if (record.quantity != Quantity::radiometric) message.set_quantity(encode(record.quantity));
+  if (record.up != UpAxis::y) message.set_up_axis(encode(record.up));
+  message.set_north_degrees(record.north_degrees);
   for (const std::string& warning : record.warnings) message.add_warnings(warning);
   message.set_content_sha256(record.content_sha256);
   message.set_content_bytes(record.content_bytes);
@@ -157,15 +162,23 @@ v1::Scene encode(const SceneRecord& record) {
 }
 
 SceneRecord decode(const v1::Scene& message) {
-  return {.name = message.name(),
-          .display_name = message.display_name(),
-          .create_time = decode_time(message.create_time()),
-          .vertex_count = message.vertex_count(),
-          .face_count = message.face_count(),
-          .material_count = message.material_count(),
-          .warnings = {message.warnings().begin(), message.warnings().end()},
-          .content_sha256 = message.content_sha256(),
-          .content_bytes = message.content_bytes()};
+  SceneRecord record{.name = message.name(),
+                     .display_name = message.display_name(),
+                     .create_time = decode_time(message.create_time()),
+                     .vertex_count = message.vertex_count(),
+                     .face_count = message.face_count(),
+                     .material_count = message.material_count(),
+                     .object_count = message.object_count(),
+                     .light_count = message.light_count(),
+                     .quantity = {},
+                     .up = {},
+                     .north_degrees = message.north_degrees(),
+                     .warnings = {message.warnings().begin(), message.warnings().end()},
+                     .content_sha256 = message.content_sha256(),
+                     .content_bytes = message.content_bytes()};
+  decode(message.quantity(), record.quantity);
+  decode(message.up_axis(), record.up);
+  return record;
 }
 
 v1::SolveSpec encode(const SolveSpec& spec) {

@@ -49,6 +49,11 @@ SceneRecord describe(const Scene& scene, const BaseMesh& mesh, const std::string
           .vertex_count = scene.vertices.size(),
           .face_count = scene.faces.size(),
           .material_count = scene.materials.size(),
+          .object_count = scene.objects.size(),
+          .light_count = scene.lights.size(),
+          .quantity = scene.quantity,
+          .up = scene.up,
+          .north_degrees = scene.north_degrees,
           .warnings = warnings_about(mesh),
           .content_sha256 = content.sha256,
           .content_bytes = content.bytes};

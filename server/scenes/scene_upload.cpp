@@ -11,10 +11,11 @@ void refuse_beyond(std::uint64_t count, std::uint64_t limit, const char* unit) {
 }
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
-  // Sizes in memory; an empty material, light or web takes only a few bytes on the wire.
-  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 300, bytes_of_web = 150;
+  // Sizes in memory; an empty material, light, object or web takes only a few bytes on the wire.
+  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 300, bytes_of_object = 250, bytes_of_web = 150;
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size()) +
             bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size()) +
+            bytes_of_object * static_cast<std::uint64_t>(message.chunk().objects_size()) +
             bytes_of_web * static_cast<std::uint64_t>(message.chunk().webs_size());
   refuse_beyond(bytes_, limits_.bytes, "bytes");
   limits_.memory.refuse_without_room("scene", message.ByteSizeLong());
@@ -36,6 +37,9 @@ void SceneUpload::check_limits(const v1::GeometryChunk& chunk) const {
   refuse_beyond(scene.materials.size() + static_cast<std::uint64_t>(chunk.materials_size()), limits_.materials, "materials");
   refuse_beyond(scene.lights.size() + static_cast<std::uint64_t>(chunk.lights_size()), limits_.lights, "lights");
   refuse_beyond(assembler_.web_count() + static_cast<std::uint64_t>(chunk.webs_size()), limits_.lights, "photometric webs");
+  refuse_beyond(scene.objects.size() + static_cast<std::uint64_t>(chunk.objects_size()), limits_.objects, "objects");
+  for (const v1::SceneObject& object : chunk.objects())
+    refuse_beyond(object.name().size(), limits_.bytes_of_name, "bytes in an object's name");
   for (const v1::Light& light : chunk.lights())
     refuse_beyond(light.name().size(), limits_.bytes_of_name, "bytes in a light's name");
   for (const std::uint32_t corners : chunk.face_corner_counts())

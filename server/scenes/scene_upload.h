@@ -19,9 +19,10 @@ struct UploadLimits {
   std::uint64_t corners = 50'000'000;                                      ///< sum over the faces
   std::chrono::steady_clock::duration patience = std::chrono::minutes(1);  ///< longest time between messages; then ABORTED
   std::uint64_t corners_of_face = 20'000;  ///< cutting up a face that crosses itself takes half a second at this size
-  std::uint64_t bytes_of_name = 1000;      ///< length of the name of a material or light
+  std::uint64_t bytes_of_name = 1000;      ///< length of the name of a material, light or object
   std::uint64_t materials = 1'000'000;     ///< an empty material takes two bytes on the wire but more in memory
   std::uint64_t lights = 100'000;          ///< those that are not faces
+  std::uint64_t objects = 1'000'000;
   MemoryGuard memory;
   ImporterOptions importer;
 };

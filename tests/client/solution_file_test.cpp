@@ -74,6 +74,39 @@ TEST_P(SolutionFile, RemembersLightsAndWhatItsNumbersMean) {
   EXPECT_EQ(back.lights[2].web, back.lights[3].web);  // written once
 }
 
+TEST_P(SolutionFile, RemembersMaterialsObjectsAndTheFacesOfTheScene) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  mesh.materials = {{"wall \n 1", {0, 1, 2}, {0.1, 0.2, 0.3}, true}, {"lamp", {5, 5, 5}, {}, false}};
+  mesh.objects = {{"room", std::nullopt, {}, 0, 0}, {"walls", 0, {{0, 1, 0}, {-1, 0, 0}, {0, 0, 2}, {1, 2, 0.1}}, 0, 7}};
+  const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
+  mesh.faces = {{{0, 1}, 0, 4}, {{2, InputFaces::none}, 1, 4}, {{3, 6}, 0, all - 8}};
+  write_solution_file(path(), mesh);
+  const DisplayMesh back = read_solution_file(path());
+  ASSERT_EQ(back.materials.size(), 2u);
+  EXPECT_EQ(back.materials[0].name, mesh.materials[0].name);
+  EXPECT_EQ(back.materials[0].emission, mesh.materials[0].emission);
+  EXPECT_EQ(back.materials[0].reflectance, mesh.materials[0].reflectance);
+  EXPECT_TRUE(back.materials[0].two_sided);
+  EXPECT_FALSE(back.materials[1].two_sided);
+  EXPECT_EQ(back.objects, mesh.objects);
+  EXPECT_EQ(back.faces, mesh.faces);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+}
+
+TEST_P(SolutionFile, PartsOfTheSceneThatContradictTheMeshAreRefused) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
+  mesh.materials = {{"wall", {}, {0.5, 0.5, 0.5}}};
+  mesh.faces = {{{0, 1}, 1, all}};
+  EXPECT_NE(refusal(encoded(mesh)).find("face 0: there is no material 1"), std::string::npos);
+  mesh.faces = {};
+  mesh.objects = {{"chair", 0, {}, 0, 1}};
+  EXPECT_NE(refusal(encoded(mesh)).find("object 0: its parent does not come before it"), std::string::npos);
+  mesh.objects = {};
+  mesh.materials[0].emission.r = -1;
+  EXPECT_NE(refusal(encoded(mesh)).find("material 0: a band of it is negative"), std::string::npos);
+}
+
 TEST_P(SolutionFile, ALightThatIsNoneIsRefusedByName) {
   DisplayMesh mesh = hand_made_room({});
   mesh.lights = {{"bulb", LightKind::point, {1, 2, 3}}, {"spot", LightKind::spot, {4, 5, 6}}};

@@ -102,11 +102,68 @@ TEST_P(BlenderFile, BecomesAMeshWhoseRootsTellEveryInputFace) {
   EXPECT_EQ(untold, mesh.weld_report().degenerate_faces + mesh.weld_report().duplicates.count);
 }
 
+/// Returns an object's name without what exporters do to spaces and dots.
+std::string plain(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  std::ranges::replace(name, '.', ' ');
+  return name;
+}
+
+TEST_P(BlenderFile, HasTheObjectsThatBlenderHas) {
+  if (name == "room.ply" || name == "room.stl") {
+    EXPECT_EQ(file.scene.objects.size(), 1u);  // these formats have no objects
+    return;
+  }
+  std::map<std::string, double> areas;
+  for (const SceneObject& object : file.scene.objects)
+    for (std::uint32_t f = object.first_face; f < object.first_face + object.face_count; ++f) {
+      Scene alone{.vertices = file.scene.vertices, .corners = file.scene.corners, .materials = file.scene.materials};
+      alone.faces = {file.scene.faces[f]};
+      alone.up = file.scene.up;
+      areas[plain(object.name)] += measure(alone).area;
+    }
+  for (const auto& [object, blenders] : expected()["objects"].items()) {
+    const auto& changed = expected()["formats"][name].value("objects", nlohmann::json::object());
+    const bool is_triangulated = expected()["formats"][name]["triangulated"];
+    const double area = (changed.contains(object) ? changed[object] : blenders)[is_triangulated ? "area_m2" : "polygon_area_m2"];
+    EXPECT_NEAR(areas[plain(object)], area, 1e-3 * area + 1e-9) << object;
+  }
+}
+
 TEST_P(BlenderFile, IsSolved) {
   SolutionLog log;
   const SolveOutcome outcome = solve(BaseMesh(file.scene), {.tolerance = 0.2, .max_leaves = 20'000}, log, {});
   const bool is_lit = std::ranges::any_of(file.scene.materials, [](const Material& m) { return !m.emission.is_zero(); });
   EXPECT_EQ(outcome.reason == StopReason::dark, !is_lit);
+}
+
+/// Returns the coordinates of a point of the scene in an object's own.
+Vec3 own_coordinates(const SceneObject& object, Vec3 point) {
+  const Placement& p = object.placement;
+  const Vec3 d = point - p.origin;
+  const double volume = dot(cross(p.x, p.y), p.z);
+  return Vec3{dot(d, cross(p.y, p.z)), dot(d, cross(p.z, p.x)), dot(d, cross(p.x, p.y))} / volume;
+}
+
+TEST(BlenderObjects, HangAsTheyDoInBlenderAndHaveTheirPlaces) {
+  for (const char* name : {"room.glb", "room.fbx", "room.dae"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = read_scene_file(files / name).scene;
+    const auto object = [&](const std::string& wanted) {
+      return std::ranges::find_if(scene.objects, [&](const SceneObject& each) { return plain(each.name) == wanted; });
+    };
+    const auto chair = object("Chair"), mirrored = object("Chair mirrored"), kettle = object("Kettle");
+    ASSERT_TRUE(chair->parent && kettle->parent);
+    EXPECT_EQ(plain(scene.objects[*chair->parent].name), "Dining group");
+    EXPECT_EQ(plain(scene.objects[*kettle->parent].name), "Table top");
+    EXPECT_EQ(scene.objects[*kettle->parent].parent, chair->parent);
+    // Instances of a mesh have the same vertices in their own coordinates.
+    ASSERT_EQ(chair->face_count, mirrored->face_count);
+    const auto first_corner = [&](const auto& of) { return scene.vertices[scene.corners_of(scene.faces[of->first_face])[0]]; };
+    const Vec3 here = own_coordinates(*chair, first_corner(chair)), there = own_coordinates(*mirrored, first_corner(mirrored));
+    EXPECT_LT(length(here - there), 1e-5);
+    EXPECT_GT(length(first_corner(chair) - first_corner(mirrored)), 0.1);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(AllFormats, BlenderFile,

@@ -89,6 +89,28 @@ TEST(DisplayMesh, TheFoldsOfACurtainStayClosed) {
   }
 }
 
+TEST(DisplayMesh, TellsTheFaceAndTheMaterialOfEachTriangle) {
+  const Scene scene = test::coloured_room();
+  const BaseMesh base(scene);
+  PatchForest forest(base);
+  std::vector<LeafValue> leaves;
+  for (std::uint32_t root = 0; root < base.roots().size(); ++root) leaves.push_back({PatchId::root(root), {1, 1, 1}});
+  const DisplayMesh mesh = build_display_mesh(base, leaves);
+  ASSERT_EQ(mesh.faces.size(), base.roots().size());
+  std::size_t triangle = 0;
+  for (const FaceTriangles& run : mesh.faces) {
+    const Face& face = scene.faces[run.faces.first];
+    EXPECT_EQ(run.material, face.material);
+    const Vec3 corner = scene.vertices[scene.corners_of(face)[0]];
+    for (std::uint32_t n = 0; n < run.count; ++n, ++triangle) {
+      const std::uint32_t vertex = mesh.triangles[triangle][0];
+      EXPECT_NEAR(dot(mesh.positions[vertex] - corner, mesh.normals[vertex]), 0, 1e-3) << "triangle " << triangle;
+    }
+  }
+  EXPECT_EQ(triangle, mesh.triangles.size());
+  EXPECT_EQ(mesh.materials.size(), scene.materials.size());
+}
+
 TEST(DisplayMesh, UniformIrradianceStaysUniform) {
   const BaseMesh mesh(test::furnace(2, 0.5));
   const DisplayMesh display = build_display_mesh(mesh, refined_leaves(mesh, [](Vec3) { return RgbF{4, 4, 4}; }));

@@ -39,6 +39,26 @@ TEST(Scene, FaultsNameThePlaceAndTheReason) {
             "material 0 'grey': emission 1e+31 is beyond 1e30 W/m2");
 }
 
+TEST(Scene, ObjectsThatDoNotFitAreFaultsByName) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto fault_of = [](const std::function<void(std::vector<SceneObject>&)>& spoil) {
+    return fault_after([&](Scene& scene) {
+      scene.objects = {{"room", std::nullopt, {}, 0, 0}, {"floor", 0, {}, 0, 2}, {"walls", 0, {}, 3, 3}};
+      spoil(scene.objects);
+    });
+  };
+  EXPECT_EQ(fault_of([](auto&) {}), "");
+  EXPECT_EQ(fault_of([](auto& o) { o[1].name.clear(); }), "object 1 '': has no name");
+  EXPECT_EQ(fault_of([](auto& o) { o[2].name = "floor"; }), "object 2 'floor': has the name of another object");
+  EXPECT_EQ(fault_of([](auto& o) { o[1].parent = 1; }), "object 1 'floor': its parent 1 does not come before it");
+  EXPECT_EQ(fault_of([](auto& o) { o[1].placement.x.y = nan; }),
+            "object 1 'floor': its transform has a number that is not finite");
+  EXPECT_EQ(fault_of([](auto& o) { o[2].face_count = 4; }), "object 2 'walls': its faces end beyond the 6 faces of the scene");
+  EXPECT_EQ(fault_of([](auto& o) { o[2].first_face = ~0u; }), "object 2 'walls': its faces end beyond the 6 faces of the scene");
+  EXPECT_EQ(fault_of([](auto& o) { o[1].face_count = 4; }),
+            "object 2 'walls': its faces begin before those of the object before it end");
+}
+
 TEST(Scene, FaultsOfLightsNameThem) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const auto fault_of = [](const std::function<void(Light&)>& spoil) {

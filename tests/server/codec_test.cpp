@@ -64,6 +64,26 @@ TEST(SceneCodec, LightsAndTheQuantityArrive) {
   }
 }
 
+TEST(SceneCodec, ObjectsAndNorthArrive) {
+  Scene scene = squares(5);
+  scene.north_degrees = 30;
+  scene.objects = {{"all \xff", std::nullopt, {}, 0, 0},
+                   {"floor", 0, {{0, 1, 0}, {-1, 0, 0}, {0, 0, 2}, {1e-9, 2, 3}}, 0, 1},
+                   {"rest", 0, {}, 2, 3}};
+  const Scene back = assemble(slice(scene, 256));
+  EXPECT_EQ(back.north_degrees, 30);
+  scene.objects[0].name = "all ?";
+  EXPECT_EQ(back.objects, scene.objects);
+}
+
+TEST(SceneCodec, AnObjectWithHalfATransformIsRefusedByName) {
+  v1::GeometryChunk chunk;
+  v1::SceneObject& object = *chunk.add_objects();
+  object.set_name("chair");
+  for (int n = 0; n < 11; ++n) object.add_transform(n);
+  EXPECT_EQ(SceneAssembler().add(chunk)->text(), "object 'chair': its transform has 11 numbers, needs 12");
+}
+
 TEST(SceneCodec, ALuminaireWithoutItsWebIsRefusedByName) {
   v1::GeometryChunk chunk = slice(scene_with_lights(), 1 << 20)[0];
   chunk.mutable_lights(4)->set_web(2);

@@ -22,6 +22,22 @@ TEST(SceneStore, TellsWhatIsOdd) {
   EXPECT_EQ(facts.warnings[1], "No face emits light, and there are no lamps: the solution will be dark.");
 }
 
+TEST(SceneStore, TellsWhatIsInAScene) {
+  SceneStore store;
+  Scene scene = squares(2);
+  scene.objects = {{"first", std::nullopt, {}, 0, 1}, {"second", 0, {}, 1, 1}};
+  scene.lights = {{"bulb", LightKind::point, {1, 1, 1}, {0, 5, 0}}};
+  scene.quantity = Quantity::photometric;
+  scene.up = UpAxis::z;
+  scene.north_degrees = -20;
+  const auto facts = store.add(scene, "")->facts;
+  EXPECT_EQ(facts.object_count, 2u);
+  EXPECT_EQ(facts.light_count, 1u);
+  EXPECT_EQ(facts.quantity, Quantity::photometric);
+  EXPECT_EQ(facts.up, UpAxis::z);
+  EXPECT_EQ(facts.north_degrees, -20);
+}
+
 TEST(SceneStore, TakesAReflectanceOfOneForAsMuchAsSurfacesHaveAndSaysSo) {
   SceneStore store;
   Scene scene = squares(1);

@@ -50,6 +50,9 @@ Json json_of(const v1::Scene& scene) {
           {"vertex_count", scene.vertex_count()},
           {"face_count", scene.face_count()},
           {"material_count", scene.material_count()},
+          {"object_count", scene.object_count()},
+          {"light_count", scene.light_count()},
+          {"quantity", scene.quantity() == v1::QUANTITY_PHOTOMETRIC ? "photometric" : "radiometric"},
           {"warnings", std::vector<std::string>(scene.warnings().begin(), scene.warnings().end())}};
 }
 

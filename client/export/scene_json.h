@@ -1,0 +1,24 @@
+#pragma once
+// How solution files hold the materials and objects of their scene.
+
+#include "meshing/scene.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <span>
+
+namespace alvor {
+
+/// Returns {"name", "emission", "reflectance", "two_sided"}; emission in W/m2 or lm/m2, reflectance without a unit, per band.
+nlohmann::json json_of(const Material& material);
+/// Reads what json_of() wrote. Throws SolutionFileError that names the material by `number`.
+Material material_of(const nlohmann::json& json, std::size_t number);
+
+/// Returns {"name", "first_face", "face_count"}, with "parent" if it has one, and "transform" (12 numbers, see
+/// alvor.v1.SceneObject) if that is not the identity.
+nlohmann::json json_of(const SceneObject& object);
+/// Reads what json_of() wrote, after the objects before it. Throws SolutionFileError that names the object.
+SceneObject object_of(const nlohmann::json& json, std::span<const SceneObject> before);
+
+}  // namespace alvor

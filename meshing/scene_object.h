@@ -1,0 +1,31 @@
+#pragma once
+// The named parts of a scene.
+
+#include "meshing/placement.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace alvor {
+
+/// A named part of a scene, such as a node of a scene file: some of the scene's faces, or only a holder of other objects. Its
+/// number in Scene::objects is its id; a scene that is stored never changes it.
+struct SceneObject {
+  std::string name;  ///< not empty, and no other object's
+  /// The object that this one hangs from: one with a lower number.
+  std::optional<std::uint32_t> parent;
+  /// Maps the object's own coordinates to those of the scene. The scene's vertices are mapped already.
+  Placement placement;
+  /// The faces [first_face, first_face + face_count) of the scene. They come after the faces of all objects before it.
+  std::uint32_t first_face = 0, face_count = 0;
+
+  friend bool operator==(const SceneObject&, const SceneObject&) = default;
+};
+
+/// Returns why object `which` cannot be part of a scene with so many faces; nothing if it can. Names are not compared.
+std::optional<std::string> fault_in(std::span<const SceneObject> objects, std::size_t which, std::size_t scene_faces);
+
+}  // namespace alvor
