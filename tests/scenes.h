@@ -30,6 +30,28 @@ inline void add_box(Scene& scene, Vec3 low, Vec3 high, bool inwards, std::array<
   }
 }
 
+/// Adds the triangle a, b, c of the unit sphere, moved to a sphere, as 4^`levels` triangles.
+inline void add_part_of_globe(Scene& scene, Vec3 centre, double radius, std::array<Vec3, 3> corners, int levels,
+                              std::uint32_t material) {
+  const auto [a, b, c] = corners;
+  const auto at = [&](Vec3 p) { return centre + radius * p; };
+  if (levels == 0) return add_polygon(scene, {at(a), at(b), at(c)}, material);
+  const Vec3 ab = normalized(a + b), bc = normalized(b + c), ca = normalized(c + a);
+  for (const std::array<Vec3, 3>& part : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+    add_part_of_globe(scene, centre, radius, part, levels - 1, material);
+}
+
+/// Adds a sphere of 8 * 4^`levels` triangles whose fronts look outwards.
+inline void add_globe(Scene& scene, Vec3 centre, double radius, int levels, std::uint32_t material) {
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0})
+      for (const double z : {-1.0, 1.0}) {
+        std::array<Vec3, 3> corners{{{x, 0, 0}, {0, y, 0}, {0, 0, z}}};
+        if (x * y * z < 0) corners = {corners[0], corners[2], corners[1]};
+        add_part_of_globe(scene, centre, radius, corners, levels, material);
+      }
+}
+
 inline Material grey(double emission, double reflectance) {
   return {"grey", {emission, emission, emission}, {reflectance, reflectance, reflectance}, false};
 }

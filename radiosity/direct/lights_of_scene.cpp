@@ -3,6 +3,7 @@
 #include "radiosity/direct/distant_light.h"
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lamp_light.h"
+#include "radiosity/direct/mesh_light.h"
 #include "radiosity/direct/opening_light.h"
 #include "radiosity/direct/sky_light.h"
 
@@ -93,9 +94,10 @@ std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const Emis
 OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit) {
   OwnedLights lights;
   const auto emission_of = emission_by_material(scene.mesh(), unit);
-  for (std::uint32_t root = 0; root < scene.mesh().roots().size(); ++root) {
-    const RelativeLight& emission = emission_of[scene.mesh().roots()[root].material];
-    if (!emission.is_zero()) lights.push_back(std::make_unique<FaceLight>(scene, root, emission));
+  for (std::vector<std::uint32_t>& roots : lamps_of_faces(scene)) {
+    const RelativeLight& emission = emission_of[scene.mesh().roots()[roots.front()].material];
+    if (roots.size() == 1) lights.push_back(std::make_unique<FaceLight>(scene, roots.front(), emission));
+    else lights.push_back(std::make_unique<MeshLight>(scene, std::move(roots), emission));
   }
   return lights;
 }

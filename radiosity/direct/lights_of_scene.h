@@ -15,7 +15,7 @@ using OwnedLights = std::vector<std::unique_ptr<const LightSource>>;
 /// Returns the emission of each material of the mesh.
 std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const EmissionUnit& unit);
 
-/// Returns a light for each root patch that emits, in the order of the roots.
+/// Returns a light for each root patch that emits and for each lamp of many such faces (see MeshLight), in the order of the roots.
 OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit);
 
 /// Returns the lights of the mesh that are not faces and not black, in their order. Their numbers follow those of the roots.

@@ -152,8 +152,8 @@ v1::Scene encode(const SceneRecord& record) {
   message.set_material_count(record.material_count);
   message.set_object_count(record.object_count);
   message.set_light_count(record.light_count);
-  if (record.quantity != Quantity::radiometric) message.set_quantity(encode(record.quantity));
-  if (record.up != UpAxis::y) message.set_up_axis(encode(record.up));
+  if (record.quantity) message.set_quantity(encode(*record.quantity));
+  if (record.up) message.set_up_axis(encode(*record.up));
   message.set_north_degrees(record.north_degrees);
   for (const std::string& warning : record.warnings) message.add_warnings(warning);
   message.set_content_sha256(record.content_sha256);
@@ -176,8 +176,8 @@ SceneRecord decode(const v1::Scene& message) {
                      .warnings = {message.warnings().begin(), message.warnings().end()},
                      .content_sha256 = message.content_sha256(),
                      .content_bytes = message.content_bytes()};
-  decode(message.quantity(), record.quantity);
-  decode(message.up_axis(), record.up);
+  if (message.quantity() != v1::QUANTITY_UNSPECIFIED) decode(message.quantity(), record.quantity.emplace());
+  if (message.up_axis() != v1::UP_AXIS_UNSPECIFIED) decode(message.up_axis(), record.up.emplace());
   return record;
 }
 

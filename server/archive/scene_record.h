@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,9 @@ struct SceneRecord {
   std::string display_name;  ///< for people
   std::chrono::system_clock::time_point create_time;
   std::uint64_t vertex_count = 0, face_count = 0, material_count = 0, object_count = 0;
-  std::uint64_t light_count = 0;  ///< of lights that are not faces
-  Quantity quantity = Quantity::radiometric;
-  UpAxis up = UpAxis::y;
+  std::uint64_t light_count = 0;      ///< of lights that are not faces
+  std::optional<Quantity> quantity;   ///< not known of scenes that version 0.1.0 stored
+  std::optional<UpAxis> up;           ///< likewise
   double north_degrees = 0;           ///< see Scene
   std::vector<std::string> warnings;  ///< a sentence for each change or oddity
   std::string content_sha256;         ///< hexadecimal digits; scenes of equal content are stored once

@@ -150,6 +150,7 @@ Scene room_with_all_kinds() {
   scene.lights = {point_lamp({2, 2, 2}, 10), spot_lamp({1, 2.5, 1}, {0.2, -1, 0.3}, 0.2, 0.8), sun({0.3, -1, 0.2}, 50),
                   sun({-0.3, -1, 0.2}, 50, 0.1), point_lamp({3, 1.5, 4}, 20)};
   scene.lights.back().radius = 0.3;
+  test::add_globe(scene, {3, 2, 2}, 0.25, 2, 1);
   // Its planes differ as little as those of measured webs, which are closer: sharp kinks would need finer rules.
   const auto web = std::make_shared<PhotometricWeb>(PhotometricWeb{
       .planes = {0, 90, 180, 270, 360}, .angles = {0, 20, 60, 180}, .intensities = {9,   9, 7, 1, 9,   9, 6, 2, 9, 9,
@@ -229,6 +230,76 @@ TEST(ManyLamps, AreAsBrightByTheTreeAsOneByOne) {
   // All light of the lamps meets the walls; none is reflected.
   const double expected = 64 * 4 * pi * 10 / (2 * 64 + 4 * 24);
   EXPECT_NEAR(mean_irradiance(mesh, test::solved(mesh, {.tolerance = 0.02})), expected, 0.01 * expected);
+}
+
+TEST(MeshLight, IsALampOfManyConnectedFacesOfOneMaterial) {
+  Scene scene = test::coloured_room();
+  const auto lights_of = [](const Scene& each) {
+    const BaseMesh mesh(each);
+    const LocalScene local(mesh);
+    return lights_of_faces(local, EmissionUnit(mesh)).size();
+  };
+  test::add_globe(scene, {3, 2, 2}, 0.25, 2, 1);  // 128 faces
+  EXPECT_EQ(lights_of(scene), 2u);                // and the lamp at the ceiling
+  test::add_globe(scene, {1, 2, 2}, 0.25, 0, 1);
+  EXPECT_EQ(lights_of(scene), 3u);
+  scene.materials.push_back(test::grey(20, 0));
+  scene.faces.back().material = 3;
+  EXPECT_EQ(lights_of(scene), 10u);  // seven faces are fewer than a lamp has
+  Scene large = test::coloured_room();
+  test::add_globe(large, {2, 1.5, 2.5}, 1.45, 1, 1);
+  EXPECT_EQ(lights_of(large), 33u);
+}
+
+TEST(MeshLight, BringsWhatItsFacesBring) {
+  Scene scene = test::coloured_room();
+  test::add_globe(scene, {3, 2, 2}, 0.25, 2, 1);
+  const BaseMesh mesh(scene);
+  const LocalScene local(mesh);
+  const EmissionUnit unit(mesh);
+  const OwnedLights lights = lights_of_faces(local, unit);
+  const LightSource& globe = *lights.back();
+  const auto emission = emission_by_material(mesh, unit);
+  RandomStream random(1, PatchId::root(0));
+  double power = 0;
+  for (std::uint32_t root = globe.number(); root < mesh.roots().size(); ++root)
+    power += FaceLight(local, root, emission[1]).power();
+  EXPECT_NEAR(globe.power(), power, 1e-9 * power);
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 at = local.frame().to_local({4 * random.next(), 3 * random.next(), 5 * random.next()});
+    const Vec3 normal =
+        normalized(local.frame().to_local({3, 2, 2}) - at + 0.5 * Vec3{random.next(), random.next(), random.next()});
+    if (length(at - local.frame().to_local({3, 2, 2})) * local.frame().metres_per_unit < 0.3) continue;
+    double sum = 0;
+    for (std::uint32_t root = globe.number(); root < mesh.roots().size(); ++root)
+      sum += FaceLight(local, root, emission[1]).unblocked(at, normal);
+    EXPECT_NEAR(globe.unblocked(at, normal), sum, 0.005 * sum + 1e-6);
+  }
+}
+
+// As one light the globe casts shadows without the noise of drawing its faces.
+TEST(MeshLight, OfManyFacesIsAsEasyAsASphere) {
+  const auto outcome_of = [](const Scene& scene) {
+    const BaseMesh mesh(scene);
+    SolutionLog log;
+    const StopReason reason = solve(mesh, {.tolerance = 0.03, .max_leaves = 50'000}, log, {}).reason;
+    return std::pair(reason, mean_irradiance(mesh, log.leaves()));
+  };
+  Scene room;
+  room.materials = {test::grey(0, 0.5), test::grey(100, 0)};
+  test::add_box(room, {0, 0, 0}, {4, 3, 5}, true);
+  test::add_box(room, {1, 0, 1}, {2, 1, 3}, false);
+  Scene globe = room, sphere = room;
+  test::add_globe(globe, {2.5, 2, 2.5}, 0.2, 3, 1);  // 512 faces
+  double area = 0;
+  const BaseMesh mesh(globe);
+  for (std::uint32_t root = 12; root < mesh.roots().size(); ++root) area += mesh.roots()[root].area;
+  sphere.lights = {point_lamp({2.5, 2, 2.5}, 100 * area / (4 * pi))};
+  sphere.lights[0].radius = 0.2;
+  const auto [reason, mean] = outcome_of(globe);
+  EXPECT_EQ(reason, StopReason::tolerance);
+  // The globe's own faces count for its mean, but the room is far larger.
+  EXPECT_NEAR(mean, outcome_of(sphere).second, 0.02 * mean);
 }
 
 TEST(PlanOfLamps, LightsTheRoomThatTheLampIsInAndNoOther) {

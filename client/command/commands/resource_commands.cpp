@@ -52,7 +52,7 @@ Json json_of(const v1::Scene& scene) {
           {"material_count", scene.material_count()},
           {"object_count", scene.object_count()},
           {"light_count", scene.light_count()},
-          {"quantity", scene.quantity() == v1::QUANTITY_PHOTOMETRIC ? "photometric" : "radiometric"},
+          {"quantity", v1::Quantity_Name(scene.quantity())},
           {"warnings", std::vector<std::string>(scene.warnings().begin(), scene.warnings().end())}};
 }
 

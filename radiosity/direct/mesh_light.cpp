@@ -1,0 +1,138 @@
+#include "radiosity/direct/mesh_light.h"
+
+#include "radiosity/form_factors/form_factor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+namespace alvor {
+
+namespace {
+
+// Faces, and size of their box (the scene's longest side is 1), that make one lamp if they have one material and share vertices.
+// Chosen: fewer faces are computed one by one, and in a larger lamp 16 shadow rays would stand for too much.
+constexpr std::size_t least_faces = 8, most_faces = 4096;
+constexpr double largest_lamp = 0.5;
+// A face farther away than so many times its size counts as if all of it were in its middle: wrong by less than 1 %.
+constexpr double far_sizes = 8;
+
+/// The sets into which the numbers [0, count) fall by joining (Tarjan 1975).
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t find(std::uint32_t n) {
+    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
+    return n;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[find(b)] = find(a); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+bool is_one_lamp(const LocalScene& scene, std::span<const std::uint32_t> roots) {
+  if (roots.size() < least_faces || roots.size() > most_faces) return false;
+  Vec3 low = scene.corners(roots[0])[0], high = low;
+  for (const std::uint32_t root : roots)
+    for (const Vec3 corner : scene.corners(root)) low = lower(low, corner), high = upper(high, corner);
+  return length(high - low) <= largest_lamp;
+}
+
+double area_of_all(const LocalScene& scene, std::span<const std::uint32_t> roots) {
+  double area = 0;
+  for (const std::uint32_t root : roots) area += scene.mesh().roots()[root].area;
+  return area;
+}
+
+}  // namespace
+
+MeshLight::MeshLight(const LocalScene& scene, std::vector<std::uint32_t> roots, const RelativeLight& emission)
+    : LightSource(roots.front(), emission, emission.sum() * area_of_all(scene, roots)), scene_(scene) {
+  const double metres = scene.frame().metres_per_unit;
+  double sum = 0;
+  for (const std::uint32_t root : roots) {
+    const auto corners = scene.corners(root);
+    const RootPatch& patch = scene.mesh().roots()[root];
+    const Vec3 middle = std::accumulate(corners.begin(), corners.end(), Vec3{}) / static_cast<double>(corners.size());
+    double size = 0;
+    for (const Vec3 corner : corners) size = std::max(size, 2 * length(corner - middle));
+    const double area = patch.area / (metres * metres), far = far_sizes * size;
+    sum += area;
+    faces_.push_back({root, middle, patch.normal, area, far * far, sum});
+  }
+}
+
+double MeshLight::brings(const LitFace& face, Vec3 at, Vec3 normal) const {
+  const Vec3 way = face.middle - at;
+  const double squared = dot(way, way);
+  if (squared > face.far_squared) {
+    const double here = dot(way, normal), there = -dot(way, face.normal);
+    return here > 0 && there > 0 ? here * there * face.area / (std::numbers::pi * squared * squared) : 0;
+  }
+  const auto corners = scene_.corners(face.root);
+  return dot(at - corners[0], face.normal) > 0 ? point_to_polygon(at, normal, corners) : 0;
+}
+
+double MeshLight::unblocked(Vec3 at, Vec3 normal) const {
+  double sum = 0;
+  for (const LitFace& face : faces_) sum += brings(face, at, normal);
+  return sum;
+}
+
+void MeshLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
+  const Vec3 normal = aim.facing();
+  for (std::size_t o = first; o < last; ++o) {
+    // The first coordinate chooses the face by area; what is left of it is uniform again.
+    const double wanted = aim.at[o].u * faces_.back().area_up_to;
+    auto face = std::ranges::upper_bound(faces_, wanted, {}, &LitFace::area_up_to);
+    if (face == faces_.end()) --face;
+    double u = std::clamp(1 - (face->area_up_to - wanted) / face->area, 0.0, 1.0), v = aim.at[o].v;
+    const auto corners = scene_.corners(face->root);
+    if (corners.size() == 3 && u + v > 1) u = 1 - u, v = 1 - v;
+    const Vec3 target = corners.size() == 3 ? corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0])
+                                            : lerp(lerp(corners[0], corners[1], u), lerp(corners[3], corners[2], u), v);
+    const Vec3 way = target - aim.start(o);
+    const double squared = dot(way, way), here = std::max(0.0, dot(way, normal)), there = std::max(0.0, -dot(way, face->normal));
+    aim.set(o, way, short_of_light, here * there / (squared * squared + 1e-30));
+  }
+}
+
+double MeshLight::sample_scale(double probability) const { return faces_.back().area_up_to / (std::numbers::pi * probability); }
+
+std::optional<LightExtent> MeshLight::extent() const {
+  const double metres = scene_.frame().metres_per_unit;
+  Vec3 low = faces_.front().middle, high = low;
+  for (const LitFace& face : faces_)
+    for (const Vec3 corner : scene_.corners(face.root)) low = lower(low, corner), high = upper(high, corner);
+  // A closed lamp shows more than one of its faces: all of them, at most.
+  return LightExtent{lerp(low, high, 0.5), low, high, {}, power() / (metres * metres), colour().sum()};
+}
+
+std::vector<std::vector<std::uint32_t>> lamps_of_faces(const LocalScene& scene) {
+  const BaseMesh& mesh = scene.mesh();
+  DisjointSets sets(mesh.roots().size());
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_at;  // root by vertex and material
+  std::vector<std::uint32_t> emitters;
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
+    const RootPatch& patch = mesh.roots()[root];
+    if (mesh.materials()[patch.material].emission.is_zero()) continue;
+    emitters.push_back(root);
+    for (int c = 0; c < patch.corner_count; ++c)
+      sets.join(first_at.try_emplace({patch.vertex[static_cast<std::size_t>(c)], patch.material}, root).first->second, root);
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> lamps;
+  for (const std::uint32_t root : emitters) lamps[sets.find(root)].push_back(root);
+  std::vector<std::vector<std::uint32_t>> groups;
+  for (auto& [first, roots] : lamps) {
+    if (is_one_lamp(scene, roots)) groups.push_back(std::move(roots));
+    else
+      for (const std::uint32_t root : roots) groups.push_back({root});
+  }
+  std::ranges::sort(groups, {}, [](const auto& group) { return group.front(); });
+  return groups;
+}
+
+}  // namespace alvor
