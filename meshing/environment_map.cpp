@@ -17,8 +17,8 @@ constexpr float max_radiance = 1e30f;
 double angle_of_row(const SphereGrid& grid, double row) { return pi * row / grid.rows; }
 double longitude_of(const SphereGrid& grid, double column) { return 2 * pi * column / grid.columns - pi; }
 
-/// Calls visit(target, share) for each of `to` equal pieces of a length that piece `n` of `from` equal pieces overlaps. `share` is
-/// the part of the overlap in piece `n`, as its two ends in pieces of `from`.
+/// Calls visit(target, share) for each of `to` equal pieces of a length that piece `n` of `from` equal pieces overlaps. `share`
+/// is the part of the overlap in piece `n`, as its two ends in pieces of `from`.
 template <class Visit>
 void for_each_overlap(std::uint32_t n, std::uint32_t from, std::uint32_t to, Visit&& visit) {
   const double ratio = double(from) / to;
@@ -70,7 +70,8 @@ Rgb EnvironmentMap::total() const {
 std::optional<std::string> fault_in(const EnvironmentMap& map) {
   const auto& [columns, rows] = map.grid;
   if (columns == 0 || rows == 0 || columns > EnvironmentMap::most_columns || rows > EnvironmentMap::most_rows)
-    return "its environment map has " + std::to_string(columns) + " x " + std::to_string(rows) + " pixels, not 1 x 1 to 256 x 128";
+    return "its environment map has " + std::to_string(columns) + " x " + std::to_string(rows) +
+           " pixels, not 1 x 1 to 256 x 128";
   if (map.pixels.size() != map.grid.size())
     return "its environment map of " + std::to_string(columns) + " x " + std::to_string(rows) + " has " +
            std::to_string(map.pixels.size()) + " pixels";

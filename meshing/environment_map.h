@@ -16,8 +16,8 @@ namespace alvor {
 struct Light;
 
 /// A grid of latitudes and longitudes over all directions. Row r covers the angles from pi r / rows to pi (r + 1) / rows from the
-/// zenith. Column c covers the longitudes from 2 pi c / columns - pi to 2 pi (c + 1) / columns - pi, counted from the middle of the
-/// image to the right. Directions have the coordinates x: ahead, to the middle of the image; y: right; z: up.
+/// zenith. Column c covers the longitudes from 2 pi c / columns - pi to 2 pi (c + 1) / columns - pi, counted from the middle of
+/// the image to the right. Directions have the coordinates x: ahead, to the middle of the image; y: right; z: up.
 struct SphereGrid {
   std::uint32_t columns = 0, rows = 0;  ///< > 0
 

@@ -55,11 +55,11 @@ std::optional<std::string> fault_in_environment(const Light& light) {
 
 bool operator==(const Light& a, const Light& b) {
   const bool is_same_web = a.web == b.web || (a.web && b.web && *a.web == *b.web);
-  const bool is_same_map =
-      a.environment == b.environment || (a.environment && b.environment && *a.environment == *b.environment);
-  return is_same_web && is_same_map && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity && a.position == b.position &&
-         a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone && a.radius == b.radius &&
-         a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening && a.sky == b.sky;
+  const bool is_same_map = a.environment == b.environment || (a.environment && b.environment && *a.environment == *b.environment);
+  return is_same_web && is_same_map && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity &&
+         a.position == b.position && a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone &&
+         a.radius == b.radius && a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening &&
+         a.sky == b.sky;
 }
 
 SpotCone::SpotCone(const Light& spot)

@@ -49,7 +49,8 @@ struct Light {
   LightKind kind = LightKind::point;
   /// Point, spot: radiant intensity, W/sr per band, in the middle of the cone for a spot. Directional: irradiance of a surface
   /// that faces the light, W/m2 per band. >= 0. In a photometric scene cd and lx. Luminaire: a factor for the intensities of its
-  /// web. Sky: irradiance of an open surface that faces its zenith, W/m2 or lx. Environment: a factor for the radiance of its map.
+  /// web. Sky: irradiance of an open surface that faces its zenith, W/m2 or lx. Environment: a factor for the radiance of its
+  /// map.
   Rgb intensity;
   Vec3 position;  ///< point, spot: metres; luminaire: its photometric centre
   /// Spot: axis of the cone; directional: the way the light travels; luminaire: its aim, where both angles of the web are 0;
@@ -63,8 +64,8 @@ struct Light {
   std::shared_ptr<const PhotometricWeb> web;  ///< luminaire: not null; lights may share it
   /// Luminaire: the web's plane 0 or axis; environment: to the middle of its map. Unit, perpendicular to `direction`.
   Vec3 across{1, 0, 0};
-  LuminousOpening opening;                    ///< luminaire
-  SkyDistribution sky;                        ///< sky
+  LuminousOpening opening;                            ///< luminaire
+  SkyDistribution sky;                                ///< sky
   std::shared_ptr<const EnvironmentMap> environment;  ///< environment: not null; lights may share it
 
   friend bool operator==(const Light& a, const Light& b);

@@ -60,7 +60,7 @@ class SceneAssembler {
   /// face.
   std::optional<Fault> add(const v1::GeometryChunk& chunk);
   const Scene& scene() const { return scene_; }
-  std::size_t web_count() const { return webs_.size(); }  ///< of photometric webs that have arrived
+  std::size_t web_count() const { return webs_.size(); }                  ///< of photometric webs that have arrived
   std::size_t environment_count() const { return environments_.size(); }  ///< of environment maps that have arrived
   /// Returns the assembled scene. Its indices are not checked yet, see find_fault.
   Scene take() { return std::move(scene_); }

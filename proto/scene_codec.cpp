@@ -117,9 +117,9 @@ std::optional<Fault> SceneAssembler::fault_in_environments(const v1::GeometryChu
       return Fault{place_in_chunk("environments"), "a map has " + size + " pixels, at most 256 x 128 are possible"};
     const std::uint64_t values = std::uint64_t{3} * map.columns() * map.rows();
     if (static_cast<std::uint64_t>(map.radiance_size()) != values)
-      return Fault{place_in_chunk("environments"), "a map of " + size + " pixels has " +
-                                                       count_of(static_cast<std::uint64_t>(map.radiance_size()), "values, needs ") +
-                                                       std::to_string(values)};
+      return Fault{place_in_chunk("environments"),
+                   "a map of " + size + " pixels has " +
+                       count_of(static_cast<std::uint64_t>(map.radiance_size()), "values, needs ") + std::to_string(values)};
   }
   return std::nullopt;
 }

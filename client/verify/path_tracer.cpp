@@ -130,7 +130,8 @@ Rgb PathTracer::from_skies(const Bend& bend, Vec3 direction) const {
 Rgb PathTracer::from_surroundings(const Bend& bend, UnitPair choice) const {
   const Surroundings& all = skies_.surroundings();
   const Vec3 direction = all.sample(choice);
-  const double cosine = dot(bend.normal, direction), density = all.density(direction), out = lamps_.way_out(bend.place, direction);
+  const double cosine = dot(bend.normal, direction), density = all.density(direction),
+               out = lamps_.way_out(bend.place, direction);
   if (cosine <= 0 || density <= 0 || caster_->is_blocked(bend.place, bend.place + (out + 0.01) * direction)) return {};
   const Rgb arriving = share_of(density, cosine / std::numbers::pi) * cosine / density * all.radiance(direction);
   return clear_ ? arriving : arriving * transmittance(out);

@@ -1,6 +1,6 @@
 #pragma once
-// The environment maps of a scene, for the path tracer. Written apart from the solver's (radiosity/direct), so that an error in one
-// is seen.
+// The environment maps of a scene, for the path tracer. Written apart from the solver's (radiosity/direct), so that an error in
+// one is seen.
 
 #include "client/verify/path_random.h"
 #include "meshing/light.h"
@@ -10,8 +10,8 @@
 
 namespace alvor {
 
-/// Radiance that surrounds a scene, and directions drawn from it: each pixel of each map by the light that it sends, places within
-/// a pixel uniform by solid angle. Immutable.
+/// Radiance that surrounds a scene, and directions drawn from it: each pixel of each map by the light that it sends, places
+/// within a pixel uniform by solid angle. Immutable.
 class Surroundings {
  public:
   Surroundings() = default;

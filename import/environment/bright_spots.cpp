@@ -78,7 +78,9 @@ class SpotFinder {
     return part;
   }
 
-  double solid_angle(std::size_t pixel) const { return map_.grid.solid_angle(static_cast<std::uint32_t>(pixel / map_.grid.columns)); }
+  double solid_angle(std::size_t pixel) const {
+    return map_.grid.solid_angle(static_cast<std::uint32_t>(pixel / map_.grid.columns));
+  }
   Vec3 direction_sum(std::size_t pixel) const {
     const std::size_t columns = map_.grid.columns;
     return map_.grid.direction_sum(static_cast<std::uint32_t>(pixel / columns), static_cast<std::uint32_t>(pixel % columns));

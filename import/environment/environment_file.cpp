@@ -46,7 +46,8 @@ class CheckedRows final : public ImageRows {
   EnvironmentFile take() {
     std::vector<std::string> warnings;
     if (negative_ > 0)
-      warnings.push_back(std::to_string(negative_) + (negative_ == 1 ? " value is negative and counts as 0" : " values are negative and count as 0"));
+      warnings.push_back(std::to_string(negative_) +
+                         (negative_ == 1 ? " value is negative and counts as 0" : " values are negative and count as 0"));
     if (!is_lit_) warnings.push_back("is black: it brings no light");
     return {reduction_->take(), std::move(warnings)};
   }

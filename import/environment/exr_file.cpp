@@ -71,7 +71,8 @@ void read_exr(const std::string& bytes, ImageRows& rows) {
   refuse_unusable(file.header());
   const auto names = channels_of(file.header());
   const Imath::Box2i window = file.header().dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1, height = std::int64_t{window.max.y} - window.min.y + 1;
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
+                     height = std::int64_t{window.max.y} - window.min.y + 1;
   rows.begin(width, height);
   if (!file.isComplete()) throw ImportError("pixels", "the file is cut off");
   const auto samples = static_cast<std::size_t>(3 * width);

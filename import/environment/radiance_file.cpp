@@ -22,9 +22,11 @@ namespace alvor {
 
 namespace {
 
-/// The bytes of a file, from which stb_image reads. At the end of a file it goes on with zeros, but asks for more first.
+/// The bytes of a file, from which stb_image reads. At the end of a file it would go on with zeros, and never end: runs of length
+/// 0. So the pixels of a file that is cut off go on with runs of length 127.
 struct Source {
   const std::string& bytes;
+  bool goes_on = false;
   std::size_t next = 0;
   bool is_cut_off = false;
 };
@@ -36,7 +38,9 @@ const stbi_io_callbacks callbacks{
       source.is_cut_off |= count == 0 && size > 0;
       std::memcpy(data, source.bytes.data() + source.next, count);
       source.next += count;
-      return static_cast<int>(count);
+      if (count > 0 || !source.goes_on) return static_cast<int>(count);
+      std::memset(data, 0xff, static_cast<std::size_t>(std::max(0, size)));
+      return size;
     },
     [](void* user, int count) {
       auto& source = *static_cast<Source*>(user);
@@ -64,7 +68,7 @@ void read_radiance(const std::string& bytes, ImageRows& rows) {
     throw ImportError("header", "is not that of a Radiance picture (FORMAT=32-bit_rle_rgbe, -Y rows +X columns)");
   rows.begin(width, height);
   const double scale = 1 / exposure_of(bytes);
-  Source source{bytes};
+  Source source{bytes, true};
   const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(
       stbi_loadf_from_callbacks(&callbacks, &source, &width, &height, &channels, 3), stbi_image_free);
   if (source.is_cut_off) throw ImportError("pixels", "the file is cut off");

@@ -52,7 +52,7 @@ Light light_of(const BrightSpot& spot, const Light& environment) {
 std::string told(const Light& spot, Vec3 up, Quantity quantity) {
   char text[160];
   std::snprintf(text, sizeof text,
-                "its bright spot %.1f degrees above the horizon, %.2f degrees wide, is a distant light of %.4g %s", //
+                "its bright spot %.1f degrees above the horizon, %.2f degrees wide, is a distant light of %.4g %s",  //
                 std::asin(std::clamp(-dot(spot.direction, up), -1.0, 1.0)) / degrees, spot.angular_diameter / degrees,
                 spot.intensity.mean(), quantity == Quantity::photometric ? "lx" : "W/m2");
   return text;
@@ -71,8 +71,8 @@ void add_environment(const v1::ImportOptions& options, SceneFiles& files, Scene&
       scene.lights.push_back(light_of(spot, environment));
       warnings.push_back(place + ": " + told(scene.lights.back(), -environment.direction, scene.quantity));
     }
-    environment.environment = std::make_shared<const EnvironmentMap>(
-        reduced(file.map, EnvironmentMap::most_columns, EnvironmentMap::most_rows));
+    environment.environment =
+        std::make_shared<const EnvironmentMap>(reduced(file.map, EnvironmentMap::most_columns, EnvironmentMap::most_rows));
     if (!environment.environment->total().is_zero()) scene.lights.push_back(std::move(environment));
   } catch (const MissingFileError&) {
     throw;

@@ -54,15 +54,19 @@ void EnvironmentBand::fill_sums() {
   }
 }
 
+// Pixels that are larger than a group are cut, so that the horizon cuts none that is large.
 void EnvironmentBand::fill_groups() {
-  const SphereGrid groups{std::min(grid_.columns, group_columns), std::min(grid_.rows, group_rows)};
+  const std::uint32_t cut_columns = (group_columns + grid_.columns - 1) / grid_.columns;
+  const std::uint32_t cut_rows = (group_rows + grid_.rows - 1) / grid_.rows;
+  const SphereGrid pieces{grid_.columns * cut_columns, grid_.rows * cut_rows};
+  const SphereGrid groups{std::min(pieces.columns, group_columns), std::min(pieces.rows, group_rows)};
   std::vector<Vec3> sums((groups.size() + lanes - 1) / lanes * lanes);
-  for (std::uint32_t row = 0; row < grid_.rows; ++row)
-    for (std::uint32_t column = 0; column < grid_.columns; ++column) {
+  for (std::uint32_t row = 0; row < pieces.rows; ++row)
+    for (std::uint32_t column = 0; column < pieces.columns; ++column) {
+      const double radiance = radiance_[std::size_t{row / cut_rows} * grid_.columns + column / cut_columns];
       const std::size_t group =
-          std::size_t{row * groups.rows / grid_.rows} * groups.columns + column * groups.columns / grid_.columns;
-      sums[group] +=
-          radiance_[std::size_t{row} * grid_.columns + column] * axes_.to_scene(grid_.direction_sum(row, column));
+          std::size_t{row * groups.rows / pieces.rows} * groups.columns + column * groups.columns / pieces.columns;
+      sums[group] += radiance * axes_.to_scene(pieces.direction_sum(row, column));
     }
   for (const Vec3& sum : sums) {
     x_.push_back(static_cast<float>(sum.x));
@@ -75,8 +79,7 @@ double EnvironmentBand::irradiance(Vec3 normal) const {
   const auto x = static_cast<float>(normal.x), y = static_cast<float>(normal.y), z = static_cast<float>(normal.z);
   std::array<float, lanes> sums{};
   for (std::size_t group = 0; group < x_.size(); group += lanes)
-    for (std::size_t n = 0; n < lanes; ++n)
-      sums[n] += std::max(0.0f, x * x_[group + n] + y * y_[group + n] + z * z_[group + n]);
+    for (std::size_t n = 0; n < lanes; ++n) sums[n] += std::max(0.0f, x * x_[group + n] + y * y_[group + n] + z * z_[group + n]);
   double sum = 0;
   for (const float part : sums) sum += double{part};
   return sum;

@@ -40,12 +40,12 @@ class EnvironmentBand final : public DistantRadiance {
   const EnvironmentAxes axes_;
   const SphereGrid grid_;
   Rgb colour_;
-  std::vector<double> radiance_;      ///< by pixel, 1/sr
-  std::vector<double> of_rows_;       ///< sums of what the rows send, from the zenith down to each
-  std::vector<double> within_rows_;   ///< by pixel: sums within its row, up to it
-  std::vector<float> x_, y_, z_;      ///< by group of pixels: what it sends times its direction, axes of the scene
+  std::vector<double> radiance_;     ///< by pixel, 1/sr
+  std::vector<double> of_rows_;      ///< sums of what the rows send, from the zenith down to each
+  std::vector<double> within_rows_;  ///< by pixel: sums within its row, up to it
+  std::vector<float> x_, y_, z_;     ///< by group of pixels: what it sends times its direction, axes of the scene
   SphereGrid smooth_grid_;
-  std::vector<double> smooth_;        ///< radiance by pixel of the smooth grid
+  std::vector<double> smooth_;  ///< radiance by pixel of the smooth grid
 };
 
 /// Returns the bands of an environment that light alike, each as weights for EnvironmentBand: one entry if the colour is the same

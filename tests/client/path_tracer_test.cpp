@@ -65,7 +65,7 @@ TEST(PathTracer, AConstantEnvironmentBringsPiTimesItsRadiance) {
   scene.lights = {test::environment({16, 8}, [](Vec3) { return Rgb{2, 2, 2}; })};
   const auto estimate = traced(scene, {{0.3, 0.2, 0}, {0, 0, 1}});
   EXPECT_NEAR(estimate.mean().g, 2 * std::numbers::pi, sure * error_of(estimate) + 1e-3);
-  EXPECT_LT(error_of(estimate), 0.03);
+  EXPECT_LT(error_of(estimate), 0.01 * estimate.mean().g);
 }
 
 // A small bright part is found by its own light: cosine-distributed directions alone would have an error of 40 %.
@@ -73,7 +73,9 @@ TEST(PathTracer, ASmallBrightPartOfAnEnvironmentIsSampledByItsLight) {
   Scene scene;
   add_black_floor(scene, 2);
   const Vec3 towards = normalized(Vec3{0.6, 0.3, 0.7});
-  const Light light = test::environment({256, 128}, [&](Vec3 d) { return (dot(d, towards) > 0.9994 ? 1e4 : 0.01) * Rgb{1, 1, 1}; });
+  const Light light = test::environment({256, 128}, [&](Vec3 d) {
+    return (dot(d, towards) > 0.9994 ? 1e4 : 0.01) * Rgb{1, 1, 1};
+  });
   scene.lights = {light};
   double exact = 0;
   const EnvironmentMap& map = *light.environment;
@@ -106,7 +108,7 @@ TEST(PathTracer, AgreesWithTheSolverInARoomWithAWindowUnderAColouredEnvironment)
   })};
   const BaseMesh mesh(scene);
   SolutionLog log;
-  solve(mesh, {.tolerance = 0.01}, log, {});
+  solve(mesh, {.tolerance = 0.03}, log, {});
   std::vector<SurfacePoint> points;
   Rgb solved;
   double weight = 0;

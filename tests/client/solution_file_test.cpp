@@ -79,7 +79,9 @@ TEST_P(SolutionFile, RemembersLightsAndWhatItsNumbersMean) {
 TEST_P(SolutionFile, RemembersEnvironmentMapsReducedToWhatFitsAFile) {
   DisplayMesh mesh = hand_made_room({});
   const Light small = test::environment({8, 4}, [](Vec3 d) { return Rgb{1 + std::round(8 * d.x) / 8, 0.25, 3}; });
-  Light large = test::environment({256, 128}, [](Vec3 d) { return Rgb{2 + std::sin(5 * d.x), 1 + d.y / 3, 3 + std::cos(7 * d.z)}; });
+  Light large = test::environment({256, 128}, [](Vec3 d) {
+    return Rgb{2 + std::sin(5 * d.x), 1 + d.y / 3, 3 + std::cos(7 * d.z)};
+  });
   large.direction = {0, 0, -1};
   mesh.lights = {small, large, small};
   const std::string bytes = encoded(mesh);
@@ -90,8 +92,9 @@ TEST_P(SolutionFile, RemembersEnvironmentMapsReducedToWhatFitsAFile) {
   EXPECT_EQ(back.lights[0].environment, back.lights[2].environment);  // written once
   EXPECT_EQ(back.lights[1].direction, large.direction);
   EXPECT_NEAR(back.lights[1].environment->total().r, large.environment->total().r, 1e-3 * large.environment->total().r);
-  EXPECT_NE(refusal(std::string(bytes).replace(bytes.find("\"columns\":8"), 11, "\"columns\":9")).find("light 0: its environment map"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(std::string(bytes).replace(bytes.find("\"columns\":8"), 11, "\"columns\":9")).find("light 0: its environment map"),
+      std::string::npos);
 }
 
 TEST_P(SolutionFile, ALightThatIsNoneIsRefusedByName) {

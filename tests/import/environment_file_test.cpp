@@ -1,8 +1,8 @@
 // Environment maps: light is kept, bright spots become distant lights, and bad files are refused with their place.
 
+#include "import/environment/environment_file.h"
 #include "import/apart/scene_file.h"
 #include "import/base/import_error.h"
-#include "import/environment/environment_file.h"
 #include "import/formats/import_scene.h"
 #include "tests/import/environment_images.h"
 
@@ -59,7 +59,7 @@ Rgb irradiance(const Scene& scene, Vec3 normal) {
   return sum;
 }
 
-/// Returns a sky that darkens towards the horizon above a dim ground, with a sun of 0.53 degrees at 40 degrees above the horizon,
+/// Returns a sky that darkens towards the horizon above a dim ground, with a sun of 1.5 degrees at 40 degrees above the horizon,
 /// 90 degrees right of the middle.
 Image sky_with_sun(int columns) {
   const SphereGrid grid{static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(columns / 2)};
@@ -68,7 +68,7 @@ Image sky_with_sun(int columns) {
   return image_of(columns, columns / 2, [&](int row, int column, int band) {
     const Vec3 d = grid.direction_at(column + 0.5, row + 0.5);
     const double sky = d.z > 0 ? 1 + d.z + band : 0.3;
-    return dot(d, sun) > std::cos(0.53 / 2 * pi / 180) ? 5e4 : sky + 2 * std::exp(20 * (dot(d, sun) - 1));
+    return dot(d, sun) > std::cos(1.5 / 2 * pi / 180) ? 1e4 : sky + 2 * std::exp(20 * (dot(d, sun) - 1));
   });
 }
 
@@ -106,7 +106,8 @@ TEST(ImportedEnvironment, ThatIsConstantBringsPiTimesItsRadiance) {
   EXPECT_EQ(file.scene.lights[0].kind, LightKind::environment);
   EXPECT_EQ(file.scene.lights[0].name, "grey.hdr");
   EXPECT_EQ(file.warnings, std::vector<std::string>{});
-  for (const Vec3 normal : {Vec3{0, 1, 0}, {0, -1, 0}, {1, 0, 0}}) EXPECT_NEAR(irradiance(file.scene, normal).g, 6 * pi, 1e-3 * pi);
+  for (const Vec3 normal : {Vec3{0, 1, 0}, {0, -1, 0}, {1, 0, 0}})
+    EXPECT_NEAR(irradiance(file.scene, normal).g, 6 * pi, 1e-3 * pi);
 }
 
 TEST(ImportedEnvironment, GivesUpItsSunAndKeepsItsLight) {
@@ -119,7 +120,7 @@ TEST(ImportedEnvironment, GivesUpItsSunAndKeepsItsLight) {
     const double h = 40 * pi / 180;
     // A quarter of the image right of its middle, which lies along x, is z.
     EXPECT_GT(dot(sun.direction, Vec3{0, -std::sin(h), -std::cos(h)}), std::cos(0.4 * 2 * pi / columns + 0.1 * pi / 180));
-    EXPECT_NEAR(sun.angular_diameter * 180 / pi, 0.53, 0.15 + 180.0 / columns);
+    EXPECT_NEAR(sun.angular_diameter * 180 / pi, 1.5, 0.15 + 90.0 / columns);
     EXPECT_LE(file.scene.lights[1].environment->grid.columns, 256u);
     EXPECT_EQ(file.warnings.size(), 1u);
     // The light of all pixels, from the file itself.
@@ -168,7 +169,8 @@ TEST(ImportedEnvironment, WithAValueThatIsNoRadianceIsRefusedWithItsPlace) {
     return test::exr_of(image_of(16, 8, [&](int row, int column, int) { return row == 5 && column == 3 ? value : 1; }));
   };
   EXPECT_EQ(refusal("a.exr", with(std::nanf(""))), "environment 'a.exr': row 5, column 3: its value is not a number");
-  EXPECT_EQ(refusal("a.exr", with(std::numeric_limits<float>::infinity())), "environment 'a.exr': row 5, column 3: its value is infinite");
+  EXPECT_EQ(refusal("a.exr", with(std::numeric_limits<float>::infinity())),
+            "environment 'a.exr': row 5, column 3: its value is infinite");
   EXPECT_EQ(refusal("a.exr", with(1e38f)), "environment 'a.exr': row 5, column 3: its value is beyond 1e30");
 }
 
@@ -179,7 +181,8 @@ TEST(ImportedEnvironment, OfAnotherShapeOrSizeIsRefused) {
   EXPECT_EQ(refusal("a.exr", test::exr_of(image_of(16, 8, one), {"A", "B", "Z"})),
             "environment 'a.exr': channels: are neither R, G, B nor Y alone");
   const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
-  EXPECT_EQ(refusal("a.hdr", head + "-Y 1000000 +X 2000000\n"), "environment 'a.hdr': size: 2000000 x 1000000 pixels, at most 16384 x 8192");
+  EXPECT_EQ(refusal("a.hdr", head + "-Y 1000000 +X 2000000\n"),
+            "environment 'a.hdr': size: 2000000 x 1000000 pixels, at most 16384 x 8192");
   EXPECT_EQ(refusal("a.hdr", head + "-Y 0 +X 0\n"), "environment 'a.hdr': size: 0 x 0 pixels");
   EXPECT_EQ(refusal("a.hdr", head + "-Y -8 +X -16\n"), "environment 'a.hdr': size: -16 x -8 pixels");
   EXPECT_EQ(refusal("a.hdr", ""), "environment 'a.hdr': file: is empty");

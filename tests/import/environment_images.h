@@ -88,8 +88,8 @@ inline std::string exr_of(const Image& image, const std::vector<std::string>& ch
   for (std::size_t band = 0; band < channels.size(); ++band) {
     header.channels().insert(channels[band], Imf::Channel(Imf::FLOAT));
     auto* first = reinterpret_cast<char*>(const_cast<float*>(&image.rgb[band]));
-    source.insert(channels[band], Imf::Slice(Imf::FLOAT, first, 3 * sizeof(float),
-                                             3 * sizeof(float) * static_cast<std::size_t>(image.columns)));
+    source.insert(channels[band],
+                  Imf::Slice(Imf::FLOAT, first, 3 * sizeof(float), 3 * sizeof(float) * static_cast<std::size_t>(image.columns)));
   }
   ExrBytes stream;
   {

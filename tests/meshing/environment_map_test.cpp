@@ -11,7 +11,9 @@ namespace {
 using std::numbers::pi;
 
 EnvironmentMap stripes(SphereGrid grid) {
-  return *test::environment(grid, [](Vec3 d) { return Rgb{2 + std::sin(9 * d.x), 1 + d.y * d.y, 3 + std::cos(7 * d.z)}; }).environment;
+  return *test::environment(grid, [](Vec3 d) {
+            return Rgb{2 + std::sin(9 * d.x), 1 + d.y * d.y, 3 + std::cos(7 * d.z)};
+          }).environment;
 }
 
 TEST(SphereGrid, PixelsCoverTheSphereAndAHemisphereBringsPi) {
@@ -48,7 +50,8 @@ TEST(EnvironmentReduction, KeepsTheIntegralAtAnyPairOfSizes) {
       const EnvironmentMap map = stripes(from), less = reduced(map, to.columns, to.rows);
       EXPECT_LE(less.grid.columns, to.columns);
       EXPECT_EQ(less.pixels.size(), less.grid.size());
-      for (const double difference : {less.total().r / map.total().r, less.total().g / map.total().g, less.total().b / map.total().b})
+      for (const double difference :
+           {less.total().r / map.total().r, less.total().g / map.total().g, less.total().b / map.total().b})
         EXPECT_NEAR(difference, 1, 1e-6) << from.columns << " to " << to.columns;
     }
 }

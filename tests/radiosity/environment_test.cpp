@@ -60,12 +60,15 @@ TEST(Environment, ThatIsConstantLightsAllSidesAlike) {
 
 TEST(Environment, WithOneBrightBlockEqualsADistantLight) {
   const Vec3 towards = normalized(Vec3{1, 1.5, 0.5});
-  const Light block = test::environment({256, 128}, [&](Vec3 d) { return (dot(d, towards) > std::cos(0.03) ? 1000 : 0) * Rgb{1, 1, 1}; });
+  const Light block = test::environment({256, 128}, [&](Vec3 d) {
+    return (dot(d, towards) > std::cos(0.03) ? 1000 : 0) * Rgb{1, 1, 1};
+  });
   Vec3 sum;
   const EnvironmentMap& map = *block.environment;
   for (std::uint32_t row = 0; row < map.grid.rows; ++row)
     for (std::uint32_t column = 0; column < map.grid.columns; ++column)
-      sum += double{map.pixels[row * map.grid.columns + column].g} * EnvironmentAxes(block).to_scene(map.grid.direction_sum(row, column));
+      sum += double{map.pixels[row * map.grid.columns + column].g} *
+             EnvironmentAxes(block).to_scene(map.grid.direction_sum(row, column));
   Scene scene = floor_under(block);
   test::add_box(scene, {-1, 0, -1}, {0, 1, 1}, false);
   const auto by_block = test::solved(BaseMesh(scene), {.tolerance = 0.01});
@@ -103,6 +106,14 @@ TEST(Environment, OfTwoColoursLightsOppositeSidesByTheirs) {
     EXPECT_NEAR(leaf.irradiance.b, pi * (1 + normal.z), 0.02 * pi);
     EXPECT_EQ(leaf.irradiance.g, 0);
   }
+}
+
+TEST(Environment, OfAColourMakesThePlanCountColours) {
+  Scene scene = floor_under(uniform({1, 1, 0.7}), 0.5);
+  const auto has_bands = [](const Scene& of) { return Plan(BaseMesh(of), {}).needs(Feature::three_bands); };
+  EXPECT_TRUE(has_bands(scene));
+  scene.lights = {uniform({1, 1, 1})};
+  EXPECT_FALSE(has_bands(scene));
 }
 
 TEST(Environment, OfOneColourIsOneLightAndOthersAreOneByBand) {

@@ -19,8 +19,8 @@ struct EnvironmentOptions {
 
 void add_environment_options(CLI::App& command, EnvironmentOptions& options);
 
-/// Sets the environment of `import`, if the options name one, and adds its file. Throws Failure for options that do not fit together
-/// and a file that cannot be read.
+/// Sets the environment of `import`, if the options name one, and adds its file. Throws Failure for options that do not fit
+/// together and a file that cannot be read.
 void take_environment(const EnvironmentOptions& options, v1::ImportOptions& import, LightFiles& files);
 
 }  // namespace alvor
