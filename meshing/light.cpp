@@ -11,6 +11,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr double max_intensity = 1e30, max_coordinate = 1e9;
+// Of an environment, whose radiance is at most 1e30: its irradiance still fits in a float after many reflections.
+constexpr double max_factor = 1e6;
 constexpr double least_opening = 1e-6;  // metres; the area of smaller ones is lost in rounding
 // Smallest difference of the cosines of the two cones (KHR_lights_punctual), so that a spot with a sharp edge is a steep one.
 constexpr double least_width = 1e-3;
@@ -24,10 +26,15 @@ std::string sentence(const char* what, Value value, const char* reason) {
 
 bool is_unit(Vec3 v) { return std::abs(dot(v, v) - 1) < 1e-6; }
 
-std::optional<std::string> fault_in_luminaire(const Light& light) {
-  if (!light.web) return "it has no photometric web";
+std::optional<std::string> fault_in_across(const Light& light) {
   if (!is_unit(light.across) || std::abs(dot(light.across, light.direction)) > 1e-6)
     return "its axis across is not a unit vector perpendicular to its direction";
+  return std::nullopt;
+}
+
+std::optional<std::string> fault_in_luminaire(const Light& light) {
+  if (!light.web) return "it has no photometric web";
+  if (auto fault = fault_in_across(light)) return fault;
   const LuminousOpening& opening = light.opening;
   for (const double size : {opening.across, opening.along, opening.height})
     if (!(size == 0 || (size >= least_opening && size <= max_coordinate)))
@@ -38,13 +45,21 @@ std::optional<std::string> fault_in_luminaire(const Light& light) {
   return std::nullopt;
 }
 
+std::optional<std::string> fault_in_environment(const Light& light) {
+  if (!light.environment) return "it has no environment map";
+  if (light.intensity.max() > max_factor) return sentence("factor", light.intensity.max(), "is outside [0, 1e6]");
+  return fault_in_across(light);
+}
+
 }  // namespace
 
 bool operator==(const Light& a, const Light& b) {
   const bool is_same_web = a.web == b.web || (a.web && b.web && *a.web == *b.web);
-  return is_same_web && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity && a.position == b.position &&
-         a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone && a.radius == b.radius &&
-         a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening && a.sky == b.sky;
+  const bool is_same_map = a.environment == b.environment || (a.environment && b.environment && *a.environment == *b.environment);
+  return is_same_web && is_same_map && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity &&
+         a.position == b.position && a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone &&
+         a.radius == b.radius && a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening &&
+         a.sky == b.sky;
 }
 
 SpotCone::SpotCone(const Light& spot)
@@ -78,10 +93,12 @@ Rgb radiated_power(const Light& light) {
 std::optional<std::string> fault_in(const Light& light) {
   if (light.web)
     if (auto fault = fault_in(*light.web)) return fault;
-  return fault_in_all_but_web(light);
+  if (light.environment)
+    if (auto fault = fault_in(*light.environment)) return fault;
+  return fault_in_all_but_shared(light);
 }
 
-std::optional<std::string> fault_in_all_but_web(const Light& light) {
+std::optional<std::string> fault_in_all_but_shared(const Light& light) {
   for (const double band : {light.intensity.r, light.intensity.g, light.intensity.b})
     if (!(band >= 0 && band <= max_intensity)) return sentence("intensity", band, "is outside [0, 1e30]");
   for (const double x : {light.position.x, light.position.y, light.position.z})
@@ -95,6 +112,7 @@ std::optional<std::string> fault_in_all_but_web(const Light& light) {
   if (!(light.inner_cone >= 0 && light.inner_cone <= light.outer_cone))
     return sentence("inner cone angle", light.inner_cone, "is outside [0, outer cone angle]");
   if (light.kind == LightKind::sky) return fault_in(light.sky);
+  if (light.kind == LightKind::environment) return fault_in_environment(light);
   return light.kind == LightKind::luminaire ? fault_in_luminaire(light) : std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Lights of a scene that are not faces.
 
+#include "meshing/environment_map.h"
 #include "meshing/photometric_web.h"
 #include "meshing/sky_distribution.h"
 #include "meshing/vec3.h"
@@ -20,6 +21,7 @@ enum class LightKind : std::uint8_t {
   directional,  ///< shines from infinitely far away along `direction`; a sun if it has an angular diameter
   luminaire,    ///< shines from an opening about `position` as its photometric web says (IES, EULUMDAT)
   sky,          ///< shines from infinitely far away, from the half of all directions about `-direction`; also a bright ground
+  environment,  ///< shines from infinitely far away, from all directions, as its environment map says
 };
 
 /// The part of a luminaire that shines, centred on its position. Sizes in metres, >= 0.
@@ -47,11 +49,12 @@ struct Light {
   LightKind kind = LightKind::point;
   /// Point, spot: radiant intensity, W/sr per band, in the middle of the cone for a spot. Directional: irradiance of a surface
   /// that faces the light, W/m2 per band. >= 0. In a photometric scene cd and lx. Luminaire: a factor for the intensities of its
-  /// web. Sky: irradiance of an open surface that faces its zenith, W/m2 or lx.
+  /// web. Sky: irradiance of an open surface that faces its zenith, W/m2 or lx. Environment: a factor for the radiance of its
+  /// map.
   Rgb intensity;
   Vec3 position;  ///< point, spot: metres; luminaire: its photometric centre
-  /// Spot: axis of the cone; directional: the way the light travels; luminaire: its aim, where both angles of the web are 0.
-  /// Unit.
+  /// Spot: axis of the cone; directional: the way the light travels; luminaire: its aim, where both angles of the web are 0;
+  /// sky, environment: from the zenith. Unit.
   Vec3 direction{0, 0, -1};
   /// Spot: angles between the axis and the edge of the bright cone, and between the axis and the edge of all light; radians, 0 <=
   /// inner <= outer, 0 < outer <= pi.
@@ -59,12 +62,14 @@ struct Light {
   double radius = 0;                          ///< point, spot: of a sphere that shines, metres, >= 0
   double angular_diameter = 0;                ///< directional: radians, in [0, pi / 2]. The sun's is 0.0093
   std::shared_ptr<const PhotometricWeb> web;  ///< luminaire: not null; lights may share it
-  Vec3 across{1, 0, 0};                       ///< luminaire: the web's plane 0 or axis. Unit, perpendicular to `direction`
-  LuminousOpening opening;                    ///< luminaire
-  SkyDistribution sky;                        ///< sky
+  /// Luminaire: the web's plane 0 or axis; environment: to the middle of its map. Unit, perpendicular to `direction`.
+  Vec3 across{1, 0, 0};
+  LuminousOpening opening;                            ///< luminaire
+  SkyDistribution sky;                                ///< sky
+  std::shared_ptr<const EnvironmentMap> environment;  ///< environment: not null; lights may share it
 
   friend bool operator==(const Light& a, const Light& b);
-  bool is_distant() const { return kind == LightKind::directional || kind == LightKind::sky; }
+  bool is_distant() const { return kind == LightKind::directional || kind == LightKind::sky || kind == LightKind::environment; }
 };
 
 /// The cones of a spot, with their cosines computed once.
@@ -113,7 +118,7 @@ Rgb radiated_power(const Light& light);
 
 /// Returns why the light cannot be used; nothing if it can.
 std::optional<std::string> fault_in(const Light& light);
-/// Returns what fault_in() does, without looking into the light's web, which may be large and shared.
-std::optional<std::string> fault_in_all_but_web(const Light& light);
+/// Returns what fault_in() does, without looking into the light's web or map, which may be large and shared.
+std::optional<std::string> fault_in_all_but_shared(const Light& light);
 
 }  // namespace alvor

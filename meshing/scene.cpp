@@ -90,12 +90,13 @@ std::optional<Fault> find_fault(const Scene& scene) {
       return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};
   if (const auto count = std::ranges::count_if(scene.lights, &Light::is_distant); count > most_distant_lights)
     return Fault{"scene", "has " + std::to_string(count) + " distant lights, at most 64 are possible"};
-  std::unordered_set<const PhotometricWeb*> sound_webs;  // many lights share one
+  std::unordered_set<const void*> sound;  // webs and maps, which many lights share
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    const bool is_new_web = light.web && sound_webs.insert(light.web.get()).second;
-    auto reason = is_new_web ? fault_in(*light.web) : std::nullopt;
-    if (!reason) reason = fault_in_all_but_web(light);
+    std::optional<std::string> reason;
+    if (light.web && sound.insert(light.web.get()).second) reason = fault_in(*light.web);
+    if (!reason && light.environment && sound.insert(light.environment.get()).second) reason = fault_in(*light.environment);
+    if (!reason) reason = fault_in_all_but_shared(light);
     if (reason) return Fault{"light " + std::to_string(i) + " '" + light.name + "'", *reason};
   }
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)

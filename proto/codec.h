@@ -34,10 +34,13 @@ void decode(v1::Quantity message, Quantity& quantity);
 v1::Rgb encode(const Rgb& value);
 Rgb decode(const v1::Rgb& message);
 v1::Material encode(const Material& material);
-v1::Light encode(const Light& light);  ///< without the number of its web
+v1::Light encode(const Light& light);  ///< without the number of its web or map
 v1::PhotometricWeb encode(const PhotometricWeb& web);
 PhotometricWeb decode(const v1::PhotometricWeb& message);  ///< unchecked, see fault_in()
 v1::SceneObject encode(const SceneObject& object);
+v1::EnvironmentMap encode(const EnvironmentMap& map);
+/// Requires: three values of radiance per pixel, and at most 256 x 128 pixels. Otherwise unchecked, see fault_in().
+EnvironmentMap decode(const v1::EnvironmentMap& message);
 v1::Step encode(const Step& step);
 Step decode(const v1::Step& message);
 
@@ -58,7 +61,8 @@ class SceneAssembler {
   /// face.
   std::optional<Fault> add(const v1::GeometryChunk& chunk);
   const Scene& scene() const { return scene_; }
-  std::size_t web_count() const { return webs_.size(); }  ///< of photometric webs that have arrived
+  std::size_t web_count() const { return webs_.size(); }                  ///< of photometric webs that have arrived
+  std::size_t environment_count() const { return environments_.size(); }  ///< of environment maps that have arrived
   /// Returns the assembled scene. Its indices are not checked yet, see find_fault.
   Scene take() { return std::move(scene_); }
 
@@ -67,13 +71,15 @@ class SceneAssembler {
   std::string place_in_chunk(const char* field) const;
 
   std::optional<Fault> fault_in_lights(const v1::GeometryChunk& chunk) const;
+  std::optional<Fault> fault_in_environments(const v1::GeometryChunk& chunk) const;
 
   Scene scene_;
   std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
+  std::vector<std::shared_ptr<const EnvironmentMap>> environments_;
   std::uint64_t chunks_ = 0;
 };
 
-/// Cuts a scene into chunks: materials, lights with their webs, objects, vertices, faces. The scene must outlive it.
+/// Cuts a scene into chunks: materials, lights with their webs and maps, objects, vertices, faces. The scene must outlive it.
 class SceneSlicer {
  public:
   /// Each chunk stays below `max_bytes` (256 or more), but holds at least one item and never cuts a face.
@@ -85,13 +91,16 @@ class SceneSlicer {
   void take_materials(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_lights(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_objects(v1::GeometryChunk& chunk, std::int64_t& budget);
+  void take_light(v1::GeometryChunk& chunk, v1::Light message, const Light& light);
   void take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_faces(v1::GeometryChunk& chunk, std::int64_t& budget);
 
   const Scene& scene_;
   std::int64_t max_bytes_;
   std::size_t material_ = 0, light_ = 0, object_ = 0, vertex_ = 0, face_ = 0;
-  std::unordered_map<const PhotometricWeb*, std::uint32_t> webs_;  // those that were sent, and their numbers
+  // Webs and maps that were sent, and their numbers.
+  std::unordered_map<const PhotometricWeb*, std::uint32_t> webs_;
+  std::unordered_map<const EnvironmentMap*, std::uint32_t> environments_;
 };
 
 }  // namespace alvor

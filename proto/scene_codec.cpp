@@ -1,6 +1,7 @@
-// The part of codec.h for scenes: materials, lights, and the chunks of geometry.
+// The part of codec.h for scenes: materials, objects, and the chunks of geometry with their lights.
 
 #include "proto/codec.h"
+#include "proto/light_codec.h"
 
 #include <algorithm>
 #include <limits>
@@ -10,92 +11,10 @@ namespace alvor {
 
 namespace {
 
+// As many as a scene can have distant lights.
+constexpr std::size_t most_environments = 64;
+
 std::string count_of(std::uint64_t count, const char* unit) { return std::to_string(count) + " " + unit; }
-
-v1::Vector3 encode_vector(Vec3 v) {
-  v1::Vector3 message;
-  message.set_x(v.x);
-  message.set_y(v.y);
-  message.set_z(v.z);
-  return message;
-}
-
-Vec3 decode_vector(const v1::Vector3& message) { return {message.x(), message.y(), message.z()}; }
-
-v1::Light::Kind encode_kind(LightKind kind) {
-  switch (kind) {
-    case LightKind::point: return v1::Light::POINT;
-    case LightKind::spot: return v1::Light::SPOT;
-    case LightKind::directional: return v1::Light::DIRECTIONAL;
-    case LightKind::luminaire: return v1::Light::LUMINAIRE;
-    case LightKind::sky: return v1::Light::SKY;
-  }
-  return v1::Light::KIND_UNSPECIFIED;
-}
-
-/// Requires: the kind is known.
-LightKind decode_kind(v1::Light::Kind kind) {
-  switch (kind) {
-    case v1::Light::SPOT: return LightKind::spot;
-    case v1::Light::DIRECTIONAL: return LightKind::directional;
-    case v1::Light::LUMINAIRE: return LightKind::luminaire;
-    case v1::Light::SKY: return LightKind::sky;
-    default: return LightKind::point;
-  }
-}
-
-// The shapes of the API are those of LuminousOpening::Shape in their order, after SHAPE_UNSPECIFIED.
-v1::LuminousOpening encode_opening(const LuminousOpening& opening) {
-  v1::LuminousOpening message;
-  message.set_shape(static_cast<v1::LuminousOpening::Shape>(static_cast<int>(opening.shape) + 1));
-  message.set_across_meters(opening.across);
-  message.set_along_meters(opening.along);
-  message.set_height_meters(opening.height);
-  return message;
-}
-
-LuminousOpening decode_opening(const v1::LuminousOpening& message) {
-  const int shape = std::max(0, static_cast<int>(message.shape()) - 1);
-  return {static_cast<LuminousOpening::Shape>(shape), message.across_meters(), message.along_meters(), message.height_meters()};
-}
-
-v1::SkyDistribution encode_sky(const SkyDistribution& sky) {
-  v1::SkyDistribution message;
-  message.set_a(sky.a);
-  message.set_b(sky.b);
-  message.set_c(sky.c);
-  message.set_d(sky.d);
-  message.set_e(sky.e);
-  message.set_g(sky.g);
-  *message.mutable_to_sun() = encode_vector(sky.to_sun);
-  return message;
-}
-
-SkyDistribution decode_sky(const v1::SkyDistribution& message) {
-  SkyDistribution sky{message.a(), message.b(), message.c(), message.d(), message.e(), message.g()};
-  if (message.has_to_sun()) sky.to_sun = decode_vector(message.to_sun());
-  return sky;
-}
-
-/// Fields that do not count for a kind of light may be left out: they keep their defaults.
-Light decode_light(const v1::Light& message) {
-  Light light;
-  light.name = message.name();
-  light.kind = decode_kind(message.kind());
-  light.intensity = decode(message.intensity());
-  if (message.has_position()) light.position = decode_vector(message.position());
-  if (message.has_direction()) light.direction = decode_vector(message.direction());
-  if (light.kind == LightKind::spot) {
-    light.inner_cone = message.inner_cone_radians();
-    light.outer_cone = message.outer_cone_radians();
-  }
-  light.radius = message.radius_meters();
-  light.angular_diameter = message.angular_diameter_radians();
-  if (message.has_across()) light.across = decode_vector(message.across());
-  if (message.has_opening()) light.opening = decode_opening(message.opening());
-  if (message.has_sky()) light.sky = decode_sky(message.sky());
-  return light;
-}
 
 /// Requires: no transform, or 12 numbers.
 SceneObject decode_object(const v1::SceneObject& message) {
@@ -126,45 +45,6 @@ v1::Material encode(const Material& material) {
   return message;
 }
 
-v1::Light encode(const Light& light) {
-  v1::Light message;
-  message.set_name(as_utf8(light.name));
-  message.set_kind(encode_kind(light.kind));
-  *message.mutable_intensity() = encode(light.intensity);
-  if (!light.is_distant()) *message.mutable_position() = encode_vector(light.position);
-  if (light.kind != LightKind::point) *message.mutable_direction() = encode_vector(light.direction);
-  if (light.kind == LightKind::spot) {
-    message.set_inner_cone_radians(light.inner_cone);
-    message.set_outer_cone_radians(light.outer_cone);
-  }
-  message.set_radius_meters(light.radius);
-  message.set_angular_diameter_radians(light.angular_diameter);
-  if (light.kind == LightKind::luminaire) {
-    *message.mutable_across() = encode_vector(light.across);
-    *message.mutable_opening() = encode_opening(light.opening);
-  }
-  if (light.kind == LightKind::sky) *message.mutable_sky() = encode_sky(light.sky);
-  return message;
-}
-
-v1::PhotometricWeb encode(const PhotometricWeb& web) {
-  v1::PhotometricWeb message;
-  message.set_axis(web.axis == PhotometricWeb::Axis::across ? v1::PhotometricWeb::ACROSS : v1::PhotometricWeb::AIM);
-  message.mutable_plane_degrees()->Assign(web.planes.begin(), web.planes.end());
-  message.mutable_angle_degrees()->Assign(web.angles.begin(), web.angles.end());
-  message.mutable_intensities()->Assign(web.intensities.begin(), web.intensities.end());
-  return message;
-}
-
-PhotometricWeb decode(const v1::PhotometricWeb& message) {
-  PhotometricWeb web;
-  web.axis = message.axis() == v1::PhotometricWeb::ACROSS ? PhotometricWeb::Axis::across : PhotometricWeb::Axis::aim;
-  web.planes.assign(message.plane_degrees().begin(), message.plane_degrees().end());
-  web.angles.assign(message.angle_degrees().begin(), message.angle_degrees().end());
-  web.intensities.assign(message.intensities().begin(), message.intensities().end());
-  return web;
-}
-
 v1::SceneObject encode(const SceneObject& object) {
   v1::SceneObject message;
   message.set_name(as_utf8(object.name));
@@ -184,9 +64,12 @@ std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   decode(chunk.up_axis(), scene_.up);
   decode(chunk.quantity(), scene_.quantity);
   for (const v1::PhotometricWeb& web : chunk.webs()) webs_.push_back(std::make_shared<PhotometricWeb>(decode(web)));
-  for (const v1::Light& light : chunk.lights()) {
-    scene_.lights.push_back(decode_light(light));
-    if (scene_.lights.back().kind == LightKind::luminaire) scene_.lights.back().web = webs_[light.web()];
+  for (const v1::EnvironmentMap& map : chunk.environments())
+    environments_.push_back(std::make_shared<EnvironmentMap>(decode(map)));
+  for (const v1::Light& message : chunk.lights()) {
+    Light& light = scene_.lights.emplace_back(decode_light(message));
+    if (light.kind == LightKind::luminaire) light.web = webs_[message.web()];
+    if (light.kind == LightKind::environment) light.environment = environments_[message.environment()];
   }
   if (chunk.north_degrees() != 0) scene_.north_degrees = chunk.north_degrees();
   for (const v1::SceneObject& object : chunk.objects()) scene_.objects.push_back(decode_object(object));
@@ -212,6 +95,7 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
     return Fault{place_in_chunk("vertex_coordinates"), "has " + count_of(coordinates, "numbers, needs three per vertex")};
   if (materials != faces)
     return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
+  if (auto fault = fault_in_environments(chunk)) return fault;
   if (auto fault = fault_in_lights(chunk)) return fault;
   for (const v1::SceneObject& object : chunk.objects())
     if (!object.transform().empty() && object.transform_size() != 12)
@@ -236,6 +120,7 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
 
 std::optional<Fault> SceneAssembler::fault_in_lights(const v1::GeometryChunk& chunk) const {
   const std::size_t webs = webs_.size() + static_cast<std::size_t>(chunk.webs_size());
+  const std::size_t environments = environments_.size() + static_cast<std::size_t>(chunk.environments_size());
   for (int i = 0; i < chunk.webs_size(); ++i)
     if (!v1::PhotometricWeb::Axis_IsValid(chunk.webs(i).axis()))
       return Fault{place_in_chunk("webs"), "axis " + std::to_string(chunk.webs(i).axis()) + " of a web is not known"};
@@ -249,6 +134,25 @@ std::optional<Fault> SceneAssembler::fault_in_lights(const v1::GeometryChunk& ch
     if (!v1::Light::Kind_IsValid(light.kind()) || light.kind() == v1::Light::KIND_UNSPECIFIED) return fault("kind", light.kind());
     if (!v1::LuminousOpening::Shape_IsValid(light.opening().shape())) return fault("opening's shape", light.opening().shape());
     if (light.kind() == v1::Light::LUMINAIRE && light.web() >= webs) return fault("web", light.web());
+    if (light.kind() == v1::Light::ENVIRONMENT && light.environment() >= environments)
+      return fault("environment map", light.environment());
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> SceneAssembler::fault_in_environments(const v1::GeometryChunk& chunk) const {
+  const std::size_t count = environments_.size() + static_cast<std::size_t>(chunk.environments_size());
+  if (count > most_environments)
+    return Fault{place_in_chunk("environments"), "the scene has " + count_of(count, "environment maps, at most 64 are possible")};
+  for (const v1::EnvironmentMap& map : chunk.environments()) {
+    const std::string size = std::to_string(map.columns()) + " x " + std::to_string(map.rows());
+    if (map.columns() > EnvironmentMap::most_columns || map.rows() > EnvironmentMap::most_rows)
+      return Fault{place_in_chunk("environments"), "a map has " + size + " pixels, at most 256 x 128 are possible"};
+    const std::uint64_t values = std::uint64_t{3} * map.columns() * map.rows();
+    if (static_cast<std::uint64_t>(map.radiance_size()) != values)
+      return Fault{place_in_chunk("environments"),
+                   "a map of " + size + " pixels has " +
+                       count_of(static_cast<std::uint64_t>(map.radiance_size()), "values, needs ") + std::to_string(values)};
   }
   return std::nullopt;
 }
@@ -292,18 +196,32 @@ void SceneSlicer::take_lights(v1::GeometryChunk& chunk, std::int64_t& budget) {
     const Light& light = scene_.lights[light_];
     v1::Light message = encode(light);
     auto bytes = static_cast<std::int64_t>(message.ByteSizeLong()) + 12;
-    const auto sent = webs_.find(light.web.get());
-    v1::PhotometricWeb web;
-    if (light.web && sent == webs_.end()) {
-      web = encode(*light.web);
-      bytes += static_cast<std::int64_t>(web.ByteSizeLong()) + 6;
-    }
+    // A bound on the size of what goes with it: 8 bytes for an angle, 4 for an intensity or a radiance.
+    if (light.web && !webs_.contains(light.web.get()))
+      bytes += 40 + static_cast<std::int64_t>(8 * (light.web->planes.size() + light.web->angles.size()) +
+                                              4 * light.web->intensities.size());
+    if (light.environment && !environments_.contains(light.environment.get()))
+      bytes += 40 + static_cast<std::int64_t>(12 * light.environment->pixels.size());
     if (bytes > budget && items_in(chunk) > 0) break;
-    if (light.web && sent == webs_.end()) *chunk.add_webs() = std::move(web);
-    if (light.web) message.set_web(webs_.try_emplace(light.web.get(), static_cast<std::uint32_t>(webs_.size())).first->second);
-    *chunk.add_lights() = std::move(message);
+    take_light(chunk, std::move(message), light);
     budget -= bytes;
   }
+}
+
+/// Adds a light, and its web and its map if they were not sent before.
+void SceneSlicer::take_light(v1::GeometryChunk& chunk, v1::Light message, const Light& light) {
+  if (light.web) {
+    const auto [sent, is_new] = webs_.try_emplace(light.web.get(), static_cast<std::uint32_t>(webs_.size()));
+    if (is_new) *chunk.add_webs() = encode(*light.web);
+    message.set_web(sent->second);
+  }
+  if (light.environment) {
+    const auto [sent, is_new] =
+        environments_.try_emplace(light.environment.get(), static_cast<std::uint32_t>(environments_.size()));
+    if (is_new) *chunk.add_environments() = encode(*light.environment);
+    message.set_environment(sent->second);
+  }
+  *chunk.add_lights() = std::move(message);
 }
 
 void SceneSlicer::take_objects(v1::GeometryChunk& chunk, std::int64_t& budget) {

@@ -32,7 +32,8 @@ Lamps::Lamps(std::span<const Light> lights, const Extent& extent, std::span<cons
     high_ = upper(high_, p);
   }
   for (Light lamp : lights) {
-    if (lamp.intensity.is_zero() || lamp.kind == LightKind::sky) continue;
+    const bool is_round_about = lamp.kind == LightKind::sky || lamp.kind == LightKind::environment;
+    if (lamp.intensity.is_zero() || is_round_about) continue;
     lamp.position = (lamp.position - extent.centre) / extent.longest_side;
     lamp.radius /= extent.longest_side;
     for (double* size : {&lamp.opening.across, &lamp.opening.along, &lamp.opening.height}) *size /= extent.longest_side;

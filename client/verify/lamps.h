@@ -1,6 +1,6 @@
 #pragma once
-// The lamps and distant lights of a scene, except skies, for the path tracer. Written apart from the solver's (radiosity/direct),
-// so that an error in one is seen.
+// The lamps and distant lights of a scene, except skies and environments, for the path tracer. Written apart from the solver's
+// (radiosity/direct), so that an error in one is seen.
 
 #include "client/verify/facets.h"
 #include "client/verify/path_random.h"

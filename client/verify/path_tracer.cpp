@@ -102,6 +102,7 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
   for (;;) {
     arriving += throughput * from_chosen_light(bend, choices.light);
     if (!lamps_.empty()) arriving += throughput * from_lamps(bend, random);
+    if (!skies_.surroundings().empty()) arriving += throughput * from_surroundings(bend, random.pair());
     const Vec3 direction = cosine_direction(bend.normal, choices.direction);
     const Met met = meet(bend, direction);
     if (!met.surface) return met.is_outside ? arriving + throughput * from_skies(bend, direction) : arriving;
@@ -116,11 +117,24 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
   }
 }
 
-// Directions by cosine: the mean of pi times the radiance is the irradiance.
+// Directions by cosine: the mean of pi times the radiance is the irradiance. Environments are sampled by their radiance, too.
 Rgb PathTracer::from_skies(const Bend& bend, Vec3 direction) const {
   if (skies_.empty()) return {};
-  const Rgb arriving = std::numbers::pi * skies_.radiance(direction);
+  Rgb radiance = skies_.of_skies(direction);
+  if (const Surroundings& all = skies_.surroundings(); !all.empty())
+    radiance += share_of(dot(bend.normal, direction) / std::numbers::pi, all.density(direction)) * all.radiance(direction);
+  const Rgb arriving = std::numbers::pi * radiance;
   return clear_ ? arriving : arriving * transmittance(lamps_.way_out(bend.place, direction));
+}
+
+Rgb PathTracer::from_surroundings(const Bend& bend, UnitPair choice) const {
+  const Surroundings& all = skies_.surroundings();
+  const Vec3 direction = all.sample(choice);
+  const double cosine = dot(bend.normal, direction), density = all.density(direction),
+               out = lamps_.way_out(bend.place, direction);
+  if (cosine <= 0 || density <= 0 || caster_->is_blocked(bend.place, bend.place + (out + 0.01) * direction)) return {};
+  const Rgb arriving = share_of(density, cosine / std::numbers::pi) * cosine / density * all.radiance(direction);
+  return clear_ ? arriving : arriving * transmittance(out);
 }
 
 Rgb PathTracer::from_lamps(const Bend& bend, PathRandom& random) const {

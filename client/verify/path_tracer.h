@@ -29,8 +29,9 @@ struct SurfacePoint {
 /// media. Paths continue in cosine-distributed directions until Russian roulette ends them. At each bend, emitted light is
 /// sampled in two ways: by choosing a place on an emitter, and by following the path. They are weighted by the balance heuristic
 /// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. Lamps and distant lights
-/// are sampled one at a time, chosen by what they bring unblocked. One systematic error remains: rays start 1e-6 of the scene's
-/// extent above their surface, so that they do not hit it. Immutable; safe from any thread.
+/// are sampled one at a time, chosen by what they bring unblocked; environments in two ways, as emitters are. One systematic
+/// error remains: rays start 1e-6 of the scene's extent above their surface, so that they do not hit it. Immutable; safe from any
+/// thread.
 class PathTracer {
  public:
   /// Copies what it needs of `scene`. Requires: !find_fault(scene), and at least one face with area.
@@ -78,6 +79,7 @@ class PathTracer {
   Rgb path(Bend bend, Choices choices, PathRandom& random) const;
   Rgb from_chosen_light(const Bend& bend, UnitPair choice) const;
   Rgb from_skies(const Bend& bend, Vec3 direction) const;
+  Rgb from_surroundings(const Bend& bend, UnitPair choice) const;
   Rgb from_lamps(const Bend& bend, PathRandom& random) const;
   Rgb from_met_light(const Bend& bend, Vec3 direction, const Met& met) const;
   Met meet(const Bend& bend, Vec3 direction) const;

@@ -28,7 +28,7 @@ struct SceneFileError : std::runtime_error {
 /// How a scene is read.
 struct SceneImport {
   v1::ImportOptions options;                 ///< its scene_file is ignored
-  std::map<std::string, std::string> files;  ///< the options' luminaires: the bytes by name
+  std::map<std::string, std::string> files;  ///< those of the options' lights: the bytes by name
 };
 
 /// Reads a scene with the files that it names, from its folder and below. They are read by the program alvor-import, in a process

@@ -7,6 +7,7 @@
 #include "import/formats/daylight.h"
 #include "import/formats/gltf_import.h"
 #include "import/formats/obj_import.h"
+#include "import/formats/placed_environment.h"
 #include "import/formats/placed_luminaires.h"
 #include "proto/codec.h"
 
@@ -50,6 +51,7 @@ void add_lights(const v1::ImportOptions& options, SceneFiles& files, SceneFile& 
       if (light.kind == LightKind::luminaire) light.intensity *= 1 / lumens_per_watt;
   if (options.has_daylight()) add_daylight(options.daylight(), lumens_per_watt, file.scene, file.warnings);
   add_luminaires(options, lumens_per_watt, files, file.scene, file.warnings);
+  if (options.has_environment()) add_environment(options, files, file.scene, file.warnings);
 }
 
 /// Returns a band of reflectance clamped to [0, 1). NaN stays as it is and is a fault.
@@ -118,6 +120,7 @@ ImportedScene imported(SceneFiles& files, const v1::ImportOptions& options) {
   try {
     SceneFile file = import_by_extension(files);
     for (const v1::PlacedLuminaire& luminaire : options.luminaires()) files.find(luminaire.file());
+    if (options.has_environment()) files.find(options.environment().file());
     files.require_found();
     take_options(options, file.scene);
     add_lights(options, files, file);

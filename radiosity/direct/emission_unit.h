@@ -10,7 +10,8 @@
 namespace alvor {
 
 /// Converts between W/m2 and emission units. One emission unit is the brightest emission of the scene in any band, W/m2; 1 W/m2
-/// if nothing emits. A lamp counts by its irradiance at a distance of the scene's extent. Inside direct, exchange, estimate and
+/// if nothing emits. A lamp counts by its irradiance at a distance of the scene's extent,
+/// an environment by the integral of its radiance. Inside direct, exchange, estimate and
 /// solve all light and power are multiples of it, so that squares stay within the range of numbers however bright or dim a scene
 /// is. Light per band has the type RelativeLight; sums and means over bands are plain numbers. There are two places that convert:
 /// lights_of_scene.cpp on the way in (emissions, lamps, distant lights), and SolveState on the way out (irradiance of leaves,
@@ -26,7 +27,8 @@ class EmissionUnit {
       const double squared = light.is_distant() ? 1 : mesh.extent() * mesh.extent();
       const auto [web, is_new] = greatest.try_emplace(light.web.get(), 1);
       if (is_new && light.web) web->second = light.web->greatest();
-      brightest = std::max(brightest, light.intensity.max() * web->second / squared);
+      const double factor = light.kind == LightKind::environment ? light.environment->total().max() : web->second;
+      brightest = std::max(brightest, light.intensity.max() * factor / squared);
     }
     if (brightest > 0) watts_per_m2_ = brightest;
   }

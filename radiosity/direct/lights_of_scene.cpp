@@ -1,6 +1,7 @@
 #include "radiosity/direct/lights_of_scene.h"
 
 #include "radiosity/direct/distant_light.h"
+#include "radiosity/direct/environment_light.h"
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lamp_light.h"
 #include "radiosity/direct/mesh_light.h"
@@ -28,6 +29,7 @@ class LightMaker {
 
   void add(const Light& light) {
     if (light.kind == LightKind::sky) add_sky(light);
+    else if (light.kind == LightKind::environment) add_environment(light);
     else if (light.is_distant()) make<DistantLight>(light, unit_.from_watts_per_m2(light.intensity));
     else add_lamp(light);
   }
@@ -55,22 +57,38 @@ class LightMaker {
     if (is_new) sums->second = {web.flux(), web.greatest()};
     return sums->second;
   }
-  /// Where skies enter the scene is found once for all of them.
-  void add_sky(const Light& sky) {
+  /// Where skies and environments enter the scene is found once for all of them.
+  const SkyExits& exits() {
     if (!exits_) exits_ = std::make_shared<SkyExits>(scene_, ways_out_);
-    const RelativeLight colour = unit_.from_watts_per_m2(sky.intensity);
-    const SkyDome dome(sky);
-    if (exits_->any_open) make<DomeLight>(dome, colour, colour.sum() * area_of_sky(dome, true), exits_);
-    const auto count = static_cast<double>(exits_->exits.size());
-    const double power = colour.sum() * area_of_sky(dome, false) / std::max(1.0, count);
-    for (std::size_t which = 0; which < exits_->exits.size(); ++which) make<ExitLight>(dome, colour, power, exits_, which);
+    return *exits_;
   }
-  /// Returns what a sky of intensity 1 sends to open or to closed faces: by as much area, m2, as it would light if it shone
+  void add_sky(const Light& sky) {
+    const RelativeLight colour = unit_.from_watts_per_m2(sky.intensity);
+    const auto radiance = std::make_shared<SkyRadiance>(SkyDome(sky));
+    if (exits().any_open) make<DomeLight>(radiance->dome(), colour, colour.sum() * area_lit(*radiance, true), exits_);
+    add_exits(radiance, colour);
+  }
+  /// Bands of another distribution are lights of their own.
+  void add_environment(const Light& environment) {
+    for (const Rgb& bands : bands_of(*environment.environment)) {
+      const auto band = std::make_shared<EnvironmentBand>(environment, bands);
+      const RelativeLight colour = unit_.from_watts_per_m2(band->colour());
+      if (colour.is_zero()) continue;
+      if (exits().any_open) make<EnvironmentLight>(band, colour, colour.sum() * area_lit(*band, true), exits_);
+      add_exits(band, colour);
+    }
+  }
+  void add_exits(const std::shared_ptr<const DistantRadiance>& radiance, const RelativeLight& colour) {
+    const auto count = static_cast<double>(exits().exits.size());
+    const double power = colour.sum() * area_lit(*radiance, false) / std::max(1.0, count);
+    for (std::size_t which = 0; which < exits_->exits.size(); ++which) make<ExitLight>(radiance, colour, power, exits_, which);
+  }
+  /// Returns what distant light of colour 1 sends to open or to closed faces: by as much area, m2, as it would light if it shone
   /// straight.
-  double area_of_sky(const SkyDome& dome, bool is_of_open) const {
+  double area_lit(const DistantRadiance& radiance, bool is_of_open) const {
     double sum = 0;
     for (const SkyExits::WayOut& way : ways_out_)
-      if (way.is_of_open == is_of_open) sum += std::numbers::pi * way.area * dome.radiance(way.direction);
+      if (way.is_of_open == is_of_open) sum += std::numbers::pi * way.area * radiance.smooth_radiance(way.direction);
     return sum * scene_.frame().metres_per_unit * scene_.frame().metres_per_unit;
   }
 

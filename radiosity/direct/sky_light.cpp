@@ -18,48 +18,35 @@ constexpr int tilts = 48, turns = 96, rings = 32, sectors = 128;
 // Cosine of the angle between a zenith and the side of an exit within which the side stands upright.
 constexpr double aligned = 1 - 1e-9;
 
-}  // namespace
-
-DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour,
-                     double power, std::shared_ptr<const SkyExits> exits)
-    : LightSource(number, colour, power), dome_(dome), exits_(std::move(exits)), axes_(dome_.zenith()), box_(scene) {
-  fill_table();
-}
-
-void DomeLight::fill_table() {
+/// Returns the irradiance of open surfaces by their normal.
+NormalTable table_of(const SkyDome& dome) {
   struct Ray {
     Vec3 direction;
     double brings;  // radiance times solid angle
   };
+  const TangentFrame axes(dome.zenith());
   std::vector<Ray> rays;
   for (int ring = 0; ring < rings; ++ring)
     for (int sector = 0; sector < sectors; ++sector) {
       // Even by solid angle, so that the horizon, which tilted faces look at, is as fine as the zenith.
       const double cosine = (ring + 0.5) / rings, sine = std::sqrt(1 - cosine * cosine), turn = 2 * pi * (sector + 0.5) / sectors;
-      const Vec3 direction = cosine * dome_.zenith() + sine * std::cos(turn) * axes_.s + sine * std::sin(turn) * axes_.t;
-      rays.push_back({direction, dome_.radiance(direction) * 2 * pi / (rings * sectors)});
+      const Vec3 direction = cosine * dome.zenith() + sine * std::cos(turn) * axes.s + sine * std::sin(turn) * axes.t;
+      rays.push_back({direction, dome.radiance(direction) * 2 * pi / (rings * sectors)});
     }
-  for (int tilt = 0; tilt <= tilts; ++tilt)
-    for (int turn = 0; turn < turns; ++turn) {
-      const double a = pi * tilt / tilts, b = 2 * pi * turn / turns;
-      const Vec3 normal =
-          std::cos(a) * dome_.zenith() + std::sin(a) * std::cos(b) * axes_.s + std::sin(a) * std::sin(b) * axes_.t;
-      double sum = 0;
-      for (const Ray& ray : rays) sum += ray.brings * std::max(0.0, dot(ray.direction, normal));
-      table_.push_back(static_cast<float>(sum));
-    }
+  return {dome.zenith(), tilts, turns, [&](Vec3 normal) {
+            double sum = 0;
+            for (const Ray& ray : rays) sum += ray.brings * std::max(0.0, dot(ray.direction, normal));
+            return sum;
+          }};
 }
 
-double DomeLight::unblocked(Vec3, Vec3 normal) const {
-  const double tilt = std::acos(std::clamp(dot(normal, dome_.zenith()), -1.0, 1.0)) / pi * tilts;
-  double turn = std::atan2(dot(normal, axes_.t), dot(normal, axes_.s)) / (2 * pi) * turns;
-  if (turn < 0) turn += turns;
-  const int row = std::min(tilts - 1, static_cast<int>(tilt)), column = std::min(turns - 1, static_cast<int>(turn));
-  const auto at = [&](int r, int c) { return double{table_[static_cast<std::size_t>(r * turns + c % turns)]}; };
-  const double u = turn - column, v = tilt - row;
-  return (1 - v) * ((1 - u) * at(row, column) + u * at(row, column + 1)) +
-         v * ((1 - u) * at(row + 1, column) + u * at(row + 1, column + 1));
-}
+}  // namespace
+
+DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour,
+                     double power, std::shared_ptr<const SkyExits> exits)
+    : LightSource(number, colour, power), dome_(dome), exits_(std::move(exits)), box_(scene), irradiance_(table_of(dome_)) {}
+
+double DomeLight::unblocked(Vec3, Vec3 normal) const { return irradiance_.at(normal); }
 
 void DomeLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {
   const Vec3 normal = aim.facing();
@@ -71,31 +58,36 @@ void DomeLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
   }
 }
 
-ExitLight::ExitLight(const LocalScene&, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour, double power,
-                     std::shared_ptr<const SkyExits> exits, std::size_t which)
-    : LightSource(number, colour, power), dome_(dome), exits_(std::move(exits)), exit_(exits_->exits[which]) {}
+ExitLight::ExitLight(const LocalScene&, std::uint32_t number, std::shared_ptr<const DistantRadiance> radiance,
+                     const RelativeLight& colour, double power, std::shared_ptr<const SkyExits> exits, std::size_t which)
+    : LightSource(number, colour, power),
+      radiance_(std::move(radiance)),
+      exits_(std::move(exits)),
+      exit_(exits_->exits[which]),
+      zenith_(radiance_->zenith()) {}
 
 /// Returns the irradiance that a point of the exit brings, per area of the exit.
 double ExitLight::brings(Vec3 from, Vec3 at, Vec3 normal) const {
   const Vec3 way = from - at;
   const double squared = std::max(dot(way, way), nearest_look * nearest_look), distance = std::sqrt(squared);
   const double here = dot(way, normal), there = -dot(way, exit_.inwards);
-  return here > 0 && there > 0 ? here * there / (squared * squared) * dome_.radiance(way / distance) : 0;
+  return here > 0 && there > 0 ? here * there / (squared * squared) * radiance_->smooth_radiance(way / distance) : 0;
 }
 
 /// Returns the part of the exit through which the sky is seen from a point: above the horizontal plane through the point. A
-/// zenith that is not along a side leaves the exit whole.
+/// zenith that is not along a side leaves the exit whole, as does light from all directions.
 SkyExit ExitLight::above_horizon(Vec3 at) const {
   SkyExit part = exit_;
-  const double height = dot(part.corner - at, dome_.zenith());
+  if (!zenith_) return part;
+  const double height = dot(part.corner - at, *zenith_);
   const auto cut = [&](Vec3& side) {
-    const double rise = dot(side, dome_.zenith());
+    const double rise = dot(side, *zenith_);
     // The horizon lies at this share of the side.
     const double share = std::clamp(-height / rise, 0.0, 1.0);
     if (rise > 0) part.corner += share * side, side = (1 - share) * side;
     else side = share * side;
   };
-  const double along_u = std::abs(dot(part.side_u, dome_.zenith())), along_v = std::abs(dot(part.side_v, dome_.zenith()));
+  const double along_u = std::abs(dot(part.side_u, *zenith_)), along_v = std::abs(dot(part.side_v, *zenith_));
   if (along_u > aligned * length(part.side_u)) cut(part.side_u);
   else if (along_v > aligned * length(part.side_v)) cut(part.side_v);
   return part;

@@ -1,16 +1,17 @@
 #pragma once
-// Light of the sky: from all directions for faces in the open, through exits for the others (see SkyExits).
+// Light of skies and environments: of a sky from all its directions for faces in the open; of both through exits for the others
+// (see SkyExits).
 
-#include "meshing/light.h"
-#include "meshing/tangent_frame.h"
+#include "radiosity/direct/distant_radiance.h"
 #include "radiosity/direct/light_source.h"
+#include "radiosity/direct/normal_table.h"
 #include "radiosity/direct/scene_box.h"
 #include "radiosity/direct/sky_exits.h"
 #include "radiosity/rays/local_scene.h"
 
 #include <cstddef>
 #include <memory>
-#include <vector>
+#include <optional>
 
 namespace alvor {
 
@@ -29,22 +30,19 @@ class DomeLight final : public LightSource {
   std::optional<LightExtent> extent() const override { return std::nullopt; }
 
  private:
-  void fill_table();
-
   const SkyDome dome_;
   const std::shared_ptr<const SkyExits> exits_;
-  const TangentFrame axes_;  // with the zenith the axes of the table
   const SceneBox box_;
-  std::vector<float> table_;  // by angle from the zenith, then by azimuth
+  const NormalTable irradiance_;
 };
 
-/// What a sky sends through one exit, for closed faces. Unblocked irradiance is the integral over the exit by Gauss' rule; shadow
-/// rays go to points that are uniform by area.
+/// What a sky or an environment sends through one exit, for closed faces. Unblocked irradiance is the integral over the exit by
+/// Gauss' rule; shadow rays go to points that are uniform by area.
 class ExitLight final : public LightSource {
  public:
-  /// `colour` is the irradiance of an open surface that faces the zenith; `power` is that of LightSource.
-  ExitLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour, double power,
-            std::shared_ptr<const SkyExits> exits, std::size_t which);
+  /// `power` is that of LightSource.
+  ExitLight(const LocalScene& scene, std::uint32_t number, std::shared_ptr<const DistantRadiance> radiance,
+            const RelativeLight& colour, double power, std::shared_ptr<const SkyExits> exits, std::size_t which);
 
   bool may_reach(std::uint32_t root) const override { return !exits_->is_open[root]; }
   double unblocked(Vec3 at, Vec3 normal) const override;
@@ -56,9 +54,10 @@ class ExitLight final : public LightSource {
   SkyExit above_horizon(Vec3 at) const;
   double brings(Vec3 from, Vec3 at, Vec3 normal) const;
 
-  const SkyDome dome_;
+  const std::shared_ptr<const DistantRadiance> radiance_;
   const std::shared_ptr<const SkyExits> exits_;
   const SkyExit& exit_;
+  const std::optional<Vec3> zenith_;
 };
 
 }  // namespace alvor

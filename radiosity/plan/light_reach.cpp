@@ -80,6 +80,7 @@ double height_of(const RootPatch& face, Vec3 centre) {
 }
 
 bool faces(const Light& distant, Vec3 normal) {
+  if (distant.kind == LightKind::environment) return true;
   if (distant.kind == LightKind::sky) return dot(normal, distant.direction) < looks_away;
   return dot(normal, distant.direction) < std::sin(distant.angular_diameter / 2);
 }

@@ -129,7 +129,8 @@ class Planner {
       return on(sentence("material '", census_.coloured->name, "' is not grey: it emits ", bands(census_.coloured->emission),
                          " and reflects ", bands(census_.coloured->reflectance)));
     if (const Light* light = census_.coloured_light)
-      return on(sentence("light '", light->name, "' is not grey: it sends ", bands(light->intensity)));
+      return on(sentence("light '", light->name, "' is not grey: it sends ",
+                         bands(light->environment ? light->intensity * light->environment->total() : light->intensity)));
     if (!mesh_.absorption().is_grey()) return on(sentence("the medium absorbs ", bands(mesh_.absorption()), " per metre"));
     return off(sentence("all ", materials(census_.materials), " are grey"));
   }

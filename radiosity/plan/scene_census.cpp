@@ -9,6 +9,11 @@ namespace {
 
 bool is_grey(const Material& material) { return material.emission.is_grey() && material.reflectance.is_grey(); }
 
+bool is_grey(const Light& light) {
+  const auto is_grey_pixel = [](const RgbF& pixel) { return widen(pixel).is_grey(); };
+  return light.intensity.is_grey() && (!light.environment || std::ranges::all_of(light.environment->pixels, is_grey_pixel));
+}
+
 }  // namespace
 
 SceneCensus::SceneCensus(const BaseMesh& mesh) {
@@ -29,7 +34,7 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     if (light.intensity.is_zero()) continue;
     ++lights;
     has_distant_light |= light.is_distant();
-    if (!light.intensity.is_grey() && !coloured_light) coloured_light = &light;
+    if (!coloured_light && !is_grey(light)) coloured_light = &light;
   }
   emitting_share = area > 0 ? emitting_area / area : 0;
   for (std::size_t m = 0; m < is_used.size(); ++m) {

@@ -3,6 +3,8 @@
 #include "client/verify/irradiance_estimate.h"
 #include "client/verify/surface_points.h"
 #include "import/apart/scene_file.h"
+#include "radiosity/solve/solver.h"
+#include "tests/environments.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -55,6 +57,81 @@ TEST(PathTracer, FurnaceIsUniformUpToItsCorners) {
       EXPECT_LT(error_of(estimate), 0.02) << reflectance;
     }
   }
+}
+
+TEST(PathTracer, AConstantEnvironmentBringsPiTimesItsRadiance) {
+  Scene scene;
+  add_black_floor(scene, 2);
+  scene.lights = {test::environment({16, 8}, [](Vec3) { return Rgb{2, 2, 2}; })};
+  const auto estimate = traced(scene, {{0.3, 0.2, 0}, {0, 0, 1}});
+  EXPECT_NEAR(estimate.mean().g, 2 * std::numbers::pi, sure * error_of(estimate) + 1e-3);
+  EXPECT_LT(error_of(estimate), 0.01 * estimate.mean().g);
+}
+
+// A small bright part is found by its own light: cosine-distributed directions alone would have an error of 40 %.
+TEST(PathTracer, ASmallBrightPartOfAnEnvironmentIsSampledByItsLight) {
+  Scene scene;
+  add_black_floor(scene, 2);
+  const Vec3 towards = normalized(Vec3{0.6, 0.3, 0.7});
+  const Light light = test::environment({256, 128}, [&](Vec3 d) {
+    return (dot(d, towards) > 0.9994 ? 1e4 : 0.01) * Rgb{1, 1, 1};
+  });
+  scene.lights = {light};
+  double exact = 0;
+  const EnvironmentMap& map = *light.environment;
+  for (std::uint32_t row = 0; row < 128; ++row)
+    for (std::uint32_t column = 0; column < 256; ++column)
+      exact += double{map.pixels[row * 256 + column].g} *
+               std::max(0.0, EnvironmentAxes(light).to_scene(map.grid.direction_sum(row, column)).z);
+  const auto estimate = traced(scene, {{0.3, 0.2, 0}, {0, 0, 1}});
+  EXPECT_NEAR(estimate.mean().g, exact, sure * error_of(estimate) + 0.002 * exact);
+  EXPECT_LT(error_of(estimate), 0.02 * exact);
+}
+
+/// Returns a room of 4 x 3 x 5 m whose wall z = 0 is open above 0.8 m.
+Scene room_with_window() {
+  Scene scene;
+  scene.materials = {grey(0, 0.5)};
+  test::add_box(scene, {0, 0, 0}, {4, 3, 5}, true);
+  std::erase_if(scene.faces, [&](const Face& face) {
+    return std::ranges::all_of(scene.corners_of(face), [&](std::uint32_t v) { return scene.vertices[v].z == 0; });
+  });
+  add_polygon(scene, {{0, 0, 0}, {4, 0, 0}, {4, 0.8, 0}, {0, 0.8, 0}});
+  return scene;
+}
+
+TEST(PathTracer, AgreesWithTheSolverInARoomWithAWindowUnderAColouredEnvironment) {
+  Scene scene = room_with_window();
+  scene.lights = {test::environment({128, 64}, [](Vec3 d) {
+    const double bright = 20 * std::exp(60 * (dot(d, normalized(Vec3{0.4, 0.5, -0.8})) - 1));
+    return d.y > 0 ? Rgb{1 + bright, 1.5 + bright, 3 + 0.7 * bright} : Rgb{0.4, 0.5, 0.2};
+  })};
+  const BaseMesh mesh(scene);
+  SolutionLog log;
+  solve(mesh, {.tolerance = 0.03}, log, {});
+  std::vector<SurfacePoint> points;
+  Rgb solved;
+  double weight = 0;
+  std::vector<double> weights;
+  for (const LeafValue& leaf : log.leaves()) {
+    const PatchShape shape = shape_of(mesh, leaf.patch);
+    const double area = area_of(mesh, shape);
+    points.push_back({centre_of(mesh, shape), mesh.roots()[shape.root].normal});
+    weights.push_back(area);
+    solved += area * widen(leaf.irradiance);
+    weight += area;
+  }
+  const auto traced = trace_irradiance(PathTracer(scene), points, {.paths = 512, .threads = 2});
+  Rgb expected;
+  double variance = 0;
+  for (std::size_t n = 0; n < traced.size(); ++n) {
+    expected += weights[n] * traced[n].mean();
+    variance += weights[n] * weights[n] * traced[n].variance_of_band_mean();
+  }
+  const double error = sure * std::sqrt(variance) / weight;
+  EXPECT_LT(error, 0.01 * expected.mean() / weight);
+  for (const double ratio : {solved.r / expected.r, solved.g / expected.g, solved.b / expected.b})
+    EXPECT_NEAR(ratio, 1, 0.01 + error * weight / expected.mean());
 }
 
 TEST(PathTracer, AGapIsNotEnclosedHoweverNarrow) {

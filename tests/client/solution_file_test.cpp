@@ -5,11 +5,13 @@
 #include "client/export/ply_file.h"
 #include "import/base/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
+#include "tests/environments.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -105,6 +107,27 @@ TEST_P(SolutionFile, PartsOfTheSceneThatContradictTheMeshAreRefused) {
   mesh.objects = {};
   mesh.materials[0].emission.r = -1;
   EXPECT_NE(refusal(encoded(mesh)).find("material 0: a band of it is negative"), std::string::npos);
+}
+
+TEST_P(SolutionFile, RemembersEnvironmentMapsReducedToWhatFitsAFile) {
+  DisplayMesh mesh = hand_made_room({});
+  const Light small = test::environment({8, 4}, [](Vec3 d) { return Rgb{1 + std::round(8 * d.x) / 8, 0.25, 3}; });
+  Light large = test::environment({256, 128}, [](Vec3 d) {
+    return Rgb{2 + std::sin(5 * d.x), 1 + d.y / 3, 3 + std::cos(7 * d.z)};
+  });
+  large.direction = {0, 0, -1};
+  mesh.lights = {small, large, small};
+  const std::string bytes = encoded(mesh);
+  EXPECT_LT(bytes.size(), 300'000u);
+  const DisplayMesh back = decoded(bytes);
+  ASSERT_EQ(back.lights.size(), 3u);
+  EXPECT_EQ(back.lights[0], small);
+  EXPECT_EQ(back.lights[0].environment, back.lights[2].environment);  // written once
+  EXPECT_EQ(back.lights[1].direction, large.direction);
+  EXPECT_NEAR(back.lights[1].environment->total().r, large.environment->total().r, 1e-3 * large.environment->total().r);
+  EXPECT_NE(
+      refusal(std::string(bytes).replace(bytes.find("\"columns\":8"), 11, "\"columns\":9")).find("light 0: its environment map"),
+      std::string::npos);
 }
 
 TEST_P(SolutionFile, ALightThatIsNoneIsRefusedByName) {

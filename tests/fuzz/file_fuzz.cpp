@@ -1,9 +1,11 @@
 // Fuzzes the files that our own importers read: OBJ, MTL, glTF and GLB with their parts; GLB and PLY of a solution; IES and
-// EULUMDAT. The first byte of an input chooses what the others are.
+// EULUMDAT; environment maps. The first byte of an input chooses what the others are.
 
 #include "client/export/solution_file.h"
 #include "import/base/import_error.h"
 #include "import/base/whole_file.h"
+#include "import/environment/bright_spots.h"
+#include "import/environment/environment_file.h"
 #include "import/formats/import_scene.h"
 #include "import/photometry/luminaire_file.h"
 #include "tests/fuzz/input.h"
@@ -29,8 +31,9 @@ constexpr std::array<SceneKind, 6> scenes{{{"scene.obj", "scene.obj"},
                                            {"room_z_up.mtl", "room_z_up.obj"},
                                            {"room.bin", "room.gltf"},
                                            {"wood.png", "room.obj"}}};
-constexpr std::array<const char*, 2> solutions{".glb", ".ply"};   // numbered after the scenes
-constexpr std::array<const char*, 2> luminaires{".ies", ".ldt"};  // numbered after the solutions
+constexpr std::array<const char*, 2> solutions{".glb", ".ply"};     // numbered after the scenes
+constexpr std::array<const char*, 2> luminaires{".ies", ".ldt"};    // numbered after the solutions
+constexpr std::array<const char*, 2> environments{".hdr", ".exr"};  // numbered after the luminaires
 
 /// Returns the files of Blender's exporters by name. A made-up scene can name them as its parts.
 const std::map<std::string, std::string>& parts() {
@@ -63,11 +66,22 @@ void read_luminaire(std::string_view bytes, const char* extension) {
   if (!(sum > 0)) std::abort();
 }
 
+/// Reads an environment map, which then is sound. OpenEXR throws exceptions of its own.
+void read_environment(const std::string& bytes, const char* extension) try {
+  alvor::EnvironmentFile file = alvor::read_environment(bytes, extension);
+  (void)alvor::take_bright_spots(file.map);
+  if (fault_in(alvor::reduced(file.map, alvor::EnvironmentMap::most_columns, alvor::EnvironmentMap::most_rows))) std::abort();
+} catch (const alvor::ImportError&) {
+  throw;
+} catch (const std::exception&) {}
+
 void read_file(std::size_t kind, const std::string& bytes) {
   if (kind < scenes.size()) return read_scene(scenes[kind], bytes);
   kind -= scenes.size();
   if (kind < solutions.size()) return (void)alvor::decode_solution(bytes, solutions[kind], "made up");
-  read_luminaire(bytes, luminaires[kind - solutions.size()]);
+  kind -= solutions.size();
+  if (kind < luminaires.size()) return read_luminaire(bytes, luminaires[kind]);
+  read_environment(bytes, environments[kind - luminaires.size()]);
 }
 
 }  // namespace
@@ -75,7 +89,7 @@ void read_file(std::size_t kind, const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   try {
-    read_file(data[0] % (scenes.size() + solutions.size() + luminaires.size()),
+    read_file(data[0] % (scenes.size() + solutions.size() + luminaires.size() + environments.size()),
               {reinterpret_cast<const char*>(data + 1), size - 1});
   } catch (const alvor::ImportError&) {
   } catch (const alvor::SolutionFileError&) {}

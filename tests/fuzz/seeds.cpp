@@ -5,6 +5,7 @@
 #include "radiosity/solve/solver.h"
 #include "server/archive/pieces.h"
 #include "tests/fuzz/input.h"
+#include "tests/import/environment_images.h"
 #include "tests/scenes.h"
 
 #include <filesystem>
@@ -76,6 +77,18 @@ void write_web_seeds(const fs::path& directory) {
                                           messages}));
 }
 
+void write_environment_seeds(const fs::path& directory) {
+  const auto image =
+      test::image_of(16, 8, [](int row, int column, int band) { return row == 2 && column == 3 ? 500 : 1 + band; });
+  // The numbers of kinds are those of tests/fuzz/file_fuzz.cpp.
+  write(directory / "10packed.hdr", "\x0a" + test::hdr_of(image));
+  write(directory / "10flat.hdr", "\x0a" + test::hdr_of(image, false, "EXPOSURE=2\n"));
+  for (const auto compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION,
+                                 Imf::PXR24_COMPRESSION, Imf::B44_COMPRESSION, Imf::DWAA_COMPRESSION})
+    write(directory / ("11by" + std::to_string(compression) + ".exr"),
+          "\x0b" + test::exr_of(image, {"R", "G", "B"}, compression));
+}
+
 void write_seeds(const fs::path& directory, std::span<char*> files) {
   const Scene room = test::coloured_room();
   write(directory / "scene_upload" / "room", upload_of(room));
@@ -99,7 +112,9 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
     write(directory / "frame" / (detail == Detail::exact ? "exact" : "display"), frames_of(log, detail));
   write(directory / "watch" / "ordinary", std::string("\1\3\7\0\1\3\5\0\1\3\5\1\0\2\3\5\1\6\0\x09\1\3", 22));
   write_web_seeds(directory / "web");
-  const std::string kinds[] = {".obj", ".gltf", ".glb", ".mtl", ".bin", ".png", "solution.glb", ".ply", ".ies", ".ldt"};
+  write_environment_seeds(directory / "file");
+  const std::string kinds[] = {".obj",         ".gltf", ".glb", ".mtl", ".bin", ".png",
+                               "solution.glb", ".ply",  ".ies", ".ldt", ".hdr", ".exr"};
   for (char* file : files)
     for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
       if (!std::string_view(file).ends_with(kinds[kind])) continue;

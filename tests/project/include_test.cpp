@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> allowed{
 };
 // The rooms of a folder from the lowest to the highest: a file includes files of its own room and of lower ones.
 const std::map<std::string, std::vector<std::string>> rooms{
-    {"import", {"base", "photometry", "apart", "formats", "program"}},
+    {"import", {"base", "environment", "photometry", "apart", "formats", "program"}},
     {"radiosity", {"rays", "form_factors", "direct", "exchange", "estimate", "plan", "solve"}},
     {"server", {"base", "archive", "scenes", "solves", "watch", "access", "rpc", "web"}},
     {"client", {"picture", "export", "rpc", "verify", "command"}},

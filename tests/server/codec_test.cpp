@@ -2,6 +2,7 @@
 #include "proto/leaf_codec.h"
 #include "proto/mesh_codec.h"
 
+#include "tests/environments.h"
 #include "tests/server/sample_scenes.h"
 
 #include <gtest/gtest.h>
@@ -82,6 +83,43 @@ TEST(SceneCodec, AnObjectWithHalfATransformIsRefusedByName) {
   object.set_name("chair");
   for (int n = 0; n < 11; ++n) object.add_transform(n);
   EXPECT_EQ(SceneAssembler().add(chunk)->text(), "object 'chair': its transform has 11 numbers, needs 12");
+}
+
+Scene scene_with_environments() {
+  Scene scene = scene_with_lights();
+  const Light one = test::environment({4, 2}, [](Vec3 d) { return Rgb{1 + d.y, 2, 3}; });
+  const Light other = test::environment({2, 1}, [](Vec3) { return Rgb{7, 8, 9}; });
+  scene.lights = {one, other, one};
+  return scene;
+}
+
+TEST(SceneCodec, EnvironmentMapsAreSentOnceAndShared) {
+  for (const std::size_t bytes : {256, 1 << 20}) {
+    const Scene arrived = assemble(slice(scene_with_environments(), bytes));
+    EXPECT_EQ(arrived.lights, scene_with_environments().lights);
+    EXPECT_EQ(arrived.lights[0].environment, arrived.lights[2].environment);
+    EXPECT_NE(arrived.lights[0].environment, arrived.lights[1].environment);
+  }
+}
+
+TEST(SceneCodec, EnvironmentMapsThatContradictThemselvesAreRefusedByName) {
+  const auto refusal = [](auto change) {
+    v1::GeometryChunk chunk = slice(scene_with_environments(), 1 << 20)[0];
+    change(chunk);
+    SceneAssembler assembler;
+    const auto fault = assembler.add(chunk);
+    return fault ? fault->text() : "";
+  };
+  EXPECT_EQ(refusal([](auto& chunk) { chunk.mutable_lights(2)->set_environment(2); }),
+            "light 2 'surroundings': its environment map 2 is not known");
+  EXPECT_EQ(refusal([](auto& chunk) { chunk.mutable_environments(1)->add_radiance(1); }),
+            "chunk 0, environments: a map of 2 x 1 pixels has 7 values, needs 6");
+  EXPECT_EQ(refusal([](auto& chunk) { chunk.mutable_environments(1)->set_columns(0xffffffff); }),
+            "chunk 0, environments: a map has 4294967295 x 1 pixels, at most 256 x 128 are possible");
+  EXPECT_EQ(refusal([](auto& chunk) {
+              for (int n = 0; n < 63; ++n) chunk.add_environments();
+            }),
+            "chunk 0, environments: the scene has 65 environment maps, at most 64 are possible");
 }
 
 TEST(SceneCodec, ALuminaireWithoutItsWebIsRefusedByName) {

@@ -94,8 +94,8 @@ SceneImport import_of(const SolveCommand& command, const std::string& file) {
 // Sends the scene's files. If the server refuses them, reports that as a fault of the file, which it knows by another name.
 v1::Scene submit(Client& client, RawScene scene, const SceneImport& import, const std::filesystem::path& path) {
   const auto find = [&](const std::string& name) {
-    const auto luminaire = import.files.find(name);
-    return luminaire != import.files.end() ? std::optional(luminaire->second) : read_beside(scene.folder, name);
+    const auto of_light = import.files.find(name);
+    return of_light != import.files.end() ? std::optional(of_light->second) : read_beside(scene.folder, name);
   };
   try {
     return client.import_scene(import.options, std::move(scene.bytes), find);

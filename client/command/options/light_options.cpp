@@ -29,6 +29,7 @@ void add_light_options(CLI::App& command, LightOptions& options) {
                   "Lumens per watt of luminaires, sun and sky in a radiometric scene (179)")
       ->check(CLI::Range(1e-3, 683.0));
   add_sky_options(command, options.sky);
+  add_environment_options(command, options.environment);
 }
 
 void take_light_options(const LightOptions& options, SceneImport& import) {
@@ -36,7 +37,10 @@ void take_light_options(const LightOptions& options, SceneImport& import) {
   if (!options.quantity.empty()) import.options.set_quantity(encode(quantity_of(options.quantity)));
   if (options.efficacy) import.options.set_lumens_per_watt(*options.efficacy);
   if (auto daylight = daylight_of(options.sky)) *import.options.mutable_daylight() = *std::move(daylight);
-  import.files = add_luminaires(options.luminaires, import.options);
+  LightFiles files;
+  add_luminaires(options.luminaires, import.options, files);
+  take_environment(options.environment, import.options, files);
+  import.files = files.take();
 }
 
 }  // namespace alvor

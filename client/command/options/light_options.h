@@ -1,6 +1,7 @@
 #pragma once
 // Options for what a scene file says about light, and for light that is added to it.
 
+#include "client/command/options/environment_option.h"
 #include "client/command/options/sky_options.h"
 #include "import/apart/scene_file.h"
 
@@ -18,12 +19,13 @@ struct LightOptions {
   std::vector<std::string> luminaires;  ///< FILE@x,y,z[:turn,tilt,spin]
   std::optional<double> efficacy;       ///< lm/W of luminaires, sun and sky in a radiometric scene
   SkyOptions sky;
+  EnvironmentOptions environment;
 };
 
 void add_light_options(CLI::App& command, LightOptions& options);
 
-/// Sets what the options say about how a scene is read. Throws Failure for options that do not fit together and luminaires that
-/// cannot be read.
+/// Sets what the options say about how a scene is read. Throws Failure for options that do not fit together and files of
+/// lights that cannot be read.
 void take_light_options(const LightOptions& options, SceneImport& import);
 
 }  // namespace alvor

@@ -3,7 +3,6 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/numbers.h"
 #include "import/base/import_error.h"
-#include "import/base/scene_files.h"
 #include "import/base/scene_format.h"
 #include "import/base/whole_file.h"
 
@@ -11,23 +10,9 @@ namespace alvor {
 
 namespace {
 
-std::string bytes_of(const std::filesystem::path& path) {
+void require_photometric(const std::filesystem::path& path) {
   if (!is_luminaire_extension(lower_case_extension(path)))
     throw Failure(ExitStatus::usage, path.string() + ": photometric files end in .ies or .ldt");
-  try {
-    return read_whole_file(path);
-  } catch (const FileError& error) {
-    throw Failure(ExitStatus::bad_scene, error.what());
-  }
-}
-
-/// Returns the file's name for the options: without folders, and with a number if another file has that name.
-std::string name_for(const std::filesystem::path& path, const std::map<std::string, std::filesystem::path>& taken) {
-  const std::string plain = path.filename().string();
-  const std::string first = reason_against_name(plain).empty() ? plain : "luminaire" + lower_case_extension(path);
-  std::string name = first;
-  for (int n = 2; taken.contains(name) && taken.at(name) != path; ++n) name = std::to_string(n) + "_" + first;
-  return name;
 }
 
 /// A luminaire of the command line.
@@ -50,13 +35,11 @@ Placed parse_placed(const std::string& text) {
 
 }  // namespace
 
-std::map<std::string, std::string> add_luminaires(std::span<const std::string> texts, v1::ImportOptions& options) {
-  std::map<std::string, std::filesystem::path> paths;
-  std::map<std::string, std::string> files;
+void add_luminaires(std::span<const std::string> texts, v1::ImportOptions& options, LightFiles& files) {
   for (const std::string& text : texts) {
     const Placed placed = parse_placed(text);
-    const std::string name = name_for(placed.file, paths);
-    if (paths.emplace(name, placed.file).second) files.emplace(name, bytes_of(placed.file));
+    require_photometric(placed.file);
+    const std::string name = files.add(placed.file, "luminaire");
     v1::PlacedLuminaire& luminaire = *options.add_luminaires();
     luminaire.set_file(name);
     luminaire.mutable_position()->set_x(placed.position[0]);
@@ -66,12 +49,14 @@ std::map<std::string, std::string> add_luminaires(std::span<const std::string> t
     luminaire.set_tilt_degrees(placed.angles[1]);
     luminaire.set_spin_degrees(placed.angles[2]);
   }
-  return files;
 }
 
 LuminaireFile read_luminaire_file(const std::filesystem::path& path) {
+  require_photometric(path);
   try {
-    return read_luminaire(bytes_of(path), lower_case_extension(path));
+    return read_luminaire(read_whole_file(path), lower_case_extension(path));
+  } catch (const FileError& error) {
+    throw Failure(ExitStatus::bad_scene, error.what());
   } catch (const ImportError& error) {
     throw Failure(ExitStatus::bad_scene, path.string() + ": " + error.what());
   }

@@ -2,19 +2,19 @@
 // Luminaires that the command line adds to a scene.
 
 #include "alvor/v1/scene_service.pb.h"
+#include "client/command/options/light_files.h"
 #include "import/photometry/luminaire_file.h"
 
 #include <filesystem>
-#include <map>
 #include <span>
 #include <string>
 
 namespace alvor {
 
-/// Appends the luminaires of the command line, each FILE@x,y,z or FILE@x,y,z:turn,tilt,spin, to the options. Returns the bytes of
-/// their files by the names that the options use. Throws Failure: (usage) for a text that is not like that, (bad_scene) for a
+/// Appends the luminaires of the command line, each FILE@x,y,z or FILE@x,y,z:turn,tilt,spin, to the options, and
+/// their files to `files`. Throws Failure: (usage) for a text that is not like that, (bad_scene) for a
 /// file that cannot be read.
-std::map<std::string, std::string> add_luminaires(std::span<const std::string> texts, v1::ImportOptions& options);
+void add_luminaires(std::span<const std::string> texts, v1::ImportOptions& options, LightFiles& files);
 
 /// Reads a photometric file. Throws Failure (bad_scene) that names the file, the line and the reason.
 LuminaireFile read_luminaire_file(const std::filesystem::path& path);

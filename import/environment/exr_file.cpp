@@ -1,0 +1,99 @@
+#include "import/environment/exr_file.h"
+
+#include "import/base/import_error.h"
+
+#include <OpenEXR/Iex.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfEnvmap.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+namespace alvor {
+
+namespace {
+
+// Rows that are read together. Compressed files hold blocks of up to 256.
+constexpr int rows_at_once = 256;
+
+/// A file in memory.
+class MemoryStream final : public Imf::IStream {
+ public:
+  explicit MemoryStream(const std::string& bytes) : IStream("image"), bytes_(bytes) {}
+
+  bool read(char data[], int count) override {
+    if (next_ > bytes_.size() || static_cast<std::uint64_t>(std::max(0, count)) > bytes_.size() - next_)
+      throw Iex::InputExc("the file is cut off");
+    std::memcpy(data, bytes_.data() + next_, static_cast<std::size_t>(count));
+    next_ += static_cast<std::uint64_t>(count);
+    return next_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return next_; }
+  void seekg(std::uint64_t place) override { next_ = place; }
+
+ private:
+  const std::string& bytes_;
+  std::uint64_t next_ = 0;
+};
+
+/// Returns the names of the channels for red, green and blue.
+std::array<const char*, 3> channels_of(const Imf::Header& header) {
+  const Imf::ChannelList& channels = header.channels();
+  const bool is_colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+  const bool is_grey = channels.findChannel("Y") && !channels.findChannel("RY");
+  if (!is_colour && !is_grey) throw ImportError("channels", "are neither R, G, B nor Y alone");
+  const std::array<const char*, 3> names =
+      is_colour ? std::array{"R", "G", "B"} : std::array<const char*, 3>{"Y", nullptr, nullptr};
+  for (const char* name : names)
+    if (name && (channels.findChannel(name)->xSampling != 1 || channels.findChannel(name)->ySampling != 1))
+      throw ImportError("channels", "are sampled more coarsely than by pixel");
+  return names;
+}
+
+void refuse_unusable(const Imf::Header& header) {
+  if (header.dataWindow() != header.displayWindow()) throw ImportError("header", "the data window is not the display window");
+  if (Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE)
+    throw ImportError("header", "is that of a cube map, not of a latitude-longitude image");
+}
+
+}  // namespace
+
+void read_exr(const std::string& bytes, ImageRows& rows) {
+  MemoryStream stream(bytes);
+  Imf::InputFile file(stream, 0);
+  refuse_unusable(file.header());
+  const auto names = channels_of(file.header());
+  const Imath::Box2i window = file.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
+                     height = std::int64_t{window.max.y} - window.min.y + 1;
+  rows.begin(width, height);
+  if (!file.isComplete()) throw ImportError("pixels", "the file is cut off");
+  const auto samples = static_cast<std::size_t>(3 * width);
+  std::vector<float> block(samples * static_cast<std::size_t>(std::min<std::int64_t>(rows_at_once, height)));
+  for (std::int64_t row = 0; row < height; row += rows_at_once) {
+    const std::int64_t count = std::min<std::int64_t>(rows_at_once, height - row);
+    const int first = static_cast<int>(window.min.y + row), last = static_cast<int>(first + count - 1);
+    Imf::FrameBuffer target;
+    for (std::size_t band = 0; band < 3; ++band)
+      if (names[band])
+        target.insert(names[band], Imf::Slice::Make(Imf::FLOAT, &block[band], Imath::V2i(window.min.x, first), width, count,
+                                                    3 * sizeof(float), samples * sizeof(float)));
+    file.setFrameBuffer(target);
+    file.readPixels(first, last);
+    for (std::int64_t n = 0; n < count; ++n) {
+      const std::span<float> rgb(&block[static_cast<std::size_t>(n) * samples], samples);
+      if (!names[1])
+        for (std::size_t s = 0; s < samples; s += 3) rgb[s + 1] = rgb[s + 2] = rgb[s];
+      rows.add(rgb);
+    }
+  }
+}
+
+}  // namespace alvor
