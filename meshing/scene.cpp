@@ -11,8 +11,8 @@ namespace alvor {
 namespace {
 
 constexpr double max_coordinate = 1e9;
-// Each distant light lights every leaf by rays of its own, whatever it brings.
-constexpr std::ptrdiff_t most_distant_lights = 64;
+// Each distant light lights every leaf by rays of its own, whatever it brings; an environment by those of three lights.
+constexpr std::size_t most_distant_lights = 64, lights_of_environment = 3;
 constexpr double max_emission = 1e30;  // W/m2: after a million reflections the result still fits in a float
 
 std::string number(double value) {
@@ -88,8 +88,12 @@ std::optional<Fault> find_fault(const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     if (auto reason = fault_in(scene.materials[i]))
       return Fault{"material " + std::to_string(i) + " '" + scene.materials[i].name + "'", *reason};
-  if (const auto count = std::ranges::count_if(scene.lights, &Light::is_distant); count > most_distant_lights)
-    return Fault{"scene", "has " + std::to_string(count) + " distant lights, at most 64 are possible"};
+  std::size_t count = 0;
+  for (const Light& light : scene.lights)
+    if (light.is_distant()) count += light.kind == LightKind::environment ? lights_of_environment : 1;
+  if (count > most_distant_lights)
+    return Fault{"scene",
+                 "has " + std::to_string(count) + " distant lights (an environment counts as three), at most 64 are possible"};
   std::unordered_set<const void*> sound;  // webs and maps, which many lights share
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];

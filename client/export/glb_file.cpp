@@ -20,6 +20,9 @@ namespace {
 using namespace glb;
 using nlohmann::json;
 
+// Of the JSON, besides the parts of the scene.
+constexpr std::size_t bytes_beside = 10'000;
+
 using Float3 = std::array<float, 3>;
 
 Float3 float3(const Vec3& a) { return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)}; }
@@ -89,8 +92,6 @@ class BinaryChunk {
 
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-bool is_short(const json& part) { return text_of(part).size() < largest_json / 4; }
-
 json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin) {
   const std::size_t count = mesh.positions.size();
   const double exposure = automatic_exposure(mesh);
@@ -124,11 +125,11 @@ std::size_t add_faces(BinaryChunk& chunk, const std::vector<FaceTriangles>& face
 
 /// Adds the scene's materials and objects, as far as they leave the JSON readable: a scene may have a million objects.
 void add_parts(const DisplayMesh& mesh, json& extras) {
-  json materials = json::array(), objects = json::array();
-  for (const Material& material : mesh.materials) materials.push_back(json_of(material));
-  for (const SceneObject& object : mesh.objects) objects.push_back(json_of(object));
-  if (!mesh.materials.empty() && is_short(materials)) extras[materials_key] = std::move(materials);
-  if (!mesh.objects.empty() && is_short(objects)) extras[objects_key] = std::move(objects);
+  const std::size_t used = extras.contains(lights_key) ? text_of(extras[lights_key]).size() : 0;
+  const std::size_t left = largest_json > used + bytes_beside ? (largest_json - used - bytes_beside) / 2 : 0;
+  auto materials = json_of_all(std::span(mesh.materials), left), objects = json_of_all(std::span(mesh.objects), left);
+  if (!materials.empty()) extras[materials_key] = std::move(materials);
+  if (!objects.empty()) extras[objects_key] = std::move(objects);
 }
 
 json node_of(const Vec3& origin, const DisplayMesh& mesh) {
@@ -169,7 +170,8 @@ void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes
 
 std::string encode_glb(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) throw SolutionFileError("mesh: has no triangles");
-  const std::size_t estimate = mesh.positions.size() * 5 * vec3_size + mesh.triangles.size() * vec3_size;
+  const std::size_t estimate =
+      mesh.positions.size() * 5 * vec3_size + mesh.triangles.size() * vec3_size + mesh.faces.size() * sizeof(FaceTriangles);
   if (estimate > std::numeric_limits<std::uint32_t>::max() - largest_json)
     throw SolutionFileError("mesh: too large for GLB, which ends at 4 GB");
 

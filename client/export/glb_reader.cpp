@@ -179,7 +179,7 @@ void read_extras(const json& root, std::string_view binary, DisplayMesh& mesh) {
   if (extras->value(quantity_key, json()) == name_of(Quantity::photometric)) mesh.quantity = Quantity::photometric;
   for (const json& light : list_in(*extras, lights_key)) mesh.lights.push_back(light_of(light, mesh.lights));
   for (const json& source : list_in(*extras, materials_key)) mesh.materials.push_back(material_of(source, mesh.materials.size()));
-  for (const json& source : list_in(*extras, objects_key)) mesh.objects.push_back(object_of(source, mesh.objects));
+  for (const json& source : list_in(*extras, objects_key)) mesh.objects.push_back(object_of(source, mesh.objects.size()));
   mesh.faces = read_faces(root, binary, *extras);
 }
 

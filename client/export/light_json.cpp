@@ -169,7 +169,8 @@ Light light_of(const json& source, std::span<const Light> before) {
     if (light.kind == LightKind::luminaire) read_luminaire_fields(source, before, light);
     if (light.kind == LightKind::sky) light.sky = sky_of(source.at("sky"));
     if (light.kind == LightKind::environment) read_environment_fields(source, before, light);
-    if (const auto reason = fault_in(light)) throw SolutionFileError(*reason);
+    const bool is_shared = source.contains("web_of") || source.contains("environment_of");
+    if (const auto reason = is_shared ? fault_in_all_but_shared(light) : fault_in(light)) throw SolutionFileError(*reason);
     return light;
   } catch (const json::exception&) {
     throw SolutionFileError(place + ": not a light as Alvor writes it");

@@ -28,6 +28,7 @@ constexpr std::string_view source_properties = "property int scene_face\npropert
 constexpr std::string_view z_up_comment = "comment z up\n", photometric_comment = "comment photometric\n";
 constexpr std::string_view light_comment = "comment light ", material_comment = "comment material ",
                            object_comment = "comment object ";
+constexpr std::size_t longest_header = 1 << 26;  // a hundred thousand lights
 constexpr std::string_view last_line = "end_header\n";
 constexpr std::size_t vertex_size = 3 * sizeof(double) + 9 * sizeof(float) + 3;
 constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t), source_size = 3 * sizeof(std::int32_t);
@@ -43,8 +44,8 @@ std::string header(const DisplayMesh& mesh) {
     text.append(begin).append(json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)).append("\n");
   };
   for (std::size_t which = 0; which < mesh.lights.size(); ++which) comment(light_comment, json_of(mesh.lights, which));
-  for (const Material& material : mesh.materials) comment(material_comment, json_of(material));
-  for (const SceneObject& object : mesh.objects) comment(object_comment, json_of(object));
+  for (const auto& material : json_of_all(std::span(mesh.materials), longest_header / 4)) comment(material_comment, material);
+  for (const auto& object : json_of_all(std::span(mesh.objects), longest_header / 4)) comment(object_comment, object);
   text.append(vertex_element).append(std::to_string(mesh.positions.size())).append("\n").append(vertex_properties);
   text.append(face_element).append(std::to_string(mesh.triangles.size())).append("\n").append(face_properties);
   if (!mesh.faces.empty()) text.append(source_properties);
@@ -109,11 +110,10 @@ void read_comment(std::string_view line, Parts& parts) {
   if (line.starts_with(light_comment)) parts.lights.push_back(light_of(json_behind(light_comment), parts.lights));
   if (line.starts_with(material_comment))
     parts.materials.push_back(material_of(json_behind(material_comment), parts.materials.size()));
-  if (line.starts_with(object_comment)) parts.objects.push_back(object_of(json_behind(object_comment), parts.objects));
+  if (line.starts_with(object_comment)) parts.objects.push_back(object_of(json_behind(object_comment), parts.objects.size()));
 }
 
 Parts parts_of(std::string_view bytes) {
-  constexpr std::size_t longest_header = 1 << 26;  // a hundred thousand lights
   const std::size_t end = bytes.substr(0, longest_header).find("\nend_header\n");
   if (!bytes.starts_with("ply\n") || end == std::string_view::npos) fail("header", "not a PLY file of Alvor");
   Parts parts{{}, bytes.substr(end + 1 + last_line.size())};
@@ -221,7 +221,7 @@ std::string encode_ply(const DisplayMesh& mesh) {
   if (mesh.positions.size() > std::numeric_limits<std::int32_t>::max()) fail("mesh", "has 2^31 vertices or more");
   const double exposure = automatic_exposure(mesh);
   std::string bytes = header(mesh);
-  bytes.reserve(bytes.size() + mesh.positions.size() * vertex_size + mesh.triangles.size() * face_size);
+  bytes.reserve(bytes.size() + mesh.positions.size() * vertex_size + mesh.triangles.size() * (face_size + source_size));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     append_xyz<double>(bytes, mesh.positions[i]);
     append_xyz<float>(bytes, mesh.normals[i]);

@@ -23,6 +23,13 @@ Rgb rgb_of(const json& source) {
   return {r, g, b};
 }
 
+/// Returns a whole number in [0, 2^32).
+std::uint32_t whole_number(const json& source) {
+  if (!source.is_number_unsigned() || source.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+    throw SolutionFileError("one of its numbers is not a whole number below 2^32");
+  return source.get<std::uint32_t>();
+}
+
 /// Returns the result of `read`. Its errors become SolutionFileError that begin with the place.
 template <class Read>
 auto naming(const char* kind, std::size_t number, Read read) {
@@ -62,20 +69,34 @@ json json_of(const SceneObject& object) {
   return result;
 }
 
-SceneObject object_of(const json& source, std::span<const SceneObject> before) {
-  return naming("object ", before.size(), [&] {
+SceneObject object_of(const json& source, std::size_t number) {
+  return naming("object ", number, [&] {
     SceneObject object;
     object.name = source.at("name").get<std::string>();
-    object.first_face = source.at("first_face").get<std::uint32_t>();
-    object.face_count = source.at("face_count").get<std::uint32_t>();
-    if (source.contains("parent")) object.parent = source["parent"].get<std::uint32_t>();
+    object.first_face = whole_number(source.at("first_face"));
+    object.face_count = whole_number(source.at("face_count"));
+    if (source.contains("parent")) object.parent = whole_number(source["parent"]);
     if (source.contains("transform")) {
       const auto t = source["transform"].get<std::array<double, 12>>();
       object.placement = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}, {t[9], t[10], t[11]}};
     }
-    if (object.parent && *object.parent >= before.size()) throw SolutionFileError("its parent does not come before it");
     return object;
   });
 }
+
+template <class Item>
+std::vector<json> json_of_all(std::span<const Item> items, std::size_t most_bytes) {
+  std::vector<json> all;
+  std::size_t bytes = 0;
+  for (const Item& item : items) {
+    all.push_back(json_of(item));
+    bytes += all.back().dump(-1, ' ', true, json::error_handler_t::replace).size();
+    if (bytes > most_bytes) return {};
+  }
+  return all;
+}
+
+template std::vector<json> json_of_all(std::span<const Material> items, std::size_t most_bytes);
+template std::vector<json> json_of_all(std::span<const SceneObject> items, std::size_t most_bytes);
 
 }  // namespace alvor

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace alvor {
 
@@ -15,10 +16,16 @@ nlohmann::json json_of(const Material& material);
 /// Reads what json_of() wrote. Throws SolutionFileError that names the material by `number`.
 Material material_of(const nlohmann::json& json, std::size_t number);
 
+/// Returns the JSON of all items; none if together they are longer than `most_bytes` as text. For materials and objects: a scene
+/// may have a million, and what is written must be readable.
+template <class Item>
+std::vector<nlohmann::json> json_of_all(std::span<const Item> items, std::size_t most_bytes);
+
 /// Returns {"name", "first_face", "face_count"}, with "parent" if it has one, and "transform" (12 numbers, see
 /// alvor.v1.SceneObject) if that is not the identity.
 nlohmann::json json_of(const SceneObject& object);
-/// Reads what json_of() wrote, after the objects before it. Throws SolutionFileError that names the object.
-SceneObject object_of(const nlohmann::json& json, std::span<const SceneObject> before);
+/// Reads what json_of() wrote; see fault_in() for whether it fits the other objects. Throws SolutionFileError that names the
+/// object by `number`.
+SceneObject object_of(const nlohmann::json& json, std::size_t number);
 
 }  // namespace alvor

@@ -6,6 +6,8 @@
 #include "import/base/whole_file.h"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace alvor {
 namespace {
@@ -60,10 +62,17 @@ void check_faces(const DisplayMesh& mesh) {
                             std::to_string(mesh.triangles.size()));
 }
 
+void check_objects(const DisplayMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.objects.size(); ++i)
+    if (const auto reason = fault_in(mesh.objects, i, std::numeric_limits<std::uint32_t>::max()))
+      throw SolutionFileError("object " + std::to_string(i) + ": " + *reason);
+}
+
 DisplayMesh checked(DisplayMesh mesh) {
   check_vertices(mesh);
   check_triangles(mesh);
   check_faces(mesh);
+  check_objects(mesh);
   return mesh;
 }
 

@@ -10,6 +10,16 @@ namespace alvor {
 
 namespace {
 
+/// Returns the beginning of a name, cut between two characters.
+std::string shortened(std::string name) {
+  constexpr std::size_t longest = 900;
+  if (name.size() <= longest) return name;
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;  // inside a character of several bytes
+  name.resize(end);
+  return name;
+}
+
 std::string numbered(const std::string& name, unsigned number) {
   char text[16];
   std::snprintf(text, sizeof text, ".%03u", number);
@@ -21,7 +31,7 @@ std::string numbered(const std::string& name, unsigned number) {
 void make_unique(std::span<std::string* const> names, const std::string& otherwise) {
   std::unordered_set<std::string> given;  // in the file: such names are not made up
   for (std::string* const name : names) {
-    *name = name->empty() ? otherwise : as_utf8(*name);
+    *name = name->empty() ? otherwise : shortened(as_utf8(*name));
     given.insert(*name);
   }
   std::unordered_set<std::string> taken;

@@ -22,6 +22,8 @@ namespace {
 
 // Rows that are read together. Compressed files hold blocks of up to 256.
 constexpr int rows_at_once = 256;
+// Most columns and rows for which OpenEXR may take memory. ImageRows refuses fewer, with a better message.
+constexpr int most_of_header = 1 << 16;
 
 /// A file in memory.
 class MemoryStream final : public Imf::IStream {
@@ -29,7 +31,7 @@ class MemoryStream final : public Imf::IStream {
   explicit MemoryStream(const std::string& bytes) : IStream("image"), bytes_(bytes) {}
 
   bool read(char data[], int count) override {
-    if (next_ > bytes_.size() || static_cast<std::uint64_t>(std::max(0, count)) > bytes_.size() - next_)
+    if (count < 0 || next_ > bytes_.size() || static_cast<std::uint64_t>(count) > bytes_.size() - next_)
       throw Iex::InputExc("the file is cut off");
     std::memcpy(data, bytes_.data() + next_, static_cast<std::size_t>(count));
     next_ += static_cast<std::uint64_t>(count);
@@ -66,6 +68,9 @@ void refuse_unusable(const Imf::Header& header) {
 }  // namespace
 
 void read_exr(const std::string& bytes, ImageRows& rows) {
+  // OpenEXR takes memory for rows and tiles by the size that a header claims, before rows.begin() can look at it.
+  Imf::Header::setMaxImageSize(most_of_header, most_of_header);
+  Imf::Header::setMaxTileSize(most_of_header, most_of_header);
   MemoryStream stream(bytes);
   Imf::InputFile file(stream, 0);
   refuse_unusable(file.header());

@@ -59,6 +59,13 @@ double exposure_of(const std::string& bytes) {
   return exposure;
 }
 
+/// Returns the size of the shortest file with so many pixels: all runs are as long as they can be.
+std::size_t least_bytes(int columns, int rows) {
+  const bool is_by_runs = columns >= 8 && columns < 32768;
+  const int of_row = is_by_runs ? 4 + 4 * 2 * ((columns + 126) / 127) : 4 * columns;
+  return static_cast<std::size_t>(of_row) * static_cast<std::size_t>(rows);
+}
+
 }  // namespace
 
 void read_radiance(const std::string& bytes, ImageRows& rows) {
@@ -67,6 +74,7 @@ void read_radiance(const std::string& bytes, ImageRows& rows) {
   if (!stbi_info_from_callbacks(&callbacks, &header, &width, &height, &channels))
     throw ImportError("header", "is not that of a Radiance picture (FORMAT=32-bit_rle_rgbe, -Y rows +X columns)");
   rows.begin(width, height);
+  if (bytes.size() < least_bytes(width, height)) throw ImportError("pixels", "the file is cut off");
   const double scale = 1 / exposure_of(bytes);
   Source source{bytes, true};
   const std::unique_ptr<float, decltype(&stbi_image_free)> pixels(

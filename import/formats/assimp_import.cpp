@@ -7,6 +7,7 @@
 #include "import/formats/unsupported.h"
 
 #include <assimp/MemoryIOWrapper.h>
+#include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 #include <assimp/IOSystem.hpp>
@@ -236,7 +237,8 @@ SceneFile import_by_assimp(SceneFiles& files) {
   std::istringstream stream(files.bytes());
   refuse_what_assimp_cannot_survive(stream, files.bytes().size());
   Assimp::Importer importer;
-  importer.SetIOHandler(new MemoryFiles(files));  // the importer deletes it
+  importer.SetIOHandler(new MemoryFiles(files));                          // the importer deletes it
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);  // else each pivot is a node of its own
   const aiScene* const source = importer.ReadFile(files.scene(), as_it_is);
   if (!source) throw ImportError("file", importer.GetErrorString());
   return AssimpReader(*source, files, convention_of(*source, lower_case_extension(files.scene()))).read();

@@ -11,8 +11,9 @@
 namespace alvor {
 
 /// Root patches of one material that emit diffusely from their fronts, as one light. Unblocked irradiance is the sum over the
-/// faces, each by Lambert's contour formula, or as if from its middle if it is small as seen from there. Shadow rays go to points
-/// that are uniform by area, with the weight cos cos / r2.
+/// faces, each by Lambert's contour formula, or as if from its middle if it is small as seen from there. Four of five shadow rays
+/// go to faces chosen by what they bring to the middle of the receiver, the others to faces chosen by area; on a face, to points
+/// that are uniform in its coordinates.
 class MeshLight final : public LightSource {
  public:
   /// `emission` is E of the root patches. Requires: at least one root.
@@ -28,14 +29,16 @@ class MeshLight final : public LightSource {
   struct LitFace {
     std::uint32_t root;
     Vec3 middle, normal;
-    double area,
-        far_squared;    ///< `far_squared`: from this squared distance on the face counts as if all of it were in its middle
-    double area_up_to;  ///< of the faces before it and itself
+    double area;
+    double far_squared;  ///< the squared distance from which on the face counts as if all of it were in its middle
   };
   double brings(const LitFace& face, Vec3 at, Vec3 normal) const;
+  /// Returns for each face the probability that it or a face before it is chosen for a shadow ray from a place.
+  std::vector<double> shares_up_to(Vec3 at, Vec3 normal) const;
 
   const LocalScene& scene_;
   std::vector<LitFace> faces_;
+  double area_ = 0;  // local units
 };
 
 /// Returns the emitting roots in groups: all faces of a lamp that is to be one light, or a single face.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t longest_display_name = 256;
 // Memory for a scene with its mesh while the mesh is built.
-constexpr std::uint64_t bytes_a_corner = 250;
+constexpr std::uint64_t bytes_a_corner = 250, bytes_an_object = 500;
 
 bool emits(const BaseMesh& mesh) {
   return !mesh.lights().empty() || std::ranges::any_of(mesh.roots(), [&](const RootPatch& root) {
@@ -129,7 +129,7 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
     throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
   const std::string clamped = clamp_reflectance_of_one(scene);
   if (const auto fault = find_fault(scene)) throw invalid_argument(fault->text());
-  memory_.admit("scene", bytes_a_corner * scene.corners.size());
+  memory_.admit("scene", bytes_a_corner * scene.corners.size() + bytes_an_object * scene.objects.size());
   stop.refuse_stopped();
   BaseMesh mesh = build(scene, stop);
   if (mesh.roots().empty()) throw invalid_argument("scene: all of its faces are degenerate (no area)");

@@ -103,7 +103,7 @@ TEST_P(SolutionFile, PartsOfTheSceneThatContradictTheMeshAreRefused) {
   EXPECT_NE(refusal(encoded(mesh)).find("face 0: there is no material 1"), std::string::npos);
   mesh.faces = {};
   mesh.objects = {{"chair", 0, {}, 0, 1}};
-  EXPECT_NE(refusal(encoded(mesh)).find("object 0: its parent does not come before it"), std::string::npos);
+  EXPECT_NE(refusal(encoded(mesh)).find("object 0: its parent 0 does not come before it"), std::string::npos);
   mesh.objects = {};
   mesh.materials[0].emission.r = -1;
   EXPECT_NE(refusal(encoded(mesh)).find("material 0: a band of it is negative"), std::string::npos);

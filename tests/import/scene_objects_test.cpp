@@ -28,6 +28,14 @@ TEST(UniqueNames, AreNotThoseThatTheFileHasItself) {
 
 TEST(UniqueNames, AreUtf8) { EXPECT_EQ(unique({"\xff", "\xfe"}), (Names{"?", "?.001"})); }
 
+TEST(UniqueNames, AreCutBetweenCharacters) {
+  std::string umlauts = "x";
+  for (int n = 0; n < 1000; ++n) umlauts += "\u00fc";
+  const Names names = unique({umlauts, umlauts});
+  EXPECT_EQ(names[0], umlauts.substr(0, 899));
+  EXPECT_EQ(names[1], umlauts.substr(0, 899) + ".001");
+}
+
 TEST(UniqueNames, OfAMillionEqualOnesTakeLinearTime) {
   const Names names = unique(Names(1'000'000, "leaf"));
   EXPECT_EQ(names.back(), "leaf.999999");

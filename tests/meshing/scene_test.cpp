@@ -79,7 +79,7 @@ TEST(Scene, FaultsOfLightsNameThem) {
   EXPECT_EQ(fault_after([](Scene& s) {
               s.lights.assign(65, Light{"sun", LightKind::directional, {1, 1, 1}});
             }),
-            "scene: has 65 distant lights, at most 64 are possible");
+            "scene: has 65 distant lights (an environment counts as three), at most 64 are possible");
 }
 
 }  // namespace
