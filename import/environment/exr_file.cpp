@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 namespace alvor {
@@ -23,7 +25,11 @@ namespace {
 // Rows that are read together. Compressed files hold blocks of up to 256.
 constexpr int rows_at_once = 256;
 // Most columns and rows for which OpenEXR may take memory. ImageRows refuses fewer, with a better message.
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+constexpr int most_of_header = 1 << 10;
+#else
 constexpr int most_of_header = 1 << 16;
+#endif
 
 /// A file in memory.
 class MemoryStream final : public Imf::IStream {
@@ -44,6 +50,35 @@ class MemoryStream final : public Imf::IStream {
   const std::string& bytes_;
   std::uint64_t next_ = 0;
 };
+
+/// Returns whether an attribute holds a preview image of the size that it says: width, height, four bytes a pixel.
+bool is_whole_preview(std::string_view value) {
+  std::array<std::uint32_t, 2> size{};
+  if (value.size() < sizeof size) return false;
+  std::memcpy(size.data(), value.data(), sizeof size);
+  return std::uint64_t{size[0]} * size[1] == (value.size() - sizeof size) / 4;
+}
+
+/// Throws ImportError unless all attributes of the header lie within the file and are small: OpenEXR takes memory by the lengths
+/// that they claim. Files of several parts are refused.
+void refuse_long_attributes(const std::string& bytes) {
+  constexpr std::size_t begin = 8, largest = 1 << 20;  // after magic number and version
+  constexpr char has_parts = 0x10;
+  if (bytes.size() < begin) throw ImportError("header", "the file is cut off");
+  if (bytes[5] & has_parts) throw ImportError("header", "is of a file of several parts");
+  for (std::size_t at = begin; at < bytes.size() && bytes[at] != '\0';) {
+    const std::size_t name_end = bytes.find('\0', at),
+                      type_end = name_end == bytes.npos ? name_end : bytes.find('\0', name_end + 1);
+    if (type_end == bytes.npos || bytes.size() - type_end < 5) throw ImportError("header", "the file is cut off");
+    std::uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + type_end + 1, sizeof size);
+    if (size > largest || size > bytes.size() - type_end - 5) throw ImportError("header", "an attribute of it is too long");
+    const char* const value = bytes.data() + type_end + 5;
+    if (bytes.compare(name_end + 1, type_end - name_end - 1, "preview") == 0 && !is_whole_preview({value, size}))
+      throw ImportError("header", "its preview image is not as long as it says");
+    at = type_end + 5 + size;
+  }
+}
 
 /// Returns the names of the channels for red, green and blue.
 std::array<const char*, 3> channels_of(const Imf::Header& header) {
@@ -71,6 +106,7 @@ void read_exr(const std::string& bytes, ImageRows& rows) {
   // OpenEXR takes memory for rows and tiles by the size that a header claims, before rows.begin() can look at it.
   Imf::Header::setMaxImageSize(most_of_header, most_of_header);
   Imf::Header::setMaxTileSize(most_of_header, most_of_header);
+  refuse_long_attributes(bytes);
   MemoryStream stream(bytes);
   Imf::InputFile file(stream, 0);
   refuse_unusable(file.header());
