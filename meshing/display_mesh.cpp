@@ -131,14 +131,8 @@ class Triangulation {
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
-    count_triangles(mesh_.roots()[shape.root], static_cast<std::uint32_t>(ring.size()));
-  }
-
-  void count_triangles(const RootPatch& root, std::uint32_t count) {
-    const bool continues =
-        !out_.faces.empty() && out_.faces.back().faces == root.input && out_.faces.back().material == root.material;
-    if (!continues) out_.faces.push_back({root.input, root.material, 0});
-    out_.faces.back().count += count;
+    const RootPatch& root = mesh_.roots()[shape.root];
+    append_run(out_.faces, {root.input, root.material, static_cast<std::uint32_t>(ring.size())});
   }
 
   std::uint32_t corner_vertex(std::uint32_t root, GridPoint p) {
@@ -223,6 +217,12 @@ class Triangulation {
 };
 
 }  // namespace
+
+void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run) {
+  const bool continues = !runs.empty() && runs.back().faces == run.faces && runs.back().material == run.material;
+  if (continues) runs.back().count += run.count;
+  else runs.push_back(run);
+}
 
 DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
   return Triangulation(mesh, leaves).build();

@@ -20,6 +20,9 @@ struct FaceTriangles {
   friend bool operator==(const FaceTriangles&, const FaceTriangles&) = default;
 };
 
+/// Appends a run; it continues the last one if both are of the same faces and material.
+void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run);
+
 /// A triangle mesh with irradiance and radiosity per vertex. Each triangle is (centre of a leaf, corner, next corner),
 /// counter-clockwise, so the side opposite its first vertex lies on the leaf's outline. Triangles share a vertex only where the
 /// surface is smooth and has one material.

@@ -11,7 +11,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr double max_intensity = 1e30, max_coordinate = 1e9;
-// Of an environment, whose radiance is at most 1e30: its irradiance still fits in a float after many reflections.
+// Largest factor by which the radiance of an environment is multiplied. That is at most 1e30, so that irradiance still fits in a
+// float after many reflections.
 constexpr double max_factor = 1e6;
 constexpr double least_opening = 1e-6;  // metres; the area of smaller ones is lost in rounding
 // Smallest difference of the cosines of the two cones (KHR_lights_punctual), so that a spot with a sharp edge is a steep one.

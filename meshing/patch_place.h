@@ -21,6 +21,9 @@ struct Uv {
   double u = 0, v = 0;
 };
 
+/// Returns a uniform point of a face with so many corners for a uniform point of the unit square.
+inline Uv on_face(int corner_count, Uv at) { return corner_count == 3 && at.u + at.v > 1 ? Uv{1 - at.u, 1 - at.v} : at; }
+
 /// The place of a patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1. Triangles
 /// split at their edge midpoints: children 0..2 keep corners 0..2, child 3 is the inner one, turned by 180 degrees (size < 0).
 struct PatchShape {

@@ -18,7 +18,6 @@ constexpr double rounding = 1e-6;
 constexpr double max_intensity = 1e30;
 // Smallest step between angles, degrees: no goniometer is finer, and sums over smaller ones would lose their digits.
 constexpr double smallest_step = 1e-3;
-// Goniometers measure at 361 x 181 angles at most. A web is sent in one message.
 
 /// A place between two entries of a list: the first of them, and the share of the second.
 struct Between {

@@ -13,7 +13,8 @@ namespace alvor {
 /// Intensities on a grid of directions, bilinear in the angles between them. A direction is told by its angle from a polar axis,
 /// and by the half plane through that axis in which it lies. Immutable once made.
 struct PhotometricWeb {
-  static constexpr std::size_t most_intensities = 200'000;  ///< more than any goniometer measures
+  static constexpr std::size_t most_intensities =
+      200'000;  ///< goniometers measure at 361 x 181 angles at most; a web is sent in one message
   /// Which axis of the luminaire the half planes share.
   enum class Axis : unsigned char {
     aim,     ///< the main direction (C planes: type C of LM-63, EULUMDAT)

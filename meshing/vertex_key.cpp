@@ -1,24 +1,10 @@
 #include "meshing/vertex_key.h"
 
-#include <numeric>
+#include "meshing/disjoint_sets.h"
 
 namespace alvor {
 
 namespace {
-
-/// A union-find structure over root corners (numbered 4 root + corner): corners in one set are the same vertex.
-class CornerSets {
- public:
-  explicit CornerSets(std::size_t roots) : parent_(4 * roots) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 // The upper two bits distinguish keys of corners, edges and interior points.
 VertexKey corner_key(std::uint32_t owner) { return owner; }
@@ -62,7 +48,7 @@ VertexKeys::VertexKeys(const BaseMesh& mesh)
 VertexKeys::Owners VertexKeys::find_owners(const BaseMesh& mesh, bool across_creases) {
   const auto roots = static_cast<std::uint32_t>(mesh.roots().size());
   Owners owners{std::vector<std::array<Owners::Edge, 4>>(roots), std::vector<std::array<std::uint32_t, 4>>(roots)};
-  CornerSets corners(roots);
+  DisjointSets corners(4 * std::size_t{roots});  // numbered 4 root + corner; those in one set are the same vertex
   for (std::uint32_t root = 0; root < roots; ++root) {
     const int n = mesh.roots()[root].corner_count;
     for (int e = 0; e < n; ++e) {

@@ -20,7 +20,7 @@ namespace {
 using namespace glb;
 using nlohmann::json;
 
-// Of the JSON, besides the parts of the scene.
+// Most bytes of the JSON chunk without materials, objects and lights.
 constexpr std::size_t bytes_beside = 10'000;
 
 using Float3 = std::array<float, 3>;

@@ -65,6 +65,28 @@ SkyDistribution sky_of(const json& source) {
   return {a, b, c, d, e, g, vector_of(source, "to_sun")};
 }
 
+/// What several lights may share is written with the first of them; the others tell the number of that light by `key` + "_of".
+template <class Shared>
+void add_shared(std::span<const Light> lights, std::size_t which, std::shared_ptr<const Shared> Light::*member, const char* key,
+                json (*json_of)(const Shared&), json& object) {
+  const auto& shared = lights[which].*member;
+  const auto first = std::ranges::find(lights, shared, member) - lights.begin();
+  if (static_cast<std::size_t>(first) < which) object[std::string(key) + "_of"] = first;
+  else object[key] = json_of(*shared);
+}
+
+/// Reads what add_shared() wrote.
+template <class Shared>
+std::shared_ptr<const Shared> read_shared(const json& source, std::span<const Light> before,
+                                          std::shared_ptr<const Shared> Light::*member, const char* key,
+                                          std::shared_ptr<const Shared> (*read)(const json&)) {
+  const std::string reference = std::string(key) + "_of";
+  if (!source.contains(reference)) return read(source.at(key));
+  const auto which = source.at(reference).get<std::size_t>();
+  if (which >= before.size()) throw SolutionFileError("its " + std::string(key) + " is not that of an earlier light");
+  return before[which].*member;
+}
+
 void add_luminaire(std::span<const Light> lights, std::size_t which, json& object) {
   const Light& light = lights[which];
   const LuminousOpening& opening = light.opening;
@@ -73,9 +95,7 @@ void add_luminaire(std::span<const Light> lights, std::size_t which, json& objec
                        {"across_meters", opening.across},
                        {"along_meters", opening.along},
                        {"height_meters", opening.height}};
-  const auto first = std::ranges::find(lights, light.web, &Light::web) - lights.begin();
-  if (static_cast<std::size_t>(first) < which) object["web_of"] = first;
-  else object["web"] = json_of_web(*light.web);
+  add_shared(lights, which, &Light::web, "web", json_of_web, object);
 }
 
 void read_luminaire_fields(const json& source, std::span<const Light> before, Light& light) {
@@ -83,13 +103,7 @@ void read_luminaire_fields(const json& source, std::span<const Light> before, Li
   const json& opening = source.at("opening");
   light.opening = {value_named<LuminousOpening::Shape>(names_of_shapes, opening.at("shape")), opening.at("across_meters"),
                    opening.at("along_meters"), opening.at("height_meters")};
-  if (!source.contains("web_of")) {
-    light.web = web_of(source.at("web"));
-    return;
-  }
-  const auto which = source.at("web_of").get<std::size_t>();
-  if (which >= before.size()) throw SolutionFileError("its web is not that of an earlier light");
-  light.web = before[which].web;
+  light.web = read_shared(source, before, &Light::web, "web", web_of);
 }
 
 json json_of_environment(const EnvironmentMap& given) {
@@ -116,20 +130,12 @@ std::shared_ptr<const EnvironmentMap> environment_of(const json& source) {
 void add_environment(std::span<const Light> lights, std::size_t which, json& object) {
   const Light& light = lights[which];
   object["across"] = {light.across.x, light.across.y, light.across.z};
-  const auto first = std::ranges::find(lights, light.environment, &Light::environment) - lights.begin();
-  if (static_cast<std::size_t>(first) < which) object["environment_of"] = first;
-  else object["environment"] = json_of_environment(*light.environment);
+  add_shared(lights, which, &Light::environment, "environment", json_of_environment, object);
 }
 
 void read_environment_fields(const json& source, std::span<const Light> before, Light& light) {
   light.across = vector_of(source, "across");
-  if (!source.contains("environment_of")) {
-    light.environment = environment_of(source.at("environment"));
-    return;
-  }
-  const auto which = source.at("environment_of").get<std::size_t>();
-  if (which >= before.size()) throw SolutionFileError("its environment map is not that of an earlier light");
-  light.environment = before[which].environment;
+  light.environment = read_shared(source, before, &Light::environment, "environment", environment_of);
 }
 
 }  // namespace

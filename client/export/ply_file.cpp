@@ -178,14 +178,11 @@ void read_vertices(Reader& reader, std::size_t count, DisplayMesh& mesh) {
 
 /// Reads on which face of the scene a triangle lies.
 void read_source(Reader& reader, DisplayMesh& mesh) {
-  FaceTriangles source;
+  FaceTriangles source{{}, 0, 1};
   source.faces.first = reader.next<std::uint32_t>();
   source.faces.second = reader.next<std::uint32_t>();  // -1 is InputFaces::none
   source.material = reader.next<std::uint32_t>();
-  const bool continues =
-      !mesh.faces.empty() && mesh.faces.back().faces == source.faces && mesh.faces.back().material == source.material;
-  if (!continues) mesh.faces.push_back(source);
-  ++mesh.faces.back().count;
+  append_run(mesh.faces, source);
 }
 
 void read_faces(Reader& reader, const Counts& counts, DisplayMesh& mesh) {

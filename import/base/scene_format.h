@@ -3,6 +3,7 @@
 #include <cctype>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace alvor {
 
@@ -12,5 +13,8 @@ inline std::string lower_case_extension(const std::filesystem::path& path) {
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
 }
+
+/// Returns whether files with this extension, in lower case with its dot, are environment maps.
+inline bool is_environment_extension(std::string_view extension) { return extension == ".hdr" || extension == ".exr"; }
 
 }  // namespace alvor

@@ -92,7 +92,7 @@ class SpotFinder {
     Rgb surroundings;
     for (const std::size_t pixel : part.around) surroundings += widen(map_.pixels[pixel]);
     surroundings *= 1.0 / static_cast<double>(part.around.size());
-    // What the spot brings more: by direction for each band, in all, and squared.
+    // Light of the spot above that of its surroundings: times direction for each band, its sum, and the sum of its squares.
     Vec3 red, green, blue;
     double sum = 0, squares = 0;
     for (const std::size_t pixel : part.inside) {

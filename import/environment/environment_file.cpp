@@ -12,7 +12,7 @@ namespace alvor {
 
 namespace {
 
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+#ifdef ALVOR_FUZZING
 constexpr std::int64_t most_columns = 1024, most_rows = 512;  // a fuzzer soon asks for the most, and would only fill memory
 #else
 constexpr std::int64_t most_columns = 16384, most_rows = 8192;
@@ -65,13 +65,11 @@ class CheckedRows final : public ImageRows {
 
 }  // namespace
 
-bool is_environment_extension(std::string_view extension) { return extension == ".hdr" || extension == ".exr"; }
-
-EnvironmentFile read_environment(const std::string& bytes, std::string_view extension) {
+EnvironmentFile read_environment(std::string bytes, std::string_view extension) {
   CheckedRows rows;
   if (bytes.empty()) throw ImportError("file", "is empty");
   if (extension == ".hdr") read_radiance(bytes, rows);
-  else read_exr(bytes, rows);
+  else read_exr(std::move(bytes), rows);
   return rows.take();
 }
 

@@ -25,7 +25,7 @@ namespace {
 // Rows that are read together. Compressed files hold blocks of up to 256.
 constexpr int rows_at_once = 256;
 // Most columns and rows for which OpenEXR may take memory. ImageRows refuses fewer, with a better message.
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+#ifdef ALVOR_FUZZING
 constexpr int most_of_header = 1 << 10;
 #else
 constexpr int most_of_header = 1 << 16;
@@ -51,32 +51,69 @@ class MemoryStream final : public Imf::IStream {
   std::uint64_t next_ = 0;
 };
 
-/// Returns whether an attribute holds a preview image of the size that it says: width, height, four bytes a pixel.
-bool is_whole_preview(std::string_view value) {
-  std::array<std::uint32_t, 2> size{};
-  if (value.size() < sizeof size) return false;
-  std::memcpy(size.data(), value.data(), sizeof size);
-  return std::uint64_t{size[0]} * size[1] == (value.size() - sizeof size) / 4;
+/// An attribute that reading pixels needs: OpenEXR takes its value by its type, whatever its length says.
+struct NeededAttribute {
+  std::string_view name, type;
+  std::uint32_t size;  // bytes; 0: depends on the value
+};
+constexpr std::array<NeededAttribute, 10> needed_attributes{{{"channels", "chlist", 0},
+                                                             {"compression", "compression", 1},
+                                                             {"dataWindow", "box2i", 16},
+                                                             {"displayWindow", "box2i", 16},
+                                                             {"envmap", "envmap", 1},
+                                                             {"lineOrder", "lineOrder", 1},
+                                                             {"pixelAspectRatio", "float", 4},
+                                                             {"screenWindowCenter", "v2f", 8},
+                                                             {"screenWindowWidth", "float", 4},
+                                                             {"tiles", "tiledesc", 9}}};
+
+/// Returns whether a list of channels (name, zero, 16 bytes; in the end a zero) ends where its length says.
+bool is_whole_channel_list(std::string_view value) {
+  constexpr std::size_t beside_name = 1 + 16;
+  while (!value.empty() && value.front() != '\0') {
+    const std::size_t name_end = value.find('\0');
+    if (name_end == value.npos || value.size() - name_end < beside_name) return false;
+    value.remove_prefix(name_end + beside_name);
+  }
+  return value.size() == 1;
 }
 
-/// Throws ImportError unless all attributes of the header lie within the file and are small: OpenEXR takes memory by the lengths
-/// that they claim. Files of several parts are refused.
-void refuse_long_attributes(const std::string& bytes) {
+/// Takes the text that begins at `at` and ends with a zero, and moves `at` behind it.
+std::string_view take_name(std::string_view bytes, std::size_t& at) {
+  constexpr std::size_t longest = 254;
+  const std::size_t end = bytes.find('\0', at);
+  if (end == bytes.npos || end - at > longest) throw ImportError("header", "a name in it is too long or cut off");
+  const std::string_view name = bytes.substr(at, end - at);
+  at = end + 1;
+  return name;
+}
+
+/// Leaves OpenEXR nothing to read in a header but what reading pixels needs, of the lengths that it must have. OpenEXR takes
+/// memory by lengths within values, and the next attribute begins where it stopped reading, so that a wrong length shows it bytes
+/// that were never checked. All other attributes get a type that OpenEXR does not know: those it skips by their length.
+void hide_other_attributes(std::string& bytes) {
   constexpr std::size_t begin = 8, largest = 1 << 20;  // after magic number and version
-  constexpr char has_parts = 0x10;
+  constexpr char has_deep_pixels = 0x08, has_parts = 0x10;
   if (bytes.size() < begin) throw ImportError("header", "the file is cut off");
-  if (bytes[5] & has_parts) throw ImportError("header", "is of a file of several parts");
+  if (bytes[5] & (has_parts | has_deep_pixels)) throw ImportError("header", "is of a file of several parts or of deep pixels");
   for (std::size_t at = begin; at < bytes.size() && bytes[at] != '\0';) {
-    const std::size_t name_end = bytes.find('\0', at),
-                      type_end = name_end == bytes.npos ? name_end : bytes.find('\0', name_end + 1);
-    if (type_end == bytes.npos || bytes.size() - type_end < 5) throw ImportError("header", "the file is cut off");
+    const std::string_view name = take_name(bytes, at);
+    const std::size_t type_at = at;
+    const std::string_view type = take_name(bytes, at);
     std::uint32_t size = 0;
-    std::memcpy(&size, bytes.data() + type_end + 1, sizeof size);
-    if (size > largest || size > bytes.size() - type_end - 5) throw ImportError("header", "an attribute of it is too long");
-    const char* const value = bytes.data() + type_end + 5;
-    if (bytes.compare(name_end + 1, type_end - name_end - 1, "preview") == 0 && !is_whole_preview({value, size}))
-      throw ImportError("header", "its preview image is not as long as it says");
-    at = type_end + 5 + size;
+    if (bytes.size() - at < sizeof size) throw ImportError("header", "the file is cut off");
+    std::memcpy(&size, bytes.data() + at, sizeof size);
+    at += sizeof size;
+    if (size > largest || size > bytes.size() - at) throw ImportError("header", "an attribute of it is too long");
+    const auto needed = std::find_if(needed_attributes.begin(), needed_attributes.end(),
+                                     [&](const NeededAttribute& attribute) { return attribute.name == name; });
+    if (needed == needed_attributes.end()) {
+      if (!type.empty()) bytes[type_at] = '?';
+    } else if (type != needed->type ||
+               (needed->size ? size != needed->size : !is_whole_channel_list({bytes.data() + at, size}))) {
+      throw ImportError("header", "the attribute " + std::string(name) + " is not of its type and length");
+    }
+    at += size;
   }
 }
 
@@ -102,11 +139,11 @@ void refuse_unusable(const Imf::Header& header) {
 
 }  // namespace
 
-void read_exr(const std::string& bytes, ImageRows& rows) {
+void read_exr(std::string bytes, ImageRows& rows) {
   // OpenEXR takes memory for rows and tiles by the size that a header claims, before rows.begin() can look at it.
   Imf::Header::setMaxImageSize(most_of_header, most_of_header);
   Imf::Header::setMaxTileSize(most_of_header, most_of_header);
-  refuse_long_attributes(bytes);
+  hide_other_attributes(bytes);
   MemoryStream stream(bytes);
   Imf::InputFile file(stream, 0);
   refuse_unusable(file.header());

@@ -40,7 +40,7 @@ namespace alvor {
 namespace {
 
 /// Limit of decoded pixels: a file of a few kilobytes can ask for any number. Textures have at most 16 384 x 16 384.
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+#ifdef ALVOR_FUZZING
 constexpr std::size_t most_pixels = 1 << 20;  // a fuzzer soon asks for the most, and would only fill memory
 #else
 constexpr std::size_t most_pixels = 1 << 28;

@@ -12,8 +12,8 @@
 
 namespace alvor {
 
-/// What an environment sends in one band, or in bands that are alike, with an integral over all directions of 1: it is a radiance
-/// in multiples of colour(), and a density of directions. Immutable.
+/// The distribution over directions of the light that an environment sends in one band, or in bands that are alike, with an
+/// integral over all directions of 1: it is a radiance in multiples of colour(), and a density of directions. Immutable.
 class EnvironmentBand final : public DistantRadiance {
  public:
   /// `bands` weighs the bands of the map. Requires: !fault_in(environment), and a weighted map that is not black.

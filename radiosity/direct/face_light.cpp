@@ -19,8 +19,7 @@ void FaceLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
   const LocalRoot& to = scene_.root(root());
   RayPacket& rays = aim.rays;
   for (std::size_t o = first; o < last; ++o) {
-    Uv target = aim.at[o];
-    if (!to.is_quad && target.u + target.v > 1) target = {1 - target.u, 1 - target.v};
+    const Uv target = on_face(to.is_quad ? 4 : 3, aim.at[o]);
     const auto u = static_cast<float>(target.u), v = static_cast<float>(target.v);
     const auto at = [&](float origin, float edge_u, float edge_v, float twist) {
       return origin + u * edge_u + v * edge_v + u * v * twist;

@@ -57,7 +57,7 @@ class LightMaker {
     if (is_new) sums->second = {web.flux(), web.greatest()};
     return sums->second;
   }
-  /// Where skies and environments enter the scene is found once for all of them.
+  /// Returns the places where light of skies and environments enters the scene: the same for all of them, found once.
   const SkyExits& exits() {
     if (!exits_) exits_ = std::make_shared<SkyExits>(scene_, ways_out_);
     return *exits_;

@@ -1,5 +1,6 @@
 #include "radiosity/direct/mesh_light.h"
 
+#include "meshing/disjoint_sets.h"
 #include "radiosity/form_factors/form_factor.h"
 
 #include <algorithm>
@@ -23,20 +24,6 @@ constexpr double largest_lamp = 0.5;
 constexpr double by_area = 0.2;
 // A face farther away than so many times its size counts as if all of it were in its middle: wrong by less than 1 %.
 constexpr double far_sizes = 8;
-
-/// The sets into which the numbers [0, count) fall by joining (Tarjan 1975).
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[find(b)] = find(a); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 bool is_one_lamp(const LocalScene& scene, std::span<const std::uint32_t> roots, std::size_t most) {
   if (roots.size() < least_faces || roots.size() > most) return false;
@@ -108,12 +95,9 @@ void MeshLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
                                          static_cast<std::size_t>(std::ranges::upper_bound(shares, wanted) - shares.begin()));
     const double share = shares[f] - (f > 0 ? shares[f - 1] : 0);
     const LitFace* const face = &faces_[f];
-    double u = std::clamp(1 - (shares[f] - wanted) / share, 0.0, 1.0), v = aim.at[o].v;
-    const auto corners = scene_.corners(face->root);
-    if (corners.size() == 3 && u + v > 1) u = 1 - u, v = 1 - v;
-    const Vec3 target = corners.size() == 3 ? corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0])
-                                            : lerp(lerp(corners[0], corners[1], u), lerp(corners[3], corners[2], u), v);
-    const Vec3 way = target - aim.start(o);
+    const RootPatch& root = scene_.mesh().roots()[face->root];
+    const Uv at = on_face(root.corner_count, {std::clamp(1 - (shares[f] - wanted) / share, 0.0, 1.0), aim.at[o].v});
+    const Vec3 way = scene_.frame().to_local(root.at(at.u, at.v)) - aim.start(o);
     const double squared = dot(way, way), here = std::max(0.0, dot(way, normal)), there = std::max(0.0, -dot(way, face->normal));
     // How many times less often the face is chosen than by area.
     const double rarity = face->area / area_ * shares.back() / share;

@@ -158,9 +158,8 @@ class FaceRays {
     const RootPatch& patch = scene.mesh().roots()[root];
     const auto scramble = static_cast<std::uint32_t>(mix_bits(root));
     for (std::uint32_t n = 0; n < packets * RayPacket::width; ++n) {
-      Uv at = sobol_point(n, scramble, scramble * 0x9e3779b9u);
+      const Uv at = on_face(patch.corner_count, sobol_point(n, scramble, scramble * 0x9e3779b9u));
       const Uv way = sobol_point(n, ~scramble, scramble * 0x85ebca6bu);
-      if (patch.corner_count == 3 && at.u + at.v > 1) at = {1 - at.u, 1 - at.v};
       const double radius = std::sqrt(way.u), angle = 2 * std::numbers::pi * way.v;
       const Vec3 direction = radius * std::cos(angle) * vec(local.tangent) + radius * std::sin(angle) * vec(local.bitangent) +
                              std::sqrt(1 - way.u) * normal;

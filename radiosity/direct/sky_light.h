@@ -36,8 +36,8 @@ class DomeLight final : public LightSource {
   const NormalTable irradiance_;
 };
 
-/// What a sky or an environment sends through one exit, for closed faces. Unblocked irradiance is the integral over the exit by
-/// Gauss' rule; shadow rays go to points that are uniform by area.
+/// The light that a sky or an environment sends through one exit, for closed faces. Unblocked irradiance is the integral over the
+/// exit by Gauss' rule; shadow rays go to points that are uniform by area.
 class ExitLight final : public LightSource {
  public:
   /// `power` is that of LightSource.

@@ -1,10 +1,10 @@
 #include "radiosity/plan/light_reach.h"
 
+#include "meshing/disjoint_sets.h"
 #include "radiosity/plan/sealed_rooms.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace alvor {
 
@@ -23,22 +23,21 @@ class Zones {
  public:
   explicit Zones(const BaseMesh& mesh)
       : rooms_(find_sealed_rooms(mesh)), zone_(mesh.roots().size()), joined_(rooms_.size() + 1), is_lit_(joined_.size()) {
-    std::iota(joined_.begin(), joined_.end(), 0u);
     if (rooms_.empty()) return;
     for (std::uint32_t root = 0; root < zone_.size(); ++root) zone_[root] = place(mesh.roots()[root]);
     for (std::uint32_t root = 0; root < zone_.size(); ++root)
-      if (!mesh.material_of(root).emission.is_zero()) is_lit_[find(zone_[root])] = true;
+      if (!mesh.material_of(root).emission.is_zero()) is_lit_[joined_.find(zone_[root])] = true;
     for (const Light& light : mesh.lights()) light_zones_of(light);
   }
 
-  bool may_be_lit(std::uint32_t root) const { return rooms_.empty() || is_lit_[find(zone_[root])]; }
+  bool may_be_lit(std::uint32_t root) { return rooms_.empty() || is_lit_[joined_.find(zone_[root])]; }
 
  private:
   std::uint32_t place(const RootPatch& face) {
     std::uint32_t zone = 0;
     bool has_zone = false;
     const auto add = [&](std::uint32_t other) {
-      if (has_zone) joined_[find(other)] = find(zone);
+      if (has_zone) joined_.join(other, zone);
       else zone = other;
       has_zone = true;
     };
@@ -56,20 +55,16 @@ class Zones {
     bool is_inside = false;
     for (std::uint32_t room = 0; room < rooms_.size() && !light.is_distant(); ++room) {
       if (!rooms_[room].holds(light.position, radius_of(light))) continue;
-      is_lit_[find(room + 1)] = true;
+      is_lit_[joined_.find(room + 1)] = true;
       is_inside = is_inside || rooms_[room].holds(light.position, -radius_of(light));
     }
-    if (!is_inside) is_lit_[find(0)] = true;
-  }
-  std::uint32_t find(std::uint32_t zone) const {
-    while (joined_[zone] != zone) zone = joined_[zone];
-    return zone;
+    if (!is_inside) is_lit_[joined_.find(0)] = true;
   }
 
-  std::vector<SealedRoom> rooms_;      // smallest first
-  std::vector<std::uint32_t> zone_;    // by root
-  std::vector<std::uint32_t> joined_;  // by zone: another zone that light reaches from there, or itself (union-find)
-  std::vector<bool> is_lit_;           // by zone
+  std::vector<SealedRoom> rooms_;    // smallest first
+  std::vector<std::uint32_t> zone_;  // by root
+  DisjointSets joined_;              // zones between which light passes
+  std::vector<bool> is_lit_;         // by the zone that stands for its set
 };
 
 /// Returns the height of the face's lowest corner along its normal, above `centre`.
@@ -88,7 +83,7 @@ bool faces(const Light& distant, Vec3 normal) {
 }  // namespace
 
 LightReach::LightReach(const BaseMesh& mesh, const PointTree& corners) : is_dark(mesh.roots().size()) {
-  const Zones zones(mesh);
+  Zones zones(mesh);
   std::vector<const Light*> distant;  // few, of maybe many lights
   for (const Light& light : mesh.lights())
     if (light.is_distant()) distant.push_back(&light);

@@ -6,6 +6,10 @@
 #include "import/formats/import_scene.h"
 #include "tests/import/environment_images.h"
 
+#include <OpenEXR/ImfPreviewImage.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfStringVectorAttribute.h>
+#include <OpenEXR/ImfTimeCodeAttribute.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -197,6 +201,29 @@ TEST(ImportedEnvironment, OfAHugeExrHeaderIsRefusedBeforeItsPixels) {
   const std::string low(8, '\0'), end("\x0f\0\0\0\x07\0\0\0", 8), far("\xff\xff\x0f\0\xff\xff\x07\0", 8);
   for (auto at = bytes.find(low + end); at != bytes.npos; at = bytes.find(low + end)) bytes.replace(at + 8, 8, far);
   EXPECT_NE(refusal("a.exr", bytes).find("environment 'a.exr': "), std::string::npos);
+}
+
+TEST(ImportedEnvironment, OfAnExrFileWithMoreAttributesIsReadAsWithoutThem) {
+  const Image image = image_of(16, 8, [](int row, int, int) { return row + 1; });
+  const std::string bytes = test::exr_of(image, {"R", "G", "B"}, Imf::ZIP_COMPRESSION, [](Imf::Header& header) {
+    header.insert("owner", Imf::StringAttribute("a studio"));
+    header.insert("cameras", Imf::StringVectorAttribute({"left", "", "right"}));
+    header.insert("capDate", Imf::TimeCodeAttribute());
+    header.setPreviewImage(Imf::PreviewImage(4, 2));
+  });
+  EXPECT_EQ(read_environment(bytes, ".exr").map.pixels, read_environment(test::exr_of(image), ".exr").map.pixels);
+}
+
+TEST(ImportedEnvironment, OfAnExrFileWithAWrongLengthIsRefused) {
+  const std::string good = test::exr_of(image_of(16, 8, [](int, int, int) { return 1; }));
+  for (const std::string& attribute : {std::string("pixelAspectRatio\0float\0", 23),
+                                       std::string("compression\0compression\0", 24), std::string("channels\0chlist\0", 16)}) {
+    std::string bad = good;
+    const std::size_t at = good.find(attribute);
+    ASSERT_NE(at, good.npos);
+    bad[at + attribute.size()] = static_cast<char>(bad[at + attribute.size()] + 1);
+    EXPECT_NE(refusal("a.exr", bad).find("is not of its type and length"), std::string::npos) << attribute;
+  }
 }
 
 TEST(ImportedEnvironment, ThatIsCutOffIsRefusedWhereverItEnds) {

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -81,8 +82,10 @@ class ExrBytes final : public Imf::OStream {
 
 /// Returns an OpenEXR image with float channels of these names, at most three, for the bands in their order.
 inline std::string exr_of(const Image& image, const std::vector<std::string>& channels = {"R", "G", "B"},
-                          Imf::Compression compression = Imf::ZIP_COMPRESSION) {
+                          Imf::Compression compression = Imf::ZIP_COMPRESSION,
+                          const std::function<void(Imf::Header&)>& add_attributes = {}) {
   Imf::Header header(image.columns, image.rows);
+  if (add_attributes) add_attributes(header);
   header.compression() = compression;
   Imf::FrameBuffer source;
   for (std::size_t band = 0; band < channels.size(); ++band) {

@@ -4,6 +4,7 @@
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/plan/plan.h"
 #include "tests/environments.h"
+#include "tests/radiosity/light_rays.h"
 #include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
 
@@ -134,29 +135,11 @@ TEST(Environment, ReachesFacesThatLookDownAndNoSealedRoom) {
   EXPECT_FALSE(Plan(BaseMesh(sealed), {}).may_be_lit(0));
 }
 
-/// Compares, for each light of the scene, the mean of its rays' weights with its formula at points of root 0.
 void expect_rays_match_formula(const Scene& of, double tolerance) {
   const BaseMesh mesh(of);
   const LocalScene scene(mesh);
-  const PatchId floor = PatchId::root(0);
-  RandomStream random(1, floor);
-  const PatchPoints points = sample_points(scene, shape_of(mesh, floor), random);
-  for (const auto& light : lights_beside_faces(scene, EmissionUnit(mesh))) {
-    RayPacket rays;
-    std::array<float, RayPacket::width> weights;
-    std::array<double, RayPacket::width> mean{};
-    constexpr int rounds = 16384;
-    ShadowAim aim{points, scene.root(0).normal, {}, rays, weights};
-    for (std::uint32_t n = 0; n < rounds; ++n) {
-      aim.at.fill(sobol_point(n, 0, 0));
-      light->aim(aim, 0, RayPacket::width);
-      for (std::size_t o = 0; o < mean.size(); ++o) mean[o] += weights[o] / double(rounds);
-    }
-    for (std::size_t o = 0; o < mean.size(); ++o) {
-      const double formula = light->unblocked({points.x[o], points.y[o], points.z[o]}, mesh.roots()[0].normal);
-      EXPECT_NEAR(light->sample_scale(1) * mean[o], formula, tolerance * formula) << "light " << light->number();
-    }
-  }
+  for (const auto& light : lights_beside_faces(scene, EmissionUnit(mesh)))
+    test::expect_rays_match_formula(scene, *light, 16384, tolerance);
 }
 
 TEST(Environment, BringsAsMuchByItsRaysAsByItsFormulaInTheOpen) { expect_rays_match_formula(floor_under(coloured()), 0.005); }

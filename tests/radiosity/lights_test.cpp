@@ -4,6 +4,7 @@
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/plan/plan.h"
+#include "tests/radiosity/light_rays.h"
 #include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
 
@@ -177,27 +178,7 @@ Scene room_with_all_kinds() {
 TEST(EveryLight, BringsAsMuchByItsRaysAsByItsFormula) {
   const BaseMesh mesh(room_with_all_kinds());
   const LocalScene scene(mesh);
-  const PatchId floor = PatchId::root(0);
-  RandomStream random(1, floor);
-  const PatchPoints points = sample_points(scene, shape_of(mesh, floor), random);
-  const Vec3 normal = mesh.roots()[0].normal;
-  for (const auto& light : all_kinds(scene)) {
-    RayPacket rays;
-    std::array<float, RayPacket::width> weights;
-    std::array<double, RayPacket::width> mean{};
-    constexpr int rounds = 4096;
-    ShadowAim aim{points, scene.root(0).normal, {}, rays, weights};
-    for (std::uint32_t n = 0; n < rounds; ++n) {
-      aim.at.fill(sobol_point(n, 0, 0));
-      light->aim(aim, 0, RayPacket::width);
-      for (std::size_t o = 0; o < mean.size(); ++o) mean[o] += weights[o] / double(rounds);
-    }
-    for (std::size_t o = 0; o < mean.size(); ++o) {
-      const double formula = light->unblocked({points.x[o], points.y[o], points.z[o]}, normal);
-      EXPECT_NEAR(light->sample_scale(1) * mean[o], formula, 0.01 * formula + 1e-9) << "light " << light->number();
-      EXPECT_NEAR(light->sample_scale(0.25) * mean[o], 4 * formula, 0.04 * formula + 1e-9) << "light " << light->number();
-    }
-  }
+  for (const auto& light : all_kinds(scene)) test::expect_rays_match_formula(scene, *light, 4096, 0.01);
 }
 
 TEST(EveryLight, BringsNoMoreThanItsExtentAllows) {

@@ -26,8 +26,7 @@ void take_environment(const EnvironmentOptions& options, v1::ImportOptions& impo
       throw Failure(ExitStatus::usage, "--environment-scale and --environment-turn need --environment");
     return;
   }
-  const std::string extension = lower_case_extension(options.file);
-  if (extension != ".hdr" && extension != ".exr")
+  if (!is_environment_extension(lower_case_extension(options.file)))
     throw Failure(ExitStatus::usage, options.file + ": environment maps end in .hdr or .exr");
   v1::PlacedEnvironment& environment = *import.mutable_environment();
   environment.set_file(files.add(options.file, "environment"));
