@@ -287,7 +287,9 @@ TEST_F(WebLimitsTest, ItOutlivesALackOfDescriptors) {
   getrlimit(RLIMIT_NOFILE, &before);
   const rlimit low{256, before.rlim_max};
   setrlimit(RLIMIT_NOFILE, &low);
-  RawBrowser waiting = browser();  // connects before the descriptors run out
+  RawBrowser served = browser();
+  served.send(get_page);  // once it is answered, the server wants no descriptor for it
+  EXPECT_TRUE(served.receive_until("the page").ends_with("the page"));
   std::vector<int> taken;
   for (int next = dup(0); next >= 0; next = dup(0)) taken.push_back(next);
   close(taken.back());
