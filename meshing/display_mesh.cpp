@@ -224,6 +224,17 @@ void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run) {
   else runs.push_back(run);
 }
 
+std::vector<const Material*> panes_of(const DisplayMesh& mesh) {
+  std::vector<const Material*> panes;
+  if (std::ranges::none_of(mesh.materials, &Material::is_pane)) return panes;
+  for (const FaceTriangles& run : mesh.faces) {
+    const Material* const material = run.material < mesh.materials.size() ? &mesh.materials[run.material] : nullptr;
+    panes.insert(panes.end(), run.count, material && material->is_pane() ? material : nullptr);
+  }
+  panes.resize(panes.empty() ? 0 : mesh.triangles.size());
+  return panes;
+}
+
 DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
   return Triangulation(mesh, leaves).build();
 }

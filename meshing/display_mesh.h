@@ -40,6 +40,10 @@ struct DisplayMesh {
   std::vector<SceneObject> objects;
 };
 
+/// Returns the material of each triangle that light goes straight through, null for the others; nothing if there are none, or if
+/// the mesh does not know its faces. The mesh must outlive it.
+std::vector<const Material*> panes_of(const DisplayMesh& mesh);
+
 /// Triangulates `leaves` (sorted by id, together covering every root of `mesh`), with a vertex at every hanging corner so that no
 /// crack opens. A corner's irradiance is the mean of linear extrapolations from its smooth neighbours, clamped to the range of
 /// their values. Leaves across a crease and leaves of exactly zero irradiance take no part. The two sides of a two-sided face are

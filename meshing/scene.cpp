@@ -13,6 +13,7 @@ namespace {
 constexpr double max_coordinate = 1e9;
 // Each distant light lights every leaf by rays of its own, whatever it brings; an environment by those of three lights.
 constexpr std::size_t most_distant_lights = 64, lights_of_environment = 3;
+constexpr double rounding = 1e-6;      // of float32, in which files hold shares of light
 constexpr double max_emission = 1e30;  // W/m2: after a million reflections the result still fits in a float
 
 std::string number(double value) {
@@ -30,6 +31,10 @@ std::optional<std::string> fault_in(const Material& material) {
     if (emission > max_emission) return "emission " + number(emission) + " is beyond 1e30 W/m2";
   for (const double reflectance : bands[1])
     if (!(reflectance >= 0 && reflectance < 1)) return "reflectance " + number(reflectance) + " is outside [0, 1)";
+  const Rgb &through = material.regular_transmittance, both = through + material.reflectance;
+  for (const double band : {through.r, through.g, through.b})
+    if (!(band >= 0 && band <= 1)) return "regular transmittance " + number(band) + " is outside [0, 1]";
+  if (both.max() > 1 + rounding) return "reflectance and regular transmittance are " + number(both.max()) + " together, beyond 1";
   return std::nullopt;
 }
 

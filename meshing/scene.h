@@ -23,6 +23,11 @@ struct Material {
   Rgb emission;     ///< E: radiant exitance, W/m2 per band, >= 0
   Rgb reflectance;  ///< rho: diffuse, in [0, 1) per band
   bool two_sided = false;
+  /// Share of light that goes straight on through a face, from either side, tinted: of clear glass, or of what holes leave of a
+  /// cloth (CIE: regular transmittance). In [0, 1] per band, and at most 1 with the reflectance.
+  Rgb regular_transmittance;
+
+  bool is_pane() const { return !regular_transmittance.is_zero(); }
 };
 
 /// A polygon. Its corners are scene.corners[first_corner .. first_corner + corner_count), counter-clockwise seen from its front.
@@ -77,8 +82,8 @@ struct Fault {
 /// Returns the first fault of the scene; looks at counts, then materials, lights, vertices, faces and objects in order. Linear in
 /// the size of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face,
 /// finite coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite
-/// absorption >= 0, reflectance in [0, 1), and objects of different names in an order that fits the faces. Degenerate faces are
-/// no fault.
+/// absorption >= 0, reflectance in [0, 1), regular transmittance in [0, 1 - reflectance], and objects of different names in an
+/// order that fits the faces. Degenerate faces are no fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

@@ -121,10 +121,15 @@ Step decode(const v1::Step& message) {
 namespace {
 
 constexpr std::pair<Feature, v1::PlannedFeature::Kind> kinds_of_features[]{
-    {Feature::three_bands, v1::PlannedFeature::THREE_BANDS},        {Feature::occlusion, v1::PlannedFeature::OCCLUSION},
-    {Feature::indirect_rows, v1::PlannedFeature::INDIRECT_ROWS},    {Feature::dark_faces, v1::PlannedFeature::DARK_FACES},
-    {Feature::back_sides, v1::PlannedFeature::BACK_SIDES},          {Feature::medium, v1::PlannedFeature::MEDIUM},
-    {Feature::refinement, v1::PlannedFeature::REFINEMENT},          {Feature::acceleration, v1::PlannedFeature::ACCELERATION},
+    {Feature::three_bands, v1::PlannedFeature::THREE_BANDS},
+    {Feature::occlusion, v1::PlannedFeature::OCCLUSION},
+    {Feature::indirect_rows, v1::PlannedFeature::INDIRECT_ROWS},
+    {Feature::dark_faces, v1::PlannedFeature::DARK_FACES},
+    {Feature::back_sides, v1::PlannedFeature::BACK_SIDES},
+    {Feature::medium, v1::PlannedFeature::MEDIUM},
+    {Feature::panes, v1::PlannedFeature::PANES},
+    {Feature::refinement, v1::PlannedFeature::REFINEMENT},
+    {Feature::acceleration, v1::PlannedFeature::ACCELERATION},
     {Feature::ambient_display, v1::PlannedFeature::AMBIENT_DISPLAY}};
 static_assert(std::size(kinds_of_features) == all_features.size());
 

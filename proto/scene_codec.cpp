@@ -26,7 +26,8 @@ SceneObject decode_object(const v1::SceneObject& message) {
 }
 
 Material decode_material(const v1::Material& message) {
-  return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided()};
+  return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided(),
+          decode(message.regular_transmittance())};
 }
 
 int items_in(const v1::GeometryChunk& chunk) {
@@ -42,6 +43,7 @@ v1::Material encode(const Material& material) {
   *message.mutable_emission() = encode(material.emission);
   *message.mutable_reflectance() = encode(material.reflectance);
   message.set_two_sided(material.two_sided);
+  if (material.is_pane()) *message.mutable_regular_transmittance() = encode(material.regular_transmittance);
   return message;
 }
 

@@ -10,6 +10,7 @@ std::string_view text(Feature feature) {
     case Feature::dark_faces: return "dark faces";
     case Feature::back_sides: return "back sides";
     case Feature::medium: return "medium";
+    case Feature::panes: return "panes";
     case Feature::refinement: return "refinement";
     case Feature::acceleration: return "acceleration";
     case Feature::ambient_display: return "ambient display";

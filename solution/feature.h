@@ -17,14 +17,15 @@ enum class Feature : std::uint8_t {
   dark_faces,       ///< rows and direct light for faces that no light can reach
   back_sides,       ///< hits from behind count for the back of a two-sided face
   medium,           ///< the medium dims each ray
+  panes,            ///< light goes straight on through faces
   refinement,       ///< splitting patches
   acceleration,     ///< conjugate residuals over the last steps of gathering
   ambient_display,  ///< the ambient term that clients add
 };
 
-inline constexpr std::array all_features{Feature::three_bands, Feature::occlusion,    Feature::indirect_rows,
-                                         Feature::dark_faces,  Feature::back_sides,   Feature::medium,
-                                         Feature::refinement,  Feature::acceleration, Feature::ambient_display};
+inline constexpr std::array all_features{
+    Feature::three_bands, Feature::occlusion, Feature::indirect_rows, Feature::dark_faces,   Feature::back_sides,
+    Feature::medium,      Feature::panes,     Feature::refinement,    Feature::acceleration, Feature::ambient_display};
 
 /// Returns the feature's name for people: "three bands", "occlusion", ...
 std::string_view text(Feature feature);

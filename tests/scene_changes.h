@@ -31,6 +31,7 @@ inline Scene with_red_and_green_swapped(Scene scene) {
   for (Material& material : scene.materials) {
     material.emission = red_and_green_swapped(material.emission);
     material.reflectance = red_and_green_swapped(material.reflectance);
+    material.regular_transmittance = red_and_green_swapped(material.regular_transmittance);
   }
   scene.absorption = red_and_green_swapped(scene.absorption);
   return scene;

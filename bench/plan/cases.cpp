@@ -92,6 +92,7 @@ std::vector<PlanCase> plan_cases() {
       {"grey", "the same, all spectra their mean", grey(general_room()), usual, {Feature::three_bands}},
       {"one-sided", "the same, the screen seen from one side", one_sided_room(), usual, {Feature::back_sides}},
       {"clear", "the same, with no medium", one_sided_room(), usual, {Feature::medium}},
+      {"opaque", "the same, with nothing to look through", one_sided_room(), usual, {Feature::panes}},
       {"faint", "the same, a fifth of the reflectance", scaled_reflectance(general_room(), 0.2), usual, {Feature::acceleration}},
       {"black", "the same, no reflectance", scaled_reflectance(general_room(), 0), usual, {Feature::indirect_rows}},
       {"house", "the same, with outer walls and a room without light", house(), usual, {Feature::dark_faces}},

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <tuple>
 
 namespace alvor {
 namespace {
@@ -43,10 +44,11 @@ class BinaryChunk {
   /// Appends `value(i)` for each of `count` vertices; returns the accessor's index.
   template <class Value>
   std::size_t add_vectors(std::size_t count, Value value) {
-    add_view(count * vec3_size, array_buffer);
+    constexpr std::size_t size = std::tuple_size_v<decltype(value(0))>;
+    add_view(count * size * sizeof(float), array_buffer);
     for (std::size_t i = 0; i < count; ++i)
       for (const float x : value(i)) append_value(bytes_, x);
-    return add_accessor(count, "VEC3", float_component);
+    return add_accessor(count, size == 4 ? "VEC4" : "VEC3", float_component);
   }
   std::size_t add_indices(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
     add_view(triangles.size() * 3 * sizeof(std::uint32_t), element_array_buffer);
@@ -92,6 +94,16 @@ class BinaryChunk {
 
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
+/// Returns the share of each vertex that hides what is behind it; nothing if the mesh has no panes.
+std::vector<float> opacities_of(const DisplayMesh& mesh) {
+  const std::vector<const Material*> panes = panes_of(mesh);
+  std::vector<float> opacities(panes.empty() ? 0 : mesh.positions.size(), 1);
+  for (std::size_t t = 0; t < panes.size(); ++t)
+    for (const std::uint32_t vertex : mesh.triangles[t])
+      if (panes[t]) opacities[vertex] = static_cast<float>(1 - panes[t]->regular_transmittance.mean());
+  return opacities;
+}
+
 json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin) {
   const std::size_t count = mesh.positions.size();
   const double exposure = automatic_exposure(mesh);
@@ -102,18 +114,24 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   attributes["_IRRADIANCE"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.irradiance[i]); });
   attributes["_RADIOSITY"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.radiosity[i]); });
   // glTF defines COLOR_0 as linear: no sRGB encoding here.
-  attributes["COLOR_0"] =
-      chunk.add_vectors(count, [&](std::size_t i) { return float3(narrow(tone_map(exposure * widen(mesh.radiosity[i])))); });
+  const auto colour = [&](std::size_t i) { return float3(narrow(tone_map(exposure * widen(mesh.radiosity[i])))); };
+  const std::vector<float> opacity = opacities_of(mesh);
+  attributes["COLOR_0"] = opacity.empty() ? chunk.add_vectors(count, colour) : chunk.add_vectors(count, [&](std::size_t i) {
+    const auto [r, g, b] = colour(i);
+    return std::array{r, g, b, opacity[i]};
+  });
   return attributes;
 }
 
 /// Returns the material, shown unlit because the light is in the vertex colours. The base values are for viewers without that
-/// extension.
-json unlit_material() {
-  return {{"name", "solution"},
-          {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-          {"doubleSided", false},
-          {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+/// extension. Faces through which more than half of the light goes are not drawn: blended, they would have to be sorted.
+json unlit_material(bool has_panes) {
+  json material{{"name", "solution"},
+                {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                {"doubleSided", false},
+                {"extensions", {{"KHR_materials_unlit", json::object()}}}};
+  if (has_panes) material["alphaMode"] = "MASK", material["alphaCutoff"] = 0.5;
+  return material;
 }
 
 std::size_t add_faces(BinaryChunk& chunk, const std::vector<FaceTriangles>& faces) {
@@ -144,7 +162,7 @@ json node_of(const Vec3& origin, const DisplayMesh& mesh) {
   return node;
 }
 
-json document(const BinaryChunk& chunk, const json& attributes, std::size_t indices, const json& node) {
+json document(const BinaryChunk& chunk, const json& attributes, std::size_t indices, const json& node, bool has_panes) {
   json root;
   root["asset"] = {{"version", "2.0"}, {"generator", "Alvor"}};
   root["extensionsUsed"] = json::array({"KHR_materials_unlit"});
@@ -153,7 +171,7 @@ json document(const BinaryChunk& chunk, const json& attributes, std::size_t indi
   root["nodes"] = json::array({node});
   const json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
   root["meshes"] = json::array({{{"name", "solution"}, {"primitives", json::array({primitive})}}});
-  root["materials"] = json::array({unlit_material()});
+  root["materials"] = json::array({unlit_material(has_panes)});
   root["buffers"] = json::array({{{"byteLength", chunk.bytes().size()}}});
   root["bufferViews"] = chunk.views();
   root["accessors"] = chunk.accessors();
@@ -170,8 +188,8 @@ void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes
 
 std::string encode_glb(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) throw SolutionFileError("mesh: has no triangles");
-  const std::size_t estimate =
-      mesh.positions.size() * 5 * vec3_size + mesh.triangles.size() * vec3_size + mesh.faces.size() * sizeof(FaceTriangles);
+  const std::size_t estimate = mesh.positions.size() * (5 * vec3_size + sizeof(float)) + mesh.triangles.size() * vec3_size +
+                               mesh.faces.size() * sizeof(FaceTriangles);
   if (estimate > std::numeric_limits<std::uint32_t>::max() - largest_json)
     throw SolutionFileError("mesh: too large for GLB, which ends at 4 GB");
 
@@ -181,7 +199,7 @@ std::string encode_glb(const DisplayMesh& mesh) {
   const std::size_t indices = chunk.add_indices(mesh.triangles);
   json node = node_of(origin, mesh);
   if (!mesh.faces.empty()) node["extras"][faces_key] = add_faces(chunk, mesh.faces);
-  std::string text = text_of(document(chunk, attributes, indices, node));
+  std::string text = text_of(document(chunk, attributes, indices, node, !panes_of(mesh).empty()));
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

@@ -46,16 +46,19 @@ auto naming(const char* kind, std::size_t number, Read read) {
 }  // namespace
 
 json json_of(const Material& material) {
-  return {{"name", material.name},
-          {"emission", json_of(material.emission)},
-          {"reflectance", json_of(material.reflectance)},
-          {"two_sided", material.two_sided}};
+  json result{{"name", material.name},
+              {"emission", json_of(material.emission)},
+              {"reflectance", json_of(material.reflectance)},
+              {"two_sided", material.two_sided}};
+  if (material.is_pane()) result["regular_transmittance"] = json_of(material.regular_transmittance);
+  return result;
 }
 
 Material material_of(const json& source, std::size_t number) {
   return naming("material ", number, [&]() -> Material {
     return {source.at("name").get<std::string>(), rgb_of(source.at("emission")), rgb_of(source.at("reflectance")),
-            source.at("two_sided").get<bool>()};
+            source.at("two_sided").get<bool>(),
+            source.contains("regular_transmittance") ? rgb_of(source["regular_transmittance"]) : Rgb{}};
   });
 }
 

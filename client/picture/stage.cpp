@@ -2,12 +2,30 @@
 
 namespace alvor {
 
-Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles) {}
+namespace {
+
+// Most panes that are looked through.
+constexpr int most_panes = 64;
+// Share of the way to a pane by which a ray begins behind it, so that it does not meet the pane again.
+constexpr double beyond_pane = 1e-6;
+
+}  // namespace
+
+Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles), panes_(panes_of(mesh)) {}
 
 std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
-  const auto hit = caster_.cast_front(origin, direction);
+  auto hit = caster_.cast_front(origin, direction);
   if (!hit) return std::nullopt;
-  return Seen{hit->triangle, hit->u, hit->v};
+  Seen seen{hit->triangle, hit->u, hit->v};
+  for (int n = 0; n < most_panes && !panes_.empty() && panes_[seen.triangle]; ++n) {
+    origin = origin + (1 + beyond_pane) * hit->distance * direction;
+    hit = caster_.cast_front(origin, direction);
+    if (!hit && radiosity(seen).is_zero()) return std::nullopt;
+    if (!hit) break;
+    const Material& pane = *panes_[seen.triangle];
+    seen = {hit->triangle, hit->u, hit->v, seen.tint * narrow(pane.regular_transmittance), radiosity(seen)};
+  }
+  return seen;
 }
 
 void Stage::glance(const Camera& camera, const std::function<void(const Seen&)>& on_seen) const {

@@ -13,6 +13,8 @@ namespace alvor {
 struct Seen {
   std::uint32_t triangle = 0;
   double u = 0, v = 0;
+  RgbF tint{1, 1, 1};  ///< share of its light that panes before it let through
+  RgbF before;         ///< radiosity of these panes, as far as it reaches the eye
 };
 
 /// Casts rays into a mesh, which must outlive it. Immutable; safe from any thread. Requires: !mesh.triangles.empty().
@@ -22,7 +24,8 @@ class Stage {
   const DisplayMesh& mesh() const { return mesh_; }
   const TriangleCaster& caster() const { return caster_; }
 
-  /// Returns the first front side along a ray. Back sides are transparent, so that a closed room can be seen from outside.
+  /// Returns the first front side along a ray that is no pane. If there is none, returns the last pane if any of them shines.
+  /// Back sides are transparent, so that a closed room can be seen from outside.
   std::optional<Seen> look(Vec3 origin, Vec3 direction) const;
   /// Calls `on_seen` for the points of a coarse picture, the same for any size of the camera's picture: enough for exposure and
   /// scales.
@@ -30,7 +33,8 @@ class Stage {
 
   Vec3 place(const Seen& seen) const;  ///< position of the point, metres
   Vec3 normal(const Seen& seen) const { return normalized(area_vector(seen.triangle)); }
-  RgbF radiosity(const Seen& seen) const { return interpolated(mesh_.radiosity, seen); }
+  /// Returns the radiosity that reaches the eye.
+  RgbF radiosity(const Seen& seen) const { return seen.before + seen.tint * interpolated(mesh_.radiosity, seen); }
   RgbF irradiance(const Seen& seen) const { return interpolated(mesh_.irradiance, seen); }
 
   /// Returns the weight of the triangle's first vertex where the ray meets its plane: 0 on the leaf's outline, 1 at its centre.
@@ -43,6 +47,7 @@ class Stage {
 
   const DisplayMesh& mesh_;
   TriangleCaster caster_;
+  std::vector<const Material*> panes_;  // by triangle, see panes_of()
 };
 
 }  // namespace alvor

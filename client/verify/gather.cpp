@@ -21,6 +21,10 @@ constexpr std::uint32_t least_shadow_rays = 4;
 constexpr std::uint32_t trial_rays = 128, rays_of_soft_lamp = 256;
 /// Fraction of a shadow ray's length by which it ends before the emitter, so that in float32 it does not hit it.
 constexpr double before_emitter = 1e-5;
+/// Most panes that a ray goes through, and by which share of its way to a pane it begins behind it, so that it does not meet it
+/// again.
+constexpr int most_panes = 64;
+constexpr double beyond_pane = 1e-6;
 
 // The streams of random numbers of one point.
 enum Purpose : std::uint64_t { trial, indirect, direct, lamp };
@@ -39,7 +43,8 @@ Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const 
       medium_{absorption},
       lamps_(mesh.lights, {{}, 1}, mesh.positions),
       skies_(mesh.lights),
-      is_emitter_(mesh.triangles.size()) {
+      is_emitter_(mesh.triangles.size()),
+      panes_(panes_of(mesh)) {
   const auto vertex_emits = [&](std::uint32_t vertex) { return emits(mesh.radiosity[vertex], mesh.irradiance[vertex]); };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     is_emitter_[t] = std::ranges::any_of(mesh.triangles[t], vertex_emits);
@@ -53,6 +58,49 @@ std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std:
                            third = from_other_surfaces(point, normal, stream);
   return GatheredIrradiance{first.irradiance + second.irradiance + third.irradiance,
                             std::hypot(first.standard_error, second.standard_error, third.standard_error)};
+}
+
+Rgb Gatherer::through(std::uint32_t triangle, Vec3 direction) const {
+  if (panes_.empty() || !panes_[triangle]) return {};
+  const Vec3 a = corner(triangle, 0), area = cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
+  return panes_[triangle]->two_sided && dot(area, direction) > 0 ? Rgb{1, 1, 1} : panes_[triangle]->regular_transmittance;
+}
+
+/// Returns the share of light that goes straight from one place to another.
+Rgb Gatherer::passing(Vec3 from, Vec3 to) const {
+  Rgb passed{1, 1, 1};
+  if (!caster_.is_blocked(from, to)) return passed;
+  if (panes_.empty()) return {};
+  const Vec3 direction = normalized(to - from);
+  for (int n = 0; n < most_panes && !passed.is_zero(); ++n) {
+    const auto hit = caster_.cast(from, direction);
+    if (!hit || hit->distance >= dot(to - from, direction)) return passed;
+    passed = passed * through(hit->triangle, direction);
+    from = from + (1 + beyond_pane) * hit->distance * direction;
+  }
+  return {};
+}
+
+/// Returns pi times the radiance that arrives at a point from a direction, without that of emitters and lamps.
+Rgb Gatherer::from_direction(Vec3 point, Vec3 direction) const {
+  Rgb arriving, passed{1, 1, 1};
+  Vec3 from = point;
+  for (int n = 0; n < most_panes && !passed.is_zero(); ++n) {
+    const auto hit = caster_.cast(from, direction);
+    if (!hit) {
+      if (skies_.empty()) return arriving;
+      const Rgb sky = std::numbers::pi * skies_.radiance(direction);
+      return arriving + passed * medium_.transmittance(lamps_.way_out(point, direction)) * sky;
+    }
+    const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
+    if (dot(area, direction) < 0 && !is_emitter_[hit->triangle]) {
+      const double distance = dot(from - point, direction) + hit->distance;
+      arriving += passed * medium_.transmittance(distance) * radiosity(hit->triangle, hit->u, hit->v);
+    }
+    passed = passed * through(hit->triangle, direction);
+    from = from + (1 + beyond_pane) * hit->distance * direction;
+  }
+  return arriving;
 }
 
 bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
@@ -102,8 +150,8 @@ GatheredIrradiance Gatherer::from_lamps(Vec3 point, Vec3 normal, std::uint64_t s
     double squares = 0;
     for (std::uint32_t n = 0; n < rays; ++n) {
       const Lamps::Sample sample = lamps_.sample_of(l, point, normal, places[n]);
-      if (sample.irradiance.is_zero() || caster_.is_blocked(point, point + sample.way)) continue;
-      const Rgb arriving = medium_.transmittance(sample.distance) * sample.irradiance;
+      if (sample.irradiance.is_zero()) continue;
+      const Rgb arriving = passing(point, point + sample.way) * medium_.transmittance(sample.distance) * sample.irradiance;
       sum += arriving;
       squares += arriving.mean() * arriving.mean();
     }
@@ -132,8 +180,7 @@ Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uin
     ++used;
     all += kernel;
     all_squared += kernel * kernel;
-    if (caster_.is_blocked(point, lerp(place, point, before_emitter))) continue;
-    const Rgb light = kernel * medium_.transmittance(length(way));
+    const Rgb light = kernel * medium_.transmittance(length(way)) * passing(point, lerp(place, point, before_emitter));
     arriving += light;
     product += kernel * light.mean();
     arriving_squared += light.mean() * light.mean();
@@ -150,15 +197,7 @@ GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::u
     PathRandom random(stream, indirect, round);
     const EvenPairs directions(random);
     Rgb sum;
-    for (std::uint32_t n = 0; n < rays_per_round; ++n) {
-      const Vec3 direction = cosine_direction(normal, directions[n]);
-      const auto hit = caster_.cast(point, direction);
-      if (!hit && !skies_.empty())
-        sum += medium_.transmittance(lamps_.way_out(point, direction)) * (std::numbers::pi * skies_.radiance(direction));
-      if (!hit || is_emitter_[hit->triangle]) continue;
-      const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
-      if (dot(area, direction) < 0) sum += medium_.transmittance(hit->distance) * radiosity(hit->triangle, hit->u, hit->v);
-    }
+    for (std::uint32_t n = 0; n < rays_per_round; ++n) sum += from_direction(point, cosine_direction(normal, directions[n]));
     estimate.add(sum * (1.0 / rays_per_round));
   }
   return {estimate.mean(), std::sqrt(estimate.variance_of_band_mean())};

@@ -40,6 +40,11 @@ class Gatherer {
     double variance = 0;  ///< variance of mean.mean()
   };
 
+  /// The share of light that goes straight through a triangle, from the side that it is met on. The back of a two-sided pane is
+  /// passed: its front, drawn close to it, dims.
+  Rgb through(std::uint32_t triangle, Vec3 direction) const;
+  Rgb passing(Vec3 from, Vec3 to) const;
+  Rgb from_direction(Vec3 point, Vec3 direction) const;
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;
   GatheredIrradiance from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream) const;
   GatheredIrradiance from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream) const;
@@ -55,6 +60,7 @@ class Gatherer {
   Skies skies_;
   std::vector<std::uint32_t> emitters_;  ///< indices of the triangles that emit
   std::vector<bool> is_emitter_;         ///< by triangle
+  std::vector<const Material*> panes_;   ///< by triangle, see panes_of()
 };
 
 }  // namespace alvor

@@ -59,8 +59,10 @@ void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets)
     const Material& material = scene.materials[scene.faces[facet.face].material];
     const auto& [a, b, c] = facet.corners;
     surfaces_.push_back({(a - extent_.centre) * scale, (b - a) * scale, (c - a) * scale, facet.normal, material.emission,
-                         material.reflectance, material.two_sided, static_cast<std::uint32_t>(lights.size())});
+                         material.reflectance, material.two_sided, static_cast<std::uint32_t>(lights.size()),
+                         material.regular_transmittance});
     const Surface& s = surfaces_.back();
+    has_panes_ |= s.is_pane();
     if (material.emission.is_zero()) continue;
     lights.push_back({s.corner, s.side_u, s.side_v, s.normal, facet.area * scale * scale, s.emission, s.two_sided});
   }
@@ -81,7 +83,8 @@ bool PathTracer::is_enclosed(const SurfacePoint& point, std::uint32_t rays, Path
   const EvenPairs directions(random);
   const auto meets_black_back = [&](UnitPair at) {
     const Vec3 direction = cosine_direction(start.normal, at);
-    return caster_->cast(start.place, direction) && !meet(start, direction).surface;
+    const Met met = behind_panes(start, direction);
+    return !met.surface && !met.is_outside;
   };
   constexpr double grazing = 2e-4;  // sine of the angle between ray and surface
   std::uint32_t backs = 0, backs_along_surface = 0;
@@ -104,7 +107,7 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
     if (!lamps_.empty()) arriving += throughput * from_lamps(bend, random);
     if (!skies_.surroundings().empty()) arriving += throughput * from_surroundings(bend, random.pair());
     const Vec3 direction = cosine_direction(bend.normal, choices.direction);
-    const Met met = meet(bend, direction);
+    const Met met = has_panes_ ? follow(bend, direction, random, throughput) : meet(bend, direction);
     if (!met.surface) return met.is_outside ? arriving + throughput * from_skies(bend, direction) : arriving;
     if (!clear_) throughput = throughput * transmittance(met.distance);
     if (!met.surface->emission.is_zero()) arriving += throughput * from_met_light(bend, direction, met);
@@ -132,15 +135,18 @@ Rgb PathTracer::from_surroundings(const Bend& bend, UnitPair choice) const {
   const Vec3 direction = all.sample(choice);
   const double cosine = dot(bend.normal, direction), density = all.density(direction),
                out = lamps_.way_out(bend.place, direction);
-  if (cosine <= 0 || density <= 0 || caster_->is_blocked(bend.place, bend.place + (out + 0.01) * direction)) return {};
-  const Rgb arriving = share_of(density, cosine / std::numbers::pi) * cosine / density * all.radiance(direction);
+  if (cosine <= 0 || density <= 0) return {};
+  const Rgb passed = passing(bend.place, bend.place + (out + 0.01) * direction);
+  if (passed.is_zero()) return {};
+  const Rgb arriving = passed * (share_of(density, cosine / std::numbers::pi) * cosine / density * all.radiance(direction));
   return clear_ ? arriving : arriving * transmittance(out);
 }
 
 Rgb PathTracer::from_lamps(const Bend& bend, PathRandom& random) const {
   const auto sample = lamps_.sample(bend.place, bend.normal, random.number(), random.pair());
-  if (!sample || caster_->is_blocked(bend.place, bend.place + sample->way)) return {};
-  return clear_ ? sample->irradiance : sample->irradiance * transmittance(sample->distance);
+  if (!sample) return {};
+  const Rgb arriving = passing(bend.place, bend.place + sample->way) * sample->irradiance;
+  return clear_ ? arriving : arriving * transmittance(sample->distance);
 }
 
 // `height / (distance pi)` is the density of directions by cosine, `light_density` that of choosing a place on a light. A sample
@@ -155,9 +161,11 @@ Rgb PathTracer::from_chosen_light(const Bend& bend, UnitPair choice) const {
   if (seen_side < 0 && !light.two_sided) return {};
   const Vec3 end = on_light + seen_side * off_surface * light.normal, towards = on_light - bend.place;
   const double distance = length(towards), height = dot(bend.normal, towards), back = std::abs(dot(light.normal, towards));
-  if (height <= 0 || back <= 0 || caster_->is_blocked(bend.place, end)) return {};
+  if (height <= 0 || back <= 0) return {};
+  const Rgb passed = passing(bend.place, end);
+  if (passed.is_zero()) return {};
   const double light_density = chosen->probability * distance * distance * distance / (light.area * back);
-  const Rgb light_here = light.emission * share_of(height / (distance * std::numbers::pi), light_density);
+  const Rgb light_here = passed * light.emission * share_of(height / (distance * std::numbers::pi), light_density);
   return clear_ ? light_here : light_here * transmittance(distance);
 }
 
@@ -174,16 +182,62 @@ PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction) const {
   if (const Surface& back = surfaces_[hit->triangle]; !back.two_sided && dot(back.normal, direction) >= 0) {
     // The ray may have hit the wrong one of two faces back to back in one place.
     const auto front = caster_->cast_front(bend.place, direction);
-    if (!front || front->distance > hit->distance + off_surface) return {};
-    hit = front;
+    const bool is_wrong = front && front->distance <= hit->distance + off_surface;
+    if (!is_wrong && !back.is_pane()) return {};
+    if (is_wrong) hit = front;
   }
   const Surface& s = surfaces_[hit->triangle];
   const double cosine = -dot(s.normal, direction);
-  if (cosine <= 0 && !s.two_sided) return {};
   const Vec3 normal = cosine > 0 ? s.normal : -s.normal;
   // Computed from u and v and not along the ray, so that it lies exactly on the surface, however long the ray.
   const Vec3 place = s.corner + hit->u * s.side_u + hit->v * s.side_v;
-  return {&s, {place + off_surface * normal, normal}, hit->distance, std::abs(cosine)};
+  Met met{nullptr, {place + off_surface * normal, normal}, hit->distance, std::abs(cosine)};
+  if (cosine > 0 || s.two_sided) met.surface = &s;
+  if (s.is_pane()) met.pane = &s, met.beyond = {place - off_surface * normal, bend.normal};
+  return met;
+}
+
+/// Returns what a ray meets that goes on through all panes.
+PathTracer::Met PathTracer::behind_panes(const Bend& bend, Vec3 direction) const {
+  Met met = meet(bend, direction);
+  while (met.pane) met = meet(met.beyond, direction);
+  return met;
+}
+
+/// Follows a path that goes on through panes or ends at one of them, by chance. Multiplies `throughput` so that the expectation
+/// is that of both. The distance is that from `bend`.
+PathTracer::Met PathTracer::follow(const Bend& bend, Vec3 direction, PathRandom& random, Rgb& throughput) const {
+  Met met = meet(bend, direction);
+  double before = 0;
+  while (met.pane) {
+    const double on = met.pane->through.max();
+    double chance = 1;
+    if (met.surface) chance = met.surface->emission.is_zero() ? on / (on + met.surface->reflectance.max()) : 0.5;
+    if (!(random.number() < chance)) {
+      throughput *= 1 / (1 - chance);
+      break;
+    }
+    throughput = throughput * met.pane->through * (1 / chance);
+    before += met.distance;
+    met = meet(met.beyond, direction);
+  }
+  met.distance += before;
+  return met;
+}
+
+/// Returns the share of light that goes straight from one place to another, per band.
+Rgb PathTracer::passing(Vec3 from, Vec3 to) const {
+  Rgb passed{1, 1, 1};
+  if (!caster_->is_blocked(from, to)) return passed;
+  if (!has_panes_) return {};
+  const Vec3 direction = normalized(to - from);
+  for (Bend bend{from, {}}; !passed.is_zero();) {
+    const Met met = meet(bend, direction);
+    if (met.is_outside || met.distance >= dot(to - bend.place, direction)) break;
+    passed = met.pane ? passed * met.pane->through : Rgb{};
+    bend = met.beyond;
+  }
+  return passed;
 }
 
 Rgb PathTracer::transmittance(double distance) const {

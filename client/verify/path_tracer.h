@@ -29,7 +29,8 @@ struct SurfacePoint {
 /// media. Paths continue in cosine-distributed directions until Russian roulette ends them. At each bend, emitted light is
 /// sampled in two ways: by choosing a place on an emitter, and by following the path. They are weighted by the balance heuristic
 /// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. Lamps and distant lights
-/// are sampled one at a time, chosen by what they bring unblocked; environments in two ways, as emitters are. One systematic
+/// are sampled one at a time, chosen by what they bring unblocked; environments in two ways, as emitters are. At a pane a path
+/// bends or goes straight on, by chance; shadow rays go on through panes. One systematic
 /// error remains: rays start 1e-6 of the scene's extent above their surface, so that they do not hit it. Immutable; safe from any
 /// thread.
 class PathTracer {
@@ -57,6 +58,8 @@ class PathTracer {
     Rgb emission, reflectance;
     bool two_sided = false;
     std::uint32_t light = 0;  ///< index in lights_ if the surface emits
+    Rgb through;              ///< regular transmittance
+    bool is_pane() const { return !through.is_zero(); }
   };
   /// A point at which a path bends, just above a surface.
   struct Bend {
@@ -68,10 +71,12 @@ class PathTracer {
   };
   /// The surface that a ray hits, and the next bend there.
   struct Met {
-    const Surface* surface = nullptr;  ///< null if the path leaves the scene or ends on a black back
+    const Surface* surface = nullptr;  ///< null if the path leaves the scene or meets a black back
     Bend bend;
     double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
     bool is_outside = false;          ///< the path leaves the scene
+    const Surface* pane = nullptr;    ///< the surface that was met, on either side, if light goes straight on through it
+    Bend beyond;                      ///< behind that pane
   };
 
   Bend start_at(const SurfacePoint& point) const;
@@ -83,11 +88,14 @@ class PathTracer {
   Rgb from_lamps(const Bend& bend, PathRandom& random) const;
   Rgb from_met_light(const Bend& bend, Vec3 direction, const Met& met) const;
   Met meet(const Bend& bend, Vec3 direction) const;
+  Met behind_panes(const Bend& bend, Vec3 direction) const;
+  Met follow(const Bend& bend, Vec3 direction, PathRandom& random, Rgb& throughput) const;
+  Rgb passing(Vec3 from, Vec3 to) const;
   Rgb transmittance(double distance) const;
 
   Extent extent_;
   Rgb absorption_;  ///< absorption coefficient per local unit of length
-  bool clear_ = true;
+  bool clear_ = true, has_panes_ = false;
   std::vector<Surface> surfaces_;
   EmitterTree lights_{{}};
   Lamps lamps_;

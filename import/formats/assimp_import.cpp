@@ -3,6 +3,7 @@
 #include "import/base/import_error.h"
 #include "import/base/scene_format.h"
 #include "import/formats/placement.h"
+#include "import/formats/see_through.h"
 #include "import/formats/texture_colour.h"
 #include "import/formats/unsupported.h"
 
@@ -29,9 +30,9 @@ Placement placement_of(const aiMatrix4x4& m) {
 }
 
 /// Returns the mean colour of a texture embedded in encoded form. Returns nothing for raw texels, which only games use.
-std::optional<Rgb> mean_of_embedded(const aiTexture& texture) {
+std::optional<MeanTexel> mean_of_embedded(const aiTexture& texture) {
   if (texture.mHeight != 0) return std::nullopt;
-  return mean_colour({reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth});
+  return mean_texel({reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth});
 }
 
 /// The up axis and unit of a format's coordinates: given by the file, or usual for programs that write the format.
@@ -84,6 +85,10 @@ class AssimpReader {
     const Rgb reflectance = made_up ? grey : colour(source, name, AI_MATKEY_COLOR_DIFFUSE, aiTextureType_DIFFUSE, grey);
     const Rgb radiance = colour(source, name, AI_MATKEY_COLOR_EMISSIVE, aiTextureType_EMISSIVE, {});
     file_.scene.materials.push_back({name, emission_of_radiance(radiance), reflectance, two_sided != 0});
+    // Formats disagree on whether 0 or 1 is opaque, so 0 counts as opaque: nobody sends what cannot be seen.
+    float opacity = 1;
+    source.Get(AI_MATKEY_OPACITY, opacity);
+    if (opacity > 0 && opacity < 1) leave(file_.scene.materials.back(), opacity);
   }
 
   Rgb colour(const aiMaterial& source, const std::string& name, const char* key, unsigned type, unsigned index, aiTextureType map,
@@ -96,9 +101,9 @@ class AssimpReader {
     return textured(factor, mean_of_texture(texture), place, file_.warnings);
   }
 
-  std::optional<Rgb> mean_of_texture(const aiString& name) const {
+  std::optional<MeanTexel> mean_of_texture(const aiString& name) const {
     if (const aiTexture* embedded = source_.GetEmbeddedTexture(name.C_Str())) return mean_of_embedded(*embedded);
-    return mean_colour(files_.find(name.C_Str()));
+    return mean_texel(files_.find(name.C_Str()));
   }
 
   /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
@@ -166,10 +171,8 @@ class AssimpReader {
     const std::vector<bool> used = used_materials(file_.scene);
     for (unsigned m = 0; m < source_.mNumMaterials; ++m) {
       if (!used[m]) continue;
-      float opacity = 1, metallic = 0;
-      source_.mMaterials[m]->Get(AI_MATKEY_OPACITY, opacity);
+      float metallic = 0;
       source_.mMaterials[m]->Get(AI_MATKEY_METALLIC_FACTOR, metallic);
-      unsupported.transparent_materials += opacity < 1;
       unsupported.metals += metallic > 0.5F;
     }
   }

@@ -235,13 +235,9 @@ class GltfReader {
     for (std::size_t m = 0; m < model_.materials.size(); ++m) {
       if (!used[m]) continue;
       const tinygltf::Material& material = model_.materials[m];
-      const tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
-      // With a texture, metallicFactor is usually left at its default 1, also for materials that are no metals.
-      const bool is_metal = surface.metallicFactor > 0.5 && surface.metallicRoughnessTexture.index < 0;
-      unsupported_.transparent_materials += !material.alphaMode.empty() && material.alphaMode != "OPAQUE";
-      unsupported_.metals += is_metal;
-      unsupported_.transmissive_materials += material.extensions.contains("KHR_materials_transmission") ||
-                                             material.extensions.contains("KHR_materials_diffuse_transmission");
+      unsupported_.metals += is_metal(material);
+      unsupported_.clear_materials += material.extensions.contains("KHR_materials_transmission");
+      unsupported_.translucent_materials += material.extensions.contains("KHR_materials_diffuse_transmission");
     }
   }
 

@@ -7,14 +7,18 @@
 
 namespace alvor_tinygltf {
 class Model;
-}
+struct Material;
+}  // namespace alvor_tinygltf
 namespace tinygltf = alvor_tinygltf;
 
 namespace alvor {
 
+/// Returns whether a material is a metal, which counts as diffuse here.
+bool is_metal(const tinygltf::Material& material);
+
 /// Returns the model's materials in order. baseColorFactor becomes reflectance; emissiveFactor x KHR_materials_emissive_strength,
-/// a radiance, becomes emission. Textures count by their mean colour. Metals are treated as diffuse. Requires: `model.images`
-/// hold encoded bytes.
+/// a radiance, becomes emission. Alpha (BLEND, MASK) and KHR_materials_transmission let light straight through. Textures count by
+/// their mean colour and opacity. Requires: `model.images` hold encoded bytes.
 std::vector<Material> read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings);
 
 }  // namespace alvor

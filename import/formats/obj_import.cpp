@@ -4,6 +4,7 @@
 #include "import/formats/obj_lines.h"
 #include "import/formats/obj_objects.h"
 #include "import/formats/placement.h"
+#include "import/formats/see_through.h"
 #include "import/formats/texture_colour.h"
 #include "import/formats/unsupported.h"
 
@@ -159,7 +160,19 @@ Rgb under_texture(const Rgb& factor, std::string file, const Material& material,
   if (file.empty() || factor.is_zero()) return factor;
   std::ranges::replace(file, '\\', '/');
   const std::string texture = "material '" + material.name + "': texture '" + file + "'";
-  return textured(factor, mean_colour(files.find(file)), texture, warnings);
+  return textured(factor, mean_texel(files.find(file)), texture, warnings);
+}
+
+/// Returns the share of a material's surface that is there: `d`, times the mean opacity of `map_d`. That is the image's alpha if
+/// it has any, else its mean colour.
+double opacity_of(const tinyobj::material_t& material, SceneFiles& files) {
+  const double factor = std::clamp<double>(material.dissolve, 0, 1);
+  if (material.alpha_texname.empty()) return factor;
+  std::string file = material.alpha_texname;
+  std::ranges::replace(file, '\\', '/');
+  const auto mean = mean_texel(files.find(file), {AlphaUse::Kind::blended});
+  if (!mean) return factor;
+  return factor * (mean->opacity < 1 ? mean->opacity : mean->colour.mean());
 }
 
 void fill_materials(SceneFile& file, const MaterialLibrary& library, SceneFiles& files) {
@@ -167,11 +180,11 @@ void fill_materials(SceneFile& file, const MaterialLibrary& library, SceneFiles&
   for (Material& material : file.scene.materials) {
     const tinyobj::material_t* found = library.find(material.name);
     if (found) {
-      unsupported.transparent_materials += found->dissolve < 1 || !found->alpha_texname.empty();
       unsupported.metals += found->metallic > 0.5;
       material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, files, file.warnings);
       material.emission =
           emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, files, file.warnings));
+      if (const double opacity = opacity_of(*found, files); opacity < 1) leave(material, opacity);
     } else if (!material.name.empty()) {
       file.warnings.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
     } else {

@@ -61,19 +61,24 @@ std::vector<double> linear_table() {
 
 using Pixels = std::unique_ptr<void, decltype(&stbi_image_free)>;
 
-/// Returns the mean of `count` pixels of four samples each. The fourth sample, alpha, is ignored. Requires: count > 0.
+/// Returns the means of `count` pixels of four samples each. Requires: count > 0.
 template <class Sample>
-Rgb mean_of_pixels(const Pixels& rgba, std::size_t count) {
+MeanTexel mean_of_pixels(const Pixels& rgba, std::size_t count, const AlphaUse& alpha) {
   const std::vector<double> linear = linear_table<Sample>();
   const Sample* pixel = static_cast<const Sample*>(rgba.get());
   Rgb sum;
-  for (std::size_t i = 0; i < count; ++i, pixel += 4) sum += {linear[pixel[0]], linear[pixel[1]], linear[pixel[2]]};
-  return sum * (1.0 / static_cast<double>(count));
+  double opaque = 0;
+  for (std::size_t i = 0; i < count; ++i, pixel += 4) {
+    const double opacity = alpha.opacity(static_cast<double>(pixel[3]) / std::numeric_limits<Sample>::max());
+    sum += opacity * Rgb{linear[pixel[0]], linear[pixel[1]], linear[pixel[2]]};
+    opaque += opacity;
+  }
+  return {opaque > 0 ? sum * (1 / opaque) : Rgb{}, opaque / static_cast<double>(count)};
 }
 
 }  // namespace
 
-std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded) {
+std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, const AlphaUse& alpha) {
   if (encoded.empty() || encoded.size() > std::numeric_limits<int>::max()) return std::nullopt;
   const unsigned char* const bytes = encoded.data();
   const int size = static_cast<int>(encoded.size());
@@ -88,17 +93,21 @@ std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded) {
                             : stbi_load_from_memory(bytes, size, &width, &height, &channels, 4),
                     stbi_image_free);
   if (!rgba) return std::nullopt;
-  return is_deep ? mean_of_pixels<std::uint16_t>(rgba, count) : mean_of_pixels<std::uint8_t>(rgba, count);
+  return is_deep ? mean_of_pixels<std::uint16_t>(rgba, count, alpha) : mean_of_pixels<std::uint8_t>(rgba, count, alpha);
 }
 
-std::optional<Rgb> mean_colour(const std::string* encoded) {
+std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha) {
   if (!encoded) return std::nullopt;
-  return mean_colour({reinterpret_cast<const unsigned char*>(encoded->data()), encoded->size()});
+  return mean_texel({reinterpret_cast<const unsigned char*>(encoded->data()), encoded->size()}, alpha);
 }
 
-Rgb textured(const Rgb& factor, const std::optional<Rgb>& mean, const std::string& texture, std::vector<std::string>& warnings) {
-  warnings.push_back(texture + (mean ? " counts by its mean colour" : " cannot be read and is left out"));
-  return mean ? factor * *mean : factor;
+Rgb textured(const Rgb& factor, const std::optional<MeanTexel>& mean, const std::string& texture,
+             std::vector<std::string>& warnings) {
+  const char* const treatment = !mean               ? " cannot be read and is left out"
+                                : mean->opacity < 1 ? " counts by its mean colour and opacity"
+                                                    : " counts by its mean colour";
+  warnings.push_back(texture + treatment);
+  return mean ? factor * mean->colour : factor;
 }
 
 }  // namespace alvor

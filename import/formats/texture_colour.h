@@ -1,8 +1,9 @@
 #pragma once
-// Replaces textures by their mean colour, because a patch has one reflectance and one emission.
+// Replaces textures by their mean colour and opacity, because a patch has one reflectance and one emission.
 
 #include "solution/rgb.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,14 +11,34 @@
 
 namespace alvor {
 
-/// Returns the mean of the pixels of an encoded image (PNG, JPEG, ...), converted from sRGB to linear; alpha is ignored. Returns
-/// nothing if the image cannot be decoded.
-std::optional<Rgb> mean_colour(std::span<const unsigned char> encoded);
-/// Returns the mean colour of a file's bytes; nothing if there are none.
-std::optional<Rgb> mean_colour(const std::string* encoded);
+/// What the alpha of a texture means: nothing, the share of a surface that is there, or that it is there where alpha times
+/// `factor` is at least `cutoff`.
+struct AlphaUse {
+  enum class Kind : unsigned char { ignored, blended, cut } kind = Kind::ignored;
+  double factor = 1, cutoff = 0.5;
+
+  /// Returns the share of a surface that is there where its texture has this alpha, in [0, 1].
+  double opacity(double alpha) const {
+    if (kind == Kind::ignored) return 1;
+    return kind == Kind::cut ? double(alpha * factor >= cutoff) : std::clamp(alpha * factor, 0.0, 1.0);
+  }
+};
+
+/// The means of an image: of its colours where it is opaque, linear, and of its opacity.
+struct MeanTexel {
+  Rgb colour{1, 1, 1};
+  double opacity = 1;
+};
+
+/// Returns the means of the pixels of an encoded image (PNG, JPEG, ...), converted from sRGB to linear. Returns nothing if the
+/// image cannot be decoded.
+std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, const AlphaUse& alpha = {});
+/// Returns the means of a file's bytes; nothing if there are none.
+std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha = {});
 
 /// Returns `factor` times the texture's mean colour, or `factor` itself if the texture could not be read. Appends a warning that
 /// names `texture`.
-Rgb textured(const Rgb& factor, const std::optional<Rgb>& mean, const std::string& texture, std::vector<std::string>& warnings);
+Rgb textured(const Rgb& factor, const std::optional<MeanTexel>& mean, const std::string& texture,
+             std::vector<std::string>& warnings);
 
 }  // namespace alvor

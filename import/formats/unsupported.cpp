@@ -24,9 +24,9 @@ void Unsupported::append_warnings(std::vector<std::string>& warnings) const {
   append(warnings, directional_lights, {"directional light", "directional lights", "ignored"});
   append(warnings, area_lights, {"area light", "area lights", "ignored"});
   append(warnings, other_lights, {"light of another kind", "lights of other kinds", "ignored"});
-  append(warnings, transparent_materials, {"material with alpha", "materials with alpha", "taken for opaque"});
   append(warnings, metals, {"metallic material", "metallic materials", "taken for diffuse"});
-  append(warnings, transmissive_materials, {"transmissive material", "transmissive materials", "taken for opaque"});
+  append(warnings, clear_materials, {"clear material", "clear materials", "taken for thin panes, without refraction"});
+  append(warnings, translucent_materials, {"translucent material", "translucent materials", "taken for opaque"});
 }
 
 std::vector<bool> used_materials(const Scene& scene) {

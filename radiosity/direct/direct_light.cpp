@@ -29,14 +29,15 @@ constexpr double worth_a_closer_look = 0.1;
 
 using Lanes = std::array<float, RayPacket::width>;
 
-/// The shadow rays of a batch of receivers.
-template <bool occlusion, bool medium>
+/// The shadow rays of a batch of receivers. `dimming`: there is a medium, or panes.
+template <bool occlusion, bool dimming>
 class ShadowBatch {
  public:
   ShadowBatch(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
-              RayBudget& budget, std::span<DirectLight> light)
+              RayBudget& budget, std::span<DirectLight> light, bool has_panes)
       : scene_(scene),
         medium_{scene.mesh().absorption()},
+        has_panes_(has_panes),
         lights_(lights),
         receivers_(receivers),
         seed_(seed),
@@ -44,7 +45,7 @@ class ShadowBatch {
         light_(light) {}
 
   void add_all() {
-    if (occlusion || medium) place_points();
+    if (occlusion || dimming) place_points();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       for (std::uint32_t l = 0; l < lights_.size(); ++l) look_at(r, l);
     add_looked_at();
@@ -108,7 +109,7 @@ class ShadowBatch {
   }
 
   void add_looked_at() {
-    if constexpr (occlusion || medium) trace_looked_at();
+    if constexpr (occlusion || dimming) trace_looked_at();
     else
       for (Lit& lit : lit_) lit.fraction = VisibleFraction::all();
     for (const Lit& lit : lit_) add(lit);
@@ -140,7 +141,7 @@ class ShadowBatch {
     const RelativeLight& colour = lights_[lit.light]->colour();
     const double mean = lit.mean_unblocked(), visible = mean * lit.fraction.value();
     if (visible <= 0) return;
-    const RelativeLight arriving = medium ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
+    const RelativeLight arriving = dimming ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
     light.irradiance += arriving;
     const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / mean;
     const QuarterPlane unblocked(lit.unblocked, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
@@ -164,8 +165,9 @@ class ShadowBatch {
   }
 
   void find_blocked() {
+    if (has_panes_) tints_.resize(rays_.size());
     if constexpr (occlusion)
-      budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_); });
+      budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_, tints_); });
   }
 
   /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the light. `round` counts the packets of
@@ -199,11 +201,17 @@ class ShadowBatch {
       if (weight == 0) continue;
       fraction.weight[o] += weight;
       const bool is_blocked = blocked_[packet] >> o & 1;
-      (is_blocked ? fraction.any_blocked : fraction.any_visible) = true;
+      const float share = is_blocked ? 0 : has_panes_ ? tints_[packet][o].mean() : 1;
+      fraction.count(share);
       if (is_blocked) continue;
-      fraction.visible[o] += weight;
-      if constexpr (medium) fraction.arriving += double(weight) * medium_.transmittance(distance(rays_[packet], o));
+      fraction.visible[o] += share * weight;
+      if constexpr (dimming) fraction.arriving += double(weight) * transmittance(packet, o);
     }
+  }
+  /// Returns the share of light that medium and panes let through along ray `o` of a packet.
+  Rgb transmittance(std::size_t packet, int o) const {
+    const Rgb by_medium = medium_.is_clear() ? Rgb{1, 1, 1} : medium_.transmittance(distance(rays_[packet], o));
+    return has_panes_ ? widen(tints_[packet][o]) * by_medium : by_medium;
   }
   double distance(const RayPacket& rays, int o) const {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
@@ -252,7 +260,7 @@ class ShadowBatch {
       samples.count += 1;
       if (blocked_[packet] >> o & 1) continue;
       RelativeLight arriving = double(weights_[packet][o]) * brings[n];
-      if constexpr (medium) arriving = medium_.transmittance(distance(rays_[packet], static_cast<int>(o))) * arriving;
+      if constexpr (dimming) arriving = transmittance(packet, static_cast<int>(o)) * arriving;
       samples.sum += arriving;
       samples.squares += arriving.mean() * arriving.mean();
     }
@@ -261,6 +269,7 @@ class ShadowBatch {
 
   const LocalScene& scene_;
   Medium medium_;
+  bool has_panes_;
   LightSources lights_;
   std::span<const Receiver> receivers_;
   std::uint64_t seed_;
@@ -271,28 +280,30 @@ class ShadowBatch {
   std::vector<RayPacket> rays_;
   std::vector<Lanes> weights_;
   std::vector<std::uint16_t> blocked_;
+  std::vector<Visibility::Tints> tints_;  // of each packet; none if there are no panes
 };
 
 /// Calls work(batch) for each batch of receivers, in parallel.
-template <bool occlusion, bool medium, class Work>
-void in_batches(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
-                RayBudget& budget, std::span<DirectLight> light, Work&& work) {
+template <bool occlusion, bool dimming, class Work>
+void in_batches(bool has_panes, const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers,
+                std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, Work&& work) {
   const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
     const std::size_t first = batch * receivers_per_batch, count = std::min(receivers_per_batch, receivers.size() - first);
-    work(ShadowBatch<occlusion, medium>(scene, lights, receivers.subspan(first, count), seed, budget,
-                                        light.subspan(first, count)));
+    work(ShadowBatch<occlusion, dimming>(scene, lights, receivers.subspan(first, count), seed, budget,
+                                         light.subspan(first, count), has_panes));
   });
 }
 
 /// Calls in_batches with these arguments, in the template instance that computes only what `needs` asks for.
 template <class... Arguments>
 void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
-  if (needs.occlusion && needs.medium) return in_batches<true, true>(arguments...);
-  if (needs.occlusion) return in_batches<true, false>(arguments...);
-  if (needs.medium) return in_batches<false, true>(arguments...);
-  in_batches<false, false>(arguments...);
+  const bool dimming = needs.medium || needs.panes;
+  if (needs.occlusion && dimming) return in_batches<true, true>(needs.panes, arguments...);
+  if (needs.occlusion) return in_batches<true, false>(false, arguments...);
+  if (dimming) return in_batches<false, true>(false, arguments...);
+  in_batches<false, false>(false, arguments...);
 }
 
 }  // namespace

@@ -4,31 +4,37 @@
 #include "radiosity/rays/sampling.h"
 #include "solution/rgb.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 namespace alvor {
 
-/// The share of a light that a patch sees: visibility weighted by what each ray would bring, and the light that a medium lets
-/// through, summed over shadow rays.
+/// The share of a light that a patch sees: visibility weighted by what each ray would bring, and the light that a medium and
+/// panes let through, summed over shadow rays.
 struct VisibleFraction {
   std::array<float, origins_per_patch> weight{}, visible{};
   std::uint32_t rays_per_origin = 0;
-  Rgb arriving;  // sum over unblocked rays of weight times transmittance; zero in clear air
-  bool any_blocked = false, any_visible = false;
+  Rgb arriving;                // sum over unblocked rays of weight times transmittance; zero in clear air without panes
+  double least = 1, most = 0;  ///< of the shares that rays let through: 0 where blocked, the mean tint of panes, else 1
 
   /// Returns the fraction of a light that nothing hides.
   static VisibleFraction all() {
     VisibleFraction fraction;
     fraction.weight.fill(1);
     fraction.visible.fill(1);
-    fraction.any_visible = true;
+    fraction.count(1);
     fraction.finish();
     return fraction;
   }
 
-  /// Returns whether some rays are blocked and others are not.
-  bool mixed() const { return any_blocked && any_visible; }
+  /// Notes that a ray lets this share of light through.
+  void count(double share) {
+    least = std::min(least, share);
+    most = std::max(most, share);
+  }
+  /// Returns whether rays differ: some are blocked and others are not, or cross other panes.
+  bool mixed() const { return least < most; }
   /// Returns the visible share of the light, in [0, 1], over all origins.
   double value() const { return all_ > 0 ? all_visible_ / all_ : 0; }
   /// Returns the visible share of the light from origin `o`. It is value() where no ray of the origin has weight, and while
@@ -37,15 +43,16 @@ struct VisibleFraction {
     const bool tells = weight[o] > 0 && (rays_per_origin > 1 || !mixed());
     return tells ? double(visible[o]) / weight[o] : value();
   }
-  /// Returns the visible share times the mean transmittance of the medium, per band.
+  /// Returns the visible share times the mean transmittance of medium and panes, per band.
   Rgb dimmed() const { return all_ > 0 ? arriving * (1 / all_) : Rgb{}; }
-  /// Returns the variance of value(): half of that of independent rays, because the rays are stratified.
-  double variance() const { return mixed() ? 0.5 * value() * (1 - value()) / (rays_per_origin * origins_per_patch) : 0; }
+  /// Returns the variance of value(): half of that of independent rays that let through `least` or `most`, because the rays are
+  /// stratified.
+  double variance() const { return mixed() ? 0.5 * spread(value()) / (rays_per_origin * origins_per_patch) : 0; }
   /// Returns the variance of value(o), mean over origins.
   double origin_variance() const {
     if (!mixed() || rays_per_origin < 2) return 0;
     double sum = 0;
-    for (int o = 0; o < origins_per_patch; ++o) sum += value(o) * (1 - value(o));
+    for (int o = 0; o < origins_per_patch; ++o) sum += spread(value(o));
     return sum / origins_per_patch / (rays_per_origin - 1);
   }
   /// Sums the weights of all origins. value() and what depends on it are valid afterwards.
@@ -55,6 +62,10 @@ struct VisibleFraction {
   }
 
  private:
+  /// Returns the variance of shares with this mean that are all `least` or `most`: no shares between them vary more (Bhatia &
+  /// Davis 2000).
+  double spread(double mean) const { return std::max(0.0, (mean - least) * (most - mean)); }
+
   double all_ = 0, all_visible_ = 0;
 };
 

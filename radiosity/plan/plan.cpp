@@ -117,6 +117,7 @@ class Planner {
       case Feature::dark_faces: return dark_faces();
       case Feature::back_sides: return back_sides();
       case Feature::medium: return medium();
+      case Feature::panes: return panes();
       case Feature::refinement: return refinement();
       case Feature::acceleration: return acceleration();
       case Feature::ambient_display: return ambient_display();
@@ -127,7 +128,8 @@ class Planner {
   PlannedFeature three_bands() const {
     if (census_.coloured)
       return on(sentence("material '", census_.coloured->name, "' is not grey: it emits ", bands(census_.coloured->emission),
-                         " and reflects ", bands(census_.coloured->reflectance)));
+                         ", reflects ", bands(census_.coloured->reflectance), " and lets ",
+                         bands(census_.coloured->regular_transmittance), " through"));
     if (const Light* light = census_.coloured_light)
       return on(sentence("light '", light->name, "' is not grey: it sends ",
                          bands(light->environment ? light->intensity * light->environment->total() : light->intensity)));
@@ -170,6 +172,11 @@ class Planner {
     return on(sentence("what fills the scene absorbs ", bands(mesh_.absorption()), " per metre"));
   }
 
+  PlannedFeature panes() const {
+    if (census_.panes == 0) return off(sentence("light goes straight through none of ", faces(census_.faces)));
+    return on(sentence("light goes straight through ", census_.panes, " of ", faces(census_.faces)));
+  }
+
   PlannedFeature refinement() const {
     if (options_.max_depth == 0) return off("0 levels are allowed");
     return on(sentence(options_.max_depth, " levels are allowed, and ", options_.max_leaves, " leaves"));
@@ -201,6 +208,7 @@ class Planner {
       case Feature::dark_faces: return sentence("a row, and rays to all emitters, of each such face");
       case Feature::back_sides: return "a look at both sides of each hit from behind";
       case Feature::medium: return "a weight a hit, an exponential a ray";
+      case Feature::panes: return "a weight a hit, a call for each ray and face that it goes through";
       case Feature::refinement: return "splits, and a place of 30 bits a hit";
       case Feature::acceleration: return "12 numbers a row and band, and a coarse grid";
       case Feature::ambient_display: return "a sum a step";

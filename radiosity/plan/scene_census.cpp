@@ -7,7 +7,9 @@ namespace alvor {
 
 namespace {
 
-bool is_grey(const Material& material) { return material.emission.is_grey() && material.reflectance.is_grey(); }
+bool is_grey(const Material& material) {
+  return material.emission.is_grey() && material.reflectance.is_grey() && material.regular_transmittance.is_grey();
+}
 
 bool is_grey(const Light& light) {
   const auto is_grey_pixel = [](const RgbF& pixel) { return widen(pixel).is_grey(); };
@@ -28,6 +30,7 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     if (root.is_back) continue;
     ++faces;
     emitting_faces += emits;
+    panes += material.is_pane();
     two_sided_faces += root.twin != RootPatch::no_twin;
   }
   for (const Light& light : mesh.lights()) {

@@ -11,7 +11,7 @@ namespace alvor {
 struct SceneCensus {
   explicit SceneCensus(const BaseMesh& mesh);
 
-  std::size_t faces = 0, emitting_faces = 0, two_sided_faces = 0;  ///< a face with two sides counts once
+  std::size_t faces = 0, emitting_faces = 0, two_sided_faces = 0, panes = 0;  ///< a face with two sides counts once
   std::size_t materials = 0, grey_materials = 0, reflecting_materials = 0;
   double largest_reflectance = 0;         ///< largest reflectance of any material, in any band
   double emitting_share = 0;              ///< share of the area of all sides that emits

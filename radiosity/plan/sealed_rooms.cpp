@@ -47,7 +47,7 @@ class RoomFinder {
       const RootPatch& root = mesh_.roots()[part[n]];
       for (int e = 0; e < root.corner_count; ++e) {
         const auto neighbour = mesh_.across(part[n], e);
-        is_closed &= neighbour.has_value();
+        is_closed &= neighbour.has_value() && !mesh_.material_of(part[n]).is_pane();
         if (!neighbour || is_seen_[neighbour->root]) continue;
         is_seen_[neighbour->root] = true;
         part.push_back(neighbour->root);

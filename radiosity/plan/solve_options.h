@@ -14,7 +14,8 @@ enum class FormFactorMethod {
   automatic,  ///< nusselt, which takes 2.5 times fewer rays than hemicube for the same error (Cornell box)
   nusselt,    ///< cosine-distributed rays
   hemicube,   ///< rays through the cells of hemicubes, weighted by delta form factors
-  analytic,   ///< no rays: exact form factors between all patches, again in each pass. O(n2): for small scenes
+  analytic,   ///< no rays: exact form factors between all patches, again in each pass. O(n2): for small scenes. Where light goes
+              ///< straight through faces, as nusselt
 };
 
 /// The options of a solve. One mesh with one set of options gives the same bytes each time, for any number of threads.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace alvor {
 
@@ -54,14 +55,22 @@ void start_at(RayPacket& packet, float x, float y, float z) {
   }
 }
 
+// Most panes of a way on which hits are stored: then the hits of an origin fit in a byte. All panes dim.
+constexpr std::uint32_t most_crossings_stored = 14;
+
 enum class Outcome { stored, escaped, black_back };
 
 /// Traces rows one after the other. Compiled for scenes with and without back sides and places of hits (see RowNeeds).
 template <bool back_sides, bool places>
 class RowTracer {
  public:
-  RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget)
-      : scene_(scene), medium_{scene.mesh().absorption()}, directions_(directions), seed_(seed), budget_(budget) {}
+  RowTracer(const LocalScene& scene, const DirectionSets& directions, std::uint64_t seed, RayBudget& budget, bool has_panes)
+      : scene_(scene),
+        medium_{scene.mesh().absorption()},
+        has_panes_(has_panes),
+        directions_(directions),
+        seed_(seed),
+        budget_(budget) {}
 
   void trace(const PatchShape& shape, PatchId patch, RowSize size, TransportRow& row) {
     RandomStream random(seed_, patch);
@@ -79,7 +88,7 @@ class RowTracer {
       aim(packets_[n], *set_, n, frame);
     }
     budget_.spend(static_cast<std::uint64_t>(count_) * rays_per_origin,
-                  [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size())); });
+                  [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size()), crossings()); });
     if (size == RowSize::hidden_only) return store_hidden(row);
     retrace_slipped_rays(scene_.root(shape.root).normal);
     store(row);
@@ -87,6 +96,9 @@ class RowTracer {
 
  private:
   std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
+  std::span<std::vector<Crossing>> crossings() {
+    return has_panes_ ? std::span(crossings_).first(static_cast<std::size_t>(count_)) : std::span<std::vector<Crossing>>();
+  }
 
   /// Sends one ray from each origin, each in another direction of the hemisphere, and returns whether any meets a back.
   bool any_back(const PatchPoints& points, const TurnedFrame& frame) {
@@ -139,7 +151,10 @@ class RowTracer {
     return Outcome::black_back;
   }
   bool meets_front(const RayPacket& packet, const HitPacket& hit, int lane) const {
-    const Float3& n = scene_.root(hit.root[lane]).normal;
+    return meets_front(packet, hit.root[lane], static_cast<std::uint32_t>(lane));
+  }
+  bool meets_front(const RayPacket& packet, std::uint32_t root, std::uint32_t lane) const {
+    const Float3& n = scene_.root(root).normal;
     return packet.direction_x[lane] * n.x + packet.direction_y[lane] * n.y + packet.direction_z[lane] * n.z < 0;
   }
 
@@ -162,23 +177,38 @@ class RowTracer {
       again.direction_z[r] = packets_[p].direction_z[lane] + nudge * static_cast<float>(r + 1) * n.z;
     }
     HitPacket hit;
-    budget_.spend(RayPacket::width, [&] { scene_.visibility().closest_hits({&again, 1}, {&hit, 1}); });
+    std::vector<Crossing> crossed;
+    budget_.spend(RayPacket::width, [&] {
+      scene_.visibility().closest_hits({&again, 1}, {&hit, 1},
+                                       has_panes_ ? std::span(&crossed, 1) : std::span<std::vector<Crossing>>());
+    });
     for (int r = 0; r < RayPacket::width; ++r) {
       if (outcome(again, hit, r) != Outcome::stored) continue;
       hits_[p].root[lane] = hit.root[r];
       hits_[p].u[lane] = hit.u[r];
       hits_[p].v[lane] = hit.v[r];
       hits_[p].t[lane] = hit.t[r];
+      if (has_panes_) replace_crossings(crossings_[p], lane, crossed, r);
       return;
     }
   }
 
+  /// Replaces the crossings of a ray that slipped through a seam by those of ray `r` of the packet that was sent again.
+  static void replace_crossings(std::vector<Crossing>& crossings, int lane, std::span<const Crossing> again, int r) {
+    const auto is_of = [](int wanted) { return [=](const Crossing& c) { return c.lane == static_cast<std::uint32_t>(wanted); }; };
+    std::erase_if(crossings, is_of(lane));
+    for (Crossing crossing : again)
+      if (is_of(r)(crossing)) crossing.lane = static_cast<std::uint32_t>(lane), crossings.push_back(crossing);
+    std::ranges::stable_sort(crossings, {}, &Crossing::lane);
+  }
+
   void store(TransportRow& row) const {
+    std::size_t ended = 0;
     row.hits.reserve(packets().size() * RayPacket::width);
     row.origin_hits.assign(origins_per_patch, TransportRow::not_sampled);
     for (int n = 0; n < count_; ++n) {
       const std::size_t before = row.hits.size();
-      if (store_origin(static_cast<std::size_t>(n), row)) {
+      if (store_origin(static_cast<std::size_t>(n), row, ended)) {
         row.rays += rays_per_origin;
         row.origin_hits[static_cast<std::size_t>(origin_[n])] = static_cast<std::uint8_t>(row.hits.size() - before);
       } else {
@@ -186,21 +216,67 @@ class RowTracer {
       }
     }
     row.hits.shrink_to_fit();
-    row.is_closed = row.rays > 0 && row.hits.size() == row.rays;
+    row.is_closed = row.rays > 0 && ended == row.rays;
   }
 
-  /// Stores the hits of packet `p`. Returns false, and stores nothing, if its origin is hidden.
-  bool store_origin(std::size_t p, TransportRow& row) const {
+  /// Stores the hits of packet `p`, and adds the number of its rays that ended on a front. Returns false, and stores nothing, if
+  /// its origin is hidden.
+  bool store_origin(std::size_t p, TransportRow& row, std::size_t& ended) const {
     const Outcomes outcomes = outcomes_of(p);
     if (is_hidden(outcomes)) return false;
+    const std::size_t before = row.hits.size();
     if constexpr (back_sides) store_hits(turned_to_front(p), outcomes, row);
     else store_hits(hits_[p], outcomes, row);
-    if (medium_.is_clear() && !directions_.has_weights()) return true;
-    const float* weight = &set_->weight[p * rays_per_origin];
+    ended += row.hits.size() - before;
+    if (medium_.is_clear() && !directions_.has_weights() && !has_panes_) return true;
+    Visibility::Tints tints;
+    tints.fill({1, 1, 1});
+    if (has_panes_)
+      for (const Crossing& crossing : crossings_[p]) dim(tints, crossing);
     for (int lane = 0; lane < RayPacket::width; ++lane)
-      if (outcomes[lane] == Outcome::stored)
-        row.hit_weight.push_back(weight[lane] * narrow(medium_.transmittance(hits_[p].t[lane] * scene_.frame().metres_per_unit)));
+      if (outcomes[lane] == Outcome::stored) row.hit_weight.push_back(tints[lane] * weight_at(p, lane, hits_[p].t[lane]));
+    if (has_panes_) store_crossings(p, row);
     return true;
+  }
+  const Material& material_of(std::uint32_t root) const { return scene_.mesh().material_of(root); }
+  void dim(Visibility::Tints& tints, const Crossing& crossing) const {
+    tints[crossing.lane] = tints[crossing.lane] * narrow(material_of(crossing.root).regular_transmittance);
+  }
+  /// Returns the weight of a hit at the distance `t` of a ray, but for panes.
+  RgbF weight_at(std::size_t p, std::uint32_t lane, float t) const {
+    return set_->weight[p * rays_per_origin + lane] * narrow(medium_.transmittance(t * scene_.frame().metres_per_unit));
+  }
+
+  /// Stores the places where the rays of packet `p` met panes that reflect, absorb or emit.
+  void store_crossings(std::size_t p, TransportRow& row) const {
+    Visibility::Tints tints;
+    tints.fill({1, 1, 1});
+    std::array<std::uint32_t, RayPacket::width> stored{};
+    for (const Crossing& crossing : crossings_[p]) {
+      if (const auto hit = seen_at(crossing, p); hit && stored[crossing.lane]++ < most_crossings_stored) {
+        row.hits.push_back(*hit);
+        row.hit_weight.push_back(tints[crossing.lane] * weight_at(p, crossing.lane, crossing.t));
+      }
+      dim(tints, crossing);
+    }
+  }
+  /// Returns the place of a crossing on the side of the pane that the ray met; nothing if that side is a black back, or lets all
+  /// light through.
+  std::optional<PatchId> seen_at(const Crossing& crossing, std::size_t p) const {
+    HitPacket hit;
+    std::ranges::fill(hit.root, HitPacket::nothing);
+    hit.root[0] = crossing.root, hit.u[0] = crossing.u, hit.v[0] = crossing.v;
+    if (!meets_front(packets_[p], crossing.root, crossing.lane)) {
+      hit.root[0] = scene_.root(crossing.root).twin;
+      if (hit.root[0] == RootPatch::no_twin) return std::nullopt;
+      std::swap(hit.u[0], hit.v[0]);
+    }
+    const Material& material = material_of(hit.root[0]);
+    if (material.regular_transmittance.min() == 1 && material.emission.is_zero()) return std::nullopt;
+    if constexpr (!places) return PatchId::root(hit.root[0]);
+    alignas(64) std::uint32_t path[RayPacket::width];
+    scene_.places_of_hits(hit, path);
+    return PatchId::finest(hit.root[0], path[0]);
   }
 
   void store_hits(const HitPacket& hit, const Outcomes& outcomes, TransportRow& row) const {
@@ -226,15 +302,17 @@ class RowTracer {
 
   const LocalScene& scene_;
   Medium medium_;
+  bool has_panes_;
   const DirectionSets& directions_;
   std::uint64_t seed_;
   RayBudget& budget_;
-  // Directions, origins, rays and hits of the row that is being traced:
+  // Directions, origins, rays, hits and crossed panes of the row that is being traced:
   const DirectionSets::Set* set_ = nullptr;
   int count_ = 0;
   std::array<int, origins_per_patch> origin_{};
   std::array<RayPacket, origins_per_patch> packets_;
   std::array<HitPacket, origins_per_patch> hits_;
+  std::array<std::vector<Crossing>, origins_per_patch> crossings_;
 };
 
 }  // namespace
@@ -260,7 +338,7 @@ void TransportRow::append(const TransportRow& more) {
     }
     if (count != not_sampled) hit += count;
   }
-  is_closed = is_closed && hits.size() == rays;
+  is_closed = is_closed && more.is_closed;
 }
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
@@ -270,7 +348,7 @@ std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSet
   const auto trace = [&]<bool back_sides, bool places>() {
     std::vector<TransportRow> rows(patches.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
-      RowTracer<back_sides, places> tracer(scene, directions, seed, budget);
+      RowTracer<back_sides, places> tracer(scene, directions, seed, budget, needs.panes);
       for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
         tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
     });

@@ -13,12 +13,13 @@
 
 namespace alvor {
 
-/// The places where the rays of one patch ended. A hit is a place on a root patch, so it survives later splits. Rays that left
-/// the scene or met a black back are counted but not stored. Each hit has the weight 1 / ray_count(), times its hit_weight.
+/// The places where the rays of one patch ended, and where they crossed panes that reflect, absorb or emit. A hit is a place on a
+/// root patch, so it survives later splits. Rays that left the scene or met a black back are counted but not stored. Each hit has
+/// the weight 1 / ray_count(), times its hit_weight.
 struct TransportRow {
   std::vector<PatchId> hits;  ///< ordered by round of rays, then by origin
-  /// Weight of each hit, per band: the transmittance of the medium, times 16 delta form factors of a hemicube's cell or the form
-  /// factor of an exact row. Empty: all weights are 1.
+  /// Weight of each hit, per band: the transmittance of the medium and of the panes before it, times 16 delta form factors of a
+  /// hemicube's cell or the form factor of an exact row. Empty: all weights are 1.
   std::vector<RgbF> hit_weight;
   /// Number of hits of each origin, origins_per_patch entries per round of rays; `not_sampled` for an origin that is hidden or
   /// that a small row left out. Empty if the row did not come from rays.
@@ -48,6 +49,7 @@ enum class RowSize : std::uint8_t { whole, small, hidden_only };
 /// Which properties of hits rows have to find. A property that is off takes no time.
 struct RowNeeds {
   bool back_sides = true;  ///< false: no face has a twin
+  bool panes = true;       ///< false: no face is a pane
   bool places = true;      ///< the place of a hit on its face; false: patches are never split, and each hit is the id of its root
 };
 

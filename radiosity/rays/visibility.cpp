@@ -8,6 +8,8 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace alvor {
@@ -42,13 +44,18 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   /// Adds polygons of N corners each under the geometry id `id`.
+  /// `filter` is called for the hits of rays on them, with `owner` as its geometryUserPtr, and for occlusions `occlusion_filter`.
   template <std::size_t N>
-  void add(unsigned id, std::span<const std::array<float, 3>> vertices, std::span<const std::array<std::uint32_t, N>> polygons) {
+  void add(unsigned id, std::span<const std::array<float, 3>> vertices, std::span<const std::array<std::uint32_t, N>> polygons,
+           RTCFilterFunctionN filter = nullptr, RTCFilterFunctionN occlusion_filter = nullptr, void* owner = nullptr) {
     if (polygons.empty()) return;
     const auto type = N == 4 ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE;
     RTCGeometry geometry = rtcNewGeometry(device_, type);
     copy_to(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
     copy_to(geometry, RTC_BUFFER_TYPE_INDEX, N == 4 ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3, polygons);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter);
+    rtcSetGeometryOccludedFilterFunction(geometry, occlusion_filter);
+    rtcSetGeometryUserData(geometry, owner);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_, geometry, id);
     rtcReleaseGeometry(geometry);
@@ -86,6 +93,7 @@ void copy_rays(const RayPacket& from, RTCRay16& to) {
   std::memset(to.time, 0, bytes);
   std::memset(to.mask, 0xff, bytes);
   std::memset(to.flags, 0, bytes);
+  for (unsigned lane = 0; lane < RayPacket::width; ++lane) to.id[lane] = lane;
 }
 
 alignas(64) constexpr int all_lanes[RayPacket::width] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
@@ -100,40 +108,110 @@ RTCIntersectContext incoherent_context() {
 }  // namespace
 
 struct Visibility::Handles {
-  static constexpr unsigned quads = 0, triangles = 1;
+  /// Numbers of Embree's geometries: faces of four and of three corners, then the panes among them.
+  static constexpr unsigned quads = 0, triangles = 1, panes = 2;
   EmbreeScene scene;
-  std::vector<std::uint32_t> root_of[2];  // root patch of each primitive, by geometry
+  std::vector<std::uint32_t> root_of[4];  // root patch of each primitive, by geometry
+  std::vector<RgbF> transmittance_of[4];  // of each primitive of panes, by geometry
+
+  static void cross(const RTCFilterFunctionNArguments* arguments);
+  static void dim(const RTCFilterFunctionNArguments* arguments);
 };
 
-Visibility::Visibility(std::span<const RootPatch> roots, const LocalFrame& frame) : handles_(std::make_unique<Handles>()) {
+namespace {
+
+/// What filters write to while a packet is traced. Embree hands them a pointer to its own part, the first.
+struct PacketContext {
+  RTCIntersectContext context = incoherent_context();
+  std::vector<Crossing>* crossings = nullptr;
+  Visibility::Tints* tints = nullptr;
+};
+static_assert(std::is_standard_layout_v<PacketContext>);
+
+}  // namespace
+
+/// Lets rays go on through panes, and remembers where they crossed them. Embree calls it in any order along a ray.
+void Visibility::Handles::cross(const RTCFilterFunctionNArguments* arguments) {
+  const auto& handles = *static_cast<const Handles*>(arguments->geometryUserPtr);
+  auto* const crossings = reinterpret_cast<PacketContext*>(arguments->context)->crossings;
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    arguments->valid[i] = 0;
+    if (!crossings) continue;
+    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
+    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
+    crossings->push_back({ray.id, handles.root_of[hit.geomID][hit.primID], hit.u, hit.v, ray.tfar});
+  }
+}
+
+/// Lets shadow rays go on through panes, and dims them.
+void Visibility::Handles::dim(const RTCFilterFunctionNArguments* arguments) {
+  const auto& handles = *static_cast<const Handles*>(arguments->geometryUserPtr);
+  auto* const tints = reinterpret_cast<PacketContext*>(arguments->context)->tints;
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    arguments->valid[i] = 0;
+    if (!tints) continue;
+    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
+    RgbF& tint = (*tints)[RTCRayN_id(arguments->ray, arguments->N, i)];
+    tint = tint * handles.transmittance_of[hit.geomID][hit.primID];
+  }
+}
+
+Visibility::Visibility(std::span<const RootPatch> roots, std::span<const Material> materials, const LocalFrame& frame)
+    : handles_(std::make_unique<Handles>()) {
   std::vector<std::array<float, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 4>> quads;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 4>> quads[2];
+  std::vector<std::array<std::uint32_t, 3>> triangles[2];
   for (std::uint32_t root = 0; root < roots.size(); ++root) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     const int corners = roots[root].corner_count;
     if (roots[root].is_behind) continue;
     for (int c = 0; c < corners; ++c) vertices.push_back(to_float(frame.to_local(roots[root].corners[c])));
-    handles_->root_of[corners == 4 ? Handles::quads : Handles::triangles].push_back(root);
-    if (corners == 4) quads.push_back({first, first + 1, first + 2, first + 3});
-    else triangles.push_back({first, first + 1, first + 2});
+    const Material& material = materials[roots[root].material];
+    const bool is_pane = material.is_pane();
+    const unsigned geometry = (corners == 4 ? Handles::quads : Handles::triangles) + (is_pane ? Handles::panes : 0);
+    handles_->root_of[geometry].push_back(root);
+    if (is_pane) handles_->transmittance_of[geometry].push_back(narrow(material.regular_transmittance));
+    if (corners == 4) quads[is_pane].push_back({first, first + 1, first + 2, first + 3});
+    else triangles[is_pane].push_back({first, first + 1, first + 2});
   }
-  handles_->scene.add<4>(Handles::quads, vertices, quads);
-  handles_->scene.add<3>(Handles::triangles, vertices, triangles);
+  handles_->scene.add<4>(Handles::quads, vertices, quads[0]);
+  handles_->scene.add<3>(Handles::triangles, vertices, triangles[0]);
+  handles_->scene.add<4>(Handles::panes + Handles::quads, vertices, quads[1], Handles::cross, Handles::dim, handles_.get());
+  handles_->scene.add<3>(Handles::panes + Handles::triangles, vertices, triangles[1], Handles::cross, Handles::dim,
+                         handles_.get());
   handles_->scene.commit();
 }
 
 Visibility::~Visibility() = default;
 
-void Visibility::closest_hits(std::span<const RayPacket> packets, std::span<HitPacket> hits) const {
+namespace {
+
+/// Leaves the crossings before each ray's hit, each face once, ordered by lane and then along the ray.
+void put_in_order(std::vector<Crossing>& crossings, const HitPacket& hit) {
+  std::erase_if(crossings, [&](const Crossing& crossing) { return crossing.t > hit.t[crossing.lane]; });
+  std::ranges::sort(crossings, [](const Crossing& a, const Crossing& b) {
+    return std::tie(a.lane, a.t, a.root) < std::tie(b.lane, b.t, b.root);
+  });
+  // Embree may report both halves of a quad on their common edge.
+  const auto is_same = [](const Crossing& a, const Crossing& b) { return a.lane == b.lane && a.root == b.root; };
+  crossings.erase(std::unique(crossings.begin(), crossings.end(), is_same), crossings.end());
+}
+
+}  // namespace
+
+void Visibility::closest_hits(std::span<const RayPacket> packets, std::span<HitPacket> hits,
+                              std::span<std::vector<Crossing>> crossings) const {
   const FlushDenormals flush;
-  RTCIntersectContext context = incoherent_context();
+  PacketContext context;
   alignas(64) RTCRayHit16 query;
   for (std::size_t p = 0; p < packets.size(); ++p) {
     copy_rays(packets[p], query.ray);
     std::memset(query.hit.geomID, 0xff, sizeof query.hit.geomID);
     std::memset(query.hit.instID, 0xff, sizeof query.hit.instID);
-    rtcIntersect16(all_lanes, handles_->scene.get(), &context, &query);
+    if (!crossings.empty()) context.crossings = &crossings[p], context.crossings->clear();
+    rtcIntersect16(all_lanes, handles_->scene.get(), &context.context, &query);
     HitPacket& hit = hits[p];
     for (int lane = 0; lane < RayPacket::width; ++lane) {
       const unsigned geometry = query.hit.geomID[lane];
@@ -143,16 +221,18 @@ void Visibility::closest_hits(std::span<const RayPacket> packets, std::span<HitP
     std::memcpy(hit.u, query.hit.u, sizeof hit.u);
     std::memcpy(hit.v, query.hit.v, sizeof hit.v);
     std::memcpy(hit.t, query.ray.tfar, sizeof hit.t);
+    if (context.crossings && !context.crossings->empty()) put_in_order(*context.crossings, hit);
   }
 }
 
-void Visibility::occlusions(std::span<const RayPacket> packets, std::span<std::uint16_t> blocked) const {
+void Visibility::occlusions(std::span<const RayPacket> packets, std::span<std::uint16_t> blocked, std::span<Tints> tints) const {
   const FlushDenormals flush;
-  RTCIntersectContext context = incoherent_context();
+  PacketContext context;
   alignas(64) RTCRay16 query;
   for (std::size_t p = 0; p < packets.size(); ++p) {
     copy_rays(packets[p], query);
-    rtcOccluded16(all_lanes, handles_->scene.get(), &context, &query);
+    if (!tints.empty()) context.tints = &tints[p], context.tints->fill({1, 1, 1});
+    rtcOccluded16(all_lanes, handles_->scene.get(), &context.context, &query);
     std::uint16_t mask = 0;
     for (int lane = 0; lane < RayPacket::width; ++lane)
       mask |= static_cast<std::uint16_t>((query.tfar[lane] < 0) << lane);  // Embree sets -inf where blocked

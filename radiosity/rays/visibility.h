@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace alvor {
 
@@ -38,6 +39,12 @@ struct alignas(64) HitPacket {
   float t[RayPacket::width];
 };
 
+/// A face that lets light straight through, where a ray of a packet crossed it on its way. u, v and t as in HitPacket.
+struct Crossing {
+  std::uint32_t lane = 0, root = 0;
+  float u = 0, v = 0, t = 0;
+};
+
 /// Maps metres to local coordinates: the scene's centre is 0 and its longest side 1, so that float32 traversal depends neither on
 /// the units nor on the origin of the scene.
 struct LocalFrame {
@@ -47,18 +54,24 @@ struct LocalFrame {
 };
 
 /// Embree's scene of all root patches in local coordinates, without the backs of two-sided faces (a hit from behind belongs to
-/// the twin). Immutable; any number of threads may trace at a time.
+/// the twin). Rays go on through panes (Material::is_pane), from either side. Immutable; any number of threads may trace at a
+/// time.
 class Visibility {
  public:
-  Visibility(std::span<const RootPatch> roots, const LocalFrame& frame);
+  Visibility(std::span<const RootPatch> roots, std::span<const Material> materials, const LocalFrame& frame);
   ~Visibility();
   Visibility(const Visibility&) = delete;
   Visibility& operator=(const Visibility&) = delete;
 
-  /// Writes the nearest hit of every ray, between its t_min and t_max, to `hits`.
-  void closest_hits(std::span<const RayPacket> packets, std::span<HitPacket> hits) const;
-  /// Sets bit i of `blocked[p]` if ray i of packet p meets a surface between its t_min and t_max, and clears it otherwise.
-  void occlusions(std::span<const RayPacket> packets, std::span<std::uint16_t> blocked) const;
+  /// Writes the nearest hit of every ray on a face that is no pane, between its t_min and t_max, to `hits`. Writes the panes that
+  /// the rays of packet p crossed before, ordered by lane and then along the ray, to `crossings[p]`, unless `crossings` is empty.
+  void closest_hits(std::span<const RayPacket> packets, std::span<HitPacket> hits,
+                    std::span<std::vector<Crossing>> crossings = {}) const;
+  /// The share of light that the panes on the way of each ray of a packet let through, per band.
+  using Tints = std::array<RgbF, RayPacket::width>;
+  /// Sets bit i of `blocked[p]` if ray i of packet p meets a face that is no pane between its t_min and t_max, and clears it
+  /// otherwise. Sets `tints[p]` unless `tints` is empty; the tint of a blocked ray is arbitrary.
+  void occlusions(std::span<const RayPacket> packets, std::span<std::uint16_t> blocked, std::span<Tints> tints = {}) const;
 
  private:
   struct Handles;

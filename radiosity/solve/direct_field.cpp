@@ -135,7 +135,9 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
   if (leaves.size() == unlit) waiting_power_ = 0;
 }
 
-ShadowNeeds DirectField::shadow_needs() const { return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium)}; }
+ShadowNeeds DirectField::shadow_needs() const {
+  return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium), plan_.needs(Feature::panes)};
+}
 
 /// Adds one light to the light of `receivers`, which are these leaves.
 void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,

@@ -38,7 +38,8 @@ bool Pass::trace_rows(const std::function<void()>& after_each, RowsToTrace which
       after_each();
     }
   }
-  if (rows.carry_light() && state_.options.form_factors == FormFactorMethod::analytic) rows.make_exact();
+  const bool is_exact = state_.options.form_factors == FormFactorMethod::analytic && !state_.plan.needs(Feature::panes);
+  if (rows.carry_light() && is_exact) rows.make_exact();
   return false;
 }
 

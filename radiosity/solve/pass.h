@@ -76,6 +76,7 @@ class Pass {
   double squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   bool rows_tell_what_is_lost() const;
+  Rgb taken_up(const TransportRow& row) const;
 
   SolveState& state_;
   Stage stage_ = Stage::tracing;

@@ -15,6 +15,15 @@ bool Pass::rows_tell_what_is_lost() const {
   return true;
 }
 
+/// Returns the sum of the hits' weights that does not go on through panes, times the row's ray count.
+Rgb Pass::taken_up(const TransportRow& row) const {
+  if (!state_.plan.needs(Feature::panes)) return row.stored_weight();
+  Rgb sum;
+  for (std::size_t h = 0; h < row.hits.size(); ++h)
+    sum += widen(row.hit_weight[h]) * (Rgb{1, 1, 1} - state_.mesh.material_of(row.hits[h].root_face()).regular_transmittance);
+  return sum;
+}
+
 // The light that leaves a patch is lost in the share of directions in which its row finds no front. The part of a patch on which
 // a solid stands receives nothing, and its emission is lost. Without rows the lost power is taken to be what is not accounted for
 // otherwise.
@@ -29,12 +38,13 @@ PowerBalance Pass::balance() const {
     const ShootingPatch& patch = patches[p];
     const TransportRow& row = *patch.row;
     const std::uint32_t root = state_.forests.rows().id(system_->rows()[p]).root_face();
-    const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * row.stored_weight();
+    const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * taken_up(row);
+    const Rgb kept = white - state_.mesh.material_of(root).regular_transmittance;
     const double open = row.visible_share();
     for (const NodeIndex leaf : system_->leaves_of(p)) {
       const double area = state_.forests.leaf_area(leaf), seen = open * area;
       const RelativeLight arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
-      absorbed += seen * ((white - patch.reflectance) * arriving);
+      absorbed += seen * ((kept - patch.reflectance) * arriving);
       lost += seen * ((white - found) * (emission + patch.reflectance * arriving)) + (area - seen) * emission;
     }
   }

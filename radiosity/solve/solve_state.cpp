@@ -14,12 +14,14 @@ constexpr double held_by_floats = 1e37;
 
 /// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max rho). If every surface emitted and
 /// reflected like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth does
-/// not. Near a lamp, and under a sky that is brighter beside its zenith, irradiance has no such bound.
+/// not. Near a lamp, under a sky that is brighter beside its zenith, and among panes that emit, irradiance has no such bound.
 Rgb largest_irradiance(const BaseMesh& mesh) {
   Rgb emission, reflectance;
   for (const RootPatch& root : mesh.roots()) {
-    emission = upper(emission, mesh.materials()[root.material].emission);
-    reflectance = upper(reflectance, mesh.materials()[root.material].reflectance);
+    const Material& material = mesh.materials()[root.material];
+    if (material.is_pane() && !material.emission.is_zero()) return {held_by_floats, held_by_floats, held_by_floats};
+    emission = upper(emission, material.emission);
+    reflectance = upper(reflectance, material.reflectance);
   }
   for (const Light& light : mesh.lights()) {
     if (light.kind != LightKind::directional && !light.intensity.is_zero())

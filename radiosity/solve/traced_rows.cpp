@@ -94,7 +94,7 @@ std::vector<TransportRow> TracedRows::traced(std::span<const NodeIndex> rows, st
     shapes.push_back(forests_.rows().shape(row));
     patches.push_back(forests_.rows().id(row));
   }
-  const RowNeeds needs{plan_.needs(Feature::back_sides), plan_.needs(Feature::refinement)};
+  const RowNeeds needs{plan_.needs(Feature::back_sides), plan_.needs(Feature::panes), plan_.needs(Feature::refinement)};
   return trace_rows(scene_, directions_, shapes, patches, sizes, seed, budget_, needs);
 }
 

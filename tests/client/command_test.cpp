@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -203,6 +204,46 @@ TEST_F(Command, LuminairesLightARoomInLux) {
   EXPECT_NE(radiometric.at("warnings").dump().find("1/179 W"), std::string::npos);
   EXPECT_EQ(run("solve room.obj --luminaire panel.ies").status, 2);
   EXPECT_EQ(run("solve room.obj --luminaire absent.ies@1,1,1").status, 3);
+}
+
+TEST_F(Command, AnEnvironmentMapLightsAScene) {
+  write("floor.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n");
+  std::string grey = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n";
+  for (int pixel = 0; pixel < 16 * 8; ++pixel) grey += "\x80\x80\x80\x81";  // radiance 1
+  write("grey.hdr", grey);
+  const Ran ran = run("solve floor.obj --json --environment grey.hdr --environment-scale 2 --environment-turn 90");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NEAR(nlohmann::json::parse(ran.out).at("mean_irradiance").get<double>(), 2 * std::numbers::pi, 0.01);
+  EXPECT_EQ(run("solve floor.obj --environment grey.png").status, 2);
+  EXPECT_EQ(run("solve floor.obj --environment-scale 2").status, 2);
+  EXPECT_EQ(run("solve floor.obj --environment absent.hdr").status, 3);
+  write("cut.hdr", grey.substr(0, 100));
+  const Ran cut = run("solve floor.obj --environment cut.hdr");
+  EXPECT_EQ(cut.status, 3);
+  EXPECT_EQ(line_count(cut.err), 1) << cut.err;
+  EXPECT_NE(cut.err.find("cut.hdr"), std::string::npos) << cut.err;
+}
+
+TEST_F(Command, GlassLetsLightThrough) {
+  write("room.mtl", "newmtl lamp\nKe 10 10 10\nnewmtl glass\nKd 0 0 0\nd 0.25\nnewmtl floor\nKd 0 0 0\n");
+  const std::string scene =
+      "mtllib room.mtl\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 2 0\nv 1 2 0\nv 1 2 1\nv 0 2 1\n"
+      "v -9 1 -9\nv 9 1 -9\nv 9 1 9\nv -9 1 9\nusemtl floor\nf 1 2 3 4\nusemtl lamp\nf 5 6 7 8\n";
+  write("open.obj", scene);
+  write("glazed.obj", scene + "usemtl glass\nf 9 10 11 12\n");
+  write("middle.csv", "0.5,0,0.5,0,1,0\n");
+  const auto irradiance = [&](const std::string& name) {
+    EXPECT_EQ(run("solve " + name + ".obj -o " + name + ".glb --tolerance 0.05").status, 0);
+    const std::string line = run("probe " + name + ".glb --points middle.csv").out;
+    std::istringstream cells(line.substr(line.find('\n') + 1));
+    std::string cell;
+    for (int n = 0; n < 7; ++n) std::getline(cells, cell, ',');
+    return std::stod(cell);
+  };
+  const double open = irradiance("open"), glazed = irradiance("glazed");
+  EXPECT_GT(open, 1);
+  EXPECT_NEAR(glazed, 0.75 * open, 0.01 * open);
+  EXPECT_NE(run("explain glazed.obj").out.find("light goes straight through 1 of 3 faces"), std::string::npos);
 }
 
 TEST_F(Command, JsonIsAllThatStdoutHolds) {

@@ -52,6 +52,39 @@ TEST(PathTracer, FacesBackToBackInOnePlaceAreBothSeen) {
   }
 }
 
+// What a pane that absorbs nothing takes from one way it gives to another.
+TEST(PathTracer, PanesThatAbsorbNothingChangeNothingInAFurnace) {
+  for (const double reflectance : {0.0, 0.3, 0.7}) {
+    Scene scene = test::furnace(0.5, 0.5);
+    const double through = 1 - reflectance;
+    scene.materials.push_back({"pane", {}, {reflectance, reflectance, reflectance}, true, {through, through, through}});
+    add_polygon(scene, {{1, 0.2, 0.5}, {1, 1.8, 0.5}, {1.3, 1.8, 3.5}, {1.3, 0.2, 3.5}}, 1);
+    add_polygon(scene, {{2, 0.2, 0.5}, {2, 1.8, 0.5}, {2, 1.8, 3.5}, {2, 0.2, 3.5}}, 1);
+    const auto estimate = traced(scene, {{1.5, 0, 2}, {0, 1, 0}});
+    EXPECT_NEAR(estimate.mean().mean(), 1, sure * error_of(estimate)) << reflectance;
+  }
+}
+
+TEST(PathTracer, APaneDimsAnEmitterBehindIt) {
+  for (const bool two_sided : {false, true})
+    for (const bool faces_down : {false, true}) {
+      Scene scene;
+      scene.materials = {grey(3, 0)};
+      add_ceiling(scene, 1, 1, 0);
+      add_black_floor(scene, 1);
+      const SurfacePoint point{{0, 0, 0}, {0, 0, 1}};
+      const double clear = traced(scene, point).mean().r;
+      scene.materials.push_back({"pane", {}, {}, two_sided, {0.8, 0.5, 0.2}});
+      if (faces_down) add_ceiling(scene, 4, 0.5, 2);
+      else add_polygon(scene, {{-2, -2, 0.5}, {2, -2, 0.5}, {2, 2, 0.5}, {-2, 2, 0.5}}, 2);
+      const auto estimate = traced(scene, point);
+      const double noise = sure * error_of(estimate) + 0.01 * clear;
+      EXPECT_NEAR(estimate.mean().r, 0.8 * clear, noise);
+      EXPECT_NEAR(estimate.mean().g, 0.5 * clear, noise);
+      EXPECT_NEAR(estimate.mean().b, 0.2 * clear, noise);
+    }
+}
+
 TEST(PathTracer, SquareEmitterGivesItsFormFactor) {
   Scene scene;
   scene.materials = {grey(3, 0)};

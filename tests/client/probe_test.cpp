@@ -97,6 +97,28 @@ TEST(Probe, GathersPastWhatStandsInTheLight) {
   EXPECT_NEAR(sample.irradiance.g, expected, 4 * sample.standard_error);
 }
 
+TEST(Probe, GathersThroughPanes) {
+  const std::vector<ProbePoint> point{{{1, 1, 1}, {0, 1, 0}}};
+  const auto with_sheet = [&](const Rgb& transmittance, bool two_sided) {
+    DisplayMesh room = lit_room(2);
+    const auto walls = static_cast<std::uint32_t>(room.triangles.size());
+    room.materials = {{"wall", {}, {0.5, 0.5, 0.5}, false}, {"pane", {}, {}, two_sided, transmittance}};
+    if (two_sided) add_wall(room, {0, 1.50001, 0}, {0, 0, 2}, {1, 0, 0}, 1, [](const Vec3&) { return grey(0); });
+    add_wall(room, {0, 1.5, 0}, {1, 0, 0}, {0, 0, 2}, 1, [](const Vec3&) { return grey(0); });
+    room.faces = {{{}, 0, walls}, {{}, 1, static_cast<std::uint32_t>(room.triangles.size()) - walls}};
+    return probe(room, point)[0];
+  };
+  const auto clear = probe(lit_room(2), point)[0];
+  for (const bool two_sided : {false, true}) {
+    const auto blocked = with_sheet({}, two_sided), tinted = with_sheet({0.5, 0.2, 1}, two_sided);
+    const double hidden = clear.irradiance.g - blocked.irradiance.g, noise = 4 * (clear.standard_error + tinted.standard_error);
+    EXPECT_GT(hidden, 20 * noise / 4);
+    EXPECT_NEAR(tinted.irradiance.r, blocked.irradiance.g + 0.5 * hidden, noise);
+    EXPECT_NEAR(tinted.irradiance.g, blocked.irradiance.g + 0.2 * hidden, noise);
+    EXPECT_NEAR(tinted.irradiance.b, clear.irradiance.g, noise);
+  }
+}
+
 TEST(Probe, AMediumDimsWhatIsGathered) {
   // All surfaces visible from the middle of the room are at least 1 m away, and at most the room's diagonal.
   const auto clear = probe(lit_room(2), std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}})[0];

@@ -44,6 +44,18 @@ TEST(Render, BacksAreLookedThrough) {
   EXPECT_EQ(render(mesh, fixed(facing_wall())).rgb, alone.rgb);
 }
 
+TEST(Render, PanesAreLookedThroughAndAddTheirOwnLight) {
+  DisplayMesh mesh = wall(grey(0.4f));
+  mesh.materials = {{"wall", {}, {0.5, 0.5, 0.5}, false}, {"pane", {}, {}, true, {0.5, 0.25, 1}}};
+  const auto of_wall = static_cast<std::uint32_t>(mesh.triangles.size());
+  for (const double z : {0.3, 0.5})
+    add_wall(mesh, {0, 0, z}, {1, 0, 0}, {0, 1, 0}, 1, [](const Vec3&) { return RgbF{0, 0.1f, 0}; });
+  mesh.faces = {{{}, 0, of_wall}, {{}, 1, static_cast<std::uint32_t>(mesh.triangles.size()) - of_wall}};
+  const Rgb shown = tone_map({0.25 * 0.4, 0.1 + 0.25 * 0.1 + 0.0625 * 0.4, 0.4});
+  EXPECT_EQ(pixel(render(mesh, fixed(facing_wall())), 32, 34),
+            (Pixel{srgb_byte(shown.r), srgb_byte(shown.g), srgb_byte(shown.b)}));
+}
+
 TEST(Render, OfFacesBackToBackInOnePlaceTheFrontIsSeenInEveryPixel) {
   const DisplayMesh front = wall(grey(0.4f));
   const Image alone = render(front, fixed(facing_wall()));

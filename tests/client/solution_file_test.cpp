@@ -78,7 +78,7 @@ TEST_P(SolutionFile, RemembersLightsAndWhatItsNumbersMean) {
 
 TEST_P(SolutionFile, RemembersMaterialsObjectsAndTheFacesOfTheScene) {
   DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
-  mesh.materials = {{"wall \n 1", {0, 1, 2}, {0.1, 0.2, 0.3}, true}, {"lamp", {5, 5, 5}, {}, false}};
+  mesh.materials = {{"wall \n 1", {0, 1, 2}, {0.1, 0.2, 0.3}, true}, {"lamp", {5, 5, 5}, {}, false, {0.5, 0.25, 1}}};
   mesh.objects = {{"room", std::nullopt, {}, 0, 0}, {"walls", 0, {{0, 1, 0}, {-1, 0, 0}, {0, 0, 2}, {1, 2, 0.1}}, 0, 7}};
   const auto all = static_cast<std::uint32_t>(mesh.triangles.size());
   mesh.faces = {{{0, 1}, 0, 4}, {{2, InputFaces::none}, 1, 4}, {{3, 6}, 0, all - 8}};
@@ -90,6 +90,8 @@ TEST_P(SolutionFile, RemembersMaterialsObjectsAndTheFacesOfTheScene) {
   EXPECT_EQ(back.materials[0].reflectance, mesh.materials[0].reflectance);
   EXPECT_TRUE(back.materials[0].two_sided);
   EXPECT_FALSE(back.materials[1].two_sided);
+  EXPECT_TRUE(back.materials[0].regular_transmittance.is_zero());
+  EXPECT_EQ(back.materials[1].regular_transmittance, mesh.materials[1].regular_transmittance);
   EXPECT_EQ(back.objects, mesh.objects);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.triangles, mesh.triangles);
@@ -252,6 +254,17 @@ TEST(GlbFile, CountsAndPlacesBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THROW(decode_glb(with_json(glb, count, "\"count\":999")), SolutionFileError);
   EXPECT_THROW(decode_glb(with_json(glb, "\"byteOffset\":0", "\"byteStride\":0")), SolutionFileError);
   EXPECT_THROW(decode_glb(with_json(glb, "\"_RADIOSITY\"", "\"_RADIANCE\"")), SolutionFileError);
+}
+
+TEST(GlbFile, ViewersLeaveOutWhatLightGoesThrough) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  EXPECT_EQ(encode_glb(mesh).find("alphaMode"), std::string::npos);
+  mesh.materials = {{"wall", {}, {}, false}, {"pane", {}, {}, false, {0.9, 0.8, 0.7}}};
+  mesh.faces = {{{}, 0, 4}, {{}, 1, static_cast<std::uint32_t>(mesh.triangles.size()) - 4}};
+  const std::string glb = encode_glb(mesh);
+  EXPECT_NE(glb.find(R"("alphaMode":"MASK")"), std::string::npos);
+  EXPECT_NE(glb.find(R"("VEC4")"), std::string::npos);
+  EXPECT_EQ(decode_glb(glb).triangles, mesh.triangles);
 }
 
 TEST(SolutionFileName, DecidesTheFormat) {

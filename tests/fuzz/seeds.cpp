@@ -25,9 +25,28 @@ void write(const fs::path& path, const std::string& bytes) {
 std::string upload_of(const Scene& scene) {
   v1::CreateSceneRequest message;
   message.mutable_scene()->set_display_name("room");
-  std::string bytes = fuzz::as_text(message.SerializeAsString());
+  std::string bytes = std::string(1, '\0') + fuzz::as_text(message.SerializeAsString());
   SceneSlicer slicer(scene, 600);
   while (slicer.next(*message.mutable_chunk())) bytes += fuzz::as_text(message.SerializeAsString());
+  return bytes;
+}
+
+/// Returns the messages that send a scene file and a part of it, in pieces.
+std::string upload_of_files() {
+  v1::ImportSceneRequest first;
+  first.mutable_options()->set_scene_file("room.obj");
+  first.mutable_options()->add_absent_files("wood.png");
+  std::string bytes = '\1' + fuzz::as_text(first.SerializeAsString());
+  const std::pair<const char*, std::string> files[]{{"room.obj", "mtllib a/b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+                                                    {"a/b.mtl", "newmtl wood\nKd 1 1 1\n"}};
+  for (const auto& [name, content] : files)
+    for (std::size_t at = 0; at < content.size(); at += 16) {
+      v1::ImportSceneRequest next;
+      next.mutable_piece()->set_file(name);
+      next.mutable_piece()->set_offset(at);
+      next.mutable_piece()->set_content(content.substr(at, 16));
+      bytes += fuzz::as_text(next.SerializeAsString());
+    }
   return bytes;
 }
 
@@ -93,6 +112,7 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
   const Scene room = test::coloured_room();
   write(directory / "scene_upload" / "room", upload_of(room));
   write(directory / "scene_upload" / "furnace", upload_of(test::furnace(1, 0.5)));
+  write(directory / "scene_upload" / "files", upload_of_files());
   const BaseMesh mesh(room);
   SolutionLog log;
   SolveOptions options{.tolerance = 0.05, .max_leaves = 2000, .threads = 1};

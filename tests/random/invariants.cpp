@@ -71,7 +71,15 @@ Rgb brightest_radiosity(const BaseMesh& mesh) {
   return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
 }
 
+/// Returns whether any material lets light straight through and satisfies a condition.
+template <class Condition>
+bool any_pane(const Subject& s, Condition&& condition) {
+  return std::ranges::any_of(s.trial.scene.materials, [&](const Material& m) { return m.is_pane() && condition(m); });
+}
+
 Finding radiosity_is_bounded(const Subject& s) {
+  // Light of panes that emit adds up along a ray.
+  if (any_pane(s, [](const Material& m) { return !m.emission.is_zero(); })) return std::nullopt;
   constexpr double rounding = 1e-5;  // rounding of float32; the bound itself contains the amplification
   const Rgb most = (1 + rounding) * brightest_radiosity(s.mesh);
   for (const LeafValue& leaf : s.solved.leaves) {
@@ -97,7 +105,12 @@ Finding row_sums_are_at_most_one(const Subject& s) {
   for (std::size_t p = 0; p < system.patches().size(); ++p) {
     const TransportRow& row = *system.patches()[p].row;
     if (row.is_hidden()) continue;
-    const double sum = (1.0 / row.ray_count()) * row.stored_weight().max();
+    Rgb all;
+    for (std::size_t h = 0; h < row.hits.size(); ++h) {
+      const Material& met = s.mesh.material_of(row.hits[h].root_face());
+      all += (row.hit_weight.empty() ? Rgb{1, 1, 1} : widen(row.hit_weight[h])) * (Rgb{1, 1, 1} - met.regular_transmittance);
+    }
+    const double sum = (1.0 / row.ray_count()) * all.max();
     if (!(sum <= 1 + rounding)) return "patch " + std::to_string(p) + ": " + number(sum);
   }
   return std::nullopt;
@@ -143,8 +156,10 @@ Finding emission_scales(const Subject& s) {
     leaf.irradiance *= static_cast<float>(factor);
   }
   for (std::size_t n = 0; n < std::min(got.leaves.size(), expected.leaves.size()); ++n)
-    if (got.leaves[n].irradiance.max() < least && expected.leaves[n].irradiance.max() < least)
-      got.leaves[n].irradiance = expected.leaves[n].irradiance = {};
+    for (float RgbF::*band : {&RgbF::r, &RgbF::g, &RgbF::b}) {
+      float &a = got.leaves[n].irradiance.*band, &b = expected.leaves[n].irradiance.*band;
+      if (a < least && b < least) a = b = 0;
+    }
   return difference(expected, got);
 }
 
@@ -224,6 +239,8 @@ Finding cutting_a_face_does_not_matter(const Subject& s) {
 Finding two_sides_are_two_faces(const Subject& s) {
   const bool has_backs = std::ranges::any_of(s.mesh.roots(), [](const RootPatch& root) { return root.is_back; });
   if (!has_backs || !s.trial.is_well_posed) return std::nullopt;
+  // Two panes in one place dim twice.
+  if (any_pane(s, [](const Material& m) { return m.two_sided; })) return std::nullopt;
   return disagreement(s, with_backs_as_faces(s.trial.scene), s.trial.options);
 }
 

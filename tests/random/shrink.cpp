@@ -75,6 +75,7 @@ class Shrinker {
       const auto material = [m](Trial& t) -> Material& { return t.scene.materials[m]; };
       const auto is_lit = [&](Trial& t) { return !material(t).emission.is_zero(); };
       any |= attempt([&](Trial& t) { return set(material(t).two_sided, false); });
+      any |= attempt([&](Trial& t) { return set(material(t).regular_transmittance, Rgb{}); });
       if (attempt([&](Trial& t) { return set(material(t).emission, Rgb{}); })) any = true;
       else any |= attempt([&](Trial& t) { return is_lit(t) && set(material(t).emission, Rgb{1, 1, 1}); });
       if (attempt([&](Trial& t) { return set(material(t).reflectance, Rgb{}); })) any = true;

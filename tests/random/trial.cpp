@@ -48,6 +48,8 @@ std::vector<Material> random_materials(Dice& dice, std::size_t count) {
   }
   if (dice.happens(0.15))  // a closed room of these is nearly a furnace
     for (Material& material : materials) material.reflectance = materials[0].reflectance;
+  for (Material& material : materials)
+    if (dice.happens(0.15)) material.regular_transmittance = random_bands(dice, 0, 1) * (Rgb{1, 1, 1} - material.reflectance);
   return materials;
 }
 

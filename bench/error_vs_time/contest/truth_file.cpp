@@ -31,6 +31,8 @@ std::uint64_t mixed(const Scene& scene) {
   for (const Face& face : scene.faces) mixer.add((std::uint64_t{face.corner_count} << 32) + face.material);
   for (const Material& m : scene.materials)
     mixer.add(m.emission), mixer.add(m.reflectance), mixer.add(std::uint64_t{m.two_sided});
+  for (const Material& m : scene.materials)
+    if (m.is_pane()) mixer.add(m.regular_transmittance);
   mixer.add(scene.absorption);
   return mixer.mixed();
 }

@@ -97,7 +97,10 @@ class Watch {
     this.forget();
     const { centre, extent, isZUp, isPhotometric } = this.mesh;
     const materials = Float32Array.from(
-      this.mesh.materials.flatMap(({ emission: e, reflectance: r }) => [e!.r, e!.g, e!.b, 0, r!.r, r!.g, r!.b, 0]),
+      this.mesh.materials.flatMap(({ emission: e, reflectance: r, regularTransmittance: t }) => {
+        const through = t ? (t.r + t.g + t.b) / 3 : 0;
+        return [e!.r, e!.g, e!.b, through, r!.r, r!.g, r!.b, 0];
+      }),
     );
     const counts = Uint8Array.from({ length: this.mesh.rootCount }, (_, root) => this.mesh.cornersOf(root));
     tell({ kind: "mesh", centre, extent, corners: Float32Array.from(this.mesh.corners), counts, materials, isZUp, isPhotometric });

@@ -122,7 +122,7 @@ export class Room {
     this.surface = this.drawable(this.slots.geometry, newMaterial());
   }
 
-  /** `materials`: emission and reflectance of each, four floats each. */
+  /** `materials`: emission, mean of what goes straight through, reflectance and 0 of each: eight floats. */
   setMaterials(materials: Float32Array): void {
     const count = Math.max(1, materials.length / 8);
     const width = Math.min(count, 1024);

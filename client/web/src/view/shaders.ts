@@ -13,10 +13,13 @@ out vec3 irradiance;
 out float centre;
 flat out vec3 emission;
 flat out vec3 reflectance;
+flat out float through;
 void main() {
   int material = int(value.w + 0.5);
   ivec2 at = ivec2(2 * (material % materialsWide), material / materialsWide);
-  emission = texelFetch(materials, at, 0).rgb;
+  vec4 first = texelFetch(materials, at, 0);
+  emission = first.rgb;
+  through = first.a;
   reflectance = texelFetch(materials, at + ivec2(1, 0), 0).rgb;
   irradiance = value.rgb;
   centre = gl_VertexID % 9 == 0 ? 1.0 : 0.0;
@@ -38,7 +41,15 @@ in vec3 irradiance;
 in float centre;
 flat in vec3 emission;
 flat in vec3 reflectance;
+flat in float through;
 out vec4 pixel;
+
+// Bayer's matrix of 4 x 4: of each such square of pixels, a pane leaves the share that light passes.
+const float thresholds[16] = float[](0.0, 8.0, 2.0, 10.0, 12.0, 4.0, 14.0, 6.0, 3.0, 11.0, 1.0, 9.0, 15.0, 7.0, 13.0, 5.0);
+bool passes() {
+  ivec2 at = ivec2(gl_FragCoord.xy) % 4;
+  return through > (thresholds[4 * at.y + at.x] + 0.5) / 16.0;
+}
 
 vec3 toned(vec3 x) {
   x = min(x, vec3(1000.0));
@@ -55,6 +66,7 @@ float place(float h) {
   return (h - scale.x) / max(scale.y - scale.x, 1e-30);
 }
 void main() {
+  if (passes()) discard;
   vec3 h = irradiance + ambient;
   vec3 colour;
   if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;

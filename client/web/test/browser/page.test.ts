@@ -250,7 +250,7 @@ describe("the page", () => {
     await page.setInputFiles("#files", ["room.gltf", ...ROOM_PARTS].map((part) => BLENDER + part));
     await waitForState(page, "Done");
     expect(await page.locator("#title").textContent()).toBe("room.gltf, 765 faces");
-    expect(await warningsOf(page)).toContain("2 materials with alpha are taken for opaque");
+    expect(await warningsOf(page)).toContain("1 clear material is taken for thin panes, without refraction");
     expect(await lampsOf((await server.api.scenes.listScenes({})).scenes[0].name)).toEqual([Light_Kind.POINT, Light_Kind.SPOT, Light_Kind.DIRECTIONAL]);
     const jpeg = await page.evaluate(async () => {
       const canvas = new OffscreenCanvas(1500, 40); // wider than what is looked at in one piece
