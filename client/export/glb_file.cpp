@@ -114,8 +114,12 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   attributes["_IRRADIANCE"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.irradiance[i]); });
   attributes["_RADIOSITY"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.radiosity[i]); });
   // glTF defines COLOR_0 as linear: no sRGB encoding here.
-  const auto colour = [&](std::size_t i) { return float3(narrow(tone_map(exposure * widen(mesh.radiosity[i])))); };
   const std::vector<float> opacity = opacities_of(mesh);
+  const auto colour = [&](std::size_t i) {
+    // Panes are drawn whole or not at all (see unlit_material), so those that are drawn get the colour of the part that is there.
+    const double there = opacity.empty() ? 1 : std::max(0.5, double(opacity[i]));
+    return float3(narrow(tone_map(exposure / there * widen(mesh.radiosity[i]))));
+  };
   attributes["COLOR_0"] = opacity.empty() ? chunk.add_vectors(count, colour) : chunk.add_vectors(count, [&](std::size_t i) {
     const auto [r, g, b] = colour(i);
     return std::array{r, g, b, opacity[i]};

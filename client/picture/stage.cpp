@@ -5,9 +5,7 @@ namespace alvor {
 namespace {
 
 // Most panes that are looked through.
-constexpr int most_panes = 64;
-// Share of the way to a pane by which a ray begins behind it, so that it does not meet the pane again.
-constexpr double beyond_pane = 1e-6;
+constexpr std::size_t most_panes = 1000;
 
 }  // namespace
 
@@ -17,9 +15,10 @@ std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
   auto hit = caster_.cast_front(origin, direction);
   if (!hit) return std::nullopt;
   Seen seen{hit->triangle, hit->u, hit->v};
-  for (int n = 0; n < most_panes && !panes_.empty() && panes_[seen.triangle]; ++n) {
-    origin = origin + (1 + beyond_pane) * hit->distance * direction;
-    hit = caster_.cast_front(origin, direction);
+  std::vector<std::uint32_t> passed;
+  while (!panes_.empty() && panes_[seen.triangle] && passed.size() < most_panes) {
+    passed.push_back(seen.triangle);
+    hit = caster_.cast_front(origin, direction, passed);
     if (!hit && radiosity(seen).is_zero()) return std::nullopt;
     if (!hit) break;
     const Material& pane = *panes_[seen.triangle];

@@ -21,10 +21,8 @@ constexpr std::uint32_t least_shadow_rays = 4;
 constexpr std::uint32_t trial_rays = 128, rays_of_soft_lamp = 256;
 /// Fraction of a shadow ray's length by which it ends before the emitter, so that in float32 it does not hit it.
 constexpr double before_emitter = 1e-5;
-/// Most panes that a ray goes through, and by which share of its way to a pane it begins behind it, so that it does not meet it
-/// again.
-constexpr int most_panes = 64;
-constexpr double beyond_pane = 1e-6;
+/// Most panes that a ray goes through.
+constexpr std::size_t most_panes = 1000;
 
 // The streams of random numbers of one point.
 enum Purpose : std::uint64_t { trial, indirect, direct, lamp };
@@ -62,43 +60,47 @@ std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std:
 
 Rgb Gatherer::through(std::uint32_t triangle, Vec3 direction) const {
   if (panes_.empty() || !panes_[triangle]) return {};
-  const Vec3 a = corner(triangle, 0), area = cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
-  return panes_[triangle]->two_sided && dot(area, direction) > 0 ? Rgb{1, 1, 1} : panes_[triangle]->regular_transmittance;
+  const bool is_seen_by_twin = panes_[triangle]->two_sided && !meets_front(triangle, direction);
+  return is_seen_by_twin ? Rgb{1, 1, 1} : panes_[triangle]->regular_transmittance;
 }
 
 /// Returns the share of light that goes straight from one place to another.
 Rgb Gatherer::passing(Vec3 from, Vec3 to) const {
-  Rgb passed{1, 1, 1};
-  if (!caster_.is_blocked(from, to)) return passed;
+  Rgb share{1, 1, 1};
+  if (!caster_.is_blocked(from, to)) return share;
   if (panes_.empty()) return {};
   const Vec3 direction = normalized(to - from);
-  for (int n = 0; n < most_panes && !passed.is_zero(); ++n) {
-    const auto hit = caster_.cast(from, direction);
-    if (!hit || hit->distance >= dot(to - from, direction)) return passed;
-    passed = passed * through(hit->triangle, direction);
-    from = from + (1 + beyond_pane) * hit->distance * direction;
+  const double distance = length(to - from);
+  std::vector<std::uint32_t> passed;
+  while (passed.size() < most_panes && !share.is_zero()) {
+    const auto hit = caster_.cast(from, direction, passed);
+    if (!hit || hit->distance >= distance) return share;
+    share = share * through(hit->triangle, direction);
+    passed.push_back(hit->triangle);
   }
   return {};
 }
 
+bool Gatherer::meets_front(std::uint32_t triangle, Vec3 direction) const {
+  const Vec3 a = corner(triangle, 0), area = cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
+  return dot(area, direction) < 0;
+}
+
 /// Returns pi times the radiance that arrives at a point from a direction, without that of emitters and lamps.
 Rgb Gatherer::from_direction(Vec3 point, Vec3 direction) const {
-  Rgb arriving, passed{1, 1, 1};
-  Vec3 from = point;
-  for (int n = 0; n < most_panes && !passed.is_zero(); ++n) {
-    const auto hit = caster_.cast(from, direction);
+  Rgb arriving, share{1, 1, 1};
+  std::vector<std::uint32_t> passed;
+  while (passed.size() < most_panes && !share.is_zero()) {
+    const auto hit = caster_.cast(point, direction, passed);
     if (!hit) {
       if (skies_.empty()) return arriving;
       const Rgb sky = std::numbers::pi * skies_.radiance(direction);
-      return arriving + passed * medium_.transmittance(lamps_.way_out(point, direction)) * sky;
+      return arriving + share * medium_.transmittance(lamps_.way_out(point, direction)) * sky;
     }
-    const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
-    if (dot(area, direction) < 0 && !is_emitter_[hit->triangle]) {
-      const double distance = dot(from - point, direction) + hit->distance;
-      arriving += passed * medium_.transmittance(distance) * radiosity(hit->triangle, hit->u, hit->v);
-    }
-    passed = passed * through(hit->triangle, direction);
-    from = from + (1 + beyond_pane) * hit->distance * direction;
+    if (meets_front(hit->triangle, direction) && !is_emitter_[hit->triangle])
+      arriving += share * medium_.transmittance(hit->distance) * radiosity(hit->triangle, hit->u, hit->v);
+    share = share * through(hit->triangle, direction);
+    passed.push_back(hit->triangle);
   }
   return arriving;
 }
@@ -109,10 +111,13 @@ bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
   std::uint32_t fronts = 0, backs = 0;
   for (std::uint32_t n = 0; n < trial_rays; ++n) {
     const Vec3 direction = uniform_direction(directions[n]);
-    const auto hit = caster_.cast(point, direction);
-    if (!hit) continue;
-    const Vec3 a = corner(hit->triangle, 0), area = cross(corner(hit->triangle, 1) - a, corner(hit->triangle, 2) - a);
-    ++(dot(area, direction) < 0 ? fronts : backs);
+    auto hit = caster_.cast(point, direction);
+    std::vector<std::uint32_t> passed;
+    while (hit && !panes_.empty() && panes_[hit->triangle] && passed.size() < most_panes) {
+      passed.push_back(hit->triangle);
+      hit = caster_.cast(point, direction, passed);
+    }
+    if (hit) ++(meets_front(hit->triangle, direction) ? fronts : backs);
   }
   return backs >= fronts;
 }

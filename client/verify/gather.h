@@ -43,6 +43,7 @@ class Gatherer {
   /// The share of light that goes straight through a triangle, from the side that it is met on. The back of a two-sided pane is
   /// passed: its front, drawn close to it, dims.
   Rgb through(std::uint32_t triangle, Vec3 direction) const;
+  bool meets_front(std::uint32_t triangle, Vec3 direction) const;
   Rgb passing(Vec3 from, Vec3 to) const;
   Rgb from_direction(Vec3 point, Vec3 direction) const;
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;

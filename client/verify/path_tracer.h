@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,8 +76,8 @@ class PathTracer {
     Bend bend;
     double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
     bool is_outside = false;          ///< the path leaves the scene
-    const Surface* pane = nullptr;    ///< the surface that was met, on either side, if light goes straight on through it
-    Bend beyond;                      ///< behind that pane
+    std::optional<std::uint32_t>
+        pane;  ///< number of the surface that was met, on either side, if light goes straight on through it
   };
 
   Bend start_at(const SurfacePoint& point) const;
@@ -87,7 +88,7 @@ class PathTracer {
   Rgb from_surroundings(const Bend& bend, UnitPair choice) const;
   Rgb from_lamps(const Bend& bend, PathRandom& random) const;
   Rgb from_met_light(const Bend& bend, Vec3 direction, const Met& met) const;
-  Met meet(const Bend& bend, Vec3 direction) const;
+  Met meet(const Bend& bend, Vec3 direction, std::span<const std::uint32_t> passed = {}) const;
   Met behind_panes(const Bend& bend, Vec3 direction) const;
   Met follow(const Bend& bend, Vec3 direction, PathRandom& random, Rgb& throughput) const;
   Rgb passing(Vec3 from, Vec3 to) const;

@@ -236,7 +236,10 @@ class GltfReader {
       if (!used[m]) continue;
       const tinygltf::Material& material = model_.materials[m];
       unsupported_.metals += is_metal(material);
-      unsupported_.clear_materials += material.extensions.contains("KHR_materials_transmission");
+      const auto transmission = material.extensions.find("KHR_materials_transmission");
+      unsupported_.clear_materials += transmission_of(material) > 0;
+      unsupported_.transmission_textures +=
+          transmission != material.extensions.end() && transmission->second.Has("transmissionTexture");
       unsupported_.translucent_materials += material.extensions.contains("KHR_materials_diffuse_transmission");
     }
   }

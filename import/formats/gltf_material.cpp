@@ -5,6 +5,7 @@
 #include "import/formats/texture_colour.h"
 #include "import/formats/tiny_gltf.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace alvor {
@@ -54,14 +55,6 @@ AlphaUse alpha_use_of(const tinygltf::Material& material) {
   return {};
 }
 
-/// Returns the share of light that KHR_materials_transmission lets through, in [0, 1]. Metal lets none through.
-double transmission(const tinygltf::Material& material) {
-  const auto extension = material.extensions.find("KHR_materials_transmission");
-  if (is_metal(material) || extension == material.extensions.end() || !extension->second.Has("transmissionFactor")) return 0;
-  const double share = extension->second.Get("transmissionFactor").GetNumberAsDouble();
-  return share >= 0 && share <= 1 ? share : 0;
-}
-
 Rgb rgb_of(const std::vector<double>& factor) { return factor.size() < 3 ? Rgb{} : Rgb{factor[0], factor[1], factor[2]}; }
 
 double emissive_strength(const tinygltf::Material& material) {
@@ -78,6 +71,13 @@ bool is_metal(const tinygltf::Material& material) {
   return surface.metallicFactor > 0.5 && surface.metallicRoughnessTexture.index < 0;
 }
 
+double transmission_of(const tinygltf::Material& material) {
+  const auto extension = material.extensions.find("KHR_materials_transmission");
+  if (is_metal(material) || extension == material.extensions.end() || !extension->second.Has("transmissionFactor")) return 0;
+  const double share = extension->second.Get("transmissionFactor").GetNumberAsDouble();
+  return share >= 0 ? std::min(1.0, share) : 0;
+}
+
 std::vector<Material> read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings) {
   std::vector<Material> materials;
   for (const tinygltf::Material& source : model.materials) {
@@ -89,7 +89,7 @@ std::vector<Material> read_gltf_materials(const tinygltf::Model& model, std::vec
     const Rgb light = emissive_strength(source) * rgb_of(source.emissiveFactor);
     const Rgb radiance = under_texture(model, light, source.emissiveTexture, {}, name, of_light, warnings);
     materials.push_back({name, emission_of_radiance(radiance), reflectance, source.doubleSided});
-    if (const double share = transmission(source); share > 0) let_through(materials.back(), share);
+    if (const double share = transmission_of(source); share > 0) let_through(materials.back(), share);
     if (opacity < 1) leave(materials.back(), opacity);
   }
   return materials;

@@ -71,7 +71,7 @@ void clamp_reflectance(SceneFile& file) {
     const Rgb given = material.reflectance;
     if (!given.is_finite()) continue;
     material.reflectance = {clamped(given.r), clamped(given.g), clamped(given.b)};
-    material.regular_transmittance = lower(material.regular_transmittance, Rgb{1, 1, 1} - material.reflectance);
+    material.regular_transmittance = upper(lower(material.regular_transmittance, Rgb{1, 1, 1} - material.reflectance), Rgb{});
     if (material.reflectance == given) continue;
     file.warnings.push_back("material '" + material.name + "': reflectance " + text_of(given) + " is clamped to " +
                             text_of(material.reflectance));

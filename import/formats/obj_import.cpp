@@ -163,16 +163,18 @@ Rgb under_texture(const Rgb& factor, std::string file, const Material& material,
   return textured(factor, mean_texel(files.find(file)), texture, warnings);
 }
 
-/// Returns the share of a material's surface that is there: `d`, times the mean opacity of `map_d`. That is the image's alpha if
-/// it has any, else its mean colour.
-double opacity_of(const tinyobj::material_t& material, SceneFiles& files) {
+/// Returns the share of a material's surface that is there: `d`, times the mean of `map_d`: of the image's alpha if it has any,
+/// else of its values.
+double opacity_of(const tinyobj::material_t& material, SceneFiles& files, std::vector<std::string>& warnings) {
   const double factor = std::clamp<double>(material.dissolve, 0, 1);
   if (material.alpha_texname.empty()) return factor;
   std::string file = material.alpha_texname;
   std::ranges::replace(file, '\\', '/');
   const auto mean = mean_texel(files.find(file), {AlphaUse::Kind::blended});
+  const std::string texture = "material '" + material.name + "': texture '" + file + "'";
+  warnings.push_back(texture + (mean ? " counts by its mean opacity" : " cannot be read and is left out"));
   if (!mean) return factor;
-  return factor * (mean->opacity < 1 ? mean->opacity : mean->colour.mean());
+  return factor * (mean->has_alpha ? mean->opacity : mean->level);
 }
 
 void fill_materials(SceneFile& file, const MaterialLibrary& library, SceneFiles& files) {
@@ -184,7 +186,7 @@ void fill_materials(SceneFile& file, const MaterialLibrary& library, SceneFiles&
       material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, files, file.warnings);
       material.emission =
           emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, files, file.warnings));
-      if (const double opacity = opacity_of(*found, files); opacity < 1) leave(material, opacity);
+      if (const double opacity = opacity_of(*found, files, file.warnings); opacity < 1) leave(material, opacity);
     } else if (!material.name.empty()) {
       file.warnings.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
     } else {

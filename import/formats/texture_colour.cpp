@@ -66,14 +66,17 @@ template <class Sample>
 MeanTexel mean_of_pixels(const Pixels& rgba, std::size_t count, const AlphaUse& alpha) {
   const std::vector<double> linear = linear_table<Sample>();
   const Sample* pixel = static_cast<const Sample*>(rgba.get());
+  constexpr double most = std::numeric_limits<Sample>::max();
   Rgb sum;
-  double opaque = 0;
+  double opaque = 0, level = 0;
   for (std::size_t i = 0; i < count; ++i, pixel += 4) {
-    const double opacity = alpha.opacity(static_cast<double>(pixel[3]) / std::numeric_limits<Sample>::max());
+    const double opacity = alpha.opacity(pixel[3] / most);
     sum += opacity * Rgb{linear[pixel[0]], linear[pixel[1]], linear[pixel[2]]};
     opaque += opacity;
+    level += (pixel[0] + pixel[1] + pixel[2]) / (3 * most);
   }
-  return {opaque > 0 ? sum * (1 / opaque) : Rgb{}, opaque / static_cast<double>(count)};
+  const auto pixels = static_cast<double>(count);
+  return {opaque > 0 ? sum * (1 / opaque) : Rgb{}, opaque / pixels, false, level / pixels};
 }
 
 }  // namespace
@@ -93,7 +96,9 @@ std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, cons
                             : stbi_load_from_memory(bytes, size, &width, &height, &channels, 4),
                     stbi_image_free);
   if (!rgba) return std::nullopt;
-  return is_deep ? mean_of_pixels<std::uint16_t>(rgba, count, alpha) : mean_of_pixels<std::uint8_t>(rgba, count, alpha);
+  MeanTexel mean = is_deep ? mean_of_pixels<std::uint16_t>(rgba, count, alpha) : mean_of_pixels<std::uint8_t>(rgba, count, alpha);
+  mean.has_alpha = channels == 2 || channels == 4;
+  return mean;
 }
 
 std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha) {

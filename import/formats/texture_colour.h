@@ -24,10 +24,12 @@ struct AlphaUse {
   }
 };
 
-/// The means of an image: of its colours where it is opaque, linear, and of its opacity.
+/// The means of an image.
 struct MeanTexel {
-  Rgb colour{1, 1, 1};
+  Rgb colour{1, 1, 1};  ///< of its colours where it is opaque, linear
   double opacity = 1;
+  bool has_alpha = false;
+  double level = 1;  ///< of its values as they are, mean over bands: for images that hold no colours
 };
 
 /// Returns the means of the pixels of an encoded image (PNG, JPEG, ...), converted from sRGB to linear. Returns nothing if the

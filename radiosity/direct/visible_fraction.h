@@ -15,8 +15,8 @@ namespace alvor {
 struct VisibleFraction {
   std::array<float, origins_per_patch> weight{}, visible{};
   std::uint32_t rays_per_origin = 0;
-  Rgb arriving;                // sum over unblocked rays of weight times transmittance; zero in clear air without panes
-  double least = 1, most = 0;  ///< of the shares that rays let through: 0 where blocked, the mean tint of panes, else 1
+  Rgb arriving;               // sum over unblocked rays of weight times transmittance; zero in clear air without panes
+  float least = 1, most = 0;  ///< of the shares that rays let through: 0 where blocked, the mean tint of panes, else 1
 
   /// Returns the fraction of a light that nothing hides.
   static VisibleFraction all() {
@@ -29,7 +29,7 @@ struct VisibleFraction {
   }
 
   /// Notes that a ray lets this share of light through.
-  void count(double share) {
+  void count(float share) {
     least = std::min(least, share);
     most = std::max(most, share);
   }

@@ -128,8 +128,7 @@ class Planner {
   PlannedFeature three_bands() const {
     if (census_.coloured)
       return on(sentence("material '", census_.coloured->name, "' is not grey: it emits ", bands(census_.coloured->emission),
-                         ", reflects ", bands(census_.coloured->reflectance), " and lets ",
-                         bands(census_.coloured->regular_transmittance), " through"));
+                         " and reflects ", bands(census_.coloured->reflectance), passes(*census_.coloured)));
     if (const Light* light = census_.coloured_light)
       return on(sentence("light '", light->name, "' is not grey: it sends ",
                          bands(light->environment ? light->intensity * light->environment->total() : light->intensity)));
@@ -196,6 +195,9 @@ class Planner {
     return on(sentence("what is unshot will be shown by its mean, over reflectances up to ", census_.largest_reflectance));
   }
 
+  static std::string passes(const Material& material) {
+    return material.is_pane() ? sentence(" and lets ", bands(material.regular_transmittance), " through") : "";
+  }
   std::string by_rows() const {
     return sentence("emitters are ", 100 * census_.emitting_share, " % of all area, so rows carry their light");
   }

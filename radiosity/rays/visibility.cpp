@@ -93,7 +93,11 @@ void copy_rays(const RayPacket& from, RTCRay16& to) {
   std::memset(to.time, 0, bytes);
   std::memset(to.mask, 0xff, bytes);
   std::memset(to.flags, 0, bytes);
-  for (unsigned lane = 0; lane < RayPacket::width; ++lane) to.id[lane] = lane;
+}
+
+/// Numbers the rays of a packet by their lanes: Embree calls filters with rays in any order.
+void number_rays(RTCRay16& rays) {
+  for (unsigned lane = 0; lane < RayPacket::width; ++lane) rays.id[lane] = lane;
 }
 
 alignas(64) constexpr int all_lanes[RayPacket::width] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
@@ -108,6 +112,8 @@ RTCIntersectContext incoherent_context() {
 }  // namespace
 
 struct Visibility::Handles {
+  // Panes that the rays of a packet cross, beyond which panes end rays: memory must not grow with what a scene piles up.
+  static constexpr std::size_t most_crossings = 16 * RayPacket::width * 256;
   /// Numbers of Embree's geometries: faces of four and of three corners, then the panes among them.
   static constexpr unsigned quads = 0, triangles = 1, panes = 2;
   EmbreeScene scene;
@@ -135,7 +141,7 @@ void Visibility::Handles::cross(const RTCFilterFunctionNArguments* arguments) {
   const auto& handles = *static_cast<const Handles*>(arguments->geometryUserPtr);
   auto* const crossings = reinterpret_cast<PacketContext*>(arguments->context)->crossings;
   for (unsigned i = 0; i < arguments->N; ++i) {
-    if (arguments->valid[i] == 0) continue;
+    if (arguments->valid[i] == 0 || (crossings && crossings->size() >= most_crossings)) continue;
     arguments->valid[i] = 0;
     if (!crossings) continue;
     const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
@@ -206,6 +212,7 @@ void Visibility::closest_hits(std::span<const RayPacket> packets, std::span<HitP
   const FlushDenormals flush;
   PacketContext context;
   alignas(64) RTCRayHit16 query;
+  number_rays(query.ray);
   for (std::size_t p = 0; p < packets.size(); ++p) {
     copy_rays(packets[p], query.ray);
     std::memset(query.hit.geomID, 0xff, sizeof query.hit.geomID);
@@ -229,6 +236,7 @@ void Visibility::occlusions(std::span<const RayPacket> packets, std::span<std::u
   const FlushDenormals flush;
   PacketContext context;
   alignas(64) RTCRay16 query;
+  number_rays(query);
   for (std::size_t p = 0; p < packets.size(); ++p) {
     copy_rays(packets[p], query);
     if (!tints.empty()) context.tints = &tints[p], context.tints->fill({1, 1, 1});
@@ -307,12 +315,22 @@ bool visit_triangle(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
-/// Rejects the hits that meet the back of a triangle.
-void pass_backs(const RTCFilterFunctionNArguments* arguments) {
+/// What the filters of one ray know. Embree hands them a pointer to its own part, the first.
+struct CastContext {
+  RTCIntersectContext context = incoherent_context();
+  std::span<const std::uint32_t> passed;
+};
+static_assert(std::is_standard_layout_v<CastContext>);
+
+/// Rejects the hits on triangles that the ray has passed, and if `fronts_only` those that meet the back of a triangle.
+template <bool fronts_only>
+void pass(const RTCFilterFunctionNArguments* arguments) {
+  const auto& passed = reinterpret_cast<const CastContext*>(arguments->context)->passed;
   for (unsigned i = 0; i < arguments->N; ++i) {
     const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
     const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
-    if (ray.dir_x * hit.Ng_x + ray.dir_y * hit.Ng_y + ray.dir_z * hit.Ng_z >= 0) arguments->valid[i] = 0;
+    const bool is_back = ray.dir_x * hit.Ng_x + ray.dir_y * hit.Ng_y + ray.dir_z * hit.Ng_z >= 0;
+    if ((fronts_only && is_back) || std::ranges::find(passed, hit.primID) != passed.end()) arguments->valid[i] = 0;
   }
 }
 
@@ -356,26 +374,30 @@ TriangleCaster::~TriangleCaster() = default;
 
 namespace {
 
-std::optional<TriangleCaster::Hit> closest_hit(RTCScene scene, Vec3 origin, Vec3 direction, RTCFilterFunctionN filter) {
+std::optional<TriangleCaster::Hit> closest_hit(RTCScene scene, Vec3 origin, Vec3 direction, std::span<const std::uint32_t> passed,
+                                               RTCFilterFunctionN filter) {
   const FlushDenormals flush;
-  RTCIntersectContext context = incoherent_context();
-  context.filter = filter;
+  CastContext context;
+  context.context.filter = filter;
+  context.passed = passed;
   RTCRayHit query;
   query.ray = ray_along(origin, direction, std::numeric_limits<float>::infinity());
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &context, &query);
+  rtcIntersect1(scene, &context.context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return TriangleCaster::Hit{query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
 }
 
 }  // namespace
 
-std::optional<TriangleCaster::Hit> TriangleCaster::cast(Vec3 origin, Vec3 direction) const {
-  return closest_hit(handles_->scene.get(), origin - handles_->centre, direction, nullptr);
+std::optional<TriangleCaster::Hit> TriangleCaster::cast(Vec3 origin, Vec3 direction,
+                                                        std::span<const std::uint32_t> passed) const {
+  return closest_hit(handles_->scene.get(), origin - handles_->centre, direction, passed, passed.empty() ? nullptr : pass<false>);
 }
 
-std::optional<TriangleCaster::Hit> TriangleCaster::cast_front(Vec3 origin, Vec3 direction) const {
-  return closest_hit(handles_->scene.get(), origin - handles_->centre, direction, pass_backs);
+std::optional<TriangleCaster::Hit> TriangleCaster::cast_front(Vec3 origin, Vec3 direction,
+                                                              std::span<const std::uint32_t> passed) const {
+  return closest_hit(handles_->scene.get(), origin - handles_->centre, direction, passed, pass<true>);
 }
 
 bool TriangleCaster::is_blocked(Vec3 from, Vec3 to) const {

@@ -97,11 +97,11 @@ class TriangleCaster {
     double u, v;
     double distance;
   };
-  /// Returns the nearest surface along `direction` (unit), front or back.
-  std::optional<Hit> cast(Vec3 origin, Vec3 direction) const;
-  /// Returns the nearest front along `direction` (unit). The ray passes through backs: of two sides in one place it meets the one
-  /// that faces it.
-  std::optional<Hit> cast_front(Vec3 origin, Vec3 direction) const;
+  /// Returns the nearest surface along `direction` (unit), front or back, that is none of the triangles `passed`.
+  std::optional<Hit> cast(Vec3 origin, Vec3 direction, std::span<const std::uint32_t> passed = {}) const;
+  /// Returns the nearest front along `direction` (unit) that is none of the triangles `passed`. The ray passes through backs: of
+  /// two sides in one place it meets the one that faces it.
+  std::optional<Hit> cast_front(Vec3 origin, Vec3 direction, std::span<const std::uint32_t> passed = {}) const;
   /// Returns whether a surface, front or back, lies between two points.
   bool is_blocked(Vec3 from, Vec3 to) const;
   /// Returns the point nearest to `point` on a triangle whose normal lies within 60 degrees of `normal` (unit).

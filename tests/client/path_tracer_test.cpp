@@ -65,6 +65,30 @@ TEST(PathTracer, PanesThatAbsorbNothingChangeNothingInAFurnace) {
   }
 }
 
+TEST(PathTracer, ManyPanesDimByTheirProductWhereverTheyLie) {
+  for (const int panes : {2, 3, 20}) {
+    Scene scene;
+    scene.materials = {grey(3, 0)};
+    add_ceiling(scene, 3, 1, 0);  // light comes from all slants, parallel to the panes
+    add_black_floor(scene, 1);
+    const SurfacePoint point{{0, 0, 0}, {0, 0, 1}};
+    const auto clear = traced(scene, point);
+    scene.materials.push_back({"pane", {}, {}, false, {0.9, 0.9, 0.9}});
+    for (int n = 0; n < panes; ++n) add_ceiling(scene, 8, 0.9 - 0.8 * n / panes, 2);
+    const auto estimate = traced(scene, point);
+    const double expected = std::pow(0.9, panes) * clear.mean().r;
+    EXPECT_NEAR(estimate.mean().r, expected, sure * error_of(estimate) + 1e-3 * expected) << panes;
+  }
+}
+
+TEST(PathTracer, NoLightPassesAWallThatAPaneLiesOn) {
+  Scene scene = test::furnace(1, 0.5);  // light outside of it would be missed
+  scene.materials.push_back({"pane", {}, {}, false, {1, 1, 1}});
+  add_polygon(scene, {{0.5, 0, 1}, {0.5, 0, 3}, {2.5, 0, 3}, {2.5, 0, 1}}, 1);
+  const auto estimate = traced(scene, {{1.5, 2, 2}, {0, -1, 0}});
+  EXPECT_NEAR(estimate.mean().mean(), 2, sure * error_of(estimate));
+}
+
 TEST(PathTracer, APaneDimsAnEmitterBehindIt) {
   for (const bool two_sided : {false, true})
     for (const bool faces_down : {false, true}) {

@@ -134,6 +134,18 @@ TEST(Panes, ThatAbsorbNothingChangeNothingInAFurnace) {
   }
 }
 
+TEST(Panes, InStacksLoseNothing) {
+  Scene scene = test::furnace(1, 0.5);
+  scene.materials.push_back(pane({0.94, 0.94, 0.94}, {0.06, 0.06, 0.06}, true));
+  for (int n = 0; n < 30; ++n) {
+    const double x = 0.8 + 0.05 * n;
+    test::add_polygon(scene, {{x, 0.1, 0.2}, {x, 1.9, 0.2}, {x, 1.9, 3.8}, {x, 0.1, 3.8}}, 1);
+  }
+  const Solved solved(scene, {.tolerance = 0.02, .max_depth = 1});
+  for (std::uint32_t face = 0; face < 6; ++face) EXPECT_NEAR(solved.of_face(face).g, 2, 0.04) << face;
+  EXPECT_NEAR(solved.outcome().balance.gap(), 0, 0.02);
+}
+
 TEST(Panes, KeepThePowerBalance) {
   for (const bool two_sided : {false, true}) {
     Scene scene = test::coloured_room();

@@ -35,7 +35,8 @@ export async function glbOf(drawn: BufferGeometry, centre: [number, number, numb
   geometry.setAttribute("color", new BufferAttribute(colour, 3));
   geometry.setAttribute("_irradiance", new BufferAttribute(irradiance, 3));
   geometry.setAttribute("_radiosity", new BufferAttribute(radiosity, 3));
-  geometry.setIndex(trianglesOf(drawn));
+  const isLeftOut = (vertex: number) => materials[8 * values.getW(vertex) + 3] > 0.5;  // a pane: see docs/surfaces.md
+  geometry.setIndex(trianglesOf(drawn, isLeftOut));
   const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true }));
   const [x, y, z] = centre;
   mesh.position.set(x, y, z);
@@ -49,10 +50,10 @@ export async function glbOf(drawn: BufferGeometry, centre: [number, number, numb
   return new Blob([glb], { type: "model/gltf-binary" });
 }
 
-/** Those with an area. */
-function trianglesOf(drawn: BufferGeometry): number[] {
+/** Those with an area whose vertices are not left out. */
+function trianglesOf(drawn: BufferGeometry, isLeftOut: (vertex: number) => boolean): number[] {
   const index = drawn.index!.array;
   const kept: number[] = [];
-  for (let n = 0; n < index.length; n += 3) if (index[n] !== index[n + 1]) kept.push(index[n], index[n + 1], index[n + 2]);
+  for (let n = 0; n < index.length; n += 3) if (index[n] !== index[n + 1] && !isLeftOut(index[n])) kept.push(index[n], index[n + 1], index[n + 2]);
   return kept;
 }

@@ -66,11 +66,11 @@ float place(float h) {
   return (h - scale.x) / max(scale.y - scale.x, 1e-30);
 }
 void main() {
-  if (passes()) discard;
+  if (passes()) discard;  // so that through < 1 from here on
   vec3 h = irradiance + ambient;
   vec3 colour;
   if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;
-  else colour = srgb(toned(exposure * (emission + reflectance * h)));
+  else colour = srgb(toned(exposure * (emission + reflectance * h) / (1.0 - through)));  // what is left of a pane has all its light
   if (outlines) {
     float line = 1.0 - smoothstep(0.0, 1.2, centre / fwidth(centre));
     float bright = dot(colour, vec3(0.299, 0.587, 0.114));
