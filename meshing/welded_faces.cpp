@@ -96,14 +96,17 @@ DuplicateFaces leave_out_duplicates(const Scene& scene, std::vector<WeldedFace>&
   KnownFaces known(scene);
   DuplicateFaces duplicates;
   std::vector<bool> is_left_out(faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const WeldedFace& kept = known.find_or_add(faces[f]);
-    is_left_out[f] = &kept != &faces[f];
-    if (is_left_out[f] && duplicates.count++ == 0) {
-      duplicates.first = faces[f].input.first;
-      duplicates.same_place = kept.input.first;
+  // Panes come last: a wall that a pane lies on stays a wall.
+  for (const bool panes : {false, true})
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (scene.materials[faces[f].material].is_pane() != panes) continue;
+      const WeldedFace& kept = known.find_or_add(faces[f]);
+      is_left_out[f] = &kept != &faces[f];
+      if (is_left_out[f] && duplicates.count++ == 0) {
+        duplicates.first = faces[f].input.first;
+        duplicates.same_place = kept.input.first;
+      }
     }
-  }
   std::size_t index = 0;
   std::erase_if(faces, [&](const WeldedFace&) { return is_left_out[index++]; });
   return duplicates;

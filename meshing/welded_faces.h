@@ -42,7 +42,8 @@ std::vector<Vec3> positions_of(const Scene& scene, std::span<const std::uint32_t
 std::vector<WeldedFace> weld_faces(const Scene& scene, std::span<const std::uint32_t> welded);
 
 /// Leaves out each face that has the same corners as an earlier one and faces the same way, or any way if one of the two is
-/// two-sided. Otherwise a lamp given twice would shine twice. Faces back to back are not duplicates.
+/// two-sided. Otherwise a lamp given twice would shine twice. Of a pane and another face the pane is left out. Faces back to back
+/// are not duplicates.
 DuplicateFaces leave_out_duplicates(const Scene& scene, std::vector<WeldedFace>& faces);
 
 /// Joins triangles that were cut from quads (quad_pairing.h); a quad takes the place of its first triangle. Does nothing if a

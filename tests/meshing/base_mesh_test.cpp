@@ -114,6 +114,21 @@ TEST(BaseMesh, OfFacesThatLieInOnePlaceAndLookTheSameWayTheFirstIsKept) {
   EXPECT_EQ(mesh.weld_report().duplicates.same_place, 0u);
 }
 
+TEST(BaseMesh, APaneOnAWallIsLeftOutWhicheverComesFirst) {
+  for (const std::uint32_t pane : {0u, 1u}) {
+    Scene scene;
+    scene.materials.resize(2);
+    scene.materials[pane].regular_transmittance = {0.5, 0.5, 0.5};
+    for (const std::uint32_t material : {0u, 1u})
+      test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, material);
+    const BaseMesh mesh(scene);
+    ASSERT_EQ(mesh.roots().size(), 1u);
+    EXPECT_EQ(mesh.roots()[0].material, 1 - pane);
+    EXPECT_EQ(mesh.weld_report().duplicates.first, pane);
+    EXPECT_EQ(mesh.weld_report().duplicates.same_place, 1 - pane);
+  }
+}
+
 TEST(BaseMesh, PolygonsBecomeSeveralRootsOfOneFace) {
   Scene scene;
   scene.materials.emplace_back();

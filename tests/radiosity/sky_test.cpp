@@ -178,6 +178,34 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
   }
 }
 
+// The same with a pane in the hole.
+TEST(SkyThroughAPane, BringsTheSkyComponentTimesItsTransmittance) {
+  for (const bool is_roof : {true, false}) {
+    std::vector<Vec3> hole;
+    Scene scene = room_with_hole(is_roof, hole);
+    const auto number = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.push_back({"pane", {}, {}, true, {0.8, 0.6, 0.4}});
+    scene.add_polygon(hole, number);
+    scene.lights = {sky_light({})};
+    const BaseMesh mesh(scene);
+    double error = 0, mean = 0;
+    std::size_t compared = 0;
+    for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-4, .max_depth = 5, .max_leaves = 20'000})) {
+      const PatchShape shape = shape_of(mesh, leaf.patch);
+      const RootPatch& root = mesh.roots()[shape.root];
+      const Vec3 centre = centre_of(mesh, shape);
+      if (root.normal.y < 0.9 || root.material == number) continue;  // the floor
+      std::vector<Vec3> seen = hole;
+      if (std::abs(point_to_polygon(centre, root.normal, seen)) < 1e-9) std::ranges::reverse(seen);
+      const double expected = 1000 * std::abs(point_to_polygon(centre, root.normal, seen));
+      error += std::abs(leaf.irradiance.r - 0.8 * expected) + std::abs(leaf.irradiance.b - 0.4 * expected), mean += expected;
+      ++compared;
+    }
+    EXPECT_GT(compared, 100u);
+    EXPECT_LT(error / mean, 0.015) << is_roof;
+  }
+}
+
 // Overcast sky: the integral of radiance times cosine over the part of the window that a point of the floor sees.
 TEST(SkyThroughAHole, BringsTheSkyComponentOfAnOvercastSky) {
   std::vector<Vec3> hole;
