@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -22,10 +23,19 @@ inline std::string text_of(const fs::path& path) {
   return text.str();
 }
 
+inline long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
+
 struct Ran {
   int status = -1;
   std::string out, err;
 };
+
+/// Expects that a run failed because of an input: status 3, and one line on stderr that names `file`.
+inline void expect_bad_input(const Ran& ran, const std::string& file) {
+  EXPECT_EQ(ran.status, 3);
+  EXPECT_EQ(line_count(ran.err), 1) << ran.err;
+  EXPECT_NE(ran.err.find(file), std::string::npos) << ran.err;
+}
 
 /// Makes a folder for each test and runs the command in it.
 class CommandLine : public testing::Test {

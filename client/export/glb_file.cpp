@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <tuple>
+#include <vector>
 
 namespace alvor {
 namespace {
@@ -104,7 +106,8 @@ std::vector<float> opacities_of(const DisplayMesh& mesh) {
   return opacities;
 }
 
-json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin) {
+/// Adds a mesh's values at its vertices, relative to `origin`. `opacity` is that of opacities_of().
+json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin, std::span<const float> opacity) {
   const std::size_t count = mesh.positions.size();
   const double exposure = automatic_exposure(mesh);
   json attributes;
@@ -114,7 +117,6 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   attributes["_IRRADIANCE"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.irradiance[i]); });
   attributes["_RADIOSITY"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.radiosity[i]); });
   // glTF defines COLOR_0 as linear: no sRGB encoding here.
-  const std::vector<float> opacity = opacities_of(mesh);
   const auto colour = [&](std::size_t i) {
     // Panes are drawn whole or not at all (see unlit_material), so those that are drawn get the colour of the part that is there.
     const double there = opacity.empty() ? 1 : std::max(0.5, double(opacity[i]));
@@ -199,11 +201,12 @@ std::string encode_glb(const DisplayMesh& mesh) {
 
   const Vec3 origin = middle_of_box(mesh.positions);
   BinaryChunk chunk;
-  const json attributes = add_attributes(chunk, mesh, origin);
+  const std::vector<float> opacity = opacities_of(mesh);
+  const json attributes = add_attributes(chunk, mesh, origin, opacity);
   const std::size_t indices = chunk.add_indices(mesh.triangles);
   json node = node_of(origin, mesh);
   if (!mesh.faces.empty()) node["extras"][faces_key] = add_faces(chunk, mesh.faces);
-  std::string text = text_of(document(chunk, attributes, indices, node, !panes_of(mesh).empty()));
+  std::string text = text_of(document(chunk, attributes, indices, node, !opacity.empty()));
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

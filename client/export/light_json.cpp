@@ -65,7 +65,8 @@ SkyDistribution sky_of(const json& source) {
   return {a, b, c, d, e, g, vector_of(source, "to_sun")};
 }
 
-/// What several lights may share is written with the first of them; the others tell the number of that light by `key` + "_of".
+/// Writes to `object` the web or the map that light `which` points to. Several lights may point to one: the first of them writes
+/// it under `key`, and the others write the number of that first light under `key` + "_of".
 template <class Shared>
 void add_shared(std::span<const Light> lights, std::size_t which, std::shared_ptr<const Shared> Light::*member, const char* key,
                 json (*json_of)(const Shared&), json& object) {
@@ -75,7 +76,7 @@ void add_shared(std::span<const Light> lights, std::size_t which, std::shared_pt
   else object[key] = json_of(*shared);
 }
 
-/// Reads what add_shared() wrote.
+/// Returns the web or the map that add_shared() wrote, with `source` itself or with one of the lights `before`.
 template <class Shared>
 std::shared_ptr<const Shared> read_shared(const json& source, std::span<const Light> before,
                                           std::shared_ptr<const Shared> Light::*member, const char* key,

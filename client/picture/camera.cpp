@@ -1,6 +1,6 @@
 #include "client/picture/camera.h"
 
-#include "radiosity/rays/visibility.h"
+#include "radiosity/rays/triangle_caster.h"
 
 #include <algorithm>
 #include <array>

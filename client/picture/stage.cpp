@@ -2,13 +2,6 @@
 
 namespace alvor {
 
-namespace {
-
-// Most panes that are looked through.
-constexpr std::size_t most_panes = 1000;
-
-}  // namespace
-
 Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles), panes_(panes_of(mesh)) {}
 
 std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
@@ -16,7 +9,7 @@ std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
   if (!hit) return std::nullopt;
   Seen seen{hit->triangle, hit->u, hit->v};
   std::vector<std::uint32_t> passed;
-  while (!panes_.empty() && panes_[seen.triangle] && passed.size() < most_panes) {
+  while (!panes_.empty() && panes_[seen.triangle] && passed.size() < TriangleCaster::most_passed) {
     passed.push_back(seen.triangle);
     hit = caster_.cast_front(origin, direction, passed);
     if (!hit && radiosity(seen).is_zero()) return std::nullopt;

@@ -2,7 +2,7 @@
 // Casts rays into a solution's mesh and interpolates its values.
 
 #include "client/picture/camera.h"
-#include "radiosity/rays/visibility.h"
+#include "radiosity/rays/triangle_caster.h"
 
 #include <functional>
 #include <optional>

@@ -3,6 +3,7 @@
 #include "client/picture/tone_map.h"
 #include "client/verify/cosine_direction.h"
 #include "client/verify/irradiance_estimate.h"
+#include "client/verify/sight_line.h"
 #include "radiosity/form_factors/form_factor.h"
 
 #include <algorithm>
@@ -21,8 +22,6 @@ constexpr std::uint32_t least_shadow_rays = 4;
 constexpr std::uint32_t trial_rays = 128, rays_of_soft_lamp = 256;
 /// Fraction of a shadow ray's length by which it ends before the emitter, so that in float32 it does not hit it.
 constexpr double before_emitter = 1e-5;
-/// Most panes that a ray goes through.
-constexpr std::size_t most_panes = 1000;
 
 // The streams of random numbers of one point.
 enum Purpose : std::uint64_t { trial, indirect, direct, lamp };
@@ -64,21 +63,10 @@ Rgb Gatherer::through(std::uint32_t triangle, Vec3 direction) const {
   return is_seen_by_twin ? Rgb{1, 1, 1} : panes_[triangle]->regular_transmittance;
 }
 
-/// Returns the share of light that goes straight from one place to another.
+/// Returns the share of light that goes straight from one place to another, per band.
 Rgb Gatherer::passing(Vec3 from, Vec3 to) const {
-  Rgb share{1, 1, 1};
-  if (!caster_.is_blocked(from, to)) return share;
-  if (panes_.empty()) return {};
-  const Vec3 direction = normalized(to - from);
-  const double distance = length(to - from);
-  std::vector<std::uint32_t> passed;
-  while (passed.size() < most_panes && !share.is_zero()) {
-    const auto hit = caster_.cast(from, direction, passed);
-    if (!hit || hit->distance >= distance) return share;
-    share = share * through(hit->triangle, direction);
-    passed.push_back(hit->triangle);
-  }
-  return {};
+  return transmittance_between(caster_, from, to, !panes_.empty(),
+                               [&](std::uint32_t triangle, Vec3 direction) { return through(triangle, direction); });
 }
 
 bool Gatherer::meets_front(std::uint32_t triangle, Vec3 direction) const {
@@ -90,7 +78,7 @@ bool Gatherer::meets_front(std::uint32_t triangle, Vec3 direction) const {
 Rgb Gatherer::from_direction(Vec3 point, Vec3 direction) const {
   Rgb arriving, share{1, 1, 1};
   std::vector<std::uint32_t> passed;
-  while (passed.size() < most_panes && !share.is_zero()) {
+  while (passed.size() < TriangleCaster::most_passed && !share.is_zero()) {
     const auto hit = caster_.cast(point, direction, passed);
     if (!hit) {
       if (skies_.empty()) return arriving;
@@ -113,7 +101,7 @@ bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
     const Vec3 direction = uniform_direction(directions[n]);
     auto hit = caster_.cast(point, direction);
     std::vector<std::uint32_t> passed;
-    while (hit && !panes_.empty() && panes_[hit->triangle] && passed.size() < most_panes) {
+    while (hit && !panes_.empty() && panes_[hit->triangle] && passed.size() < TriangleCaster::most_passed) {
       passed.push_back(hit->triangle);
       hit = caster_.cast(point, direction, passed);
     }

@@ -5,7 +5,7 @@
 #include "client/verify/skies.h"
 #include "meshing/display_mesh.h"
 #include "radiosity/rays/medium.h"
-#include "radiosity/rays/visibility.h"
+#include "radiosity/rays/triangle_caster.h"
 
 #include <cstdint>
 #include <optional>

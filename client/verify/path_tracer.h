@@ -31,9 +31,8 @@ struct SurfacePoint {
 /// sampled in two ways: by choosing a place on an emitter, and by following the path. They are weighted by the balance heuristic
 /// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. Lamps and distant lights
 /// are sampled one at a time, chosen by what they bring unblocked; environments in two ways, as emitters are. At a pane a path
-/// bends or goes straight on, by chance; shadow rays go on through panes. One systematic
-/// error remains: rays start 1e-6 of the scene's extent above their surface, so that they do not hit it. Immutable; safe from any
-/// thread.
+/// bends or goes straight on, by chance; shadow rays go on through panes. One systematic error remains: rays start 1e-6 of the
+/// scene's extent above their surface, so that they do not hit it. Immutable; safe from any thread.
 class PathTracer {
  public:
   /// Copies what it needs of `scene`. Requires: !find_fault(scene), and at least one face with area.
@@ -76,8 +75,8 @@ class PathTracer {
     Bend bend;
     double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
     bool is_outside = false;          ///< the path leaves the scene
-    std::optional<std::uint32_t>
-        pane;  ///< number of the surface that was met, on either side, if light goes straight on through it
+    /// The number of the surface that the ray hits, from either side, if light goes straight on through that surface.
+    std::optional<std::uint32_t> pane;
   };
 
   Bend start_at(const SurfacePoint& point) const;

@@ -2,7 +2,7 @@
 
 #include "client/verify/gather.h"
 #include "import/base/whole_file.h"
-#include "radiosity/rays/visibility.h"
+#include "radiosity/rays/triangle_caster.h"
 
 #include <tbb/parallel_for.h>
 

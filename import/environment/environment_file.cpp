@@ -65,11 +65,11 @@ class CheckedRows final : public ImageRows {
 
 }  // namespace
 
-EnvironmentFile read_environment(std::string bytes, std::string_view extension) {
+EnvironmentFile read_environment(const std::string& bytes, std::string_view extension) {
   CheckedRows rows;
   if (bytes.empty()) throw ImportError("file", "is empty");
   if (extension == ".hdr") read_radiance(bytes, rows);
-  else read_exr(std::move(bytes), rows);
+  else read_exr(bytes, rows);
   return rows.take();
 }
 

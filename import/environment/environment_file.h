@@ -20,6 +20,6 @@ struct EnvironmentFile {
 /// Reads an equirectangular image. It must be twice as wide as high, within 2 %, and have at most 16384 x 8192 pixels, which is
 /// known before memory is taken for them. Values are finite and at most 1e30; negative ones count as 0. Throws ImportError that
 /// names the place. Requires: is_environment_extension(extension).
-EnvironmentFile read_environment(std::string bytes, std::string_view extension);
+EnvironmentFile read_environment(const std::string& bytes, std::string_view extension);
 
 }  // namespace alvor

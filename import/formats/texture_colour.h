@@ -11,8 +11,9 @@
 
 namespace alvor {
 
-/// What the alpha of a texture means: nothing, the share of a surface that is there, or that it is there where alpha times
-/// `factor` is at least `cutoff`.
+/// Tells how the alpha of a texture sets the opacity of the surface that carries it. `ignored`: the surface is opaque.
+/// `blended`: its opacity is alpha times `factor`, at most 1. `cut`: it is opaque where alpha times `factor` is at least
+/// `cutoff`, and elsewhere not there.
 struct AlphaUse {
   enum class Kind : unsigned char { ignored, blended, cut } kind = Kind::ignored;
   double factor = 1, cutoff = 0.5;

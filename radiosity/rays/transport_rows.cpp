@@ -1,6 +1,7 @@
 #include "radiosity/rays/transport_rows.h"
 
 #include "radiosity/rays/medium.h"
+#include "radiosity/rays/pane_sample.h"
 #include "radiosity/rays/ray_source.h"
 
 #include <tbb/blocked_range.h>
@@ -54,10 +55,6 @@ void start_at(RayPacket& packet, float x, float y, float z) {
     packet.t_max[r] = std::numeric_limits<float>::infinity();
   }
 }
-
-// Hits on panes that are stored for a ray. Of more panes that many are drawn, with weights that make up for the others. Chosen,
-// for the memory that they take; not measured at half and double.
-constexpr std::size_t crossings_stored = 4;
 
 enum class Outcome { stored, escaped, black_back };
 
@@ -190,18 +187,9 @@ class RowTracer {
       hits_[p].u[lane] = hit.u[r];
       hits_[p].v[lane] = hit.v[r];
       hits_[p].t[lane] = hit.t[r];
-      if (has_panes_) replace_crossings(crossings_[p], lane, crossed, r);
+      if (has_panes_) replace_crossings(crossings_[p], static_cast<std::uint32_t>(lane), crossed, static_cast<std::uint32_t>(r));
       return;
     }
-  }
-
-  /// Replaces the crossings of a ray that slipped through a seam by those of ray `r` of the packet that was sent again.
-  static void replace_crossings(std::vector<Crossing>& crossings, int lane, std::span<const Crossing> again, int r) {
-    const auto is_of = [](int wanted) { return [=](const Crossing& c) { return c.lane == static_cast<std::uint32_t>(wanted); }; };
-    std::erase_if(crossings, is_of(lane));
-    for (Crossing crossing : again)
-      if (is_of(r)(crossing)) crossing.lane = static_cast<std::uint32_t>(lane), crossings.push_back(crossing);
-    std::ranges::stable_sort(crossings, {}, &Crossing::lane);
   }
 
   void store(TransportRow& row) {
@@ -261,46 +249,18 @@ class RowTracer {
   void store_crossings_of_ray(std::span<const Crossing> crossings, std::size_t p, TransportRow& row) {
     seen_.clear();
     RgbF tint{1, 1, 1};
-    double most = 0;  // sum of the light that all panes may send or take
     for (const Crossing& crossing : crossings) {
       const Material& material = material_of(crossing.root);
       if (const auto hit = seen_at(crossing, p)) {
         const double taken = material.emission.is_zero() ? 1 - material.regular_transmittance.min() : 1;
-        seen_.push_back({*hit, tint * weight_at(p, crossing.lane, crossing.t),
-                         RgbF{1, 1, 1} - narrow(material.regular_transmittance), most += taken * tint.max()});
+        seen_.add({*hit, tint * weight_at(p, crossing.lane, crossing.t), RgbF{1, 1, 1} - narrow(material.regular_transmittance),
+                   taken * tint.max()});
       }
       tint = tint * narrow(material.regular_transmittance);
     }
-    if (seen_.size() > crossings_stored) draw_panes(most, p * RayPacket::width + crossings.front().lane);
-    for (const SeenPane& pane : seen_) row.hits.push_back(pane.hit), row.hit_weight.push_back(pane.weight);
-  }
-  struct SeenPane {
-    PatchId hit;
-    RgbF weight;
-    RgbF kept;   // share of light that does not go on
-    double sum;  // of the light that this pane and those before it may send or take
-  };
-  /// Replaces the panes that a ray sees by as many as may be stored: a systematic sample. Together they keep as much light from
-  /// going on as all of them, so that rows do not sum to more than 1. Such a ratio estimate is exact if all panes have one colour
-  /// and none shines; else it has a bias of the order of 1 / crossings_stored of what the panes differ.
-  void draw_panes(double most, std::size_t ray) {
-    const double start = turn_ + static_cast<double>(ray) * std::numbers::phi, step = most / crossings_stored;
-    double wanted = step * (start - std::floor(start)), before = 0;
-    RgbF of_all, of_drawn;
-    drawn_.clear();
-    for (const SeenPane& pane : seen_) {
-      of_all += pane.weight * pane.kept;
-      for (; wanted < pane.sum && wanted < most; wanted += step) {
-        drawn_.push_back(pane);
-        drawn_.back().weight *= static_cast<float>(step / (pane.sum - before));
-        of_drawn += drawn_.back().weight * pane.kept;
-      }
-      before = pane.sum;
-    }
-    const auto scale = [](float all, float drawn) { return drawn > 0 ? all / drawn : 1; };
-    const RgbF times{scale(of_all.r, of_drawn.r), scale(of_all.g, of_drawn.g), scale(of_all.b, of_drawn.b)};
-    for (SeenPane& pane : drawn_) pane.weight = times * pane.weight;
-    seen_.swap(drawn_);
+    const auto ray = static_cast<double>(p * RayPacket::width + crossings.front().lane);
+    for (const SeenPane& pane : seen_.drawn(turn_ + ray * std::numbers::phi))
+      row.hits.push_back(pane.hit), row.hit_weight.push_back(pane.weight);
   }
   /// Returns the place of a crossing on the side of the pane that the ray met; nothing if that side is a black back, or lets all
   /// light through.
@@ -355,8 +315,8 @@ class RowTracer {
   std::array<RayPacket, origins_per_patch> packets_;
   std::array<HitPacket, origins_per_patch> hits_;
   std::array<std::vector<Crossing>, origins_per_patch> crossings_;
-  std::vector<SeenPane> seen_, drawn_;  // of one ray
-  double turn_ = 0;                     // uniform in [0, 1)
+  PaneSample seen_;  // the panes that one ray sees
+  double turn_ = 0;  // uniform in [0, 1)
 };
 
 }  // namespace

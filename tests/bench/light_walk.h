@@ -2,7 +2,7 @@
 // Follows light from the lamps of a scene from bounce to bounce.
 
 #include "meshing/base_mesh.h"
-#include "radiosity/rays/visibility.h"
+#include "radiosity/rays/triangle_caster.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 // Tests the built command `alvor` as users see it: exit statuses, streams and files.
 
 #include "client/command/output/snapshots.h"
+#include "tests/client/room_of_eight.h"
 #include "tests/command_line.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -19,12 +19,14 @@ const std::string cornell_box = ALVOR_SCENES "/cornell_box.obj";
 const std::string points = ALVOR_TEST_FILES "/truth/cornell_box.points.csv";
 const std::string quick = " --tolerance 0.3 --max-depth 2 --seed 7";
 
-long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
-
 std::string cell(std::uint64_t number) { return std::string(",").append(std::to_string(number)).append(","); }
 
 using Command = test::CommandLine;
+using test::expect_bad_input;
+using test::line_count;
 using test::Ran;
+using test::room_materials;
+using test::room_of_eight;
 using test::text_of;
 namespace fs = std::filesystem;
 
@@ -48,19 +50,11 @@ TEST_F(Command, OutputsThatCannotBeWrittenAreFoundBeforeTheSolve) {
   }
 }
 
-TEST_F(Command, MissingSceneIsNamedInOneLine) {
-  const Ran ran = run("solve missing.obj");
-  EXPECT_EQ(ran.status, 3);
-  EXPECT_EQ(line_count(ran.err), 1) << ran.err;
-  EXPECT_NE(ran.err.find("missing.obj"), std::string::npos) << ran.err;
-}
+TEST_F(Command, MissingSceneIsNamedInOneLine) { expect_bad_input(run("solve missing.obj"), "missing.obj"); }
 
 TEST_F(Command, SolutionThatIsNoneIsNamedInOneLine) {
   write("room.ply", "not a solution\n");
-  const Ran ran = run("probe room.ply --points " + points);
-  EXPECT_EQ(ran.status, 3);
-  EXPECT_EQ(line_count(ran.err), 1) << ran.err;
-  EXPECT_NE(ran.err.find("room.ply"), std::string::npos) << ran.err;
+  expect_bad_input(run("probe room.ply --points " + points), "room.ply");
 }
 
 TEST_F(Command, UnreachableServerHasItsOwnStatus) {
@@ -75,28 +69,6 @@ TEST_F(Command, SceneWithoutEmittersIsSolvedWithAWarning) {
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.err.find("warning: "), std::string::npos) << ran.err;
   EXPECT_TRUE(fs::exists(file("dark.ply")));
-}
-
-/// Returns an OBJ of a room of 8 quads, wall by wall, with a lamp under its ceiling and a screen; `more` is appended.
-std::string room_of_eight(const std::string& more = "") {
-  return "mtllib room.mtl\nv 0 0 0\nv 4 0 0\nv 4 0 5\nv 0 0 5\nv 0 3 0\nv 4 3 0\nv 4 3 5\nv 0 3 5\n"
-         "v 1 2.9 2\nv 3 2.9 2\nv 3 2.9 3\nv 1 2.9 3\nv 1 0.5 1\nv 3 0.5 1\nv 3 2 1\nv 1 2 1\n"
-         "usemtl white\nf 4 3 2 1\nf 5 6 7 8\nf 1 5 8 4\nf 2 3 7 6\nf 1 2 6 5\nf 3 4 8 7\nusemtl lamp\nf 9 10 11 12\n"
-         "usemtl white\nf 13 14 15 16\n" +
-         more;
-}
-const std::string room_materials = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n";
-
-TEST_F(Command, ALampGivenTwiceShinesOnceAndIsSaid) {
-  write("room.mtl", room_materials);
-  write("once.obj", room_of_eight());
-  write("twice.obj", room_of_eight("usemtl lamp\nf 10 11 12 9\n"));
-  ASSERT_EQ(run("solve once.obj --tolerance 0.1 -o once.ply").status, 0);
-  const Ran ran = run("solve twice.obj --tolerance 0.1 -o twice.ply");
-  EXPECT_NE(ran.err.find("1 faces lie in the place of others and were left out: the first is face 8, in the place of face 6."),
-            std::string::npos)
-      << ran.err;
-  EXPECT_EQ(text_of(file("twice.ply")), text_of(file("once.ply")));
 }
 
 TEST_F(Command, ACameraInAWallIsToldAndOfferedAPlaceInside) {
@@ -173,77 +145,6 @@ TEST_F(Command, ASolveThatWasCutShortSaysWhatHasNoLightYet) {
   const double unlit = nlohmann::json::parse(cut.out).at("unlit_fraction");
   EXPECT_GT(unlit, 0) << cut.out;
   EXPECT_EQ(nlohmann::json::parse(run("solve " + cornell_box + quick + " --json").out).at("unlit_fraction"), 0);
-}
-
-TEST_F(Command, ALuminaireIsDescribedAndDrawn) {
-  const Ran ran = run("luminaire '" ALVOR_SCENES "/luminaires/pendant.ldt' --json -o polar.png");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  const auto json = nlohmann::json::parse(ran.out);
-  EXPECT_NEAR(json.at("lumens").get<double>(), json.at("stated_lumens").get<double>(), 0.01 * json.at("lumens").get<double>());
-  EXPECT_EQ(json.at("opening").at("shape"), "rectangle");
-  EXPECT_EQ(text_of(file("polar.png")).substr(1, 3), "PNG");
-  write("bad.ies", "IESNA91\nTILT=NONE\n1 1 1 nine\n");
-  const Ran bad = run("luminaire bad.ies");
-  EXPECT_EQ(bad.status, 3);
-  EXPECT_EQ(bad.err, "alvor: bad.ies: line 3: 'nine' is not a number, needs its number of vertical angles\n");
-}
-
-TEST_F(Command, LuminairesLightARoomInLux) {
-  write("room.mtl", room_materials);
-  write("room.obj", room_of_eight());
-  const std::string panel = "--luminaire '" ALVOR_SCENES "/luminaires/panel.ies@1,0.8,1:0,30,45' ";
-  const auto mean = [&](const std::string& options) {
-    const Ran ran = run("solve room.obj --json " + panel + options);
-    EXPECT_EQ(ran.status, 0) << ran.err;
-    return nlohmann::json::parse(ran.out);
-  };
-  const auto photometric = mean("--quantity photometric --tolerance 0.2"), radiometric = mean("--tolerance 0.2");
-  EXPECT_EQ(photometric.at("irradiance_unit"), "lx");
-  EXPECT_EQ(radiometric.at("irradiance_unit"), "W/m2");
-  EXPECT_GT(photometric.at("mean_irradiance"), radiometric.at("mean_irradiance"));
-  EXPECT_NE(radiometric.at("warnings").dump().find("1/179 W"), std::string::npos);
-  EXPECT_EQ(run("solve room.obj --luminaire panel.ies").status, 2);
-  EXPECT_EQ(run("solve room.obj --luminaire absent.ies@1,1,1").status, 3);
-}
-
-TEST_F(Command, AnEnvironmentMapLightsAScene) {
-  write("floor.obj", "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nf 1 2 3 4\n");
-  std::string grey = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n";
-  for (int pixel = 0; pixel < 16 * 8; ++pixel) grey += "\x80\x80\x80\x81";  // radiance 1
-  write("grey.hdr", grey);
-  const Ran ran = run("solve floor.obj --json --environment grey.hdr --environment-scale 2 --environment-turn 90");
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NEAR(nlohmann::json::parse(ran.out).at("mean_irradiance").get<double>(), 2 * std::numbers::pi, 0.01);
-  EXPECT_EQ(run("solve floor.obj --environment grey.png").status, 2);
-  EXPECT_EQ(run("solve floor.obj --environment-scale 2").status, 2);
-  EXPECT_EQ(run("solve floor.obj --environment absent.hdr").status, 3);
-  write("cut.hdr", grey.substr(0, 100));
-  const Ran cut = run("solve floor.obj --environment cut.hdr");
-  EXPECT_EQ(cut.status, 3);
-  EXPECT_EQ(line_count(cut.err), 1) << cut.err;
-  EXPECT_NE(cut.err.find("cut.hdr"), std::string::npos) << cut.err;
-}
-
-TEST_F(Command, GlassLetsLightThrough) {
-  write("room.mtl", "newmtl lamp\nKe 10 10 10\nnewmtl glass\nKd 0 0 0\nd 0.25\nnewmtl floor\nKd 0 0 0\n");
-  const std::string scene =
-      "mtllib room.mtl\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 2 0\nv 1 2 0\nv 1 2 1\nv 0 2 1\n"
-      "v -9 1 -9\nv 9 1 -9\nv 9 1 9\nv -9 1 9\nusemtl floor\nf 1 2 3 4\nusemtl lamp\nf 5 6 7 8\n";
-  write("open.obj", scene);
-  write("glazed.obj", scene + "usemtl glass\nf 9 10 11 12\n");
-  write("middle.csv", "0.5,0,0.5,0,1,0\n");
-  const auto irradiance = [&](const std::string& name) {
-    EXPECT_EQ(run("solve " + name + ".obj -o " + name + ".glb --tolerance 0.05").status, 0);
-    const std::string line = run("probe " + name + ".glb --points middle.csv").out;
-    std::istringstream cells(line.substr(line.find('\n') + 1));
-    std::string cell;
-    for (int n = 0; n < 7; ++n) std::getline(cells, cell, ',');
-    return std::stod(cell);
-  };
-  const double open = irradiance("open"), glazed = irradiance("glazed");
-  EXPECT_GT(open, 1);
-  EXPECT_NEAR(glazed, 0.75 * open, 0.01 * open);
-  EXPECT_NE(run("explain glazed.obj").out.find("light goes straight through 1 of 3 faces"), std::string::npos);
 }
 
 TEST_F(Command, JsonIsAllThatStdoutHolds) {

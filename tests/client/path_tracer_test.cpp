@@ -52,7 +52,8 @@ TEST(PathTracer, FacesBackToBackInOnePlaceAreBothSeen) {
   }
 }
 
-// What a pane that absorbs nothing takes from one way it gives to another.
+// All surfaces of a furnace are equally bright. A pane that absorbs nothing reflects exactly as much light as it keeps from going
+// through, so it changes nothing between them.
 TEST(PathTracer, PanesThatAbsorbNothingChangeNothingInAFurnace) {
   for (const double reflectance : {0.0, 0.3, 0.7}) {
     Scene scene = test::furnace(0.5, 0.5);

@@ -8,12 +8,11 @@
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
 
-#include <algorithm>
-
 namespace alvor {
 namespace {
 
 namespace fs = std::filesystem;
+using test::line_count;
 using test::Ran;
 using test::text_of;
 
@@ -59,8 +58,6 @@ class RenderServed : public test::CommandLine {
   std::unique_ptr<grpc::Server> server_;
   std::string address_;
 };
-
-long line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
 
 TEST_F(RenderServed, NothingPublishedYetIsOneLineAndAFailure) {
   const Ran ran = render("early.png");

@@ -119,8 +119,8 @@ TEST(Panes, InAWindowDimDaylightAndAllThatComesOfIt) {
   EXPECT_NEAR(tinted, 0.8 * without, 0.01 * without);
 }
 
-// What a pane that absorbs nothing takes from one way it gives to another: between surfaces that are equally bright it changes
-// nothing, H = E / (1 - rho).
+// All surfaces of a furnace are equally bright. A pane that absorbs nothing reflects exactly as much light as it keeps from going
+// through, so it changes nothing between them: everywhere H = E / (1 - rho).
 TEST(Panes, ThatAbsorbNothingChangeNothingInAFurnace) {
   for (const double reflectance : {0.0, 0.3, 0.7}) {
     Scene scene = test::furnace(1, 0.5);

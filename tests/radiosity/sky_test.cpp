@@ -178,7 +178,8 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
   }
 }
 
-// The same with a pane in the hole.
+// A black room with one hole in its roof or wall, filled by a pane: the floor gets the light that the sky would send it through
+// the open hole (its form factor times the sky's irradiance), times the pane's transmittance.
 TEST(SkyThroughAPane, BringsTheSkyComponentTimesItsTransmittance) {
   for (const bool is_roof : {true, false}) {
     std::vector<Vec3> hole;

@@ -1,5 +1,6 @@
 #include "radiosity/rays/visibility.h"
 
+#include "radiosity/rays/triangle_caster.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
