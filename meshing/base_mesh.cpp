@@ -58,6 +58,14 @@ void turn_round(const RootPatch& front, RootPatch& back) {
   std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
 }
 
+/// Brings the texture points of corners that had the vertices `before` into the order of the root's corners.
+void reorder(const std::array<std::uint32_t, 4>& before, const RootPatch& root, std::array<TexturePoint, 4>& points) {
+  const auto old = points;
+  for (int c = 0; c < root.corner_count; ++c)
+    for (int k = 0; k < root.corner_count; ++k)
+      if (before[k] == root.vertex[c]) points[c] = old[k];
+}
+
 /// Finds neighbours with OpenMesh's half-edge mesh. Roots that lie behind others are left out. OpenMesh cannot attach a face if
 /// an edge already has two faces, or a face of the other orientation: such a face gets its own vertices, and so has no
 /// neighbours.
@@ -161,6 +169,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   centre_ = lerp(box.low, box.high, 0.5);
   extent_ = box.longest_side();
 
+  find_texture_points(scene, welded);
   pair_back_to_back();
   refuse_stopped(options.stop);
   find_neighbours(options.stop);
@@ -179,6 +188,21 @@ void BaseMesh::add_roots(const Scene& scene, const WeldedFace& face) {
   report_.split_faces += roots_.size() > before + 1;
 }
 
+// Finds the texture point of each corner of a root by its vertex, among the corners of the faces that the root was made of.
+void BaseMesh::find_texture_points(const Scene& scene, std::span<const std::uint32_t> welded) {
+  if (std::ranges::none_of(roots_, [&](const RootPatch& root) { return materials_[root.material].texture.has_value(); })) return;
+  texture_points_.resize(roots_.size());
+  for (std::uint32_t r = 0; r < roots_.size(); ++r)
+    for (const std::uint32_t f : {roots_[r].input.second, roots_[r].input.first}) {
+      if (f == InputFaces::none || !material_of(r).texture) continue;
+      const auto corners = scene.corners_of(scene.faces[f]);
+      const auto points = scene.texture_points_of(scene.faces[f]);
+      for (int c = 0; c < roots_[r].corner_count; ++c)
+        for (std::size_t k = 0; k < corners.size(); ++k)
+          if (welded[corners[k]] == roots_[r].vertex[c]) texture_points_[r][c] = points[k];
+    }
+}
+
 // Makes twins of two one-sided faces in one place that face opposite ways. A ray may hit either of them; the side that the ray
 // comes from decides which one is meant.
 void BaseMesh::pair_back_to_back() {
@@ -192,7 +216,9 @@ void BaseMesh::pair_back_to_back() {
     const auto [found, is_new] = root_of.try_emplace(key, r);
     RootPatch& other = roots_[found->second];
     if (is_new || other.twin != RootPatch::no_twin || dot(root.normal, other.normal) > 0) continue;
+    const auto before = root.vertex;
     turn_round(other, root);
+    if (has_textures()) reorder(before, root, texture_points_[r]);
     root.is_behind = true;
     root.twin = found->second;
     other.twin = r;
@@ -220,6 +246,9 @@ void BaseMesh::add_backs() {
     back.twin = front;
     roots_[front].twin = static_cast<std::uint32_t>(roots_.size());
     roots_.push_back(back);
+    if (!has_textures()) continue;
+    texture_points_.push_back(texture_points_[front]);
+    reorder(roots_[front].vertex, back, texture_points_.back());
   }
   neighbours_.resize(roots_.size());
   for (std::uint32_t back = 0; back < roots_.size(); ++back) {

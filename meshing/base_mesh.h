@@ -79,6 +79,9 @@ class BaseMesh {
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
+  bool has_textures() const { return !texture_points_.empty(); }
+  /// Returns where on its material's texture each corner of a root lies. Requires: the material has a texture.
+  const std::array<TexturePoint, 4>& texture_points(std::uint32_t root) const { return texture_points_[root]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
   const Rgb& absorption() const { return absorption_; }      ///< absorption coefficient of the medium, see Scene
   std::span<const Light> lights() const { return lights_; }  ///< those that are not faces
@@ -92,11 +95,13 @@ class BaseMesh {
 
  private:
   void add_roots(const Scene& scene, const WeldedFace& face);
+  void find_texture_points(const Scene& scene, std::span<const std::uint32_t> welded);
   void pair_back_to_back();
   void find_neighbours(const std::stop_token& stop);
   void add_backs();
 
   std::vector<RootPatch> roots_;
+  std::vector<std::array<TexturePoint, 4>> texture_points_;  // by root; none if no root has a texture
   std::vector<Material> materials_;
   Rgb absorption_;
   std::vector<Light> lights_;

@@ -1,10 +1,12 @@
 #include "meshing/display_mesh.h"
 
 #include "meshing/leaf_gradient.h"
+#include "meshing/patch_reflectance.h"
 #include "meshing/vertex_key.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -126,8 +128,9 @@ class Triangulation {
   void emit(std::size_t n) {
     const PatchShape shape = forest_.shape(leaves_[n]);
     const auto points = outline(shape);
-    const std::uint32_t centre = add_vertex(shape.root, drawn_centre(shape.root, centre_[leaves_[n]]),
-                                            mesh_.roots()[shape.root].normal, value_[leaves_[n]]);
+    const std::uint32_t centre =
+        add_vertex(shape.root, drawn_centre(shape.root, centre_[leaves_[n]]), mesh_.roots()[shape.root].normal,
+                   value_[leaves_[n]], texture_point(shape.root, shape.centre()));
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
@@ -137,12 +140,13 @@ class Triangulation {
 
   std::uint32_t corner_vertex(std::uint32_t root, GridPoint p) {
     const VertexKey key = keys_.smooth(root, p);
-    const auto [found, added] = vertices_.try_emplace({key, mesh_.roots()[root].material});
+    const TexturePoint point = texture_point(root, {double(p.i) / grid_size, double(p.j) / grid_size});
+    const auto [found, added] = vertices_.try_emplace({key, mesh_.roots()[root].material, point});
     if (added) {
       const CornerSum& sum = sums_[key];
       const Rgb irradiance = sum.weight > 0 ? sum.irradiance * (1 / sum.weight) : Rgb{};
       const Vec3 normal = normalized(sum.normal);
-      found->second = add_vertex(root, drawn_position(root, p, normal), normal, irradiance);
+      found->second = add_vertex(root, drawn_position(root, p, normal), normal, irradiance, point);
     }
     return found->second;
   }
@@ -182,7 +186,16 @@ class Triangulation {
     return position + side_offset * mesh_.extent() * miter(normals);
   }
 
-  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance) {
+  /// Returns the texture point at (u, v) of a root, rounded so that roots agree on their common edge; (0, 0) without a texture.
+  TexturePoint texture_point(std::uint32_t root, Uv at) const {
+    if (!mesh_.material_of(root).texture) return {};
+    constexpr float steps = 65536;
+    const TexturePoint point = texture_point_at(mesh_, root, at);
+    return {std::round(point.s * steps) / steps, std::round(point.t * steps) / steps};
+  }
+
+  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance, TexturePoint point) {
+    if (mesh_.has_textures()) out_.texture_points.push_back(point);
     out_.positions.push_back(position);
     out_.normals.push_back(normal);
     out_.irradiance.push_back(narrow(irradiance));
@@ -193,10 +206,15 @@ class Triangulation {
   struct VertexOfMaterial {
     VertexKey key;
     std::uint32_t material;
+    TexturePoint point;
     bool operator==(const VertexOfMaterial&) const = default;
   };
   struct Hash {
-    std::size_t operator()(const VertexOfMaterial& v) const { return mix_bits(v.key + v.material * 0x9e3779b97f4a7c15u); }
+    std::size_t operator()(const VertexOfMaterial& v) const {
+      const std::uint64_t point = std::bit_cast<std::uint32_t>(v.point.s) ^ std::uint64_t{std::bit_cast<std::uint32_t>(v.point.t)}
+                                                                                << 32;
+      return mix_bits(v.key + v.material * 0x9e3779b97f4a7c15u + mix_bits(point));
+    }
   };
   struct KeyHash {
     std::size_t operator()(VertexKey key) const { return mix_bits(key); }
@@ -224,15 +242,30 @@ void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run) {
   else runs.push_back(run);
 }
 
-std::vector<const Material*> panes_of(const DisplayMesh& mesh) {
-  std::vector<const Material*> panes;
-  if (std::ranges::none_of(mesh.materials, &Material::is_pane)) return panes;
+namespace {
+
+/// Returns the material of each triangle whose material is wanted, null for the others; nothing if there are none.
+template <class Wanted>
+std::vector<const Material*> materials_by_triangle(const DisplayMesh& mesh, Wanted is_wanted) {
+  std::vector<const Material*> materials;
+  if (std::ranges::none_of(mesh.materials, is_wanted)) return materials;
   for (const FaceTriangles& run : mesh.faces) {
     const Material* const material = run.material < mesh.materials.size() ? &mesh.materials[run.material] : nullptr;
-    panes.insert(panes.end(), run.count, material && material->is_pane() ? material : nullptr);
+    materials.insert(materials.end(), run.count, material && is_wanted(*material) ? material : nullptr);
   }
-  panes.resize(panes.empty() ? 0 : mesh.triangles.size());
-  return panes;
+  materials.resize(materials.empty() ? 0 : mesh.triangles.size());
+  return materials;
+}
+
+}  // namespace
+
+std::vector<const Material*> panes_of(const DisplayMesh& mesh) {
+  return materials_by_triangle(mesh, [](const Material& material) { return material.is_pane(); });
+}
+
+std::vector<const Material*> textured_of(const DisplayMesh& mesh) {
+  if (mesh.texture_points.empty()) return {};
+  return materials_by_triangle(mesh, [](const Material& material) { return material.texture.has_value(); });
 }
 
 DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves) {

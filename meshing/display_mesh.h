@@ -25,12 +25,13 @@ void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run);
 
 /// A triangle mesh with irradiance and radiosity per vertex. Each triangle is (centre of a leaf, corner, next corner),
 /// counter-clockwise, so the side opposite its first vertex lies on the leaf's outline. Triangles share a vertex only where the
-/// surface is smooth and has one material.
+/// surface is smooth and has one material and texture point.
 struct DisplayMesh {
-  std::vector<Vec3> positions;   ///< metres
-  std::vector<Vec3> normals;     ///< unit; point to the front
-  std::vector<RgbF> irradiance;  ///< H, W/m2
-  std::vector<RgbF> radiosity;   ///< B = E + rho H, W/m2
+  std::vector<Vec3> positions;               ///< metres
+  std::vector<Vec3> normals;                 ///< unit; point to the front
+  std::vector<RgbF> irradiance;              ///< H, W/m2
+  std::vector<RgbF> radiosity;               ///< B = E + rho H, W/m2; rho is the material's mean reflectance
+  std::vector<TexturePoint> texture_points;  ///< of the vertices; none if no material has a texture
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<FaceTriangles> faces;  ///< whence the triangles come, in their order; none if that is not known
   UpAxis up = UpAxis::y;
@@ -43,6 +44,8 @@ struct DisplayMesh {
 /// Returns the material of each triangle that light goes straight through, null for the others; nothing if there are none, or if
 /// the mesh does not know its faces. The mesh must outlive it.
 std::vector<const Material*> panes_of(const DisplayMesh& mesh);
+/// Returns the material of each triangle that has a texture, as panes_of() does.
+std::vector<const Material*> textured_of(const DisplayMesh& mesh);
 
 /// Triangulates `leaves` (sorted by id, together covering every root of `mesh`), with a vertex at every hanging corner so that no
 /// crack opens. A corner's irradiance is the mean of linear extrapolations from its smooth neighbours, clamped to the range of

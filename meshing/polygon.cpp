@@ -26,6 +26,13 @@ bool is_planar_convex_quad(std::span<const Vec3> p, Vec3 normal) {
 
 }  // namespace
 
+std::array<double, 3> barycentric(Vec3 point, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 normal = cross(b - a, c - a);
+  const double square = dot(normal, normal);
+  const double at_b = dot(cross(point - a, c - a), normal) / square, at_c = dot(cross(b - a, point - a), normal) / square;
+  return {1 - at_b - at_c, at_b, at_c};
+}
+
 Vec3 double_area_vector(std::span<const Vec3> polygon) {
   Vec3 sum;
   for (std::size_t c = 2; c < polygon.size(); ++c) sum += cross(polygon[c - 1] - polygon[0], polygon[c] - polygon[0]);

@@ -22,6 +22,14 @@ std::string number(double value) {
   return text;
 }
 
+std::optional<std::string> fault_in_texture(const Material& material) {
+  if (!material.texture) return std::nullopt;
+  const Rgb& factor = material.texture->factor;
+  for (const double band : {factor.r, factor.g, factor.b})
+    if (!(band >= 0 && band <= 1)) return "factor " + number(band) + " of its texture is outside [0, 1]";
+  return material.texture->image ? fault_in(*material.texture->image) : "its texture has no image";
+}
+
 std::optional<std::string> fault_in(const Material& material) {
   const double bands[2][3] = {{material.emission.r, material.emission.g, material.emission.b},
                               {material.reflectance.r, material.reflectance.g, material.reflectance.b}};
@@ -31,7 +39,9 @@ std::optional<std::string> fault_in(const Material& material) {
     if (emission > max_emission) return "emission " + number(emission) + " is beyond 1e30 W/m2";
   for (const double reflectance : bands[1])
     if (!(reflectance >= 0 && reflectance < 1)) return "reflectance " + number(reflectance) + " is outside [0, 1)";
-  const Rgb &through = material.regular_transmittance, both = through + material.reflectance;
+  if (auto reason = fault_in_texture(material)) return reason;
+  const Rgb &through = material.regular_transmittance,
+            both = through + upper(material.reflectance, material.largest_reflectance());
   for (const double band : {through.r, through.g, through.b})
     if (!(band >= 0 && band <= 1)) return "regular transmittance " + number(band) + " is outside [0, 1]";
   if (both.max() > 1 + rounding) return "reflectance and regular transmittance are " + number(both.max()) + " together, beyond 1";
@@ -60,6 +70,20 @@ std::optional<std::string> fault_in(const Face& face, const Scene& scene) {
   return std::nullopt;
 }
 
+std::optional<Fault> fault_in_texture_points(const Scene& scene) {
+  const auto has_texture = [](const Material& material) { return material.texture.has_value(); };
+  const std::size_t wanted = std::ranges::any_of(scene.materials, has_texture) ? scene.corners.size() : 0;
+  const std::size_t found = scene.texture_points.size();
+  if (found < wanted || found > scene.corners.size())
+    return Fault{"scene",
+                 "has " + std::to_string(found) + " texture points for " + std::to_string(scene.corners.size()) + " corners"};
+  for (std::size_t i = 0; i < scene.texture_points.size(); ++i)
+    for (const float x : {scene.texture_points[i].s, scene.texture_points[i].t})
+      if (!(std::abs(x) <= most_repeats))
+        return Fault{"corner " + std::to_string(i), "its texture point " + number(x) + " is beyond 1e5"};
+  return std::nullopt;
+}
+
 std::optional<Fault> fault_in_objects(const Scene& scene) {
   std::unordered_set<std::string_view> names;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -72,9 +96,12 @@ std::optional<Fault> fault_in_objects(const Scene& scene) {
 
 }  // namespace
 
-void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t material) {
+void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t material, std::span<const TexturePoint> points) {
   faces.push_back({static_cast<std::uint32_t>(corners.size()), static_cast<std::uint32_t>(polygon.size()), material});
+  if (!points.empty()) texture_points.resize(corners.size());
   corners.insert(corners.end(), polygon.begin(), polygon.end());
+  texture_points.insert(texture_points.end(), points.begin(), points.end());
+  if (!texture_points.empty()) texture_points.resize(corners.size());
 }
 
 void Scene::add_polygon(std::span<const Vec3> polygon, std::uint32_t material) {
@@ -112,6 +139,7 @@ std::optional<Fault> find_fault(const Scene& scene) {
     if (auto reason = fault_in(scene.vertices[i])) return Fault{"vertex " + std::to_string(i), *reason};
   for (std::size_t i = 0; i < scene.faces.size(); ++i)
     if (auto reason = fault_in(scene.faces[i], scene)) return Fault{"face " + std::to_string(i), *reason};
+  if (auto fault = fault_in_texture_points(scene)) return fault;
   return fault_in_objects(scene);
 }
 

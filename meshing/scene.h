@@ -3,6 +3,7 @@
 
 #include "meshing/light.h"
 #include "meshing/scene_object.h"
+#include "meshing/texture.h"
 #include "meshing/vec3.h"
 #include "solution/rgb.h"
 
@@ -21,13 +22,16 @@ inline constexpr double clamped_reflectance = 0.95;
 struct Material {
   std::string name;
   Rgb emission;     ///< E: radiant exitance, W/m2 per band, >= 0
-  Rgb reflectance;  ///< rho: diffuse, in [0, 1) per band
+  Rgb reflectance;  ///< rho: diffuse, in [0, 1) per band; the mean of the texture's image, if there is one
   bool two_sided = false;
   /// Share of light that goes straight on through a face, from either side, tinted: of clear glass, or of what holes leave of a
   /// cloth (CIE: regular transmittance). In [0, 1] per band, and at most 1 with the reflectance.
   Rgb regular_transmittance;
+  std::optional<Texture> texture;  ///< the reflectance by place
 
   bool is_pane() const { return !regular_transmittance.is_zero(); }
+  /// Returns an upper bound on the reflectance of any place, below 1.
+  Rgb largest_reflectance() const { return texture ? reflectance_of_texel(255) * texture->factor : reflectance; }
 };
 
 /// A polygon. Its corners are scene.corners[first_corner .. first_corner + corner_count), counter-clockwise seen from its front.
@@ -48,6 +52,8 @@ enum class UpAxis : std::uint8_t { y, z };
 struct Scene {
   std::vector<Vec3> vertices;          ///< metres
   std::vector<std::uint32_t> corners;  ///< indices of vertices
+  /// Where on the texture of its face's material each corner lies; none if no material has a texture.
+  std::vector<TexturePoint> texture_points;
   std::vector<Face> faces;
   std::vector<Material> materials;
   /// Absorption coefficient of the medium that fills the scene, 1/m per band, >= 0. Light fades by exp(-absorption r); 0 means no
@@ -63,8 +69,13 @@ struct Scene {
   std::span<const std::uint32_t> corners_of(const Face& face) const {
     return std::span(corners).subspan(face.first_corner, face.corner_count);
   }
-  /// Appends a face. Does not check it; find_fault does.
-  void add_face(std::span<const std::uint32_t> polygon, std::uint32_t material);
+  /// Returns the texture point of each corner of a face; nothing if its material has no texture.
+  std::span<const TexturePoint> texture_points_of(const Face& face) const {
+    if (!materials[face.material].texture) return {};
+    return std::span(texture_points).subspan(face.first_corner, face.corner_count);
+  }
+  /// Appends a face. Does not check it; find_fault does. `points` has an entry for each corner, or none.
+  void add_face(std::span<const std::uint32_t> polygon, std::uint32_t material, std::span<const TexturePoint> points = {});
   /// Appends a face with new vertices. Does not check it; find_fault does.
   void add_polygon(std::span<const Vec3> polygon, std::uint32_t material);
 };
@@ -82,8 +93,9 @@ struct Fault {
 /// Returns the first fault of the scene; looks at counts, then materials, lights, vertices, faces and objects in order. Linear in
 /// the size of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face,
 /// finite coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite
-/// absorption >= 0, reflectance in [0, 1), regular transmittance in [0, 1 - reflectance], and objects of different names in an
-/// order that fits the faces. Degenerate faces are no fault.
+/// absorption >= 0, reflectance in [0, 1), regular transmittance in [0, 1 - reflectance], sound images, texture points for all
+/// corners if any material has a texture, and objects of different names in an order that fits the faces. Degenerate faces are no
+/// fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

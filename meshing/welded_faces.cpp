@@ -64,6 +64,32 @@ class KnownFaces {
   std::unordered_map<std::vector<std::uint32_t>, const WeldedFace*, RingHash> by_ring_;
 };
 
+/// Returns the texture point of the corner at a welded vertex of a triangle. A triangle keeps the order of its corners.
+TexturePoint texture_point_at(const Scene& scene, const WeldedFace& triangle, std::uint32_t vertex) {
+  const auto corner = std::ranges::find(triangle.ring, vertex) - triangle.ring.begin();
+  return scene.texture_points_of(scene.faces[triangle.input.first])[static_cast<std::size_t>(corner)];
+}
+
+/// Returns whether a texture lies on two triangles with a common edge as on one plane, to a quarter of a texel.
+bool have_one_texture_map(const Scene& scene, const WeldedFace& first, const WeldedFace& second) {
+  const auto& texture = scene.materials[first.material].texture;
+  if (!texture) return true;
+  const auto& ring = first.ring;
+  for (const std::uint32_t vertex : second.ring) {
+    const auto weight =
+        barycentric(scene.vertices[vertex], scene.vertices[ring[0]], scene.vertices[ring[1]], scene.vertices[ring[2]]);
+    double s = 0, t = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const TexturePoint point = texture_point_at(scene, first, ring[k]);
+      s += weight[k] * point.s, t += weight[k] * point.t;
+    }
+    const TexturePoint found = texture_point_at(scene, second, vertex);
+    const double columns = texture->image->columns, rows = texture->image->rows;
+    if (std::abs(found.s - s) * columns > 0.25 || std::abs(found.t - t) * rows > 0.25) return false;
+  }
+  return true;
+}
+
 bool has_only_triangles(const Scene& scene) {
   return std::ranges::all_of(scene.faces, [](const Face& face) { return face.corner_count == 3; });
 }
@@ -119,6 +145,7 @@ void join_triangle_pairs(const Scene& scene, std::vector<WeldedFace>& faces) {
   for (const WeldedFace& face : faces)
     triangles.push_back({{face.ring[0], face.ring[1], face.ring[2]}, face.material, face.input.first});
   for (const TrianglePair& pair : pair_triangles(triangles, scene.vertices)) {
+    if (!have_one_texture_map(scene, faces[pair.first], faces[pair.second])) continue;
     faces[pair.first].ring.assign(pair.corners.begin(), pair.corners.end());
     faces[pair.first].input.second = faces[pair.second].input.first;
     faces[pair.second].ring.clear();

@@ -63,8 +63,8 @@ class SceneAssembler {
   const Scene& scene() const { return scene_; }
   std::size_t web_count() const { return webs_.size(); }                  ///< of photometric webs that have arrived
   std::size_t environment_count() const { return environments_.size(); }  ///< of environment maps that have arrived
-  /// Returns the assembled scene. Its indices are not checked yet, see find_fault.
-  Scene take() { return std::move(scene_); }
+  /// Returns the assembled scene. Its indices are not checked yet, nor whether its images are complete: see find_fault.
+  Scene take();
 
  private:
   std::optional<Fault> fault_in(const v1::GeometryChunk& chunk) const;
@@ -72,18 +72,67 @@ class SceneAssembler {
 
   std::optional<Fault> fault_in_lights(const v1::GeometryChunk& chunk) const;
   std::optional<Fault> fault_in_environments(const v1::GeometryChunk& chunk) const;
+  std::optional<Fault> fault_in_textures(const v1::GeometryChunk& chunk) const;
+  void add_texels(std::string_view bytes);
+  Material decode_material(const v1::Material& message) const;
 
   Scene scene_;
+  std::vector<std::shared_ptr<ColourImage>> images_;
+  std::size_t complete_images_ = 0;
+  std::uint64_t wanted_texels_ = 0, texel_bytes_ = 0;  // texels of all images that have arrived, and bytes of their texels
   std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
   std::vector<std::shared_ptr<const EnvironmentMap>> environments_;
   std::uint64_t chunks_ = 0;
 };
 
-/// Cuts a scene into chunks: materials, lights with their webs and maps, objects, vertices, faces. The scene must outlive it.
+/// The images of a scene's textures, each once, numbered in the order of the materials.
+class ImageList {
+ public:
+  explicit ImageList(std::span<const Material> materials);
+  std::span<const ColourImage* const> images() const { return images_; }
+  /// Sets the texture of the message, if the material has one. Requires: a material of the list's scene.
+  void encode_texture(const Material& material, v1::Material& message) const;
+
+ private:
+  std::vector<const ColourImage*> images_;
+  std::unordered_map<const ColourImage*, std::uint32_t> number_;
+};
+
+/// Cuts images into pieces. The images must outlive it.
+class ImageSlicer {
+ public:
+  explicit ImageSlicer(std::span<const ColourImage* const> images) : images_(images) {}
+  bool is_at_start() const { return image_ == 0 && texel_byte_ == 0 && !is_announced_; }
+  bool is_done() const { return image_ == images_.size(); }
+  /// Appends sizes of images, and bytes of their texels, that take at most `budget` bytes together; reduces it by what they take.
+  void next(google::protobuf::RepeatedPtrField<v1::ColourImage>& images, std::string& texels, std::int64_t& budget);
+
+ private:
+  std::span<const ColourImage* const> images_;
+  std::size_t image_ = 0, texel_byte_ = 0;  // the image that is being sent, and how much of it was
+  bool is_announced_ = false;               // its size was sent
+};
+
+/// Cuts the images of a mesh's materials into messages well below gRPC's limit of 4 MB. The mesh must outlive it.
+class MeshImageSlicer {
+ public:
+  explicit MeshImageSlicer(std::span<const Material> materials) : list_(materials), slicer_(list_.images()) {}
+  MeshImageSlicer(const MeshImageSlicer&) = delete;
+  /// Fills in the next message. Returns false if nothing is left.
+  bool next(v1::ReadImagesResponse& message);
+
+ private:
+  ImageList list_;
+  ImageSlicer slicer_;
+};
+
+/// Cuts a scene into chunks: images, materials, lights with their webs and maps, objects, vertices, faces. The scene must outlive
+/// it.
 class SceneSlicer {
  public:
   /// Each chunk stays below `max_bytes` (256 or more), but holds at least one item and never cuts a face.
   explicit SceneSlicer(const Scene& scene, std::size_t max_bytes = 1 << 20);
+  SceneSlicer(const SceneSlicer&) = delete;
   /// Fills in the next chunk. Returns false if nothing is left.
   bool next(v1::GeometryChunk& chunk);
 
@@ -91,6 +140,7 @@ class SceneSlicer {
   void take_materials(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_lights(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_objects(v1::GeometryChunk& chunk, std::int64_t& budget);
+  bool has_textures() const { return !images_.images().empty(); }
   void take_light(v1::GeometryChunk& chunk, v1::Light message, const Light& light);
   void take_vertices(v1::GeometryChunk& chunk, std::int64_t& budget);
   void take_faces(v1::GeometryChunk& chunk, std::int64_t& budget);
@@ -98,6 +148,8 @@ class SceneSlicer {
   const Scene& scene_;
   std::int64_t max_bytes_;
   std::size_t material_ = 0, light_ = 0, object_ = 0, vertex_ = 0, face_ = 0;
+  ImageList images_;
+  ImageSlicer image_slicer_;
   // Webs and maps that were sent, and their numbers.
   std::unordered_map<const PhotometricWeb*, std::uint32_t> webs_;
   std::unordered_map<const EnvironmentMap*, std::uint32_t> environments_;

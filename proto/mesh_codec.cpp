@@ -1,7 +1,5 @@
 #include "proto/mesh_codec.h"
 
-#include "proto/codec.h"
-
 #include <algorithm>
 
 namespace alvor {
@@ -25,6 +23,9 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
   for (int c = 0; c < root.corner_count; ++c) {
     for (const double x : {root.corners[c].x, root.corners[c].y, root.corners[c].z}) message.add_corner_coordinates(x);
     message.add_neighbours(encode(mesh.across(index, c)));
+    if (!mesh.has_textures()) continue;
+    const TexturePoint point = mesh.texture_points(index)[static_cast<std::size_t>(c)];
+    message.add_texture_coordinates(point.s), message.add_texture_coordinates(point.t);
   }
 }
 
@@ -40,6 +41,7 @@ bool MeshSlicer::next(v1::ReadMeshResponse& message) {
     if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_ || bytes > most_bytes) return true;
     v1::Material& material = *message.add_scene_materials();
     material = encode(materials[next_material_]);
+    images_.encode_texture(materials[next_material_], material);
     bytes += material.ByteSizeLong();
   }
   const std::size_t end = std::min(mesh_.roots().size(), next_ + items_at_a_time_);

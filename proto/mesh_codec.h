@@ -3,6 +3,7 @@
 
 #include "alvor/v1/scene_service.pb.h"
 #include "meshing/base_mesh.h"
+#include "proto/codec.h"
 
 namespace alvor {
 
@@ -10,12 +11,13 @@ namespace alvor {
 class MeshSlicer {
  public:
   explicit MeshSlicer(const BaseMesh& mesh, std::size_t items_at_a_time = 10'000)
-      : mesh_(mesh), items_at_a_time_(items_at_a_time) {}
+      : mesh_(mesh), images_(mesh.materials()), items_at_a_time_(items_at_a_time) {}
   /// Fills in the next message. After the last one returns false and leaves `message` empty.
   bool next(v1::ReadMeshResponse& message);
 
  private:
   const BaseMesh& mesh_;
+  const ImageList images_;
   const std::size_t items_at_a_time_;
   std::size_t next_ = 0, next_material_ = 0;
 };

@@ -3,7 +3,9 @@
 
 #include "meshing/scene.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -32,16 +34,29 @@ inline Scene with_red_and_green_swapped(Scene scene) {
     material.emission = red_and_green_swapped(material.emission);
     material.reflectance = red_and_green_swapped(material.reflectance);
     material.regular_transmittance = red_and_green_swapped(material.regular_transmittance);
+    if (!material.texture) continue;
+    ColourImage image = *material.texture->image;
+    for (std::size_t texel = 0; texel < image.texels.size(); texel += 3) std::swap(image.texels[texel], image.texels[texel + 1]);
+    material.texture->image = std::make_shared<const ColourImage>(std::move(image));
+    material.texture->factor = red_and_green_swapped(material.texture->factor);
   }
   scene.absorption = red_and_green_swapped(scene.absorption);
   return scene;
 }
 
+/// Returns the texture points of a face's corners; nothing if the scene has none.
+inline std::vector<TexturePoint> points_of(const Scene& scene, std::uint32_t face) {
+  if (scene.texture_points.empty()) return {};
+  const auto first = scene.texture_points.begin() + scene.faces[face].first_corner;
+  return {first, first + scene.faces[face].corner_count};
+}
+
 /// Returns the scene with its faces reordered: face n is face order[n] of `scene`.
 inline Scene with_faces_in_order(const Scene& scene, std::span<const std::uint32_t> order) {
   Scene changed = scene;
-  changed.corners.clear(), changed.faces.clear();
-  for (const std::uint32_t face : order) changed.add_face(scene.corners_of(scene.faces[face]), scene.faces[face].material);
+  changed.corners.clear(), changed.faces.clear(), changed.texture_points.clear();
+  for (const std::uint32_t face : order)
+    changed.add_face(scene.corners_of(scene.faces[face]), scene.faces[face].material, points_of(scene, face));
   return changed;
 }
 
@@ -49,11 +64,14 @@ inline Scene with_faces_in_order(const Scene& scene, std::span<const std::uint32
 inline Scene with_backs_as_faces(const Scene& scene) {
   Scene changed = scene;
   for (Material& material : changed.materials) material.two_sided = false;
-  for (const Face& face : scene.faces) {
+  for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
+    const Face& face = scene.faces[f];
     if (!scene.materials[face.material].two_sided) continue;
     std::vector<std::uint32_t> ring(scene.corners_of(face).begin(), scene.corners_of(face).end());
+    std::vector<TexturePoint> points = points_of(scene, f);
     std::reverse(ring.begin() + 1, ring.end());
-    changed.add_face(ring, face.material);
+    if (!points.empty()) std::reverse(points.begin() + 1, points.end());
+    changed.add_face(ring, face.material, points);
   }
   return changed;
 }
@@ -62,19 +80,26 @@ inline Scene with_backs_as_faces(const Scene& scene) {
 /// the last face.
 inline Scene with_face_cut(const Scene& scene, std::uint32_t face) {
   Scene changed = scene;
-  changed.corners.clear(), changed.faces.clear();
+  changed.corners.clear(), changed.faces.clear(), changed.texture_points.clear();
+  const std::vector<TexturePoint> of_face = points_of(scene, face);
+  const auto middle =
+      of_face.empty() ? TexturePoint{} : TexturePoint{(of_face[1].s + of_face[2].s) / 2, (of_face[1].t + of_face[2].t) / 2};
   for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
     const auto corners = scene.corners_of(scene.faces[f]);
     std::vector<std::uint32_t> ring(corners.begin(), corners.end());
+    std::vector<TexturePoint> points = points_of(scene, f);
     if (f == face) {
+      if (!points.empty()) points[1] = middle;
       changed.vertices.push_back(lerp(scene.vertices[ring[1]], scene.vertices[ring[2]], 0.5));
       ring[1] = static_cast<std::uint32_t>(scene.vertices.size());
     }
-    changed.add_face(ring, scene.faces[f].material);
+    changed.add_face(ring, scene.faces[f].material, points);
   }
   const auto corners = scene.corners_of(scene.faces[face]);
+  std::vector<TexturePoint> points;
+  if (!of_face.empty()) points = {of_face[0], of_face[1], middle};
   changed.add_face(std::vector{corners[0], corners[1], static_cast<std::uint32_t>(scene.vertices.size())},
-                   scene.faces[face].material);
+                   scene.faces[face].material, points);
   return changed;
 }
 

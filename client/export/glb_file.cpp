@@ -1,5 +1,7 @@
 #include "client/export/glb_file.h"
 
+#include "client/export/binary_chunk.h"
+#include "client/export/glb_textures.h"
 #include "client/export/light_json.h"
 #include "client/export/scene_json.h"
 #include "client/export/solution_file.h"
@@ -40,60 +42,6 @@ Vec3 middle_of_box(const std::vector<Vec3>& points) {
   return lerp(low, high, 0.5);
 }
 
-/// Collects the binary chunk and the accessors that describe it.
-class BinaryChunk {
- public:
-  /// Appends `value(i)` for each of `count` vertices; returns the accessor's index.
-  template <class Value>
-  std::size_t add_vectors(std::size_t count, Value value) {
-    constexpr std::size_t size = std::tuple_size_v<decltype(value(0))>;
-    add_view(count * size * sizeof(float), array_buffer);
-    for (std::size_t i = 0; i < count; ++i)
-      for (const float x : value(i)) append_value(bytes_, x);
-    return add_accessor(count, size == 4 ? "VEC4" : "VEC3", float_component);
-  }
-  std::size_t add_indices(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-    add_view(triangles.size() * 3 * sizeof(std::uint32_t), element_array_buffer);
-    for (const auto& triangle : triangles)
-      for (const std::uint32_t vertex : triangle) append_value(bytes_, vertex);
-    return add_accessor(triangles.size() * 3, "SCALAR", uint_component);
-  }
-  std::size_t add_numbers(std::size_t count, const std::string& bytes) {
-    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}});
-    bytes_ += bytes;
-    return add_accessor(count, "SCALAR", uint_component);
-  }
-  /// Sets min and max of a VEC3 accessor; POSITION needs them.
-  void set_bounds(std::size_t accessor) {
-    Float3 low, high;
-    low.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
-    const std::size_t start = views_[accessor]["byteOffset"], end = start + views_[accessor]["byteLength"].get<std::size_t>();
-    for (std::size_t at = start, axis = 0; at < end; at += sizeof(float), axis = (axis + 1) % 3) {
-      low[axis] = std::min(low[axis], value_at<float>(bytes_, at));
-      high[axis] = std::max(high[axis], value_at<float>(bytes_, at));
-    }
-    accessors_[accessor]["min"] = low;
-    accessors_[accessor]["max"] = high;
-  }
-
-  const json& views() const { return views_; }
-  const json& accessors() const { return accessors_; }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  void add_view(std::size_t size, int target) {
-    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}, {"target", target}});
-  }
-  std::size_t add_accessor(std::size_t count, const char* type, int component) {
-    accessors_.push_back({{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
-    return accessors_.size() - 1;
-  }
-
-  json views_ = json::array(), accessors_ = json::array();
-  std::string bytes_;
-};
-
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 /// Returns the share of each vertex that hides what is behind it; nothing if the mesh has no panes.
@@ -107,7 +55,27 @@ std::vector<float> opacities_of(const DisplayMesh& mesh) {
 }
 
 /// Adds a mesh's values at its vertices, relative to `origin`. `opacity` is that of opacities_of().
-json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin, std::span<const float> opacity) {
+/// Returns the reflectance of each vertex that has a texture in the file, 1 for the others; nothing if none has.
+std::vector<Rgb> reflectances_under_textures(const DisplayMesh& mesh, const TriangleGroups& groups) {
+  std::vector<Rgb> reflectances;
+  std::size_t first = 0;
+  for (const auto& [material, count] : groups.groups) {
+    if (material) reflectances.resize(mesh.positions.size(), {1, 1, 1});
+    for (std::size_t t = first; material && t < first + count; ++t)
+      for (const std::uint32_t vertex : groups.triangles[t]) reflectances[vertex] = mesh.materials[*material].reflectance;
+    first += count;
+  }
+  return reflectances;
+}
+
+/// Returns a colour that gives `shown` when it is multiplied by `reflectance`, as far as colours go.
+Rgb without(const Rgb& reflectance, const Rgb& shown) {
+  const auto band = [](double s, double r) { return s < r ? s / r : 1; };
+  return {band(shown.r, reflectance.r), band(shown.g, reflectance.g), band(shown.b, reflectance.b)};
+}
+
+json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin, std::span<const float> opacity,
+                    std::span<const Rgb> under_texture) {
   const std::size_t count = mesh.positions.size();
   const double exposure = automatic_exposure(mesh);
   json attributes;
@@ -120,12 +88,17 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   const auto colour = [&](std::size_t i) {
     // Panes are drawn whole or not at all (see unlit_material), so those that are drawn get the colour of the part that is there.
     const double there = opacity.empty() ? 1 : std::max(0.5, double(opacity[i]));
-    return float3(narrow(tone_map(exposure / there * widen(mesh.radiosity[i]))));
+    const Rgb shown = tone_map(exposure / there * widen(mesh.radiosity[i]));
+    return float3(narrow(under_texture.empty() ? shown : without(under_texture[i], shown)));
   };
   attributes["COLOR_0"] = opacity.empty() ? chunk.add_vectors(count, colour) : chunk.add_vectors(count, [&](std::size_t i) {
     const auto [r, g, b] = colour(i);
     return std::array{r, g, b, opacity[i]};
   });
+  if (!under_texture.empty())
+    attributes["TEXCOORD_0"] = chunk.add_vectors(count, [&](std::size_t i) {
+      return std::array{mesh.texture_points[i].s, mesh.texture_points[i].t};
+    });
   return attributes;
 }
 
@@ -168,20 +141,36 @@ json node_of(const Vec3& origin, const DisplayMesh& mesh) {
   return node;
 }
 
-json document(const BinaryChunk& chunk, const json& attributes, std::size_t indices, const json& node, bool has_panes) {
+json document(const json& attributes, const std::vector<std::size_t>& indices, bool has_panes) {
   json root;
   root["asset"] = {{"version", "2.0"}, {"generator", "Alvor"}};
   root["extensionsUsed"] = json::array({"KHR_materials_unlit"});
   root["scene"] = 0;
   root["scenes"] = json::array({{{"nodes", {0}}}});
-  root["nodes"] = json::array({node});
-  const json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}};
-  root["meshes"] = json::array({{{"name", "solution"}, {"primitives", json::array({primitive})}}});
   root["materials"] = json::array({unlit_material(has_panes)});
-  root["buffers"] = json::array({{{"byteLength", chunk.bytes().size()}}});
-  root["bufferViews"] = chunk.views();
-  root["accessors"] = chunk.accessors();
+  json primitives = json::array();
+  for (const std::size_t accessor : indices)
+    primitives.push_back({{"attributes", attributes}, {"indices", accessor}, {"material", 0}, {"mode", 4}});
+  root["meshes"] = json::array({{{"name", "solution"}, {"primitives", std::move(primitives)}}});
   return root;
+}
+
+/// Adds the indices of each group of triangles; returns their accessors.
+std::vector<std::size_t> add_indices(BinaryChunk& chunk, const TriangleGroups& groups) {
+  std::vector<std::size_t> accessors;
+  std::size_t first = 0;
+  for (const TriangleGroups::Group& group : groups.groups) {
+    accessors.push_back(chunk.add_indices(std::span(groups.triangles).subspan(first, group.count)));
+    first += group.count;
+  }
+  return accessors;
+}
+
+/// Gives the primitives of groups that have a texture the materials that write_textures() added, in order.
+void use_textures(const TriangleGroups& groups, json& root) {
+  std::size_t material = 0;
+  for (std::size_t g = 0; g < groups.groups.size(); ++g)
+    if (groups.groups[g].material) root["meshes"][0]["primitives"][g]["material"] = ++material;
 }
 
 void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes) {
@@ -194,19 +183,27 @@ void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes
 
 std::string encode_glb(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) throw SolutionFileError("mesh: has no triangles");
-  const std::size_t estimate = mesh.positions.size() * (5 * vec3_size + sizeof(float)) + mesh.triangles.size() * vec3_size +
-                               mesh.faces.size() * sizeof(FaceTriangles);
+  const std::size_t estimate =
+      mesh.positions.size() * (6 * vec3_size) + mesh.triangles.size() * vec3_size + mesh.faces.size() * sizeof(FaceTriangles);
   if (estimate > std::numeric_limits<std::uint32_t>::max() - largest_json)
     throw SolutionFileError("mesh: too large for GLB, which ends at 4 GB");
 
   const Vec3 origin = middle_of_box(mesh.positions);
   BinaryChunk chunk;
   const std::vector<float> opacity = opacities_of(mesh);
-  const json attributes = add_attributes(chunk, mesh, origin, opacity);
-  const std::size_t indices = chunk.add_indices(mesh.triangles);
   json node = node_of(origin, mesh);
-  if (!mesh.faces.empty()) node["extras"][faces_key] = add_faces(chunk, mesh.faces);
-  std::string text = text_of(document(chunk, attributes, indices, node, !opacity.empty()));
+  TriangleGroups groups = group_by_texture(mesh);
+  if (!node["extras"].contains(materials_key)) groups.groups = {{std::nullopt, mesh.triangles.size()}};
+  const json attributes = add_attributes(chunk, mesh, origin, opacity, reflectances_under_textures(mesh, groups));
+  json root = document(attributes, add_indices(chunk, groups), !opacity.empty());
+  if (!groups.faces.empty()) node["extras"][faces_key] = add_faces(chunk, groups.faces);
+  write_textures(mesh, groups, chunk, root, node["extras"]);
+  use_textures(groups, root);
+  root["nodes"] = json::array({std::move(node)});
+  root["buffers"] = json::array({{{"byteLength", chunk.bytes().size()}}});
+  root["bufferViews"] = chunk.views();
+  root["accessors"] = chunk.accessors();
+  std::string text = text_of(root);
   text.resize((text.size() + 3) / 4 * 4, ' ');
 
   std::string glb;

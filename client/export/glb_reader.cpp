@@ -1,4 +1,5 @@
 #include "client/export/glb_file.h"
+#include "client/export/glb_textures.h"
 #include "client/export/light_json.h"
 #include "client/export/scene_json.h"
 #include "client/export/solution_file.h"
@@ -141,14 +142,36 @@ std::vector<T> read_vectors(const json& root, std::string_view binary, const cha
 }
 
 std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::string_view binary) {
-  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
-  if (whole_number_or(primitive, "mode", 4, "primitive") != 4) fail("primitive", "not triangles");
-  const std::size_t accessor = whole_number(primitive, "indices", "primitive");
-  const Elements indices = elements_of(root, binary, accessor, {"SCALAR", uint_component, sizeof(std::uint32_t)});
-  if (indices.count % 3 != 0) fail("indices", "not three for each triangle");
-  std::vector<std::array<std::uint32_t, 3>> triangles(indices.count / 3);
-  for (std::size_t i = 0; i < indices.count; ++i) triangles[i / 3][i % 3] = indices.at<std::uint32_t>(i);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const json& primitives = member(element(root, "meshes", 0), "primitives", "meshes[0]");
+  for (std::size_t p = 0; p < primitives.size(); ++p) {
+    const json& primitive = primitives[p];
+    if (whole_number_or(primitive, "mode", 4, "primitive") != 4) fail("primitive", "not triangles");
+    const std::size_t accessor = whole_number(primitive, "indices", "primitive");
+    const Elements indices = elements_of(root, binary, accessor, {"SCALAR", uint_component, sizeof(std::uint32_t)});
+    if (indices.count % 3 != 0) fail("indices", "not three for each triangle");
+    if ((triangles.size() * 3 + indices.count) * sizeof(std::uint32_t) > binary.size())
+      fail("indices", "several primitives share them");
+    for (std::size_t i = 0; i < indices.count; i += 3)
+      triangles.push_back({indices.at<std::uint32_t>(i), indices.at<std::uint32_t>(i + 1), indices.at<std::uint32_t>(i + 2)});
+  }
   return triangles;
+}
+
+std::vector<TexturePoint> read_texture_points(const json& root, std::string_view binary) {
+  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
+  const json& attributes = member(primitive, "attributes", "meshes[0].primitives[0]");
+  const std::size_t accessor = whole_number(attributes, "TEXCOORD_0", "attributes");
+  const Elements elements = elements_of(root, binary, accessor, {"VEC2", float_component, 2 * sizeof(float)});
+  std::vector<TexturePoint> points;
+  for (std::size_t i = 0; i < elements.count; ++i) points.push_back({elements.at<float>(i, 0), elements.at<float>(i, 1)});
+  return points;
+}
+
+std::string_view image_bytes(const json& root, std::string_view binary, std::size_t index) {
+  const std::string place = "image " + std::to_string(index);
+  const std::size_t view = whole_number(element(root, "images", index), "bufferView", place);
+  return bytes_of_view(element(root, "bufferViews", view), binary, "bufferView " + std::to_string(view));
 }
 
 std::vector<FaceTriangles> read_faces(const json& root, std::string_view binary, const json& extras) {
@@ -181,6 +204,10 @@ void read_extras(const json& root, std::string_view binary, DisplayMesh& mesh) {
   for (const json& source : list_in(*extras, materials_key)) mesh.materials.push_back(material_of(source, mesh.materials.size()));
   for (const json& source : list_in(*extras, objects_key)) mesh.objects.push_back(object_of(source, mesh.objects.size()));
   mesh.faces = read_faces(root, binary, *extras);
+  const json textures = list_in(*extras, textures_key);
+  read_textures(
+      textures, [&](std::size_t index) { return image_bytes(root, binary, index); }, mesh);
+  if (!textures.empty()) mesh.texture_points = read_texture_points(root, binary);
 }
 
 Vec3 translation(const json& root) {

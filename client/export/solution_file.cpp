@@ -32,13 +32,18 @@ bool is_place(const Vec3& p) {
 /// Throws SolutionFileError unless the vertices are consistent, finite and within bounds, as drawing and probing require.
 void check_vertices(const DisplayMesh& mesh) {
   const std::size_t count = mesh.positions.size();
-  if (mesh.normals.size() != count || mesh.irradiance.size() != count || mesh.radiosity.size() != count)
+  const bool has_all_points = mesh.texture_points.empty() || mesh.texture_points.size() == count;
+  if (mesh.normals.size() != count || mesh.irradiance.size() != count || mesh.radiosity.size() != count || !has_all_points)
     throw SolutionFileError("vertices: positions, normals and values are not equally many");
   for (std::size_t i = 0; i < count; ++i) {
     const bool values = mesh.irradiance[i].is_finite() && mesh.radiosity[i].is_finite();
     if (!values || !is_place(mesh.positions[i]) || !is_place(mesh.normals[i]))
       throw SolutionFileError("vertex " + std::to_string(i) + ": not finite, or beyond 1e10 m");
   }
+  for (std::size_t i = 0; i < mesh.texture_points.size(); ++i)
+    for (const float x : {mesh.texture_points[i].s, mesh.texture_points[i].t})
+      if (!(std::abs(x) <= most_repeats))
+        throw SolutionFileError("vertex " + std::to_string(i) + ": its texture point is beyond 1e5");
 }
 
 void check_triangles(const DisplayMesh& mesh) {

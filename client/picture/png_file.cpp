@@ -5,6 +5,7 @@
 #include <png.h>
 
 #include <cassert>
+#include <memory>
 #include <string>
 
 namespace alvor {
@@ -39,6 +40,21 @@ std::string encode_png(const Image& image, const std::string& name) {
   if (!writer.encode(image, bytes.data(), size)) throw FileError(name + ": encode: " + writer.header.message);
   bytes.resize(size);
   return bytes;
+}
+
+Image decode_png(std::string_view bytes, std::uint32_t most_columns, std::uint32_t most_rows) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&header, bytes.data(), bytes.size()) == 0)
+    throw FileError(std::string("decode: ") + header.message);
+  const std::unique_ptr<png_image, decltype(&png_image_free)> freed(&header, png_image_free);
+  if (header.width > most_columns || header.height > most_rows) throw FileError("decode: the picture is too large");
+  header.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(header));
+  if (png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr) == 0)
+    throw FileError(std::string("decode: ") + header.message);
+  return image;
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {

@@ -1,9 +1,10 @@
 #pragma once
-// Writes PNG pictures.
+// Writes and reads PNG pictures.
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace alvor {
@@ -17,6 +18,9 @@ struct Image {
 
 /// Returns the bytes of a PNG file. Throws FileError (import/base/whole_file.h) that begins with `name`.
 std::string encode_png(const Image& image, const std::string& name);
+
+/// Returns the picture in the bytes of a PNG file. Throws FileError if it is none, or larger than `most_columns` x `most_rows`.
+Image decode_png(std::string_view bytes, std::uint32_t most_columns, std::uint32_t most_rows);
 
 /// Writes a PNG file, which appears whole or not at all. Throws FileError.
 void write_png(const std::filesystem::path& path, const Image& image);

@@ -2,7 +2,8 @@
 
 namespace alvor {
 
-Stage::Stage(const DisplayMesh& mesh) : mesh_(mesh), caster_(mesh.positions, mesh.triangles), panes_(panes_of(mesh)) {}
+Stage::Stage(const DisplayMesh& mesh)
+    : mesh_(mesh), caster_(mesh.positions, mesh.triangles), radiosity_(mesh), panes_(panes_of(mesh)) {}
 
 std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
   auto hit = caster_.cast_front(origin, direction);

@@ -2,6 +2,7 @@
 // Casts rays into a solution's mesh and interpolates its values.
 
 #include "client/picture/camera.h"
+#include "meshing/mesh_radiosity.h"
 #include "radiosity/rays/triangle_caster.h"
 
 #include <functional>
@@ -34,7 +35,9 @@ class Stage {
   Vec3 place(const Seen& seen) const;  ///< position of the point, metres
   Vec3 normal(const Seen& seen) const { return normalized(area_vector(seen.triangle)); }
   /// Returns the radiosity that reaches the eye.
-  RgbF radiosity(const Seen& seen) const { return seen.before + seen.tint * interpolated(mesh_.radiosity, seen); }
+  RgbF radiosity(const Seen& seen) const {
+    return seen.before + seen.tint * narrow(radiosity_.at(seen.triangle, seen.u, seen.v));
+  }
   RgbF irradiance(const Seen& seen) const { return interpolated(mesh_.irradiance, seen); }
 
   /// Returns the weight of the triangle's first vertex where the ray meets its plane: 0 on the leaf's outline, 1 at its centre.
@@ -47,6 +50,7 @@ class Stage {
 
   const DisplayMesh& mesh_;
   TriangleCaster caster_;
+  MeshRadiosity radiosity_;
   std::vector<const Material*> panes_;  // by triangle, see panes_of()
 };
 

@@ -37,6 +37,7 @@ struct Unblocked {
 Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption)
     : mesh_(mesh),
       caster_(caster),
+      radiosity_(mesh),
       medium_{absorption},
       lamps_(mesh.lights, {{}, 1}, mesh.positions),
       skies_(mesh.lights),
@@ -86,7 +87,7 @@ Rgb Gatherer::from_direction(Vec3 point, Vec3 direction) const {
       return arriving + share * medium_.transmittance(lamps_.way_out(point, direction)) * sky;
     }
     if (meets_front(hit->triangle, direction) && !is_emitter_[hit->triangle])
-      arriving += share * medium_.transmittance(hit->distance) * radiosity(hit->triangle, hit->u, hit->v);
+      arriving += share * medium_.transmittance(hit->distance) * radiosity_.at(hit->triangle, hit->u, hit->v);
     share = share * through(hit->triangle, direction);
     passed.push_back(hit->triangle);
   }
@@ -117,7 +118,7 @@ GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_
     const std::array<Vec3, 3> corners{corner(t, 0), corner(t, 1), corner(t, 2)};
     const double form_factor = point_to_polygon(point, normal, corners);
     if (form_factor <= 0) continue;
-    unblocked.push_back({t, form_factor * radiosity(t, 1.0 / 3, 1.0 / 3)});
+    unblocked.push_back({t, form_factor * radiosity_.at(t, 1.0 / 3, 1.0 / 3)});
     total += unblocked.back().irradiance.mean();
   }
   GatheredIrradiance sum;
@@ -194,11 +195,6 @@ GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::u
     estimate.add(sum * (1.0 / rays_per_round));
   }
   return {estimate.mean(), std::sqrt(estimate.variance_of_band_mean())};
-}
-
-Rgb Gatherer::radiosity(std::uint32_t triangle, double u, double v) const {
-  const auto [a, b, c] = mesh_.triangles[triangle];
-  return (1 - u - v) * widen(mesh_.radiosity[a]) + u * widen(mesh_.radiosity[b]) + v * widen(mesh_.radiosity[c]);
 }
 
 }  // namespace alvor

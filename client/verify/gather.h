@@ -3,7 +3,7 @@
 
 #include "client/verify/lamps.h"
 #include "client/verify/skies.h"
-#include "meshing/display_mesh.h"
+#include "meshing/mesh_radiosity.h"
 #include "radiosity/rays/medium.h"
 #include "radiosity/rays/triangle_caster.h"
 
@@ -52,10 +52,10 @@ class Gatherer {
   GatheredIrradiance from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream) const;
   VisibleShare visible_share(Vec3 point, Vec3 normal, std::uint32_t triangle, std::uint32_t rays, std::uint64_t stream) const;
   Vec3 corner(std::uint32_t triangle, int k) const { return mesh_.positions[mesh_.triangles[triangle][k]]; }
-  Rgb radiosity(std::uint32_t triangle, double u, double v) const;
 
   const DisplayMesh& mesh_;
   const TriangleCaster& caster_;
+  MeshRadiosity radiosity_;
   Medium medium_;
   Lamps lamps_;  ///< metres
   Skies skies_;

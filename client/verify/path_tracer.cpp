@@ -61,7 +61,7 @@ void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets)
     const auto& [a, b, c] = facet.corners;
     surfaces_.push_back({(a - extent_.centre) * scale, (b - a) * scale, (c - a) * scale, facet.normal, material.emission,
                          material.reflectance, material.two_sided, static_cast<std::uint32_t>(lights.size()),
-                         material.regular_transmittance});
+                         material.regular_transmittance, material.texture, facet.texture_points});
     const Surface& s = surfaces_.back();
     has_panes_ |= s.is_pane();
     if (material.emission.is_zero()) continue;
@@ -112,7 +112,7 @@ Rgb PathTracer::path(Bend bend, Choices choices, PathRandom& random) const {
     if (!met.surface) return met.is_outside ? arriving + throughput * from_skies(bend, direction) : arriving;
     if (!clear_) throughput = throughput * transmittance(met.distance);
     if (!met.surface->emission.is_zero()) arriving += throughput * from_met_light(bend, direction, met);
-    throughput = throughput * met.surface->reflectance;
+    throughput = throughput * met.reflectance();
     const double survival = std::min(1.0, throughput.max() / dim);
     if (!(random.number() < survival)) return arriving;
     throughput *= 1 / survival;
@@ -192,10 +192,19 @@ PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction, std::span<con
   const Vec3 normal = cosine > 0 ? s.normal : -s.normal;
   // Computed from u and v and not along the ray, so that it lies exactly on the surface, however long the ray.
   const Vec3 place = s.corner + hit->u * s.side_u + hit->v * s.side_v;
-  Met met{nullptr, {place + off_surface * normal, normal}, hit->distance, std::abs(cosine)};
+  Met met{nullptr, {place + off_surface * normal, normal}, hit->distance, std::abs(cosine), hit->u, hit->v};
   if (cosine > 0 || s.two_sided) met.surface = &s;
   if (s.is_pane()) met.pane = hit->triangle;
   return met;
+}
+
+Rgb PathTracer::Met::reflectance() const {
+  if (!surface->texture) return surface->reflectance;
+  const TexturePoint &a = surface->texture_points[0], &b = surface->texture_points[1], &c = surface->texture_points[2];
+  const auto mixed = [&](float TexturePoint::*axis) {
+    return static_cast<float>((1 - u - v) * a.*axis + u * b.*axis + v * c.*axis);
+  };
+  return surface->texture->reflectance_at({mixed(&TexturePoint::s), mixed(&TexturePoint::t)});
 }
 
 /// Returns what a ray meets that goes on through all panes.

@@ -59,6 +59,8 @@ class PathTracer {
     bool two_sided = false;
     std::uint32_t light = 0;  ///< index in lights_ if the surface emits
     Rgb through;              ///< regular transmittance
+    std::optional<Texture> texture;
+    std::array<TexturePoint, 3> texture_points;  ///< of the corners, if there is a texture
     bool is_pane() const { return !through.is_zero(); }
   };
   /// A point at which a path bends, just above a surface.
@@ -74,7 +76,9 @@ class PathTracer {
     const Surface* surface = nullptr;  ///< null if the path leaves the scene or meets a black back
     Bend bend;
     double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
+    double u = 0, v = 0;              ///< on the surface
     bool is_outside = false;          ///< the path leaves the scene
+    Rgb reflectance() const;
     /// The number of the surface that the ray hits, from either side, if light goes straight on through that surface.
     std::optional<std::uint32_t> pane;
   };

@@ -2,6 +2,7 @@
 
 #include "client/verify/gather.h"
 #include "import/base/whole_file.h"
+#include "meshing/mesh_radiosity.h"
 #include "radiosity/rays/triangle_caster.h"
 
 #include <tbb/parallel_for.h>
@@ -38,13 +39,14 @@ double extent_of(const DisplayMesh& mesh) {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-ProbeSample on_nearest_surface(const DisplayMesh& mesh, const TriangleCaster& caster, const ProbePoint& asked) {
+ProbeSample on_nearest_surface(const DisplayMesh& mesh, const TriangleCaster& caster, const MeshRadiosity& radiosity,
+                               const ProbePoint& asked) {
   ProbeSample sample{asked.point, asked.normal, not_a_value, not_a_value, std::numeric_limits<double>::infinity(), nan};
   const auto hit = caster.nearest(asked.point, normalized(asked.normal));
   if (!hit) return sample;
   sample.distance = hit->distance;
   sample.irradiance = interpolated(mesh, mesh.irradiance, *hit);
-  sample.radiosity = interpolated(mesh, mesh.radiosity, *hit);
+  sample.radiosity = narrow(radiosity.at(hit->triangle, hit->u, hit->v));
   return sample;
 }
 
@@ -116,9 +118,10 @@ void append_numbers(std::string& text, std::initializer_list<double> numbers) {
 
 std::vector<ProbeSample> probe_surfaces(const DisplayMesh& mesh, std::span<const ProbePoint> points) {
   const TriangleCaster caster(mesh.positions, mesh.triangles);
+  const MeshRadiosity radiosity(mesh);
   std::vector<ProbeSample> samples;
   samples.reserve(points.size());
-  for (const ProbePoint& point : points) samples.push_back(on_nearest_surface(mesh, caster, point));
+  for (const ProbePoint& point : points) samples.push_back(on_nearest_surface(mesh, caster, radiosity, point));
   return samples;
 }
 
@@ -126,10 +129,11 @@ std::vector<ProbeSample> probe(const DisplayMesh& mesh, std::span<const ProbePoi
   constexpr double on_surface = 1e-4;  // fraction of the extent
   const double reach = on_surface * extent_of(mesh);
   const TriangleCaster caster(mesh.positions, mesh.triangles);
+  const MeshRadiosity radiosity(mesh);
   const Gatherer gatherer(mesh, caster, absorption);
   std::vector<ProbeSample> samples(points.size());
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t n) {
-    samples[n] = on_nearest_surface(mesh, caster, points[n]);
+    samples[n] = on_nearest_surface(mesh, caster, radiosity, points[n]);
     if (samples[n].distance > reach) gather_at(samples[n], gatherer, n);
   });
   return samples;

@@ -23,5 +23,9 @@ inline constexpr const char *quantity_key = "alvor_quantity", *lights_key = "alv
 /// triangles come: for each run of triangles on one face of the scene that face, the second face if two triangles were joined
 /// into a quad (else 2^32 - 1), the material, and the number of triangles.
 inline constexpr const char *materials_key = "alvor_materials", *objects_key = "alvor_objects", *faces_key = "alvor_faces";
+/// Key of the same extras: a list of the materials that have a texture, each with its image among those of the file, a factor, and
+/// the wrap modes of glTF.
+inline constexpr const char* textures_key = "alvor_textures";
+inline constexpr int repeat = 10497, mirrored_repeat = 33648, clamp_to_edge = 33071;
 
 }  // namespace alvor::glb

@@ -2,6 +2,7 @@
 
 #include "import/base/import_error.h"
 #include "import/base/scene_format.h"
+#include "import/formats/colour_images.h"
 #include "import/formats/placement.h"
 #include "import/formats/see_through.h"
 #include "import/formats/texture_colour.h"
@@ -29,10 +30,21 @@ Placement placement_of(const aiMatrix4x4& m) {
   return {{m.a1, m.b1, m.c1}, {m.a2, m.b2, m.c2}, {m.a3, m.b3, m.c3}, {m.a4, m.b4, m.c4}};
 }
 
-/// Returns the mean colour of a texture embedded in encoded form. Returns nothing for raw texels, which only games use.
-std::optional<MeanTexel> mean_of_embedded(const aiTexture& texture) {
-  if (texture.mHeight != 0) return std::nullopt;
-  return mean_texel({reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth});
+/// Returns the bytes of a texture embedded in encoded form. Returns nothing for raw texels, which only games use.
+std::span<const unsigned char> bytes_of_embedded(const aiTexture& texture) {
+  if (texture.mHeight != 0) return {};
+  return {reinterpret_cast<const unsigned char*>(texture.pcData), texture.mWidth};
+}
+
+Wrap wrap_of(int mode) {
+  return mode == aiTextureMapMode_Mirror ? Wrap::mirror : mode == aiTextureMapMode_Clamp ? Wrap::clamp : Wrap::repeat;
+}
+
+/// Returns whether a material moves or turns its texture of diffuse colour, which no two formats do alike.
+bool moves_texture(const aiMaterial& source) {
+  aiUVTransform transform;
+  if (source.Get(AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0), transform) != AI_SUCCESS) return false;
+  return transform.mTranslation != aiVector2D(0, 0) || transform.mScaling != aiVector2D(1, 1) || transform.mRotation != 0;
 }
 
 /// The up axis and unit of a format's coordinates: given by the file, or usual for programs that write the format.
@@ -68,6 +80,7 @@ class AssimpReader {
     Unsupported unsupported;
     count_lights(unsupported);
     count_materials(unsupported);
+    images_.append_warnings(file_.warnings);
     unsupported.append_warnings(file_.warnings);
     file_.scene.up = convention_.up;
     return std::move(file_);
@@ -89,6 +102,22 @@ class AssimpReader {
     float opacity = 1;
     source.Get(AI_MATKEY_OPACITY, opacity);
     if (opacity > 0 && opacity < 1) leave(file_.scene.materials.back(), opacity);
+    else if (!made_up) cover(source, file_.scene.materials.back());
+  }
+
+  /// Gives a material the texture of its diffuse colour.
+  void cover(const aiMaterial& source, Material& material) {
+    aiString texture;
+    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != AI_SUCCESS || moves_texture(source)) return;
+    const auto image = images_.decoded(texture.C_Str(), bytes_of(texture));
+    if (!image) return;
+    aiColor3D found;
+    const Rgb factor =
+        source.Get(AI_MATKEY_COLOR_DIFFUSE, found) == AI_SUCCESS ? Rgb{found.r, found.g, found.b} : default_reflectance;
+    int across = aiTextureMapMode_Wrap, down = aiTextureMapMode_Wrap;
+    source.Get(AI_MATKEY_MAPPINGMODE_U(aiTextureType_DIFFUSE, 0), across);
+    source.Get(AI_MATKEY_MAPPINGMODE_V(aiTextureType_DIFFUSE, 0), down);
+    if (!factor.is_zero()) ColourImages::cover(material, factor, image, wrap_of(across), wrap_of(down));
   }
 
   Rgb colour(const aiMaterial& source, const std::string& name, const char* key, unsigned type, unsigned index, aiTextureType map,
@@ -98,12 +127,14 @@ class AssimpReader {
     aiString texture;
     if (factor.is_zero() || source.GetTexture(map, 0, &texture) != AI_SUCCESS) return factor;
     const std::string place = "material '" + name + "': texture '" + texture.C_Str() + "'";
-    return textured(factor, mean_of_texture(texture), place, file_.warnings);
+    return textured(factor, mean_texel(bytes_of(texture)), place, file_.warnings);
   }
 
-  std::optional<MeanTexel> mean_of_texture(const aiString& name) const {
-    if (const aiTexture* embedded = source_.GetEmbeddedTexture(name.C_Str())) return mean_of_embedded(*embedded);
-    return mean_texel(files_.find(name.C_Str()));
+  std::span<const unsigned char> bytes_of(const aiString& texture) const {
+    if (const aiTexture* embedded = source_.GetEmbeddedTexture(texture.C_Str())) return bytes_of_embedded(*embedded);
+    const std::string* const found = files_.find(texture.C_Str());
+    if (!found) return {};
+    return {reinterpret_cast<const unsigned char*>(found->data()), found->size()};
   }
 
   /// Walks the tree depth first without recursion: a file could make it deep enough to overflow the stack.
@@ -141,14 +172,27 @@ class AssimpReader {
   void add_face(const aiFace& face, const aiMesh& mesh, std::uint32_t first_vertex, const Placement& placement) {
     if (face.mNumIndices < 3) return;
     std::vector<std::uint32_t> polygon;
+    std::vector<TexturePoint> points;
+    const aiVector3D* const coordinates = texture_coordinates_of(mesh);
     for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
       if (index >= mesh.mNumVertices)
         throw ImportError("face " + std::to_string(file_.scene.faces.size()),
                           "vertex index " + std::to_string(index) + " is out of range, there are " +
                               std::to_string(mesh.mNumVertices) + " vertices");
       polygon.push_back(first_vertex + index);
+      // Assimp counts t from the lower edge of images.
+      if (coordinates) points.push_back(texture_point(coordinates[index].x, 1 - coordinates[index].y));
     }
-    add_placed_face(file_.scene, polygon, material_of(mesh), placement);
+    add_placed_face(file_.scene, polygon, material_of(mesh), placement, points);
+  }
+
+  /// Returns the texture coordinates of a mesh's vertices; null if its material has no texture, or it no coordinates.
+  const aiVector3D* texture_coordinates_of(const aiMesh& mesh) {
+    const std::uint32_t material = material_of(mesh);
+    if (!file_.scene.materials[material].texture) return nullptr;
+    int set = 0;
+    source_.mMaterials[material]->Get(AI_MATKEY_UVWSRC(aiTextureType_DIFFUSE, 0), set);
+    return set >= 0 && set < AI_MAX_NUMBER_OF_TEXTURECOORDS ? mesh.mTextureCoords[set] : nullptr;
   }
 
   std::uint32_t material_of(const aiMesh& mesh) {
@@ -180,6 +224,7 @@ class AssimpReader {
   const aiScene& source_;
   SceneFiles& files_;
   Convention convention_;
+  ColourImages images_;
   SceneFile file_;
   std::optional<std::uint32_t> default_material_;
 };

@@ -32,7 +32,7 @@ const tinygltf::Accessor& accessor_of(const tinygltf::Model& model, int index, c
   return model.accessors[static_cast<std::size_t>(index)];
 }
 
-/// Returns the elements of an accessor, checked to lie in its buffer view. `type` is TINYGLTF_TYPE_SCALAR or _VEC3.
+/// Returns the elements of an accessor, checked to lie in its buffer view. `type` is TINYGLTF_TYPE_SCALAR, _VEC2 or _VEC3.
 Elements elements_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor, int type, const std::string& place) {
   if (accessor.sparse.isSparse) throw ImportError(place, "sparse accessors are not supported");
   if (accessor.type != type) throw ImportError(place, "is not of the type its use asks for");
@@ -72,7 +72,7 @@ double load_coordinate(const unsigned char* bytes, const tinygltf::Accessor& acc
     case TINYGLTF_COMPONENT_TYPE_SHORT: return load_scaled<std::int16_t>(bytes, accessor.normalized);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load_scaled<std::uint16_t>(bytes, accessor.normalized);
   }
-  throw ImportError(place, "positions cannot have componentType " + std::to_string(accessor.componentType));
+  throw ImportError(place, "coordinates cannot have componentType " + std::to_string(accessor.componentType));
 }
 
 std::uint32_t load_index(const unsigned char* bytes, int component_type, const std::string& place) {
@@ -109,6 +109,18 @@ std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor) {
     positions.push_back({load_coordinate(elements.at(i, 0), source, place), load_coordinate(elements.at(i, 1), source, place),
                          load_coordinate(elements.at(i, 2), source, place)});
   return positions;
+}
+
+std::vector<TexturePoint> read_texture_points(const tinygltf::Model& model, int accessor) {
+  const std::string place = "accessor " + std::to_string(accessor);
+  const tinygltf::Accessor& source = accessor_of(model, accessor, place);
+  const Elements elements = elements_of(model, source, TINYGLTF_TYPE_VEC2, place);
+  std::vector<TexturePoint> points;
+  points.reserve(elements.count);
+  for (std::size_t i = 0; i < elements.count; ++i)
+    points.push_back({static_cast<float>(load_coordinate(elements.at(i, 0), source, place)),
+                      static_cast<float>(load_coordinate(elements.at(i, 1), source, place))});
+  return points;
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor) {

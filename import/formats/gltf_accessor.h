@@ -1,6 +1,7 @@
 #pragma once
 // Reads numbers out of glTF buffers and JSON values. Checks every range before reading, as the file may be hostile.
 
+#include "meshing/texture.h"
 #include "meshing/vec3.h"
 
 #include <cstdint>
@@ -21,6 +22,8 @@ std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, int v
 /// Returns the positions in an accessor. Throws ImportError that names the accessor if it has the wrong type, leaves its buffer
 /// view, or is sparse.
 std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor);
+/// Returns the texture coordinates in an accessor. Throws ImportError as read_positions does.
+std::vector<TexturePoint> read_texture_points(const tinygltf::Model& model, int accessor);
 /// Returns the indices in an accessor. Throws ImportError as read_positions does.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);
 

@@ -108,7 +108,9 @@ class GltfReader {
       : model_(model), seen_(model.nodes.size()), lights_(model), luminaires_(model, files) {}
 
   SceneFile read() {
-    file_.scene.materials = read_gltf_materials(model_, file_.warnings);
+    GltfMaterials read = read_gltf_materials(model_, file_.warnings);
+    file_.scene.materials = std::move(read.materials);
+    texture_maps_ = std::move(read.texture_maps);
     add_tree(root_nodes());
     count_unsupported_materials();
     unsupported_.append_warnings(file_.warnings);
@@ -209,10 +211,25 @@ class GltfReader {
     if (position == primitive.attributes.end()) throw ImportError(place, "has no POSITION");
     const Vertices vertices = add_vertices(position->second, placement, shared);
     const std::uint32_t material = material_of(primitive, place);
+    const std::vector<TexturePoint> points = texture_points_of(primitive, material);
     for (Triangle triangle : triangles_of(primitive.mode, indices_of(primitive, vertices.count), place)) {
+      std::array<TexturePoint, 3> at;
+      for (std::size_t c = 0; c < 3 && !points.empty(); ++c)
+        if (triangle[c] < points.size()) at[c] = points[triangle[c]];
       for (std::uint32_t& vertex : triangle) vertex = checked(vertex, vertices, place);
-      add_placed_face(file_.scene, triangle, material, placement);
+      add_placed_face(file_.scene, triangle, material, placement, std::span(at).first(points.empty() ? 0 : 3));
     }
+  }
+
+  /// Returns the texture point of each vertex of a primitive; nothing if its material has no texture, or it no coordinates.
+  std::vector<TexturePoint> texture_points_of(const tinygltf::Primitive& primitive, std::uint32_t material) const {
+    if (!file_.scene.materials[material].texture) return {};
+    const GltfTextureMap& map = texture_maps_[material];
+    const auto accessor = primitive.attributes.find("TEXCOORD_" + std::to_string(map.set));
+    if (accessor == primitive.attributes.end()) return {};
+    std::vector<TexturePoint> points = read_texture_points(model_, accessor->second);
+    for (TexturePoint& point : points) point = map.of(point);
+    return points;
   }
 
   static std::uint32_t checked(std::uint32_t index, Vertices vertices, const std::string& place) {
@@ -250,6 +267,7 @@ class GltfReader {
   GltfLuminaires luminaires_;
   Unsupported unsupported_;
   SceneFile file_;
+  std::vector<GltfTextureMap> texture_maps_;  // by material
   std::optional<std::uint32_t> default_material_;
 };
 

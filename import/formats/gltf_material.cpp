@@ -1,11 +1,13 @@
 #include "import/formats/gltf_material.h"
 
+#include "import/formats/colour_images.h"
 #include "import/formats/gltf_accessor.h"
 #include "import/formats/see_through.h"
 #include "import/formats/texture_colour.h"
 #include "import/formats/tiny_gltf.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace alvor {
@@ -22,9 +24,8 @@ const tinygltf::Image* image_of(const tinygltf::Model& model, int texture) {
   return found ? element(model.images, found->source) : nullptr;
 }
 
-std::optional<MeanTexel> mean_of(const tinygltf::Model& model, const tinygltf::Image* image, const AlphaUse& alpha) {
-  if (!image) return std::nullopt;
-  return mean_texel(image->bufferView >= 0 ? bytes_of_view(model, image->bufferView) : std::span(image->image), alpha);
+std::span<const unsigned char> encoded_bytes(const tinygltf::Model& model, const tinygltf::Image& image) {
+  return image.bufferView >= 0 ? bytes_of_view(model, image.bufferView) : std::span(image.image);
 }
 
 std::string name_of(const tinygltf::Image* image, int texture) {
@@ -33,18 +34,43 @@ std::string name_of(const tinygltf::Image* image, int texture) {
   return std::to_string(texture);
 }
 
-/// Returns the colour `factor` under a texture. Multiplies `opacity` by the texture's.
-Rgb under_texture(const tinygltf::Model& model, const Rgb& factor, const tinygltf::TextureInfo& texture, const AlphaUse& alpha,
-                  const std::string& material, double& opacity, std::vector<std::string>& warnings) {
-  if (texture.index < 0 || (factor.is_zero() && alpha.kind == AlphaUse::Kind::ignored)) {
-    opacity = alpha.opacity(1);
-    return factor;
-  }
+/// The colour and the opacity that a material has in the mean over a texture.
+struct MeanSurface {
+  Rgb colour;
+  double opacity = 1;
+};
+
+MeanSurface mean_surface(const tinygltf::Model& model, const Rgb& factor, const tinygltf::TextureInfo& texture,
+                         const AlphaUse& alpha, const std::string& material, std::vector<std::string>& warnings) {
+  if (texture.index < 0 || (factor.is_zero() && alpha.kind == AlphaUse::Kind::ignored)) return {factor, alpha.opacity(1)};
   const tinygltf::Image* image = image_of(model, texture.index);
   const std::string name = "material '" + material + "': texture '" + name_of(image, texture.index) + "'";
-  const auto mean = mean_of(model, image, alpha);
-  opacity = mean ? mean->opacity : alpha.opacity(1);
-  return textured(factor, mean, name, warnings);
+  const auto mean = image ? mean_texel(encoded_bytes(model, *image), alpha) : std::nullopt;
+  return {textured(factor, mean, name, warnings), mean ? mean->opacity : alpha.opacity(1)};
+}
+
+Wrap wrap_of(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
+  return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
+}
+
+/// Returns the two numbers of KHR_texture_transform's array `name`.
+void read_pair(const tinygltf::Value& transform, const char* name, double (&pair)[2]) {
+  if (!transform.Has(name) || !transform.Get(name).IsArray() || transform.Get(name).ArrayLen() != 2) return;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const tinygltf::Value& number = transform.Get(name).Get(i); number.IsNumber()) pair[i] = number.GetNumberAsDouble();
+}
+
+GltfTextureMap map_of(const tinygltf::TextureInfo& texture) {
+  GltfTextureMap map{.set = texture.texCoord};
+  const auto extension = texture.extensions.find("KHR_texture_transform");
+  if (extension == texture.extensions.end() || !extension->second.IsObject()) return map;
+  const tinygltf::Value& transform = extension->second;
+  read_pair(transform, "offset", map.offset);
+  read_pair(transform, "scale", map.scale);
+  map.rotation = number_in(transform, "rotation", 0);
+  map.set = static_cast<int>(std::clamp(number_in(transform, "texCoord", map.set), 0.0, 1000.0));
+  return map;
 }
 
 AlphaUse alpha_use_of(const tinygltf::Material& material) {
@@ -78,21 +104,43 @@ double transmission_of(const tinygltf::Material& material) {
   return share >= 0 ? std::min(1.0, share) : 0;
 }
 
-std::vector<Material> read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings) {
-  std::vector<Material> materials;
+// Offset * rotation * scale, as the extension defines it.
+TexturePoint GltfTextureMap::of(TexturePoint given) const {
+  const double s = scale[0] * double{given.s}, t = scale[1] * double{given.t}, c = std::cos(rotation), n = std::sin(rotation);
+  return texture_point(c * s + n * t + offset[0], -n * s + c * t + offset[1]);
+}
+
+GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings) {
+  GltfMaterials read;
+  ColourImages images;
   for (const tinygltf::Material& source : model.materials) {
-    const std::string name = source.name.empty() ? std::to_string(materials.size()) : source.name;
+    const std::string name = source.name.empty() ? std::to_string(read.materials.size()) : source.name;
     const tinygltf::PbrMetallicRoughness& surface = source.pbrMetallicRoughness;
-    double opacity = 1, of_light = 1;
-    const Rgb reflectance = under_texture(model, rgb_of(surface.baseColorFactor), surface.baseColorTexture, alpha_use_of(source),
-                                          name, opacity, warnings);
-    const Rgb light = emissive_strength(source) * rgb_of(source.emissiveFactor);
-    const Rgb radiance = under_texture(model, light, source.emissiveTexture, {}, name, of_light, warnings);
-    materials.push_back({name, emission_of_radiance(radiance), reflectance, source.doubleSided});
-    if (const double share = transmission_of(source); share > 0) let_through(materials.back(), share);
-    if (opacity < 1) leave(materials.back(), opacity);
+    const tinygltf::TextureInfo& texture = surface.baseColorTexture;
+    const AlphaUse alpha = alpha_use_of(source);
+    const Rgb factor = rgb_of(surface.baseColorFactor), light = emissive_strength(source) * rgb_of(source.emissiveFactor);
+    const double through = transmission_of(source);
+    const tinygltf::Image* const image = image_of(model, texture.index);
+    const bool is_opaque = alpha.kind == AlphaUse::Kind::ignored && through == 0 && !factor.is_zero();
+    const auto colours =
+        image && is_opaque ? images.decoded(name_of(image, texture.index), encoded_bytes(model, *image)) : nullptr;
+    read.texture_maps.push_back(map_of(texture));
+    Material& material = read.materials.emplace_back(Material{name, {}, {}, source.doubleSided, {}, {}});
+    if (colours) {
+      const tinygltf::Sampler* const sampler =
+          element(model.samplers, model.textures[static_cast<std::size_t>(texture.index)].sampler);
+      ColourImages::cover(material, factor, colours, wrap_of(sampler ? sampler->wrapS : 0),
+                          wrap_of(sampler ? sampler->wrapT : 0));
+    }
+    const MeanSurface mean =
+        colours ? MeanSurface{material.reflectance} : mean_surface(model, factor, texture, alpha, name, warnings);
+    material.reflectance = mean.colour;
+    material.emission = emission_of_radiance(mean_surface(model, light, source.emissiveTexture, {}, name, warnings).colour);
+    if (through > 0) let_through(material, through);
+    if (mean.opacity < 1) leave(material, mean.opacity);
   }
-  return materials;
+  images.append_warnings(warnings);
+  return read;
 }
 
 }  // namespace alvor

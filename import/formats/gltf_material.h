@@ -19,9 +19,23 @@ bool is_metal(const tinygltf::Material& material);
 /// Returns the share of light that KHR_materials_transmission lets through, in [0, 1]. Metal lets none through.
 double transmission_of(const tinygltf::Material& material);
 
-/// Returns the model's materials in order. baseColorFactor becomes reflectance; emissiveFactor x KHR_materials_emissive_strength,
-/// a radiance, becomes emission. Alpha (BLEND, MASK) and KHR_materials_transmission let light straight through. Textures count by
-/// their mean colour and opacity. Requires: `model.images` hold encoded bytes.
-std::vector<Material> read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings);
+/// Where a texture lies on faces: a set of texture coordinates, and KHR_texture_transform.
+struct GltfTextureMap {
+  int set = 0;  ///< of TEXCOORD_n
+  double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
+
+  TexturePoint of(TexturePoint given) const;
+};
+
+struct GltfMaterials {
+  std::vector<Material> materials;           ///< in the order of the model
+  std::vector<GltfTextureMap> texture_maps;  ///< of their textures, by material
+};
+
+/// Returns the model's materials. baseColorFactor and its texture become reflectance; emissiveFactor x
+/// KHR_materials_emissive_strength, a radiance, becomes emission. Alpha (BLEND, MASK) and KHR_materials_transmission let light
+/// straight through. Textures of emission, and those of materials that let light through, count by their mean colour and opacity.
+/// Requires: `model.images` hold encoded bytes.
+GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings);
 
 }  // namespace alvor

@@ -108,7 +108,15 @@ void make_names_unique(Scene& scene) {
   of(scene.objects, "object");
 }
 
+/// Gives all corners a texture point if any has, or if any material has a texture.
+void complete_texture_points(Scene& scene) {
+  const auto has_texture = [](const Material& material) { return material.texture.has_value(); };
+  const bool are_needed = std::ranges::any_of(scene.materials, has_texture);
+  scene.texture_points.resize(are_needed ? scene.corners.size() : 0);
+}
+
 SceneFile checked(SceneFile file) {
+  complete_texture_points(file.scene);
   make_names_unique(file.scene);
   clamp_reflectance(file);
   refuse_faulty(file.scene);

@@ -1,6 +1,7 @@
 #include "import/formats/obj_import.h"
 
 #include "import/base/import_error.h"
+#include "import/formats/colour_images.h"
 #include "import/formats/obj_lines.h"
 #include "import/formats/obj_objects.h"
 #include "import/formats/placement.h"
@@ -98,6 +99,7 @@ class ObjBuilder {
   static tinyobj::callback_t callbacks() {
     tinyobj::callback_t calls;
     calls.vertex_cb = [](void* self, double x, double y, double z, double) { of(self).scene.vertices.push_back({x, y, z}); };
+    calls.texcoord_cb = [](void* self, double s, double t, double) { of(self).texture_points_.push_back(texture_point(s, t)); };
     calls.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
       of(self).add_polygon({corners, static_cast<std::size_t>(count)});
     };
@@ -110,6 +112,19 @@ class ObjBuilder {
   }
 
   Scene scene;
+
+  /// Returns where each corner lies on textures; nothing if the file does not say. OBJ counts t from the lower edge of images.
+  /// Corners without a texture vertex, or with one that is not in the file, lie at the image's corner.
+  std::vector<TexturePoint> texture_points() const {
+    std::vector<TexturePoint> points;
+    if (texture_points_.empty()) return points;
+    for (const std::int64_t vertex : texture_vertex_) {
+      const bool is_there = vertex >= 0 && static_cast<std::size_t>(vertex) < texture_points_.size();
+      const TexturePoint point = is_there ? texture_points_[static_cast<std::size_t>(vertex)] : TexturePoint{};
+      points.push_back({point.s, 1 - point.t});
+    }
+    return points;
+  }
 
  private:
   static ObjBuilder& of(void* self) { return *static_cast<ObjBuilder*>(self); }
@@ -126,6 +141,7 @@ class ObjBuilder {
     if (corners.size() < 3) return;
     polygon_.clear();
     for (const tinyobj::index_t& corner : corners) polygon_.push_back(vertex_of(corner.vertex_index));
+    for (const tinyobj::index_t& corner : corners) texture_vertex_.push_back(texture_vertex_of(corner.texcoord_index));
     objects_.before_face();
     add_placed_face(scene, polygon_, material_index(), {});
     objects_.after_face();
@@ -142,6 +158,11 @@ class ObjBuilder {
     return static_cast<std::uint32_t>(vertex);
   }
 
+  /// Returns the number of a texture vertex, counted as vertices are; -1 if there is none.
+  std::int64_t texture_vertex_of(int index) const {
+    return index > 0 ? index - 1LL : index < 0 ? static_cast<std::int64_t>(texture_points_.size()) + index : -1;
+  }
+
   /// Returns the index of the material in use, adding it if new. Its colours are filled in when all libraries have been read.
   std::uint32_t material_index() {
     const auto [slot, is_new] = slots_.try_emplace(material_, static_cast<std::uint32_t>(scene.materials.size()));
@@ -153,48 +174,94 @@ class ObjBuilder {
   std::string material_;
   std::map<std::string, std::uint32_t> slots_;
   std::vector<std::uint32_t> polygon_;
+  std::vector<TexturePoint> texture_points_;
+  std::vector<std::int64_t> texture_vertex_;  // by corner
 };
 
-Rgb under_texture(const Rgb& factor, std::string file, const Material& material, SceneFiles& files,
-                  std::vector<std::string>& warnings) {
-  if (file.empty() || factor.is_zero()) return factor;
-  std::ranges::replace(file, '\\', '/');
-  const std::string texture = "material '" + material.name + "': texture '" + file + "'";
-  return textured(factor, mean_texel(files.find(file)), texture, warnings);
-}
+/// Reads the materials of a file's faces.
+class ObjMaterials {
+ public:
+  ObjMaterials(SceneFile& file, const MaterialLibrary& library, SceneFiles& files)
+      : file_(file), library_(library), files_(files) {}
 
-/// Returns the share of a material's surface that is there: `d`, times the mean of `map_d`: of the image's alpha if it has any,
-/// else of its values.
-double opacity_of(const tinyobj::material_t& material, SceneFiles& files, std::vector<std::string>& warnings) {
-  const double factor = std::clamp<double>(material.dissolve, 0, 1);
-  if (material.alpha_texname.empty()) return factor;
-  std::string file = material.alpha_texname;
-  std::ranges::replace(file, '\\', '/');
-  const auto mean = mean_texel(files.find(file), {AlphaUse::Kind::blended});
-  const std::string texture = "material '" + material.name + "': texture '" + file + "'";
-  warnings.push_back(texture + (mean ? " counts by its mean opacity" : " cannot be read and is left out"));
-  if (!mean) return factor;
-  return factor * (mean->has_alpha ? mean->opacity : mean->level);
-}
+  /// Fills in the colours of the materials, which have only names, and the maps of their textures, by material.
+  void fill() {
+    Unsupported unsupported;
+    for (Material& material : file_.scene.materials) {
+      const tinyobj::material_t* const found = library_.find(material.name);
+      if (found) {
+        unsupported.metals += found->metallic > 0.5;
+        fill(material, *found);
+      } else if (!material.name.empty()) {
+        file_.warnings.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
+      } else {
+        material.name = "default";
+      }
+    }
+    images_.append_warnings(file_.warnings);
+    unsupported.append_warnings(file_.warnings);
+  }
 
-void fill_materials(SceneFile& file, const MaterialLibrary& library, SceneFiles& files) {
-  Unsupported unsupported;
-  for (Material& material : file.scene.materials) {
-    const tinyobj::material_t* found = library.find(material.name);
-    if (found) {
-      unsupported.metals += found->metallic > 0.5;
-      material.reflectance = under_texture(rgb_of(found->diffuse), found->diffuse_texname, material, files, file.warnings);
-      material.emission =
-          emission_of_radiance(under_texture(rgb_of(found->emission), found->emissive_texname, material, files, file.warnings));
-      if (const double opacity = opacity_of(*found, files, file.warnings); opacity < 1) leave(material, opacity);
-    } else if (!material.name.empty()) {
-      file.warnings.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
-    } else {
-      material.name = "default";
+  /// Moves the texture points of the scene as the options -o and -s of map_Kd say.
+  void place_textures() {
+    Scene& scene = file_.scene;
+    for (const Face& face : scene.faces) {
+      const tinyobj::material_t* const found = library_.find(scene.materials[face.material].name);
+      if (!found || !scene.materials[face.material].texture) continue;
+      const tinyobj::texture_option_t& option = found->diffuse_texopt;
+      for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+        TexturePoint& point = scene.texture_points[c];
+        point = texture_point(option.scale[0] * point.s + option.origin_offset[0],
+                              1 - (option.scale[1] * (1 - point.t) + option.origin_offset[1]));
+      }
     }
   }
-  unsupported.append_warnings(file.warnings);
-}
+
+ private:
+  void fill(Material& material, const tinyobj::material_t& found) {
+    const Rgb diffuse = rgb_of(found.diffuse);
+    const double opacity = opacity_of(found, material);
+    const auto image = opacity == 1 && !diffuse.is_zero() && !found.diffuse_texname.empty()
+                           ? images_.decoded(found.diffuse_texname, bytes_of(found.diffuse_texname))
+                           : nullptr;
+    const Wrap wrap = found.diffuse_texopt.clamp ? Wrap::clamp : Wrap::repeat;
+    if (image) ColourImages::cover(material, diffuse, image, wrap, wrap);
+    else material.reflectance = under_texture(diffuse, found.diffuse_texname, material);
+    material.emission = emission_of_radiance(under_texture(rgb_of(found.emission), found.emissive_texname, material));
+    if (opacity < 1) leave(material, opacity);
+  }
+
+  const std::string* bytes_of(const std::string& texture) { return files_.find(with_slashes(texture)); }
+  static std::string with_slashes(std::string path) {
+    std::ranges::replace(path, '\\', '/');
+    return path;
+  }
+  static std::string place_of(const std::string& texture, const Material& material) {
+    return "material '" + material.name + "': texture '" + with_slashes(texture) + "'";
+  }
+
+  Rgb under_texture(const Rgb& factor, const std::string& texture, const Material& material) {
+    if (texture.empty() || factor.is_zero()) return factor;
+    return textured(factor, mean_texel(bytes_of(texture)), place_of(texture, material), file_.warnings);
+  }
+
+  /// Returns the share of a material's surface that is there: `d`, times the mean of `map_d`: of the image's alpha if it has any,
+  /// else of its values.
+  double opacity_of(const tinyobj::material_t& found, const Material& material) {
+    const double factor = std::clamp<double>(found.dissolve, 0, 1);
+    if (found.alpha_texname.empty()) return factor;
+    const auto mean = mean_texel(bytes_of(found.alpha_texname), {AlphaUse::Kind::blended});
+    file_.warnings.push_back(place_of(found.alpha_texname, material) +
+                             (mean ? " counts by its mean opacity" : " cannot be read and is left out"));
+    if (!mean) return factor;
+    return factor * (mean->has_alpha ? mean->opacity : mean->level);
+  }
+
+  SceneFile& file_;
+  const MaterialLibrary& library_;
+  SceneFiles& files_;
+  ColourImages images_;
+};
 
 void refuse_indices_beyond(const Scene& scene) {
   for (std::size_t f = 0; f < scene.faces.size(); ++f)
@@ -237,7 +304,10 @@ SceneFile import_obj(SceneFiles& files) {
   SceneFile file{std::move(builder.scene), {}};
   for (const std::string& missing : library.missing())
     file.warnings.push_back("material library '" + missing + "' cannot be read");
-  fill_materials(file, library, files);
+  ObjMaterials materials(file, library, files);
+  materials.fill();
+  file.scene.texture_points = builder.texture_points();
+  if (!file.scene.texture_points.empty()) materials.place_textures();
   return file;
 }
 

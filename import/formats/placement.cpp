@@ -23,11 +23,14 @@ std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, 
   return static_cast<std::uint32_t>(first);
 }
 
-void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement) {
+void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement,
+                     std::span<const TexturePoint> points) {
   refuse_beyond(scene.corners.size() + polygon.size(), max_corners, "corners");
-  scene.add_face(polygon, material);
-  const auto second = scene.corners.end() - static_cast<std::ptrdiff_t>(polygon.size()) + 1;
-  if (placement.mirrors()) std::reverse(second, scene.corners.end());
+  scene.add_face(polygon, material, points);
+  if (!placement.mirrors()) return;
+  const auto all_but_first = static_cast<std::ptrdiff_t>(polygon.size()) - 1;
+  std::reverse(scene.corners.end() - all_but_first, scene.corners.end());
+  if (!points.empty()) std::reverse(scene.texture_points.end() - all_but_first, scene.texture_points.end());
 }
 
 std::uint32_t add_object(Scene& scene, std::string name, std::optional<std::uint32_t> parent, const Placement& placement) {

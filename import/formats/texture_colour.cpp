@@ -79,26 +79,72 @@ MeanTexel mean_of_pixels(const Pixels& rgba, std::size_t count, const AlphaUse& 
   return {opaque > 0 ? sum * (1 / opaque) : Rgb{}, opaque / pixels, false, level / pixels};
 }
 
+/// The first lines of an encoded image.
+struct Header {
+  int width = 0, height = 0, channels = 0;
+  std::size_t count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+/// Reads the header of an image, and allows stb_image the memory to decode it. Returns nothing if it is too large or no image.
+std::optional<Header> open_image(std::span<const unsigned char> encoded) {
+  if (encoded.empty() || encoded.size() > std::numeric_limits<int>::max()) return std::nullopt;
+  Header header;
+  most_bytes = bytes_beside;
+  const bool is_image = stbi_info_from_memory(encoded.data(), static_cast<int>(encoded.size()), &header.width, &header.height,
+                                              &header.channels) != 0;
+  if (!is_image || header.width <= 0 || header.height <= 0 || header.count() > most_pixels) return std::nullopt;
+  most_bytes += 2 * (encoded.size() + header.count() * 4 * sizeof(std::uint16_t));  // buffers that are too small are doubled
+  return header;
+}
+
 }  // namespace
 
 std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, const AlphaUse& alpha) {
-  if (encoded.empty() || encoded.size() > std::numeric_limits<int>::max()) return std::nullopt;
+  auto header = open_image(encoded);
+  if (!header) return std::nullopt;
+  auto& [width, height, channels] = *header;
   const unsigned char* const bytes = encoded.data();
   const int size = static_cast<int>(encoded.size());
-  int width = 0, height = 0, channels = 0;
-  most_bytes = bytes_beside;
-  if (!stbi_info_from_memory(bytes, size, &width, &height, &channels) || width <= 0 || height <= 0) return std::nullopt;
-  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (count > most_pixels) return std::nullopt;
-  most_bytes += 2 * (encoded.size() + count * 4 * sizeof(std::uint16_t));  // buffers that are too small are doubled
   const bool is_deep = stbi_is_16_bit_from_memory(bytes, size) != 0;
   const Pixels rgba(is_deep ? static_cast<void*>(stbi_load_16_from_memory(bytes, size, &width, &height, &channels, 4))
                             : stbi_load_from_memory(bytes, size, &width, &height, &channels, 4),
                     stbi_image_free);
   if (!rgba) return std::nullopt;
+  const std::size_t count = header->count();
   MeanTexel mean = is_deep ? mean_of_pixels<std::uint16_t>(rgba, count, alpha) : mean_of_pixels<std::uint8_t>(rgba, count, alpha);
   mean.has_alpha = channels == 2 || channels == 4;
   return mean;
+}
+
+std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded) {
+  auto header = open_image(encoded);
+  if (!header) return std::nullopt;
+  auto& [width, height, channels] = *header;
+  const Pixels rgb(stbi_load_from_memory(encoded.data(), static_cast<int>(encoded.size()), &width, &height, &channels, 3),
+                   stbi_image_free);
+  if (!rgb) return std::nullopt;
+  ColourImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+  const auto* const bytes = static_cast<const std::uint8_t*>(rgb.get());
+  image.texels.assign(bytes, bytes + 3 * header->count());
+  return image;
+}
+
+double linear_of_srgb_byte(std::uint8_t value) {
+  static const std::vector<double> table = linear_table<std::uint8_t>();
+  return table[value];
+}
+
+std::uint8_t srgb_byte_of_linear(double linear) {
+  constexpr int finest = 65535;  // fine enough for the darkest steps, of 1 / 3295
+  static const std::vector<std::uint8_t> table = [] {
+    std::vector<std::uint8_t> bytes;
+    for (int i = 0; i <= finest; ++i) {
+      const double x = static_cast<double>(i) / finest, s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+      bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * s)));
+    }
+    return bytes;
+  }();
+  return table[static_cast<std::size_t>(std::lround(finest * std::clamp(linear, 0.0, 1.0)))];
 }
 
 std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha) {

@@ -1,6 +1,7 @@
 #pragma once
-// Replaces textures by their mean colour and opacity, because a patch has one reflectance and one emission.
+// Decodes images of textures, and replaces textures by their mean colour and opacity where only these count.
 
+#include "meshing/texture.h"
 #include "solution/rgb.h"
 
 #include <algorithm>
@@ -38,6 +39,15 @@ struct MeanTexel {
 std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, const AlphaUse& alpha = {});
 /// Returns the means of a file's bytes; nothing if there are none.
 std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha = {});
+
+/// Returns the colours of an encoded image; those of 16 bits rounded to 8, without its alpha. Nothing as above. The image may be
+/// larger than ColourImage allows.
+std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded);
+
+/// Returns the linear value, in [0, 1], of an sRGB value (IEC 61966-2-1).
+double linear_of_srgb_byte(std::uint8_t value);
+/// Returns the sRGB value nearest to a linear value in [0, 1].
+std::uint8_t srgb_byte_of_linear(double linear);
 
 /// Returns `factor` times the texture's mean colour, or `factor` itself if the texture could not be read. Appends a warning that
 /// names `texture`.

@@ -33,10 +33,12 @@ Rgb ratio(const Rgb& a, const Rgb& b) {
 
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
                      std::span<const RelativeLight> own_radiosity, std::vector<const std::uint32_t*> hit_leaf,
-                     std::vector<RelativeLight> irradiance, std::vector<PatchId> ids, GatheringNeeds needs)
+                     std::vector<RelativeLight> irradiance, std::vector<PatchId> ids, GatheringNeeds needs,
+                     std::span<const Rgb> leaf_reflectance)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
+      reflectance_(leaf_reflectance),
       hit_leaf_(std::move(hit_leaf)),
       is_accelerated_(needs.acceleration),
       leaving_(leaf_count, needs.three_bands),
@@ -49,8 +51,8 @@ Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std
   }
   find_own_power();
   ambient_gain_ = ambient_gain(patches_);
-  amplification_ = alvor::amplification(patches_, reflectance_seen());
-  spread([this](std::size_t p, std::uint32_t place) { return own_radiosity_[place] + patches_[p].reflectance * irradiance_[p]; });
+  amplification_ = alvor::amplification(patches_, reflectance_seen(), reflectance_);
+  spread([this](std::size_t p, std::uint32_t place) { return own_radiosity_[place] + reflectance(p, place) * irradiance_[p]; });
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
   find_unshot();
@@ -101,7 +103,7 @@ void Gathering::gather(std::vector<RelativeLight>& received) {
 std::vector<Rgb> Gathering::reflectance_seen() {
   static constexpr RelativeLight one{1, 1, 1};
   std::vector<RelativeLight> received(patches_.size());
-  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * one; });
+  spread([this](std::size_t p, std::uint32_t place) { return reflectance(p, place) * one; });
   gather(received);
   std::vector<Rgb> seen;
   for (const RelativeLight& light : received) seen.push_back(light / one);
@@ -155,7 +157,7 @@ std::size_t Gathering::sweep() {
 /// Takes the step y := F (e + rho y).
 void Gathering::plain_step() {
   for (std::size_t p = 0; p < patches_.size(); ++p) irradiance_[p] += residual_[p];
-  spread([this](std::size_t p, std::uint32_t) { return patches_[p].reflectance * residual_[p]; });
+  spread([this](std::size_t p, std::uint32_t place) { return reflectance(p, place) * residual_[p]; });
   gather(residual_);
 }
 
@@ -163,7 +165,7 @@ void Gathering::conjugate_step() {
   watch_decrease();
   Direction next{residual_, std::vector<RelativeLight>(patches_.size()), {}};
   if (coarse_) coarse_->correct(residual_, next.step);
-  spread([&](std::size_t p, std::uint32_t) { return patches_[p].reflectance * next.step[p]; });
+  spread([&](std::size_t p, std::uint32_t place) { return reflectance(p, place) * next.step[p]; });
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
   const Direction plain = next;

@@ -33,10 +33,12 @@ class Gathering : public Exchange {
   /// Begins at `irradiance` (by patch). Places number the leaves of all patches, patch after patch, as in ShootingPatch;
   /// `leaf_of_place` is the leaf at each place, among `leaf_count` leaves. `own_radiosity` (by place) is a leaf's emission and
   /// reflected direct light. `hit_leaf` of each patch are the leaves that the hits of its row find. `ids` (by patch) may be
-  /// empty; then there is no coarse grid. Borrows all but the vectors.
+  /// empty; then there is no coarse grid. `leaf_reflectance` (by place) may be empty; then that of the patch counts. Borrows all
+  /// but the vectors.
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
             std::span<const RelativeLight> own_radiosity, std::vector<const std::uint32_t*> hit_leaf,
-            std::vector<RelativeLight> irradiance, std::vector<PatchId> ids = {}, GatheringNeeds needs = {});
+            std::vector<RelativeLight> irradiance, std::vector<PatchId> ids = {}, GatheringNeeds needs = {},
+            std::span<const Rgb> leaf_reflectance = {});
 
   std::size_t sweep() override;
   double unshot_power() const override { return unshot_power_; }
@@ -66,6 +68,9 @@ class Gathering : public Exchange {
   void coarsen(CoarseUnits units);
   /// Looks at the residual every four sweeps and takes a finer coarse grid if it falls by less than half per sweep.
   void watch_decrease();
+  const Rgb& reflectance(std::size_t patch, std::uint32_t place) const {
+    return reflectance_.empty() ? patches_[patch].reflectance : reflectance_[place];
+  }
   /// Sets the light that leaves each leaf to light(patch, place). In parallel.
   template <class Light>
   void spread(Light&& light);
@@ -79,6 +84,7 @@ class Gathering : public Exchange {
   std::span<const ShootingPatch> patches_;
   std::span<const std::uint32_t> leaf_of_place_;
   std::span<const RelativeLight> own_radiosity_;
+  std::span<const Rgb> reflectance_;
   std::vector<const std::uint32_t*> hit_leaf_;
   bool is_accelerated_ = true;
   LightByLeaf leaving_{0, true};                      // light that the next gathering finds at each leaf

@@ -21,8 +21,10 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches) {
   return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
 }
 
-Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen) {
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen,
+                  std::span<const Rgb> leaf_reflectance) {
   Rgb largest, most_seen;
+  for (const Rgb& reflectance : leaf_reflectance) largest = upper(largest, reflectance);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     largest = upper(largest, patches[p].reflectance);
     most_seen = upper(most_seen, reflectance_seen[p]);
@@ -31,8 +33,10 @@ Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> r
   return {band(largest.r, most_seen.r), band(largest.g, most_seen.g), band(largest.b, most_seen.b)};
 }
 
-Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf)
+Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf,
+                   std::span<const Rgb> leaf_reflectance)
     : patches_(patches),
+      leaf_reflectance_(leaf_reflectance),
       leaves_(std::move(leaves)),
       hit_leaf_(std::move(hit_leaf)),
       patch_of_leaf_(leaves_.size()),
@@ -49,14 +53,14 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
   }
   transpose();
   ambient_gain_ = ambient_gain(patches_);
-  amplification_ = alvor::amplification(patches_, reflectance_seen());
+  amplification_ = alvor::amplification(patches_, reflectance_seen(), leaf_reflectance_);
 }
 
 std::vector<Rgb> Shooting::reflectance_seen() const {
   std::vector<Rgb> seen(patches_.size());
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1],
-                                             [this](std::uint32_t leaf) { return patches_[patch_of_leaf_[leaf]].reflectance; });
+    seen[p] = receivers_[p].weight *
+              row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return reflectance(leaf); });
   });
   return seen;
 }
@@ -99,7 +103,7 @@ std::invoke_result_t<Radiosity, std::uint32_t> Shooting::row_sum(std::size_t pat
 
 void Shooting::find_unshot() {
   for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf)
-    leaves_[leaf].shot += patches_[patch_of_leaf_[leaf]].reflectance * shot_irradiance_[patch_of_leaf_[leaf]];
+    leaves_[leaf].shot += reflectance(leaf) * shot_irradiance_[patch_of_leaf_[leaf]];
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
     const RelativeLight sum =
         row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return leaves_[leaf].shot; });
@@ -107,9 +111,9 @@ void Shooting::find_unshot() {
     gathered_[p] = receivers_[p].weight * sum;
     shot_irradiance_[p] = receivers_[p].unshot = {};
     leaf_power_[p] = 0;
-    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
-      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
-      leaf.unshot += patches_[p].reflectance * (gathered_[p] - before);
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k) {
+      ShootingLeaf& leaf = leaves_[k];
+      leaf.unshot += reflectance(k) * (gathered_[p] - before);
       leaf_power_[p] += leaf.area * absolute(leaf.unshot).sum();
     }
   });
@@ -120,9 +124,9 @@ void Shooting::adopt_unshot() {
   account_.reset();
   for (std::uint32_t p = 0; p < patches_.size(); ++p) {
     const RelativeLight newly = shot_irradiance_[p] + receivers_[p].unshot;
-    for (std::uint32_t k = 0; k < patches_[p].leaf_count; ++k) {
-      ShootingLeaf& leaf = leaves_[patches_[p].first_leaf + k];
-      leaf.shot += leaf.unshot + patches_[p].reflectance * newly;
+    for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k) {
+      ShootingLeaf& leaf = leaves_[k];
+      leaf.shot += leaf.unshot + reflectance(k) * newly;
       leaf.unshot = {};
     }
     gathered_[p] += newly;
@@ -146,12 +150,10 @@ void Shooting::gather(std::uint32_t receiver) {
   });
   Rgb own;
   if (sees_itself)
-    own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) { return is_own(leaf) ? Rgb{1, 1, 1} : Rgb{}; });
-  const Rgb& rho = patch.reflectance;
-  const RelativeLight irradiance =
-      weight * RelativeLight{sum.r / (1 - rho.r * own.r), sum.g / (1 - rho.g * own.g), sum.b / (1 - rho.b * own.b)};
+    own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) { return is_own(leaf) ? reflectance(leaf) : Rgb{}; });
+  const RelativeLight irradiance = weight * RelativeLight{sum.r / (1 - own.r), sum.g / (1 - own.g), sum.b / (1 - own.b)};
   for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf) {
-    leaves_[leaf].shot = emission_of(leaf, receiver) + rho * irradiance;
+    leaves_[leaf].shot = emission_of(leaf, receiver) + reflectance(leaf) * irradiance;
     leaves_[leaf].unshot = {};
   }
   gathered_[receiver] = irradiance;
@@ -168,10 +170,9 @@ double Shooting::unshot_power() const {
 template <class Body>
 void Shooting::for_each_leaf(Body&& body) const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const Rgb& rho = patches_[p].reflectance;
-    const RelativeLight unshot = rho * receivers_[p].unshot, shot = rho * shot_irradiance_[p];
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      body(leaves_[k].area, leaves_[k].shot + shot, leaves_[k].unshot + unshot);
+      body(leaves_[k].area, leaves_[k].shot + reflectance(k) * shot_irradiance_[p],
+           leaves_[k].unshot + reflectance(k) * receivers_[p].unshot);
   }
 }
 
@@ -216,9 +217,11 @@ void Shooting::shoot(std::uint32_t shooter, const RelativeLight& advance) {
   const RelativeLight reflected = patch.reflectance * irradiance;
   shot_irradiance_[shooter] += irradiance;
   receivers_[shooter].unshot = RelativeLight{} - advance;
-  if (account_) book(shooter, reflected);
+  if (account_) book(shooter, irradiance);
   const bool leaves_differ = leaf_power_[shooter] != 0;
-  if (leaves_differ) send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + reflected; });
+  if (!leaf_reflectance_.empty())
+    send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + leaf_reflectance_[leaf] * irradiance; });
+  else if (leaves_differ) send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + reflected; });
   else send(shooter, [&](std::uint32_t) { return reflected; });
   if (!leaves_differ) return;
   leaf_power_[shooter] = 0;
@@ -252,11 +255,11 @@ void Shooting::keep_ambient_account() {
 
 // Called before the shot. The light that leaves the shooter is no longer unshot; the part that others will reflect becomes
 // unshot.
-void Shooting::book(std::uint32_t shooter, const RelativeLight& reflected) {
+void Shooting::book(std::uint32_t shooter, const RelativeLight& irradiance) {
   for (std::uint32_t k = 0; k < patches_[shooter].leaf_count; ++k) {
     const std::uint32_t at = patches_[shooter].first_leaf + k;
     const ShootingLeaf& leaf = leaves_[at];
-    account_->power += (account_->gain[at] - Rgb{leaf.area, leaf.area, leaf.area}) * (leaf.unshot + reflected);
+    account_->power += (account_->gain[at] - Rgb{leaf.area, leaf.area, leaf.area}) * (leaf.unshot + reflectance(at) * irradiance);
   }
 }
 
@@ -274,9 +277,9 @@ std::vector<RelativeLight> Shooting::irradiance() const {
 std::vector<RelativeLight> Shooting::shot() const {
   std::vector<RelativeLight> all;
   all.reserve(leaves_.size());
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+  for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const std::uint32_t p = patch_of_leaf_[leaf];
-    all.push_back(leaves_[leaf].shot + patches_[p].reflectance * shot_irradiance_[p]);
+    all.push_back(leaves_[leaf].shot + reflectance(leaf) * shot_irradiance_[p]);
   }
   return all;
 }
@@ -284,9 +287,9 @@ std::vector<RelativeLight> Shooting::shot() const {
 std::vector<RelativeLight> Shooting::unshot_by_leaf() const {
   std::vector<RelativeLight> all;
   all.reserve(leaves_.size());
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+  for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const std::uint32_t p = patch_of_leaf_[leaf];
-    all.push_back(leaves_[leaf].unshot + patches_[p].reflectance * receivers_[p].unshot);
+    all.push_back(leaves_[leaf].unshot + reflectance(leaf) * receivers_[p].unshot);
   }
   return all;
 }

@@ -16,7 +16,7 @@ namespace alvor {
 struct ShootingPatch {
   const TransportRow* row = nullptr;
   std::uint32_t first_leaf = 0, leaf_count = 0;
-  Rgb reflectance;
+  Rgb reflectance;  ///< mean over its area
   double area = 0;  ///< m2
 };
 
@@ -26,8 +26,9 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches);
 /// Returns 1 / (1 - q) per band (see Exchange::amplification), where q bounds the share of the RMS radiosity that is left after a
 /// reflection. The largest radiosity is multiplied by at most the largest mean reflectance that a row sees (`reflectance_seen`,
 /// by patch); the power by at most the largest reflectance, if rows are reciprocal. For the RMS q is their geometric mean (Riesz
-/// & Thorin).
-Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen);
+/// & Thorin). `leaf_reflectance` as in Shooting.
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen,
+                  std::span<const Rgb> leaf_reflectance);
 
 /// The radiosity of a leaf: distributed and not yet distributed.
 struct ShootingLeaf {
@@ -41,8 +42,10 @@ struct ShootingLeaf {
 /// of a patch receive the same light by its row. radiosity/exchange/strategies.h chooses the next patch.
 class Shooting {
  public:
-  /// `hit_leaf` lists, row after row, the leaf that each hit of the row finds. Borrows the patches.
-  Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf);
+  /// `hit_leaf` lists, row after row, the leaf that each hit of the row finds. `leaf_reflectance` (by leaf) has no entry if all
+  /// leaves have the reflectance of their patches. Borrows the patches and the reflectances.
+  Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingLeaf> leaves, std::vector<std::uint32_t> hit_leaf,
+           std::span<const Rgb> leaf_reflectance = {});
 
   /// Computes the unshot radiosity from scratch, from rows times shot radiosity. To be called when a pass begins (`unshot` of the
   /// leaves then holds e - shot) and after patches have gathered. In parallel.
@@ -64,6 +67,9 @@ class Shooting {
   std::size_t patch_count() const { return patches_.size(); }
   double leaf_area(std::uint32_t leaf) const { return leaves_[leaf].area; }  ///< m2
   std::uint32_t patch_of(std::uint32_t leaf) const { return patch_of_leaf_[leaf]; }
+  const Rgb& reflectance(std::uint32_t leaf) const {
+    return leaf_reflectance_.empty() ? patches_[patch_of_leaf_[leaf]].reflectance : leaf_reflectance_[leaf];
+  }
   /// Returns the leaf that each hit of the patch's row finds.
   std::span<const std::uint32_t> leaves_hit(std::uint32_t patch) const {
     return std::span(hit_leaf_).subspan(first_hit_[patch], first_hit_[patch + 1] - first_hit_[patch]);
@@ -121,14 +127,15 @@ class Shooting {
   template <class Leaving>
   void send(std::uint32_t shooter, Leaving&& leaving);
   /// Brings the running sum of the unshot power up to date for a shot that is about to be made.
-  void book(std::uint32_t shooter, const RelativeLight& reflected);
+  void book(std::uint32_t shooter, const RelativeLight& irradiance);
   RelativeLight signed_unshot_power() const;
   /// Returns the emission and reflected direct light of a leaf, computed from its residual.
   RelativeLight emission_of(std::uint32_t leaf, std::uint32_t patch) const {
-    return leaves_[leaf].unshot + leaves_[leaf].shot - patches_[patch].reflectance * gathered_[patch];
+    return leaves_[leaf].unshot + leaves_[leaf].shot - reflectance(leaf) * gathered_[patch];
   }
 
   std::span<const ShootingPatch> patches_;
+  std::span<const Rgb> leaf_reflectance_;
   std::vector<ShootingLeaf> leaves_;
   std::vector<std::uint32_t> hit_leaf_;
   std::vector<std::uint32_t> patch_of_leaf_;

@@ -1,15 +1,35 @@
 #include "radiosity/plan/scene_census.h"
 
 #include <algorithm>
+#include <unordered_map>
 #include <vector>
 
 namespace alvor {
 
 namespace {
 
-bool is_grey(const Material& material) {
-  return material.emission.is_grey() && material.reflectance.is_grey() && material.regular_transmittance.is_grey();
+bool is_grey(const ColourImage& image) {
+  for (std::size_t i = 0; i < image.texels.size(); i += 3)
+    if (image.texels[i] != image.texels[i + 1] || image.texels[i] != image.texels[i + 2]) return false;
+  return true;
 }
+
+/// Tells which materials are grey. Looks at each image once, however many materials share it.
+class GreyMaterials {
+ public:
+  bool contain(const Material& material) {
+    return material.emission.is_grey() && material.reflectance.is_grey() && material.regular_transmittance.is_grey() &&
+           (!material.texture || (material.texture->factor.is_grey() && contain(*material.texture->image)));
+  }
+
+ private:
+  bool contain(const ColourImage& image) {
+    const auto [found, is_new] = images_.try_emplace(&image);
+    if (is_new) found->second = is_grey(image);
+    return found->second;
+  }
+  std::unordered_map<const ColourImage*, bool> images_;
+};
 
 bool is_grey(const Light& light) {
   const auto is_grey_pixel = [](const RgbF& pixel) { return widen(pixel).is_grey(); };
@@ -40,14 +60,16 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     if (!coloured_light && !is_grey(light)) coloured_light = &light;
   }
   emitting_share = area > 0 ? emitting_area / area : 0;
+  GreyMaterials grey;
   for (std::size_t m = 0; m < is_used.size(); ++m) {
     if (!is_used[m]) continue;
     const Material& material = mesh.materials()[m];
     ++materials;
     reflecting_materials += !material.reflectance.is_zero();
-    grey_materials += is_grey(material);
-    if (!is_grey(material) && !coloured) coloured = &material;
-    largest_reflectance = std::max(largest_reflectance, material.reflectance.max());
+    const bool is_grey = grey.contain(material);
+    grey_materials += is_grey;
+    if (!is_grey && !coloured) coloured = &material;
+    largest_reflectance = std::max(largest_reflectance, material.largest_reflectance().max());
   }
 }
 

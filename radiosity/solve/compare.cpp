@@ -59,7 +59,7 @@ class Reference {
     for (std::size_t p = 0; p < irradiance_.size(); ++p) {
       const ShootingPatch& patch = unshot_system.patches()[p];
       for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf)
-        norm_ += unshot_system.leaf_area(leaf) * square(own[leaf] + patch.reflectance * irradiance_[p]);
+        norm_ += unshot_system.leaf_area(leaf) * square(own[leaf] + unshot_system.reflectance(leaf) * irradiance_[p]);
     }
   }
 

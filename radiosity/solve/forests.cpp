@@ -17,6 +17,10 @@ constexpr double start_edge = 1.0 / 6;
 // same, double: error same, rays -10 % (docs/design/constants.md).
 constexpr double start_area = 1e-3;
 
+// Share of the scene's extent: longest edge that a leaf may have whose quarters differ in reflectance by `start_contrast`,
+// because light from one place would seem to come from another. Chosen.
+constexpr double start_textured_edge = 1.0 / 32, start_contrast = 0.05;
+
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
   double longest = 0;
@@ -48,9 +52,10 @@ void load_leaves(PatchForest& forest, PlainReader& in) {
 }  // namespace
 
 Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits)
-    : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh) {
+    : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
   for (const RootPatch& root : mesh.roots()) area_ += root.area;
   split_to_start(plan);
+  if (mesh.has_textures()) split_to_show_textures(plan);
   fit_to_nodes();
 }
 
@@ -68,6 +73,26 @@ void Forests::split_to_start(const Plan& plan) {
   for (const NodeIndex row : split) leaves_.split(leaf_node_of(row), limits_, copies);
 }
 
+/// Splits leaves on textures where the reflectance of their quarters differs. Rows need not be as fine: irradiance is smoother.
+void Forests::split_to_show_textures(const Plan& plan) {
+  const auto has_contrast = [&](const PatchShape& shape) {
+    Rgb low{1, 1, 1}, high;
+    for (int k = 0; k < 4; ++k) {
+      const Rgb quarter = reflectance_.of(shape.child(k));
+      low = lower(low, quarter), high = upper(high, quarter);
+    }
+    return (high - low).max() > start_contrast;
+  };
+  std::vector<NodeIndex> split;
+  for (NodeIndex node = 0; node < leaves_.node_count(); ++node) {
+    const std::uint32_t root = leaves_.id(node).root_face();
+    if (!leaves_.is_leaf(node) || !reflectance_.has_texture(root) || !plan.may_be_lit(root)) continue;
+    const PatchShape shape = leaves_.shape(node);
+    if (longest_edge(mesh_, shape) > start_textured_edge * mesh_.extent() && has_contrast(shape))
+      leaves_.split(node, limits_, split);
+  }
+}
+
 void Forests::fit_to_nodes() {
   for (auto row = static_cast<NodeIndex>(row_centre_.size()); row < rows_.node_count(); ++row)
     row_centre_.push_back(centre_of(mesh_, rows_.shape(row)));
@@ -75,6 +100,7 @@ void Forests::fit_to_nodes() {
     const PatchShape shape = leaves_.shape(leaf);
     leaf_centre_.push_back(centre_of(mesh_, shape));
     leaf_area_.push_back(area_of(mesh_, shape));
+    if (mesh_.has_textures()) leaf_reflectance_.push_back(reflectance_.of(shape));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "meshing/leaf_gradient.h"
 #include "meshing/patch_forest.h"
+#include "meshing/patch_reflectance.h"
 #include "radiosity/plan/plan.h"
 #include "solution/plain_bytes.h"
 
@@ -34,6 +35,10 @@ class Forests {
   std::span<const Vec3> row_centres() const { return row_centre_; }    ///< by row node
   std::span<const Vec3> leaf_centres() const { return leaf_centre_; }  ///< by leaf node
   double leaf_area(NodeIndex leaf) const { return leaf_area_[leaf]; }  ///< m2
+  /// Returns the mean reflectance of a leaf node.
+  Rgb reflectance(NodeIndex leaf) const {
+    return mesh_.has_textures() ? leaf_reflectance_[leaf] : mesh_.material_of(leaves_.id(leaf).root_face()).reflectance;
+  }
 
   /// Returns the smooth neighbours of each leaf of the row or the leaf forest. Requires: leaves of that forest, each once.
   std::vector<SmoothNeighbours> row_neighbours(std::span<const NodeIndex> rows) { return row_neighbours_.of(rows); }
@@ -53,6 +58,7 @@ class Forests {
 
  private:
   void split_to_start(const Plan& plan);
+  void split_to_show_textures(const Plan& plan);
   void fit_to_nodes();
 
   const BaseMesh& mesh_;
@@ -62,6 +68,8 @@ class Forests {
   NeighbourTable row_neighbours_{rows_}, leaf_neighbours_{leaves_};
   std::vector<Vec3> row_centre_, leaf_centre_;
   std::vector<double> leaf_area_;
+  const PatchReflectance reflectance_;
+  std::vector<Rgb> leaf_reflectance_;  // by leaf node; none if there are no textures
 };
 
 /// Sorts patches so that any first part of them is spread over the scene and holds much of its area. One patch of each face comes

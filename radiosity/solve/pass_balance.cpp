@@ -43,9 +43,10 @@ PowerBalance Pass::balance() const {
     const double open = row.visible_share();
     for (const NodeIndex leaf : system_->leaves_of(p)) {
       const double area = state_.forests.leaf_area(leaf), seen = open * area;
+      const Rgb reflectance = state_.forests.reflectance(leaf);
       const RelativeLight arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
-      absorbed += seen * ((kept - patch.reflectance) * arriving);
-      lost += seen * ((white - found) * (emission + patch.reflectance * arriving)) + (area - seen) * emission;
+      absorbed += seen * ((kept - reflectance) * arriving);
+      lost += seen * ((white - found) * (emission + reflectance * arriving)) + (area - seen) * emission;
     }
   }
   balance.absorbed = state_.in_watts(absorbed.sum());

@@ -16,13 +16,20 @@ PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.r
     forests.append_leaves_of_row(row, leaves_);
     ShootingPatch patch{&state.rows[row], first, static_cast<std::uint32_t>(leaves_.size()) - first,
                         state.mesh.material_of(forests.rows().id(row).root_face()).reflectance, 0};
-    for (std::size_t n = first; n < leaves_.size(); ++n) patch.area += forests.leaf_area(leaves_[n]);
+    Rgb reflecting;
+    for (std::size_t n = first; n < leaves_.size(); ++n) {
+      const double area = forests.leaf_area(leaves_[n]);
+      patch.area += area;
+      if (!state.mesh.has_textures()) continue;
+      leaf_reflectance_.push_back(forests.reflectance(leaves_[n]));
+      reflecting += area * leaf_reflectance_.back();
+    }
+    if (state.mesh.has_textures() && patch.area > 0) patch.reflectance = (1 / patch.area) * reflecting;
     patches_.push_back(patch);
   }
   for (const NodeIndex leaf : leaves_) {
     const std::uint32_t root = forests.leaves().id(leaf).root_face();
-    own_radiosity_.push_back(state.direct.emission_by_rows(root) +
-                             state.mesh.material_of(root).reflectance * state.direct[leaf].irradiance);
+    own_radiosity_.push_back(state.direct.emission_by_rows(root) + forests.reflectance(leaf) * state.direct[leaf].irradiance);
   }
   if (state.rows.carry_light())
     tbb::parallel_for(std::size_t{0}, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
@@ -45,7 +52,8 @@ std::unique_ptr<Exchange> PassSystem::begin_gathering() const {
   }
   return std::make_unique<Gathering>(
       patches_, leaves_, state_.forests.leaves().node_count(), own_radiosity_, std::move(hit_leaf), std::move(irradiance),
-      std::move(ids), GatheringNeeds{state_.plan.needs(Feature::three_bands), state_.plan.needs(Feature::acceleration)});
+      std::move(ids), GatheringNeeds{state_.plan.needs(Feature::three_bands), state_.plan.needs(Feature::acceleration)},
+      leaf_reflectance_);
 }
 
 Shooting PassSystem::shooting() const {
@@ -60,7 +68,7 @@ Shooting PassSystem::shooting() const {
   if (state_.rows.carry_light())
     for (const NodeIndex row : rows_)
       for (const NodeIndex leaf : state_.rows.leaves_hit(row)) hit_leaf.push_back(place_of[leaf]);
-  Shooting shooting(patches_, std::move(leaves), std::move(hit_leaf));
+  Shooting shooting(patches_, std::move(leaves), std::move(hit_leaf), leaf_reflectance_);
   shooting.find_unshot();
   return shooting;
 }
@@ -69,7 +77,7 @@ LightByLeaf PassSystem::radiosity() const {
   LightByLeaf radiosity(state_.forests.leaves().node_count(), state_.plan.needs(Feature::three_bands));
   for (std::size_t p = 0; p < patches_.size(); ++p)
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      radiosity.set(leaves_[k], own_radiosity_[k] + patches_[p].reflectance * state_.field.irradiance(rows_[p]));
+      radiosity.set(leaves_[k], own_radiosity_[k] + state_.forests.reflectance(leaves_[k]) * state_.field.irradiance(rows_[p]));
   return radiosity;
 }
 

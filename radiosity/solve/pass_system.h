@@ -40,6 +40,7 @@ class PassSystem {
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
   std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and reflected direct light
+  std::vector<Rgb> leaf_reflectance_;         ///< by place; none if the mesh has no textures
 };
 
 }  // namespace alvor

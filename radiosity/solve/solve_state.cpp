@@ -21,7 +21,7 @@ Rgb largest_irradiance(const BaseMesh& mesh) {
     const Material& material = mesh.materials()[root.material];
     if (material.is_pane() && !material.emission.is_zero()) return {held_by_floats, held_by_floats, held_by_floats};
     emission = upper(emission, material.emission);
-    reflectance = upper(reflectance, material.reflectance);
+    reflectance = upper(reflectance, material.largest_reflectance());
   }
   for (const Light& light : mesh.lights()) {
     if (light.kind != LightKind::directional && !light.intensity.is_zero())
@@ -68,8 +68,7 @@ std::vector<LeafValue> SolveState::leaf_values() const {
 double SolveState::unshot_power() const {
   double power = direct.waiting_power();
   for (const NodeIndex leaf : forests.leaves().leaves()) {
-    const Rgb reflectance = mesh.material_of(forests.leaves().id(leaf).root_face()).reflectance;
-    power += forests.leaf_area(leaf) * (reflectance * direct[leaf].irradiance).sum();
+    power += forests.leaf_area(leaf) * (forests.reflectance(leaf) * direct[leaf].irradiance).sum();
   }
   return power;
 }

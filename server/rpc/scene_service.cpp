@@ -21,6 +21,13 @@ namespace {
 bool next(SceneSlicer& slicer, v1::ReadSceneResponse& message) { return slicer.next(*message.mutable_chunk()); }
 bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.next(message); }
 
+/// Cuts the images of a scene's textures.
+class SceneImageSlicer : public MeshImageSlicer {
+ public:
+  explicit SceneImageSlicer(const Scene& scene) : MeshImageSlicer(scene.materials) {}
+};
+bool next(SceneImageSlicer& slicer, v1::ReadImagesResponse& message) { return slicer.next(message); }
+
 // A call that loads a scene and sends a part of its content, piece by piece. Deletes itself.
 template <class Message, class Slicer, class Part>
 class SendCall final : public grpc::ServerWriteReactor<Message> {
@@ -138,6 +145,11 @@ grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context
 
 grpc::ServerWriteReactor<v1::ReadMeshResponse>* SceneService::ReadMesh(Context* context, const v1::ReadMeshRequest* request) {
   return send<v1::ReadMeshResponse, MeshSlicer>(*context, "ReadMesh", request->name(), &SceneContent::mesh);
+}
+
+grpc::ServerWriteReactor<v1::ReadImagesResponse>* SceneService::ReadImages(Context* context,
+                                                                           const v1::ReadImagesRequest* request) {
+  return send<v1::ReadImagesResponse, SceneImageSlicer>(*context, "ReadImages", request->name(), &SceneContent::scene);
 }
 
 }  // namespace alvor

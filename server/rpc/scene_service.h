@@ -30,6 +30,7 @@ class SceneService final : public v1::SceneService::CallbackService {
   Reactor* DeleteScene(Context*, const v1::DeleteSceneRequest* request, google::protobuf::Empty*) override;
   grpc::ServerWriteReactor<v1::ReadSceneResponse>* ReadScene(Context*, const v1::ReadSceneRequest* request) override;
   grpc::ServerWriteReactor<v1::ReadMeshResponse>* ReadMesh(Context*, const v1::ReadMeshRequest* request) override;
+  grpc::ServerWriteReactor<v1::ReadImagesResponse>* ReadImages(Context*, const v1::ReadImagesRequest* request) override;
 
   /// Receives a scene, see UploadCall.
   template <class Kind>

@@ -4,6 +4,7 @@
 #include "client/verify/surface_points.h"
 #include "import/apart/scene_file.h"
 #include "tests/client/path_tracing.h"
+#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -315,6 +316,32 @@ TEST(EmitterTree, ManyLampsGiveWhatTheyGiveOneByOne) {
   const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}});
   EXPECT_NEAR(estimate.mean().mean(), expected, sure * error_of(estimate) + 5e-3 * expected);  // lamps are not points
   EXPECT_LT(error_of(estimate), 0.02 * expected);
+}
+
+// With linear filters a texture of two columns goes evenly from one to the other between their middles.
+TEST(PathTracer, FollowsTexturesThatChangeOverAFace) {
+  Scene scene;
+  scene.materials = {grey(0, 0), test::textured({2, 1, {60, 60, 60, 240, 240, 240}}, {1, 1, 1}, Wrap::clamp)};
+  scene.materials[1].emission = {};
+  Light sun{"sun", LightKind::directional, {10, 10, 10}};
+  sun.direction = {0, 0, 1};
+  scene.lights = {sun};
+  // A wide face that looks down to the point, lit from below, with the first texel's middle at x = -2 and the second's at 2.
+  test::add_textured(scene, {{-4, -4, 1}, {-4, 4, 1}, {4, 4, 1}, {4, -4, 1}}, {{0, 0}, {0, 1}, {1, 1}, {1, 0}}, 1);
+  test::add_polygon(scene, {{-0.01, -0.01, 0}, {0.01, -0.01, 0}, {0.01, 0.01, 0}, {-0.01, 0.01, 0}});
+  const double dark = reflectance_of_texel(60), light = reflectance_of_texel(240);
+  // By the integral of B(x) cos cos / (pi r^2) over the face.
+  double expected = 0;
+  constexpr int steps = 2000;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const double x = -4 + 8 * (i + 0.5) / steps, y = -4 + 8 * (j + 0.5) / steps, square = x * x + y * y + 1;
+      const double rho = dark + (light - dark) * std::clamp((x + 2) / 4, 0.0, 1.0);
+      expected += 10 * rho / (std::numbers::pi * square * square) * 64.0 / (steps * steps);
+    }
+  const auto estimate = traced(scene, {{0, 0, 0}, {0, 0, 1}}, 1 << 16);
+  EXPECT_NEAR(estimate.mean().mean(), expected, sure * error_of(estimate) + 1e-3 * expected);
+  EXPECT_LT(error_of(estimate), 0.01 * expected);
 }
 
 }  // namespace

@@ -98,13 +98,17 @@ TEST(SceneFile, ReflectanceOutOfRangeIsClampedAndSaidSo) {
                                       "material 'bright lamp': reflectance 1.2 -0.5 0.5 is clamped to 0.95 0 0.5"}));
 }
 
-TEST(SceneFile, ATextureCountsByItsMeanAndAMissingOneNotAtAll) {
+TEST(SceneFile, ATextureCountsTexelByTexelAndAMissingOneNotAtAll) {
   const SceneFile file = read_scene_file(good_files / "textured.obj");
-  expect_near(file.scene.materials[0].reflectance, {0.25, 0.5, 0.5});
+  const auto& texture = file.scene.materials[0].texture;
+  ASSERT_TRUE(texture);
+  expect_near(texture->factor, {0.5, 1, 1});
+  EXPECT_EQ(std::ranges::count(texture->image->texels, 0), std::ranges::count(texture->image->texels, 255));
+  expect_near(file.scene.materials[0].reflectance, reflectance_of_texel(255) * Rgb{0.25, 0.5, 0.5});
+  EXPECT_FALSE(file.scene.materials[1].texture);
   expect_near(file.scene.materials[1].reflectance, {0.5, 0.5, 0.5});
   EXPECT_EQ(file.warnings,
-            (std::vector<std::string>{"material 'checked': texture 'black_and_white.png' counts by its mean colour",
-                                      "material 'lost': texture 'nowhere.png' cannot be read and is left out"}));
+            (std::vector<std::string>{"material 'lost': texture 'nowhere.png' cannot be read and is left out"}));
 }
 
 TEST(SceneFile, NamesOfMaterialLibrariesMayHoldBlanks) {

@@ -4,8 +4,11 @@
 #include "client/export/glb_file.h"
 #include "client/export/ply_file.h"
 #include "import/base/whole_file.h"
+#include "meshing/mesh_radiosity.h"
 #include "tests/client/hand_made_mesh.h"
 #include "tests/environments.h"
+#include "tests/scenes.h"
+#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -95,6 +99,79 @@ TEST_P(SolutionFile, RemembersMaterialsObjectsAndTheFacesOfTheScene) {
   EXPECT_EQ(back.objects, mesh.objects);
   EXPECT_EQ(back.faces, mesh.faces);
   EXPECT_EQ(back.triangles, mesh.triangles);
+}
+
+/// Returns the mesh of a room whose floor and one wall have textures.
+DisplayMesh textured_mesh() {
+  Scene scene = test::coloured_room();
+  scene.materials.push_back(test::textured(test::noise(9, 5), {0.5, 1, 0.25}, Wrap::mirror));
+  scene.materials.push_back(test::textured(test::noise(3, 3, 2), {1, 1, 1}, Wrap::clamp));
+  const auto points = [](float repeats) {
+    return std::vector<TexturePoint>{{0, 0}, {repeats, 0}, {repeats, repeats}, {0, 2 * repeats}};
+  };
+  test::add_textured(scene, {{0, 1, 0}, {0, 1, 2}, {2, 1, 2}, {2, 1, 0}}, points(3), 3);
+  test::add_textured(scene, {{0, 2, 0}, {0, 2, 2}, {2, 2, 2}, {2, 2, 0}}, points(-1), 4);
+  scene.materials.push_back(scene.materials[4]);  // of the same image
+  test::add_textured(scene, {{2, 2, 0}, {2, 2, 2}, {4, 2, 2}, {4, 2, 0}}, points(0.5F), 5);
+  const BaseMesh mesh(scene);
+  std::vector<LeafValue> leaves;
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
+    for (int k = 0; k < 4; ++k)
+      leaves.push_back({PatchId::root(root).child(k), {1, 2 + static_cast<float>(root), 3 + static_cast<float>(k)}});
+  std::ranges::sort(leaves, {}, &LeafValue::patch);
+  return build_display_mesh(mesh, leaves);
+}
+
+/// Returns the radiosity at a point of each triangle, in the order of their middles.
+std::map<std::array<double, 3>, Rgb> radiosities(const DisplayMesh& mesh) {
+  const MeshRadiosity radiosity(mesh);
+  std::map<std::array<double, 3>, Rgb> all;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    Vec3 middle;
+    for (const std::uint32_t vertex : mesh.triangles[t]) middle += mesh.positions[vertex];
+    all[{std::round(1e3 * middle.x), std::round(1e3 * middle.y), std::round(1e3 * middle.z)}] = radiosity.at(t, 0.2, 0.3);
+  }
+  return all;
+}
+
+TEST(SolutionGlb, RemembersTextures) {
+  const DisplayMesh mesh = textured_mesh();
+  ASSERT_EQ(mesh.texture_points.size(), mesh.positions.size());
+  const std::string bytes = encode_solution(mesh, ".glb");
+  const DisplayMesh back = decode_solution(bytes, ".glb", "room");
+  ASSERT_EQ(back.materials.size(), 6u);
+  for (std::size_t m = 0; m < 6; ++m) ASSERT_EQ(back.materials[m].texture.has_value(), m >= 3);
+  const Texture &written = *mesh.materials[3].texture, &read = *back.materials[3].texture;
+  EXPECT_EQ(read.image->columns, 9u);
+  EXPECT_EQ(read.image->texels, written.image->texels);
+  EXPECT_EQ(read.factor, written.factor);
+  EXPECT_EQ(read.wrap_s, Wrap::mirror);
+  EXPECT_EQ(back.materials[5].texture->wrap_t, Wrap::clamp);
+  const auto before = radiosities(mesh), after = radiosities(back);
+  ASSERT_EQ(before.size(), after.size());
+  for (const auto& [place, radiosity] : before) {
+    ASSERT_TRUE(after.contains(place));
+    EXPECT_NEAR(radiosity.g, after.at(place).g, 1e-5);
+  }
+  EXPECT_EQ(encode_solution(back, ".glb"), bytes);
+}
+
+TEST(SolutionGlb, UnsoundTexturesAreRefused) {
+  const std::string good = encode_solution(textured_mesh(), ".glb");
+  const auto refusal_with = [&](const std::string& text, const std::string& other) {
+    std::string bytes = good;
+    bytes.replace(bytes.find(text), other.size(), other);
+    try {
+      decode_solution(bytes, ".glb", "room");
+      return std::string();
+    } catch (const SolutionFileError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(refusal_with("\"image\":0", "\"image\":9"), "room: texture 0: images: no element 9");
+  EXPECT_EQ(refusal_with("\"material\":3,\"wrap_s\"", "\"material\":7,\"wrap_s\""), "room: texture 0: there is no material 7");
+  EXPECT_EQ(refusal_with("\"wrap_s\":33648", "\"wrap_s\":33649"), "room: texture 0: its wrap mode is not known");
+  EXPECT_NE(refusal_with("IHDR", "IHDX").find("room: texture 0: decode: "), std::string::npos);
 }
 
 TEST_P(SolutionFile, PartsOfTheSceneThatContradictTheMeshAreRefused) {

@@ -28,7 +28,7 @@ class Caller:
   def __getattr__(self, name):
     method = METHODS[name]
     kinds = {(False, False): "unary_unary", (False, True): "unary_stream", (True, False): "stream_unary"}
-    streams = (name == "CreateScene", name in ("ReadScene", "ReadMesh", "WatchSolve"))
+    streams = (name == "CreateScene", name in ("ReadScene", "ReadMesh", "ReadImages", "WatchSolve"))
     call = getattr(self.channel, kinds[streams])(
         path_of(name), request_serializer=lambda request: request.SerializeToString(),
         response_deserializer=make_class(method.output_type).FromString)

@@ -30,7 +30,8 @@ def requests_for(owner):
   scene, solve = owner.scene, owner.solve
   reading = [
       ("GetScene", scenes.GetSceneRequest(name=scene)), ("ReadScene", scenes.ReadSceneRequest(name=scene)),
-      ("ReadMesh", scenes.ReadMeshRequest(name=scene)), ("GetSolve", solves.GetSolveRequest(name=solve)),
+      ("ReadMesh", scenes.ReadMeshRequest(name=scene)), ("ReadImages", scenes.ReadImagesRequest(name=scene)),
+      ("GetSolve", solves.GetSolveRequest(name=solve)),
       ("ListSolves", solves.ListSolvesRequest(parent=scene)),
       ("AcknowledgeFrame", solves.AcknowledgeFrameRequest(watch_id=owner.frame.watch_id, revision=owner.frame.to_revision, frame_count=1))]
   changing = [

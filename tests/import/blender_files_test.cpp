@@ -1,13 +1,14 @@
 // Compares files that Blender's exporters wrote with the room as Blender describes it: blender/README.md.
 
 #include "import/apart/scene_file.h"
-#include "meshing/base_mesh.h"
+#include "meshing/patch_reflectance.h"
 #include "radiosity/solve/solver.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 
@@ -219,6 +220,49 @@ TEST(BlenderMaterials, AreTheSameInFbxAndCollada) {
     expect_reflectance(scene, "Books");
     if (name == std::string("room.dae")) continue;  // Blender writes a light's colour without its strength
     for (const char* lamp : {"Lamp panel", "Night light"}) expect_light(scene, lamp);
+  }
+}
+
+/// Returns the reflectance at a place on a face of a material; nothing if no such face has the place or a texture.
+std::optional<Rgb> reflectance_at(const BaseMesh& mesh, const std::string& material, Vec3 place) {
+  for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
+    const RootPatch& root = mesh.roots()[r];
+    if (mesh.material_of(r).name != material || !mesh.material_of(r).texture || root.is_back) continue;
+    for (double u = 0; u < 1; u += 1.0 / 512)
+      for (double v = 0; v < (root.corner_count == 3 ? 1 - u : 1); v += 1.0 / 512)
+        if (length(root.at(u, v) - place) < 0.01)
+          return mesh.material_of(r).texture->reflectance_at(texture_point_at(mesh, r, {u, v}));
+  }
+  return std::nullopt;
+}
+
+/// Returns the linear value of an sRGB value (IEC 61966-2-1).
+double linear(double s) { return s / 255 <= 0.04045 ? s / 255 / 12.92 : std::pow((s / 255 + 0.055) / 1.055, 2.4); }
+
+// The paper on the west wall (x = -2.5 m) repeats every 1.25 m along the wall and every 1.4 m of its height. Of its 32 x 32
+// texels the one in column c and row r (from the top) is 120 + 4 c, 200 - 2 r, 180.
+TEST(BlenderTextures, LieWhereBlenderHasThem) {
+  for (const char* name : {"room.glb", "room.gltf", "room_extras.gltf", "room.obj", "room.fbx", "room.dae"}) {
+    SCOPED_TRACE(name);
+    Scene scene = read_scene_file(files / name).scene;
+    for (Material& material : scene.materials) std::ranges::replace(material.name, '_', ' ');
+    for (SceneObject& object : scene.objects) std::ranges::replace(object.name, '_', ' ');
+    const BaseMesh mesh(scene);
+    const auto wall = std::ranges::find(scene.objects, "Wall west", &SceneObject::name);
+    ASSERT_NE(wall, scene.objects.end());
+    Vec3 least = scene.vertices[scene.corners_of(scene.faces[wall->first_face])[0]], most = least;
+    for (std::uint32_t f = wall->first_face; f < wall->first_face + wall->face_count; ++f)
+      for (const std::uint32_t v : scene.corners_of(scene.faces[f]))
+        least = lower(least, scene.vertices[v]), most = upper(most, scene.vertices[v]);
+    for (const auto& [along, height] : {std::pair{0.3, 0.5}, {1.0, 1.2}, {2.9, 2.0}, {4.1, 2.5}}) {
+      // Blender's y runs against z.
+      const auto found = reflectance_at(mesh, "Wall paper", {least.x, least.y + height, most.z - along});
+      ASSERT_TRUE(found);
+      const double column = std::fmod(along / 1.25, 1) * 32 - 0.5, row = (1 - std::fmod(height / 1.4, 1)) * 32 - 0.5;
+      EXPECT_NEAR(found->r, linear(120 + 4 * column), 0.02);
+      EXPECT_NEAR(found->g, linear(200 - 2 * row), 0.01);
+      EXPECT_NEAR(found->b, linear(180), 1e-3);
+    }
   }
 }
 

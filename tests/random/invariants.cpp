@@ -66,7 +66,7 @@ Rgb brightest_radiosity(const BaseMesh& mesh) {
   Rgb emission, reflectance;
   for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
     emission = upper(emission, mesh.material_of(r).emission);
-    reflectance = upper(reflectance, mesh.material_of(r).reflectance);
+    reflectance = upper(reflectance, mesh.material_of(r).largest_reflectance());
   }
   return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
 }

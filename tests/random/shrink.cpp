@@ -1,8 +1,11 @@
 #include "tests/random/shrink.h"
 
+#include "tests/scene_changes.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace alvor::test {
 
@@ -75,6 +78,7 @@ class Shrinker {
       const auto material = [m](Trial& t) -> Material& { return t.scene.materials[m]; };
       const auto is_lit = [&](Trial& t) { return !material(t).emission.is_zero(); };
       any |= attempt([&](Trial& t) { return set(material(t).two_sided, false); });
+      any |= attempt([&](Trial& t) { return std::exchange(material(t).texture, std::nullopt).has_value(); });
       any |= attempt([&](Trial& t) { return set(material(t).regular_transmittance, Rgb{}); });
       if (attempt([&](Trial& t) { return set(material(t).emission, Rgb{}); })) any = true;
       else any |= attempt([&](Trial& t) { return is_lit(t) && set(material(t).emission, Rgb{1, 1, 1}); });
@@ -102,16 +106,18 @@ class Shrinker {
     return attempt([](Trial& t) {
       const Scene before = t.scene;
       Scene& scene = t.scene;
-      scene.vertices.clear(), scene.corners.clear(), scene.faces.clear(), scene.materials.clear();
+      scene.vertices.clear(), scene.corners.clear(), scene.faces.clear(), scene.materials.clear(), scene.texture_points.clear();
       std::vector<std::uint32_t> vertex(before.vertices.size(), ~0u), material(before.materials.size(), ~0u);
       const auto kept = [](auto& from, auto& to, std::uint32_t n, std::uint32_t& place) {
         if (place == ~0u) place = static_cast<std::uint32_t>(to.size()), to.push_back(from[n]);
         return place;
       };
-      for (const Face& face : before.faces) {
+      for (std::uint32_t f = 0; f < before.faces.size(); ++f) {
+        const Face& face = before.faces[f];
         std::vector<std::uint32_t> ring;
         for (const std::uint32_t v : before.corners_of(face)) ring.push_back(kept(before.vertices, scene.vertices, v, vertex[v]));
-        scene.add_face(ring, kept(before.materials, scene.materials, face.material, material[face.material]));
+        scene.add_face(ring, kept(before.materials, scene.materials, face.material, material[face.material]),
+                       points_of(before, f));
       }
       return scene.vertices.size() < before.vertices.size() || scene.corners.size() < before.corners.size() ||
              scene.materials.size() < before.materials.size();

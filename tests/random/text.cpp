@@ -48,6 +48,8 @@ std::string mtl_text(const Scene& scene) {
   for (const Material& material : scene.materials) {
     out << "newmtl " << material.name << (material.two_sided ? "\n# two-sided" : "") << "\nKd " << three(material.reflectance);
     out << "\nKe " << three((1 / std::numbers::pi) * material.emission) << '\n';
+    if (material.texture)
+      out << "# has a texture of " << material.texture->image->columns << " x " << material.texture->image->rows << '\n';
     if (material.is_pane()) out << "# lets straight through " << three(material.regular_transmittance) << '\n';
   }
   if (!scene.absorption.is_zero()) out << "# absorption " << three(scene.absorption) << " per metre\n";

@@ -86,6 +86,27 @@ void move(Dice& dice, Scene& scene) {
   scene.absorption = (1 / size) * scene.absorption;
 }
 
+/// Lays random images on some materials, anyhow.
+void add_textures(Dice& dice, Scene& scene) {
+  for (Material& material : scene.materials) {
+    if (material.is_pane() || !dice.happens(0.3)) continue;
+    ColourImage image{1 + dice.below(9), 1 + dice.below(9), {}};
+    const bool is_grey = dice.happens(0.3);
+    for (std::size_t texel = 0; texel < image.texel_count(); ++texel) {
+      const auto value = [&] { return static_cast<std::uint8_t>(dice.below(240)); };
+      const std::uint8_t red = value(), green = is_grey ? red : value(), blue = is_grey ? red : value();
+      image.texels.insert(image.texels.end(), {red, green, blue});
+    }
+    const Rgb factor = random_bands(dice, 0, 1);
+    material.reflectance = factor * mean_reflectance(image);
+    material.texture = Texture{std::make_shared<const ColourImage>(std::move(image)), factor,
+                               dice.one_of({Wrap::repeat, Wrap::mirror, Wrap::clamp}), Wrap::repeat};
+  }
+  const auto far = static_cast<float>(dice.one_of({0.3, 2.0, 50.0}));
+  const auto place = [&] { return static_cast<float>(dice.between(-1, 1)) * far; };
+  for (std::size_t corner = 0; corner < scene.corners.size(); ++corner) scene.texture_points.push_back({place(), place()});
+}
+
 }  // namespace
 
 Trial random_trial(std::uint64_t seed) {
@@ -97,6 +118,7 @@ Trial random_trial(std::uint64_t seed) {
   add_random_faces(dice, trial.scene);
   if (dice.happens(0.5)) trial.is_well_posed = add_flaws(dice, trial.scene);
   move(dice, trial.scene);
+  if (dice.happens(0.2)) add_textures(dice, trial.scene);
   if (dice.happens(0.03)) trial.faulty_place = add_fault(dice, trial.scene);
   trial.options = random_options(dice, trial.scene);
   return trial;

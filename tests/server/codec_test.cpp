@@ -4,6 +4,7 @@
 
 #include "tests/environments.h"
 #include "tests/server/sample_scenes.h"
+#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -169,6 +170,98 @@ TEST(SceneCodec, FaceLargerThanAChunkTravelsWhole) {
   const Scene arrived = assemble(slice(scene, 300));
   ASSERT_EQ(arrived.faces.size(), 2u);
   EXPECT_EQ(arrived.faces[1].corner_count, 1000u);
+}
+
+Scene textured_squares(std::size_t count) {
+  Scene scene = squares(count);
+  const auto image = std::make_shared<const ColourImage>(test::noise(40, 30)),
+             other = std::make_shared<const ColourImage>(test::noise(3, 2));
+  for (const auto& each : {image, other, image}) {
+    scene.materials.push_back(test::textured(*each, {0.5, 0.25, 1}));
+    scene.materials.back().texture->image = each;
+  }
+  scene.materials.back().texture->wrap_s = Wrap::mirror, scene.materials.back().texture->wrap_t = Wrap::clamp;
+  for (std::size_t f = 0; f < count; ++f) scene.faces[f].material = static_cast<std::uint32_t>(f % scene.materials.size());
+  for (std::size_t c = 0; c < scene.corners.size(); ++c)
+    scene.texture_points.push_back({static_cast<float>(c) / 7, -static_cast<float>(c)});
+  return scene;
+}
+
+TEST(SceneCodec, ChunksCarryTexturesAndEachImageOnce) {
+  const Scene scene = textured_squares(50);
+  const auto chunks = slice(scene, 300);
+  int images = 0;
+  for (const auto& chunk : chunks) {
+    images += chunk.images_size();
+    EXPECT_LE(chunk.ByteSizeLong(), 300u);
+  }
+  EXPECT_EQ(images, 2);
+  const Scene arrived = assemble(chunks);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const auto &sent = scene.materials[m].texture, &found = arrived.materials[m].texture;
+    ASSERT_EQ(sent.has_value(), found.has_value());
+    if (!sent) continue;
+    EXPECT_EQ(sent->image->texels, found->image->texels);
+    EXPECT_EQ(sent->image->columns, found->image->columns);
+    EXPECT_EQ(sent->factor, found->factor);
+    EXPECT_EQ(sent->wrap_s, found->wrap_s);
+    EXPECT_EQ(sent->wrap_t, found->wrap_t);
+    EXPECT_EQ(scene.materials[m].reflectance, arrived.materials[m].reflectance);
+  }
+  for (const Face& face : scene.faces)
+    for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+      if (!scene.materials[face.material].texture) continue;
+      EXPECT_EQ(scene.texture_points[c], arrived.texture_points[c]);
+    }
+  EXPECT_EQ(slice(arrived, 1 << 20)[0].SerializeAsString(), slice(scene, 1 << 20)[0].SerializeAsString());
+}
+
+TEST(SceneCodec, TexturedMaterialsReflectTheMeanOfTheirImageWhateverTheySay) {
+  auto chunk = slice(textured_squares(4), 1 << 20)[0];
+  for (v1::Material& material : *chunk.mutable_materials()) *material.mutable_reflectance() = encode(Rgb{0.9, 0.9, 0.9});
+  const Scene scene = assemble({chunk});
+  EXPECT_EQ(scene.materials.back().reflectance,
+            scene.materials.back().texture->factor * mean_reflectance(*scene.materials.back().texture->image));
+}
+
+TEST(SceneCodec, ImagesWithoutAllTheirTexelsAreAFault) {
+  auto chunk = slice(textured_squares(4), 1 << 20)[0];
+  chunk.mutable_texels()->resize(chunk.texels().size() - 1);
+  const auto fault = find_fault(assemble({chunk}));
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->reason, "its image of 3 x 2 texels has 17 bytes, needs 18");
+}
+
+TEST(SceneCodec, ChunksWithUnsoundTexturesAreRefusedByName) {
+  struct Case {
+    const char* fault;
+    void (*spoil)(v1::GeometryChunk&);
+  };
+  const Case cases[] = {
+      {"chunk 0, images: an image has 0 x 30 texels, 1 x 1 to 8192 x 8192 are possible",
+       [](auto& c) { c.mutable_images(0)->set_columns(0); }},
+      {"chunk 0, images: an image has 8193 x 30 texels, 1 x 1 to 8192 x 8192 are possible",
+       [](auto& c) { c.mutable_images(0)->set_columns(8193); }},
+      {"chunk 0, images: the scene has 67108870 texels, at most 64 million are possible",
+       [](auto& c) { c.mutable_images(0)->set_columns(8192), c.mutable_images(0)->set_rows(8192); }},
+      {"chunk 0, texels: there are 3619 bytes for 1206 texels of three bytes", [](auto& c) { c.mutable_texels()->push_back(0); }},
+      {"chunk 0, texture_coordinates: has 33 numbers, needs two for each of 16 corners",
+       [](auto& c) { c.add_texture_coordinates(1); }},
+      {"material 'textured': image 2 of its texture is not known",
+       [](auto& c) { c.mutable_materials(c.materials_size() - 1)->mutable_texture()->set_image(2); }},
+      {"chunk 0, images: the scene has 10002 images, at most 10000 are possible",
+       [](auto& c) {
+         for (int n = 0; n < 10'000; ++n) *c.add_images() = c.images(1);
+       }},
+  };
+  const v1::GeometryChunk good = slice(textured_squares(4), 1 << 20)[0];
+  for (const Case& spoilt : cases) {
+    v1::GeometryChunk bad = good;
+    spoilt.spoil(bad);
+    const auto fault = SceneAssembler().add(bad);
+    ASSERT_TRUE(fault) << spoilt.fault;
+    EXPECT_EQ(fault->text(), spoilt.fault);
+  }
 }
 
 TEST(SceneCodec, ChunksThatContradictThemselvesAreRefusedByName) {

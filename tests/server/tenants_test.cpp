@@ -105,9 +105,10 @@ class Tenant {
 
   /// Returns the status of each call that names a scene or a solve, except deletions.
   std::vector<grpc::StatusCode> statuses(const std::string& of_scene, const std::string& of_solve) {
-    std::vector<grpc::StatusCode> all{get_scene(of_scene),
-                                      read<v1::ReadSceneResponse>(&v1::SceneService::Stub::ReadScene, of_scene),
-                                      read<v1::ReadMeshResponse>(&v1::SceneService::Stub::ReadMesh, of_scene)};
+    std::vector<grpc::StatusCode> all{
+        get_scene(of_scene), read<v1::ReadSceneResponse, v1::ReadSceneRequest>(&v1::SceneService::Stub::ReadScene, of_scene),
+        read<v1::ReadMeshResponse, v1::ReadMeshRequest>(&v1::SceneService::Stub::ReadMesh, of_scene),
+        read<v1::ReadImagesResponse, v1::ReadImagesRequest>(&v1::SceneService::Stub::ReadImages, of_scene)};
     all.push_back(change(&v1::SolveService::Stub::GetSolve, v1::GetSolveRequest(), of_solve));
     all.push_back(change(&v1::SolveService::Stub::CancelSolve, v1::CancelSolveRequest(), of_solve));
     v1::CreateSolveRequest create;
@@ -148,10 +149,10 @@ class Tenant {
   std::string scene, solve;
 
  private:
-  template <class Response, class Method>
+  template <class Response, class Request, class Method>
   grpc::StatusCode read(Method method, const std::string& name) {
     Call call(name_);
-    std::conditional_t<std::is_same_v<Response, v1::ReadSceneResponse>, v1::ReadSceneRequest, v1::ReadMeshRequest> request;
+    Request request;
     request.set_name(name);
     const auto reader = (scenes_.get()->*method)(&call, request);
     for (Response part; reader->Read(&part);) {}

@@ -1,0 +1,124 @@
+#include "client/export/glb_textures.h"
+
+#include "client/export/solution_file.h"
+#include "client/picture/png_file.h"
+#include "import/base/whole_file.h"
+
+#include <map>
+#include <memory>
+
+namespace alvor {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t most_groups = 1000;        // of half a kilobyte of JSON each
+constexpr std::size_t most_texels = 64'000'000;  // of all images, as in a scene: a small file can hold large ones
+
+int mode_of(Wrap wrap) {
+  return wrap == Wrap::mirror ? glb::mirrored_repeat : wrap == Wrap::clamp ? glb::clamp_to_edge : glb::repeat;
+}
+
+Wrap wrap_of(const json& mode) {
+  if (mode == glb::repeat) return Wrap::repeat;
+  if (mode == glb::mirrored_repeat) return Wrap::mirror;
+  if (mode == glb::clamp_to_edge) return Wrap::clamp;
+  throw SolutionFileError("its wrap mode is not known");
+}
+
+std::string encode(const ColourImage& image) {
+  return encode_png({static_cast<int>(image.columns), static_cast<int>(image.rows), image.texels}, "texture");
+}
+
+std::shared_ptr<const ColourImage> decode(std::string_view bytes) {
+  Image picture = decode_png(bytes, ColourImage::most_columns, ColourImage::most_rows);
+  return std::make_shared<const ColourImage>(
+      ColourImage{static_cast<std::uint32_t>(picture.width), static_cast<std::uint32_t>(picture.height), std::move(picture.rgb)});
+}
+
+/// Reads an element of the list, with the images that were read before.
+void read_texture(const json& source, const std::function<std::string_view(std::size_t)>& image_bytes, DisplayMesh& mesh,
+                  std::map<std::size_t, std::shared_ptr<const ColourImage>>& images) {
+  const auto material = source.at("material").get<std::size_t>(), image = source.at("image").get<std::size_t>();
+  if (material >= mesh.materials.size()) throw SolutionFileError("there is no material " + std::to_string(material));
+  const auto [found, is_new] = images.try_emplace(image);
+  if (is_new) found->second = decode(image_bytes(image));
+  std::size_t texels = 0;
+  for (const auto& [number, known] : images) texels += known->texel_count();
+  if (texels > most_texels) throw SolutionFileError("the images have more than 64 million texels");
+  const auto [r, g, b] = source.at("factor").get<std::array<double, 3>>();
+  for (const double band : {r, g, b})
+    if (!(band >= 0 && band <= 1)) throw SolutionFileError("its factor is outside [0, 1]");
+  mesh.materials[material].texture =
+      Texture{found->second, {r, g, b}, wrap_of(source.at("wrap_s")), wrap_of(source.at("wrap_t"))};
+}
+
+}  // namespace
+
+TriangleGroups group_by_texture(const DisplayMesh& mesh) {
+  std::map<std::optional<std::uint32_t>, std::vector<std::pair<std::size_t, const FaceTriangles*>>> runs;  // with first triangles
+  std::size_t first = 0;
+  for (const FaceTriangles& run : mesh.faces) {
+    const bool has_texture = !mesh.texture_points.empty() && mesh.materials[run.material].texture;
+    runs[has_texture ? std::optional(run.material) : std::nullopt].emplace_back(first, &run);
+    first += run.count;
+  }
+  if (runs.size() < 2 || runs.size() > most_groups) {
+    const auto material = runs.size() == 1 ? runs.begin()->first : std::nullopt;
+    return {{{material, mesh.triangles.size()}}, mesh.triangles, mesh.faces};
+  }
+  TriangleGroups all;
+  for (const auto& [material, of_material] : runs) {
+    all.groups.push_back({material, 0});
+    for (const auto& [start, run] : of_material) {
+      const auto begin = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(start);
+      all.triangles.insert(all.triangles.end(), begin, begin + static_cast<std::ptrdiff_t>(run->count));
+      all.faces.push_back(*run);
+      all.groups.back().count += run->count;
+    }
+  }
+  return all;
+}
+
+void write_textures(const DisplayMesh& mesh, const TriangleGroups& groups, BinaryChunk& chunk, json& root, json& extras) {
+  std::map<const ColourImage*, std::size_t> images;
+  for (const auto& [material, count] : groups.groups) {
+    if (!material) continue;
+    const Texture& texture = *mesh.materials[*material].texture;
+    const auto [image, is_new] = images.try_emplace(texture.image.get(), images.size());
+    if (is_new) root["images"].push_back({{"mimeType", "image/png"}, {"bufferView", chunk.add_file(encode(*texture.image))}});
+    const std::size_t number = root["textures"].size();
+    root["samplers"].push_back({{"wrapS", mode_of(texture.wrap_s)}, {"wrapT", mode_of(texture.wrap_t)}});
+    root["textures"].push_back({{"source", image->second}, {"sampler", number}});
+    const Rgb& factor = texture.factor;
+    json shown = root["materials"][0];
+    shown["name"] = "solution " + std::to_string(number);
+    shown["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", number}};
+    shown["pbrMetallicRoughness"]["baseColorFactor"] = {factor.r, factor.g, factor.b, 1};
+    root["materials"].push_back(std::move(shown));
+    extras[glb::textures_key].push_back({{"material", *material},
+                                         {"image", image->second},
+                                         {"factor", {factor.r, factor.g, factor.b}},
+                                         {"wrap_s", mode_of(texture.wrap_s)},
+                                         {"wrap_t", mode_of(texture.wrap_t)}});
+  }
+}
+
+void read_textures(const json& list, const std::function<std::string_view(std::size_t)>& image_bytes, DisplayMesh& mesh) {
+  std::map<std::size_t, std::shared_ptr<const ColourImage>> images;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = "texture " + std::to_string(i) + ": ";
+    try {
+      read_texture(list[i], image_bytes, mesh, images);
+    } catch (const json::exception&) {
+      throw SolutionFileError(place + "not as Alvor writes it");
+    } catch (const FileError& error) {
+      throw SolutionFileError(place + error.what());
+    } catch (const SolutionFileError& error) {
+      throw SolutionFileError(place + error.what());
+    }
+  }
+}
+
+}  // namespace alvor

@@ -1,0 +1,60 @@
+#pragma once
+// Images of surface colours, and how they lie on faces.
+
+#include "solution/rgb.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+/// An image of surface colours: sRGB (IEC 61966-2-1), 8 bits a band. Immutable once made; materials share it.
+struct ColourImage {
+  static constexpr std::uint32_t most_columns = 8192, most_rows = 8192;
+
+  std::uint32_t columns = 0, rows = 0;  ///< > 0
+  /// Red, green and blue of the first texel of the top row, then of the next one. Has 3 columns rows entries.
+  std::vector<std::uint8_t> texels;
+
+  std::size_t texel_count() const { return std::size_t{columns} * rows; }
+};
+
+/// Returns why an image cannot be used.
+std::optional<std::string> fault_in(const ColourImage& image);
+
+/// Returns the reflectance that a value of an image stands for: the linear value, but for 255 that of 254, which is 0.991. Light
+/// between faces that reflect everything would never fade.
+double reflectance_of_texel(std::uint8_t value);
+
+/// Returns the mean reflectance of all texels.
+Rgb mean_reflectance(const ColourImage& image);
+
+/// A place on an image: (0, 0) is its upper left corner and (1, 1) its lower right one, as in glTF.
+struct TexturePoint {
+  float s = 0, t = 0;
+  friend bool operator==(const TexturePoint&, const TexturePoint&) = default;
+};
+/// Coordinates of texture points are at most this in absolute value.
+inline constexpr float most_repeats = 1e5F;
+
+/// How an image goes on beyond its edge.
+enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+
+/// Returns the number of the texel, of `count` in a row or column, that is seen at position `index` of the endless row.
+std::uint32_t wrapped(std::int64_t index, std::uint32_t count, Wrap wrap);
+
+/// A reflectance that varies over a face.
+struct Texture {
+  std::shared_ptr<const ColourImage> image;
+  Rgb factor{1, 1, 1};  ///< multiplies the image; in [0, 1]
+  Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
+
+  /// Returns the reflectance at a point, bilinear between the middles of texels.
+  Rgb reflectance_at(TexturePoint point) const;
+};
+
+}  // namespace alvor

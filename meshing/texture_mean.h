@@ -1,0 +1,46 @@
+#pragma once
+// Means of textures over polygons, exactly.
+
+#include "meshing/texture.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// A point on an image that goes on beyond its edges, in texels from the upper left corner.
+struct TexelPoint {
+  double x = 0, y = 0;
+};
+
+/// Sums along the rows of an image, by which means over polygons take time in proportion to their outlines and not to their
+/// areas. A texel counts as constant; its reflectance is rounded to 2^-19. Immutable; safe from any thread. Borrows the image.
+class TextureMean {
+ public:
+  /// Takes 12 bytes a texel. Requires: !fault_in(image).
+  explicit TextureMean(const ColourImage& image);
+
+  /// Returns the mean reflectance over a polygon (by Green's theorem: the integral of a texel row's running sum along the
+  /// outline). The reflectance at the middle of its corners if it has no area; that of the whole image if its outline crosses
+  /// more than 65 536 texels. Requires: three corners or more, of which no coordinate is above 1e9.
+  Rgb over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const;
+
+ private:
+  using Sums = std::array<double, 3>;
+  /// The running sum along a row at the left side of a texel, and the texel's value: the sum is linear within the texel.
+  struct Column {
+    Sums before, value;
+  };
+  std::array<std::uint32_t, 3> value_of(std::uint32_t column, std::uint32_t row) const;
+  Sums total_of(std::uint32_t row) const;
+  Column column(std::int64_t index, std::uint32_t row, Wrap wrap) const;
+  void add_edge(TexelPoint from, TexelPoint to, Wrap across, Wrap down, Sums& integral) const;
+
+  const ColourImage& image_;
+  std::array<std::uint32_t, 256> value_of_byte_;          // reflectance in units of 2^-19
+  std::vector<std::array<std::uint32_t, 3>> sum_before_;  // by texel: sum of the values before it in its row
+};
+
+}  // namespace alvor

@@ -1,0 +1,220 @@
+// Textures: means over polygons and patches, against sums over clipped texels.
+
+#include "meshing/patch_reflectance.h"
+#include "tests/scenes.h"
+#include "tests/textures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace alvor {
+namespace {
+
+using Polygon = std::vector<TexelPoint>;
+
+double area_of(const Polygon& polygon) {
+  double twice = 0;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const TexelPoint a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+    twice += a.x * b.y - b.x * a.y;
+  }
+  return std::abs(twice) / 2;
+}
+
+/// Returns the part of a convex polygon where `height` of a point is not below 0.
+template <class Height>
+Polygon above(const Polygon& polygon, Height height) {
+  Polygon part;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const TexelPoint a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+    const double ha = height(a), hb = height(b);
+    if (ha >= 0) part.push_back(a);
+    if ((ha < 0) != (hb < 0)) part.push_back({a.x + ha / (ha - hb) * (b.x - a.x), a.y + ha / (ha - hb) * (b.y - a.y)});
+  }
+  return part;
+}
+
+/// Returns the mean over a convex polygon as the sum over all texels of the area of their common part.
+Rgb mean_of_parts(const ColourImage& image, const Polygon& polygon, Wrap wrap) {
+  Rgb sum;
+  constexpr int far = 20;
+  for (int row = -far; row < far; ++row)
+    for (int column = -far; column < far; ++column) {
+      Polygon part = above(polygon, [&](TexelPoint p) { return p.x - column; });
+      part = above(part, [&](TexelPoint p) { return column + 1 - p.x; });
+      part = above(part, [&](TexelPoint p) { return p.y - row; });
+      part = above(part, [&](TexelPoint p) { return row + 1 - p.y; });
+      if (part.size() < 3) continue;
+      const auto* texel =
+          &image.texels[3 * (wrapped(row, image.rows, wrap) * image.columns + wrapped(column, image.columns, wrap))];
+      sum += area_of(part) * Rgb{reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])};
+    }
+  return sum * (1 / area_of(polygon));
+}
+
+void expect_near(const Rgb& a, const Rgb& b, double tolerance) {
+  EXPECT_NEAR(a.r, b.r, tolerance);
+  EXPECT_NEAR(a.g, b.g, tolerance);
+  EXPECT_NEAR(a.b, b.b, tolerance);
+}
+
+constexpr double rounding = 2e-6;  // texels are rounded to 2^-19
+
+TEST(TextureMean, IsThatOfTheTexelsThatAPolygonCovers) {
+  const ColourImage image = test::noise(7, 5);
+  const TextureMean mean(image);
+  std::mt19937 random(3);
+  const auto place = [&] { return std::uniform_real_distribution<>(-18, 18)(random); };
+  for (const Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp})
+    for (int n = 0; n < 40; ++n) {
+      const Polygon triangle{{place(), place()}, {place(), place()}, {place(), place()}};
+      if (area_of(triangle) < 1e-3) continue;
+      expect_near(mean.over(triangle, wrap, wrap), mean_of_parts(image, triangle, wrap), rounding);
+    }
+}
+
+TEST(TextureMean, IsThatOfTheImageOverWholeRepeats) {
+  const ColourImage image = test::noise(33, 20);
+  const TextureMean mean(image);
+  for (const Wrap wrap : {Wrap::repeat, Wrap::mirror}) {
+    const Polygon all{{-330, 40}, {33 * 4, 40}, {33 * 4, -60}, {-330, -60}};
+    expect_near(mean.over(all, wrap, wrap), mean_reflectance(image), rounding);
+  }
+  expect_near(mean.over(Polygon{{0, 0}, {33, 0}, {33, 20}, {0, 20}}, Wrap::clamp, Wrap::clamp), mean_reflectance(image),
+              rounding);
+}
+
+TEST(TextureMean, OfAPointIsItsTexel) {
+  const ColourImage image = test::noise(4, 4);
+  const Polygon point{{2.5, 1.5}, {2.5, 1.5}, {2.5, 1.5}};
+  const auto* texel = &image.texels[3 * (1 * 4 + 2)];
+  expect_near(TextureMean(image).over(point, Wrap::repeat, Wrap::repeat),
+              {reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])}, rounding);
+}
+
+TEST(TextureMean, OfAHugePolygonIsThatOfTheImage) {
+  const ColourImage image = test::noise(64, 64);
+  const Polygon huge{{0, 0}, {6e6, 0}, {6e6, 6e6}, {0, 6e6}};
+  expect_near(TextureMean(image).over(huge, Wrap::repeat, Wrap::repeat), mean_reflectance(image), rounding);
+}
+
+TEST(Texture, ReflectsLessThanAllLight) {
+  EXPECT_NEAR(reflectance_of_texel(255), 0.9911, 1e-4);
+  EXPECT_NEAR(reflectance_of_texel(188), 0.5029, 1e-4) << "IEC 61966-2-1";
+  EXPECT_EQ(reflectance_of_texel(0), 0);
+}
+
+TEST(Texture, IsBilinearBetweenTheMiddlesOfTexels) {
+  const Texture texture{
+      std::make_shared<const ColourImage>(ColourImage{2, 1, {0, 0, 0, 255, 255, 255}}), {1, 1, 1}, Wrap::clamp, Wrap::clamp};
+  EXPECT_DOUBLE_EQ(texture.reflectance_at({0.25F, 0.5F}).r, 0);
+  EXPECT_DOUBLE_EQ(texture.reflectance_at({0.5F, 0.1F}).g, reflectance_of_texel(255) / 2);
+  EXPECT_DOUBLE_EQ(texture.reflectance_at({0.75F, 0.9F}).b, reflectance_of_texel(255));
+  EXPECT_DOUBLE_EQ(texture.reflectance_at({2, 0}).r, reflectance_of_texel(255));
+}
+
+/// Returns a scene of one face with a random image on it.
+Scene one_face(const std::vector<Vec3>& corners, const std::vector<TexturePoint>& points, Wrap wrap = Wrap::repeat) {
+  Scene scene;
+  scene.materials = {test::textured(test::noise(16, 16), {0.9, 0.5, 1}, wrap)};
+  test::add_textured(scene, corners, points, 0);
+  return scene;
+}
+
+struct Shaped {
+  const char* name;
+  std::vector<Vec3> corners;
+  std::vector<TexturePoint> points;
+};
+
+class PatchesOfFaces : public testing::TestWithParam<Shaped> {};
+
+TEST_P(PatchesOfFaces, HaveTheMeanOfTheirParts) {
+  const BaseMesh mesh(one_face(GetParam().corners, GetParam().points));
+  ASSERT_EQ(mesh.roots().size(), 1u);
+  const PatchReflectance reflectance(mesh);
+  std::vector<PatchShape> parts{shape_of(mesh, PatchId::root(0))};
+  const Rgb whole = reflectance.of(parts[0]);
+  for (int level = 0; level < 4; ++level) {
+    std::vector<PatchShape> finer;
+    Rgb sum;
+    for (const PatchShape& part : parts)
+      for (int k = 0; k < 4; ++k) {
+        finer.push_back(part.child(k));
+        sum += area_of(mesh, finer.back()) * reflectance.of(finer.back());
+      }
+    expect_near(sum * (1 / mesh.roots()[0].area), whole, rounding);
+    parts = std::move(finer);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Faces, PatchesOfFaces,
+    testing::Values(Shaped{"Triangle", {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 0}, {1.3F, 0.2F}, {-0.4F, 0.9F}}},
+                    Shaped{"Parallelogram", {{0, 0, 0}, {2, 0, 0}, {3, 1, 1}, {1, 1, 1}}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}},
+                    Shaped{"Trapezoid", {{0, 0, 0}, {3, 0, 0}, {2, 1, 0}, {1, 1, 0}}, {{0, 0}, {2, 0}, {1.5F, 1}, {0.2F, 1.1F}}}),
+    [](const auto& shaped) { return shaped.param.name; });
+
+TEST(PatchReflectance, OfAFaceThatShowsTheImageIsItsMeanTimesTheFactor) {
+  const BaseMesh mesh(one_face({{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}}, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}));
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))),
+              Rgb{0.9, 0.5, 1} * mean_reflectance(*mesh.materials()[0].texture->image), rounding);
+}
+
+TEST(PatchReflectance, IsTheSameOnBothSidesOfAFace) {
+  Scene scene = one_face({{0, 0, 0}, {3, 0, 0}, {2, 1, 0}, {1, 1, 0}}, {{0, 0}, {2, 0}, {1.5F, 1}, {0.2F, 1.1F}});
+  scene.materials[0].two_sided = true;
+  const BaseMesh mesh(scene);
+  ASSERT_EQ(mesh.roots().size(), 2u);
+  const PatchReflectance reflectance(mesh);
+  const PatchShape front = shape_of(mesh, PatchId::root(0)), back = shape_of(mesh, PatchId::root(1));
+  constexpr int turned[]{0, 2, 1, 3};
+  for (int k = 0; k < 4; ++k) expect_near(reflectance.of(front.child(k)), reflectance.of(back.child(turned[k])), rounding);
+  const TexturePoint here = texture_point_at(mesh, 0, {0.3, 0.6}), there = texture_point_at(mesh, 1, {0.6, 0.3});
+  EXPECT_NEAR(here.s, there.s, 1e-6);
+  EXPECT_NEAR(here.t, there.t, 1e-6);
+}
+
+/// Returns a square of two triangles whose last corner has the texture point `last`.
+Scene two_triangles(TexturePoint last) {
+  Scene scene = one_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0, 0}, {1, 0}, {1, 1}});
+  test::add_textured(scene, {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 0}, {1, 1}, last}, 0);
+  return scene;
+}
+
+TEST(TexturedTriangles, BecomeAQuadOnlyWhereTheTextureLiesAsOnOne) {
+  EXPECT_EQ(BaseMesh(two_triangles({0, 1})).roots().size(), 1u);
+  EXPECT_EQ(BaseMesh(two_triangles({0.5F, 1})).roots().size(), 2u);
+}
+
+TEST(TexturedTriangles, KeepTheirTexturePointsAsAQuad) {
+  const BaseMesh mesh(two_triangles({0, 1}));
+  const TexturePoint point = texture_point_at(mesh, 0, {0.25, 0.75});
+  const Vec3 place = mesh.roots()[0].at(0.25, 0.75);
+  EXPECT_NEAR(point.s, place.x, 1e-6);
+  EXPECT_NEAR(point.t, place.y, 1e-6);
+}
+
+TEST(TexturedScene, HasAFaultWhereItsTextureIsNotSound) {
+  const auto fault_with = [](auto change) {
+    Scene scene = one_face({{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 0}, {1, 0}, {0, 1}});
+    change(scene);
+    const auto fault = find_fault(scene);
+    return fault ? fault->text() : std::string();
+  };
+  EXPECT_EQ(fault_with([](Scene&) {}), "");
+  EXPECT_EQ(fault_with([](Scene& scene) { scene.texture_points.pop_back(); }), "scene: has 2 texture points for 3 corners");
+  EXPECT_EQ(fault_with([](Scene& scene) { scene.texture_points[1].t = NAN; }), "corner 1: its texture point nan is beyond 1e5");
+  EXPECT_EQ(fault_with([](Scene& scene) { scene.materials[0].texture->factor.g = 1.5; }),
+            "material 0 'textured': factor 1.5 of its texture is outside [0, 1]");
+  EXPECT_EQ(fault_with([](Scene& scene) { scene.materials[0].texture->image = nullptr; }),
+            "material 0 'textured': its texture has no image");
+  EXPECT_EQ(fault_with([](Scene& scene) {
+              scene.materials[0].texture->image = std::make_shared<const ColourImage>(ColourImage{2, 2, {1, 2, 3}});
+            }),
+            "material 0 'textured': its image of 2 x 2 texels has 3 bytes, needs 12");
+}
+
+}  // namespace
+}  // namespace alvor
