@@ -123,3 +123,10 @@ export function reasonOf(error: unknown): string {
   if (error instanceof ConnectError) return error.rawMessage || Code[error.code];
   return error instanceof Error ? error.message : String(error);
 }
+
+const PASSING = [Code.Unavailable, Code.Unknown, Code.Aborted, Code.Internal, Code.DeadlineExceeded, Code.Canceled];
+
+/** Whether a call that failed may succeed when it is made again. */
+export function mayPass(error: unknown): boolean {
+  return PASSING.includes(ConnectError.from(error).code);
+}

@@ -2,6 +2,7 @@
 
 import type { Step } from "./gen/alvor/v1/solve_service_pb";
 import type { SurfaceChange } from "./mirror/surface";
+import type { Piece, Sheet } from "./textures/sheet";
 
 export interface Vector {
   x: number;
@@ -10,7 +11,8 @@ export interface Vector {
 }
 
 export type ToWorker =
-  | { kind: "watch"; origin: string; solve: string; token: string; rate: number }
+  /** `longestSide`: of textures that the graphics card holds, texels. */
+  | { kind: "watch"; origin: string; solve: string; token: string; rate: number; longestSide: number }
   /** The last change is on the screen: the next may come. */
   | { kind: "drawn" }
   | { kind: "probe"; origin: Vector; direction: Vector };
@@ -54,6 +56,11 @@ export type FromWorker =
       isPhotometric: boolean;
     }
   | { kind: "change"; change: SurfaceChange; brightness: Brightness; counters: Counters }
+  /** The images of the mesh's textures are here, and come piece by piece. `table`: see tableOf(). */
+  | { kind: "sheet"; sheet: Sheet; table: Uint32Array<ArrayBuffer> }
+  | { kind: "piece"; piece: Piece }
+  /** They do not come: surfaces keep their mean colours. */
+  | { kind: "no images"; reason: string }
   | { kind: "steps"; steps: Step[]; isFirst: boolean }
   | { kind: "connection"; state: "connected" | "lost" | "resumed" | "begun anew" | "closing"; reason: string }
   | { kind: "ended" }

@@ -1,7 +1,7 @@
 // Mirrors one solve away from the page's thread: frames are decoded, applied and made ready to be drawn here.
 
 import { Code, ConnectError } from "@connectrpc/connect";
-import { connect, reasonOf, sceneOf, type Api } from "./api";
+import { connect, mayPass, reasonOf, sceneOf, type Api } from "./api";
 import { Detail, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
@@ -10,6 +10,9 @@ import { BadFrame, decodeLeaves } from "./mirror/leaves";
 import { Mirror } from "./mirror/mirror";
 import { probe } from "./mirror/probe";
 import { Surface } from "./mirror/surface";
+import type { Image } from "./textures/image";
+import { readImages } from "./textures/reading";
+import { piecesOf, sheetFor, tableOf } from "./textures/sheet";
 
 const tell = (message: FromWorker, transfer: Transferable[] = []) => postMessage(message, { transfer });
 const now = () => performance.timeOrigin + performance.now();
@@ -23,6 +26,9 @@ class Watch {
   private mesh!: BaseMesh;
   private mirror!: Mirror;
   private surface!: Surface;
+  /** Of the mesh's textures, when they have come. */
+  private images?: Image[];
+  private areImagesAsked = false;
   private epoch = "";
   private revision = 0n;
   private isWhole = true;
@@ -35,8 +41,9 @@ class Watch {
   private readonly api: Api;
   private readonly solve: string;
   private readonly rate: number;
+  private readonly longestSide: number;
 
-  constructor({ origin, token, solve, rate }: Extract<ToWorker, { kind: "watch" }>) {
+  constructor({ origin, token, solve, rate, longestSide }: Extract<ToWorker, { kind: "watch" }>) {
     this.api = connect(
       origin,
       () => token,
@@ -44,6 +51,7 @@ class Watch {
     );
     this.solve = solve;
     this.rate = rate;
+    this.longestSide = longestSide;
   }
 
   async run(): Promise<void> {
@@ -72,7 +80,7 @@ class Watch {
   }
 
   probe(message: Extract<ToWorker, { kind: "probe" }>): void {
-    const reading = this.mirror ? probe(this.mesh, this.mirror, message.origin, message.direction) : null;
+    const reading = this.mirror ? probe(this.mesh, this.mirror, message.origin, message.direction, this.images) : null;
     tell({ kind: "probed", reading });
   }
 
@@ -81,8 +89,7 @@ class Watch {
       this.forget();
       return true;
     }
-    const code = ConnectError.from(error).code;
-    return [Code.Unavailable, Code.Unknown, Code.Aborted, Code.Internal, Code.DeadlineExceeded, Code.Canceled].includes(code);
+    return mayPass(error);
   }
 
   private tellConnected(wasLost: boolean): void {
@@ -199,15 +206,33 @@ class Watch {
     const change = this.surface.flush();
     const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
     this.counters.preparing = performance.now() - began;
-    const { positions, values, triangles } = change;
-    tell({ kind: "change", change, brightness, counters: { ...this.counters } }, [
-      positions.ranges.buffer,
-      positions.data.buffer,
-      values.ranges.buffer,
-      values.data.buffer,
-      triangles.ranges.buffer,
-      triangles.data.buffer,
-    ]);
+    const { positions, coordinates, values, triangles } = change;
+    const buffers = [positions, coordinates, values, triangles].flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
+    tell({ kind: "change", change, brightness, counters: { ...this.counters } }, buffers);
+    void this.showImages(); // not before: the first light needs none
+  }
+
+  /** Reads the images of the textures, once, and sends them to the page. */
+  private async showImages(): Promise<void> {
+    if (this.areImagesAsked || !this.mesh.hasTextures) return;
+    this.areImagesAsked = true;
+    try {
+      this.images = await readImages(this.api, sceneOf(this.solve));
+      await this.sendSheet(this.images);
+    } catch (error) {
+      tell({ kind: "no images", reason: reasonOf(error) });
+    }
+  }
+
+  private async sendSheet(images: Image[]): Promise<void> {
+    const sheet = sheetFor(images, this.longestSide);
+    if (!sheet) throw new Error("the graphics card does not hold so many texels");
+    const table = tableOf(this.mesh.materials, images);
+    tell({ kind: "sheet", sheet, table }, [table.buffer]);
+    for (const piece of piecesOf(images, sheet)) {
+      tell({ kind: "piece", piece }, [piece.texels.buffer]);
+      await pause(0); // for frames that came meanwhile
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // The root patches that patch ids refer to, as ReadMesh sends them.
 
 import { Quantity, UpAxis, type Material, type ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
+import { type Blend, blendOnQuad } from "./blend";
 import { GRID } from "./mirror";
 
 /** Corners are numbered through all roots: corner c of root r is firstCorner[r] + c, and so is the edge that begins there. */
@@ -21,6 +22,8 @@ export class BaseMesh {
   /** Light is in lumens and lx, not in watts and W/m2. */
   readonly isPhotometric: boolean;
   readonly materials: Material[];
+  /** Some material has a texture, and so corners have texture coordinates. */
+  readonly hasTextures: boolean;
   /** Of each root, m2. */
   readonly area: Float64Array;
   /** The edge on the other side, or -1. */
@@ -29,6 +32,9 @@ export class BaseMesh {
   /** Corners in one place have one number, and so have those around which the surface is smooth. */
   private readonly place: Uint32Array;
   private readonly smoothPlace: Uint32Array;
+  /** s, t of each corner on the image of its material's texture; empty without textures. */
+  private readonly textureCoordinates: Float32Array;
+  private readonly point = new Float64Array(3);
 
   constructor(messages: ReadMeshResponse[]) {
     const counts = messages.flatMap((message) => message.cornerCounts);
@@ -44,6 +50,8 @@ export class BaseMesh {
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
     const cornerCount = this.firstCorner[this.rootCount];
+    this.textureCoordinates = Float32Array.from(messages.flatMap((message) => message.textureCoordinates));
+    this.hasTextures = cornerCount > 0 && this.textureCoordinates.length === 2 * cornerCount;
     this.opposite = new Int32Array(cornerCount).fill(-1);
     this.smooth = new Uint8Array(cornerCount);
     let corner = 0;
@@ -77,6 +85,22 @@ export class BaseMesh {
         out[at + x] =
           (p[c + x] * (1 - u) + p[c + 3 + x] * u) * (1 - v) + (p[c + 9 + x] * (1 - u) + p[c + 6 + x] * u) * v;
     }
+  }
+
+  /** Returns where a point of a root lies among its corners: u = i / GRID and v = j / GRID. */
+  blendAt(root: number, i: number, j: number): Blend {
+    if (this.cornersOf(root) === 3) return { second: 1, ofSecond: i / GRID, ofThird: j / GRID };
+    this.position(root, i, j, this.point, 0);
+    const first = 3 * this.firstCorner[root];
+    return blendOnQuad(this.corners.subarray(first, first + 12), this.point);
+  }
+
+  /** Writes s, t of a point of a root to `out[at]`. Requires: hasTextures. */
+  textureAt(root: number, { second, ofSecond, ofThird }: Blend, out: Float32Array | Float64Array, at: number): void {
+    const a = 2 * this.firstCorner[root];
+    const b = a + 2 * second;
+    const st = this.textureCoordinates;
+    for (let x = 0; x < 2; ++x) out[at + x] = st[a + x] * (1 - ofSecond - ofThird) + st[b + x] * ofSecond + st[b + 2 + x] * ofThird;
   }
 
   /** Points in one place have this number in common. */

@@ -1,26 +1,27 @@
 // What lies where a ray first meets a front.
 
 import type { Reading, Vector } from "../messages";
+import { reflectanceAt, type Image } from "../textures/image";
 import type { BaseMesh } from "./base_mesh";
+import type { Blend } from "./blend";
 import { type Mirror, GRID } from "./mirror";
 
 interface Hit {
   root: number;
   distance: number;
-  u: number;
-  v: number;
+  /** Where on the root. */
+  blend: Blend;
 }
 
-/** `origin` is measured from the middle of the mesh. */
-export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction: Vector): Reading | null {
+/** `origin` is measured from the middle of the mesh. `images`: of the textures; without them, reflectance is its mean. */
+export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction: Vector, images?: Image[]): Reading | null {
   const hit = firstFront(mesh, origin, direction);
   if (!hit) return null;
-  const isQuad = mesh.cornersOf(hit.root) === 4;
-  const node = mirror.leafAt(hit.root, isQuad ? quadPath(hit.u, hit.v) : trianglePath(hit.u, hit.v));
+  const node = mirror.leafAt(hit.root, pathOf(hit.blend, mesh.cornersOf(hit.root)));
   const material = mesh.materials[mesh.material[hit.root]];
   const irradiance = [0, 1, 2].map((band) => mirror.rgb[3 * node + band]) as [number, number, number];
   const e = material.emission!;
-  const rho = material.reflectance!;
+  const [r, g, b] = reflectanceOf(mesh, hit, images);
   const along = (x: "x" | "y" | "z", n: number) => mesh.centre[n] + origin[x] + hit.distance * direction[x];
   return {
     faces: mesh.sceneFacesOf(hit.root),
@@ -28,8 +29,17 @@ export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction:
     material: material.name,
     place: { x: along("x", 0), y: along("y", 1), z: along("z", 2) },
     irradiance,
-    radiosity: [e.r + rho.r * irradiance[0], e.g + rho.g * irradiance[1], e.b + rho.b * irradiance[2]],
+    radiosity: [e.r + r * irradiance[0], e.g + g * irradiance[1], e.b + b * irradiance[2]],
   };
+}
+
+function reflectanceOf(mesh: BaseMesh, { root, blend }: Hit, images?: Image[]): [number, number, number] {
+  const { reflectance, texture } = mesh.materials[mesh.material[root]];
+  const image = texture && images?.[texture.image];
+  if (!image || !mesh.hasTextures) return [reflectance!.r, reflectance!.g, reflectance!.b];
+  const st = new Float64Array(2);
+  mesh.textureAt(root, blend, st, 0);
+  return reflectanceAt(image, texture, st[0], st[1]);
 }
 
 function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector): Hit | null {
@@ -41,12 +51,10 @@ function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector): Hit | nu
       y: mesh.corners[first + 3 * c + 1],
       z: mesh.corners[first + 3 * c + 2],
     });
-    for (const [b, c] of mesh.cornersOf(root) === 4 ? [[1, 2], [2, 3]] : [[1, 2]]) {
-      const met = meet(corner(0), corner(b), corner(c), origin, direction);
+    for (const second of mesh.cornersOf(root) === 4 ? ([1, 2] as const) : ([1] as const)) {
+      const met = meet(corner(0), corner(second), corner(second + 1), origin, direction);
       if (!met || (best && met.distance >= best.distance)) continue;
-      // In the quad's own coordinates, as if it were a parallelogram on either side of the diagonal; exact where it is one.
-      const [u, v] = mesh.cornersOf(root) === 3 ? [met.b, met.c] : b === 1 ? [met.b + met.c, met.c] : [met.b, met.b + met.c];
-      best = { root, distance: met.distance, u, v };
+      best = { root, distance: met.distance, blend: { second, ofSecond: met.b, ofThird: met.c } };
     }
   }
   return best;
@@ -75,7 +83,13 @@ function meet(a: Vector, b: Vector, c: Vector, origin: Vector, direction: Vector
   return weightB >= 0 && weightC >= 0 && weightB + weightC <= 1 && distance > 0 ? { distance, b: weightB, c: weightC } : null;
 }
 
-/** Of the finest patch there, as bits of an id. */
+/** Returns the finest patch there, as bits of an id. */
+function pathOf({ second, ofSecond: b, ofThird: c }: Blend, corners: number): number {
+  if (corners === 3) return trianglePath(b, c);
+  // In the quad's own coordinates, as if it were a parallelogram on either side of the diagonal; exact where it is one.
+  return second === 1 ? quadPath(b + c, c) : quadPath(b, b + c);
+}
+
 function quadPath(u: number, v: number): number {
   const cell = (x: number) => Math.min(GRID - 1, Math.max(0, Math.floor(x * GRID)));
   let path = 0;

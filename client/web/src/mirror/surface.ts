@@ -3,22 +3,19 @@
 // have no area. Only slots that changed are written again.
 
 import type { BaseMesh } from "./base_mesh";
+import { collect, type Change } from "./change";
 import { type Mirror, type MirrorListener, GRID, grown } from "./mirror";
 import { DirtySet, POINTS, PointTable } from "./points";
 
 export const SLOT_VERTICES = 9;
 export const SLOT_INDICES = 24;
 
-/** Slots that changed since the last time: pairs of the first and how many, and their new contents one after the other. */
-export interface Change<Data = Float32Array> {
-  ranges: Uint32Array;
-  data: Data;
-}
-
 export interface SurfaceChange {
   slotCount: number;
   /** x, y, z of each vertex, metres from the middle of the mesh. */
   positions: Change;
+  /** Texture coordinates s, t of each vertex, of the slots of `positions`; nothing if the mesh has none. */
+  coordinates?: Change;
   /** Irradiance r, g, b, W/m2, and the index of the material. */
   values: Change;
   /** Three vertices of each triangle; of one without area three times the same. */
@@ -90,6 +87,9 @@ export class Surface implements MirrorListener {
     const change: SurfaceChange = {
       slotCount: this.slotCount,
       positions: collect(moved, 3 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writePositions(slot, out, at)),
+      coordinates: this.mesh.hasTextures
+        ? collect(moved, 2 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeCoordinates(slot, out, at))
+        : undefined,
       values: collect(all, 4 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeValues(slot, out, at)),
       triangles: collect(moved, SLOT_INDICES, Uint32Array, (slot, out, at) => this.writeTriangles(slot, out, at)),
     };
@@ -224,6 +224,17 @@ export class Surface implements MirrorListener {
     }
   }
 
+  private writeCoordinates(slot: number, out: Float32Array, at: number): void {
+    const node = this.nodeOfSlot[slot];
+    const root = this.mirror.root[node];
+    const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
+    this.mesh.textureAt(root, this.mesh.blendAt(root, this.nodeI[node] + middle, this.nodeJ[node] + middle), out, at);
+    for (let k = 0; k < POINTS; ++k) {
+      this.findPoint(node, k);
+      this.mesh.textureAt(root, this.mesh.blendAt(root, this.pointI, this.pointJ), out, at + 2 * (k + 1));
+    }
+  }
+
   private writeValues(slot: number, out: Float32Array, at: number): void {
     const node = this.nodeOfSlot[slot];
     const material = this.mesh.material[this.mirror.root[node]];
@@ -269,27 +280,4 @@ export class Surface implements MirrorListener {
     if (3 * this.smooth.count > this.pointValue.length)
       this.pointValue = grown(this.pointValue, Float32Array, 6 * this.smooth.count);
   }
-}
-
-const GAP = 8; // unchanged slots between two changed ones that are sent along
-
-function collect<Data extends Float32Array | Uint32Array>(
-  slots: Int32Array,
-  stride: number,
-  Kind: new (length: number) => Data,
-  write: (slot: number, out: Data, at: number) => void,
-): Change<Data> {
-  const ranges: number[] = [];
-  for (const slot of slots) {
-    const last = ranges.length - 2;
-    if (last >= 0 && slot - (ranges[last] + ranges[last + 1]) <= GAP) ranges[last + 1] = slot + 1 - ranges[last];
-    else ranges.push(slot, 1);
-  }
-  let total = 0;
-  for (let n = 1; n < ranges.length; n += 2) total += ranges[n];
-  const data = new Kind(total * stride);
-  let at = 0;
-  for (let n = 0; n < ranges.length; n += 2)
-    for (let slot = ranges[n]; slot < ranges[n] + ranges[n + 1]; ++slot, at += stride) write(slot, data, at);
-  return { ranges: Uint32Array.from(ranges), data };
 }

@@ -14,6 +14,7 @@ import { glbOf, reportOf } from "./downloads";
 import { showCounters, showPlan, showReading } from "./figures";
 import { listenToDrops } from "./drops";
 import { addressOf, applyView, solveIn, viewIn } from "./link";
+import { takeImages, withdrawWarning } from "./textures";
 import { setPhotometric } from "./units";
 import { draw, lookOf } from "./viewing";
 
@@ -197,10 +198,11 @@ function attach(next: Solve): void {
   isStale = true;
   byId("reading").hidden = true;
   allowSaving(false);
+  withdrawWarning();
   Object.assign(measured, structuredClone(nothing), { solve: next.name });
   worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
   worker.onerror = () => say("The page has changed on the server: load it again", "bad");
-  send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ });
+  send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ, longestSide: room.longestSide });
   byId("hint").hidden = true;
 }
 
@@ -350,6 +352,11 @@ function take(message: FromWorker): void {
       allowSaving(true);
       isStale = true;
       return;
+    case "sheet":
+    case "piece":
+    case "no images":
+      isStale = true;
+      return takeImages(room, message);
     case "steps":
       if (message.isFirst) beginChart();
       chart.add(message.steps);

@@ -1,10 +1,14 @@
-// The room on the screen: the surface's slots in GPU buffers that are written by ranges, one draw call.
+// The room on the screen: the surface's slots, one draw call.
 
 import * as THREE from "three";
 import type { Vector } from "../messages";
-import { SLOT_INDICES, SLOT_VERTICES, type Change, type SurfaceChange } from "../mirror/surface";
+import type { SurfaceChange } from "../mirror/surface";
+import type { Piece, Sheet } from "../textures/sheet";
 import { colourMap } from "./colour_map";
+import { ImageSheet } from "./image_sheet";
+import { materialTable } from "./material_table";
 import { FRAGMENT, VERTEX } from "./shaders";
+import { Slots } from "./slots";
 
 export type Tone = "aces" | "reinhard" | "linear";
 
@@ -24,66 +28,6 @@ export interface Look {
 
 const TONES: Record<Tone, number> = { aces: 0, reinhard: 1, linear: 2 };
 
-/** Positions and values of slots as the GPU has them. */
-class Slots {
-  readonly geometry = new THREE.BufferGeometry();
-  private room = 0;
-
-  constructor() {
-    this.reserve(4096);
-    this.geometry.setDrawRange(0, 0);
-  }
-
-  get positions(): THREE.BufferAttribute {
-    return this.geometry.getAttribute("position") as THREE.BufferAttribute;
-  }
-
-  get values(): THREE.BufferAttribute {
-    return this.geometry.getAttribute("value") as THREE.BufferAttribute;
-  }
-
-  take(change: SurfaceChange): void {
-    this.reserve(change.slotCount);
-    write(this.positions, change.positions, 3 * SLOT_VERTICES);
-    write(this.values, change.values, 4 * SLOT_VERTICES);
-    write(this.geometry.index!, change.triangles, SLOT_INDICES);
-    this.geometry.setDrawRange(0, change.slotCount * SLOT_INDICES);
-  }
-
-  /** What is drawn now, in buffers of its own. */
-  copy(): THREE.BufferGeometry {
-    const copy = new THREE.BufferGeometry();
-    const count = this.geometry.drawRange.count;
-    const vertices = (count / SLOT_INDICES) * SLOT_VERTICES;
-    copy.setAttribute("position", new THREE.BufferAttribute(this.positions.array.slice(0, 3 * vertices), 3));
-    copy.setAttribute("value", new THREE.BufferAttribute(this.values.array.slice(0, 4 * vertices), 4));
-    copy.setIndex(new THREE.BufferAttribute(this.geometry.index!.array.slice(0, count), 1));
-    return copy;
-  }
-
-  dispose(): void {
-    this.geometry.dispose();
-  }
-
-  private reserve(slots: number): void {
-    if (slots <= this.room) return;
-    const { geometry, room } = this;
-    const old = room > 0 ? [this.positions.array, this.values.array, geometry.index!.array] : [];
-    this.geometry.dispose();
-    this.room = Math.max(slots, 2 * this.room);
-    const vertices = this.room * SLOT_VERTICES;
-    const next = [new Float32Array(3 * vertices), new Float32Array(4 * vertices), new Uint32Array(this.room * SLOT_INDICES)] as const;
-    old.forEach((array, n) => next[n].set(array));
-    geometry.setAttribute("position", dynamic(next[0], 3));
-    geometry.setAttribute("value", dynamic(next[1], 4));
-    geometry.setIndex(dynamic(next[2], 1));
-  }
-}
-
-function dynamic(array: Float32Array | Uint32Array, size: number): THREE.BufferAttribute {
-  return new THREE.BufferAttribute(array, size).setUsage(THREE.DynamicDrawUsage);
-}
-
 /** Without a graphics card smooth edges would cost half of the frames. */
 function isDrawnByProcessor(): boolean {
   const gl = document.createElement("canvas").getContext("webgl2");
@@ -93,18 +37,6 @@ function isDrawnByProcessor(): boolean {
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
-function write(attribute: THREE.BufferAttribute, change: Change<Float32Array | Uint32Array>, stride: number): void {
-  let from = 0;
-  for (let n = 0; n < change.ranges.length; n += 2) {
-    const start = change.ranges[n] * stride;
-    const length = change.ranges[n + 1] * stride;
-    attribute.array.set(change.data.subarray(from, from + length), start);
-    attribute.addUpdateRange(start, length);
-    from += length;
-  }
-  if (from > 0) attribute.needsUpdate = true;
-}
-
 export class Room {
   readonly camera = new THREE.PerspectiveCamera(40, 1, 0.01, 100);
   private readonly renderer: THREE.WebGLRenderer;
@@ -112,6 +44,7 @@ export class Room {
   private slots = new Slots();
   private readonly surface: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
   private pinned?: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>;
+  private sheet?: ImageSheet;
   private ambient = new THREE.Vector3();
   private pinnedAmbient = new THREE.Vector3();
 
@@ -120,19 +53,33 @@ export class Room {
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.autoClear = false;
     this.surface = this.drawable(this.slots.geometry, newMaterial());
+    canvas.addEventListener("webglcontextrestored", () => this.dropSheet()); // its texels were nowhere else
+  }
+
+  /** Longest side of a texture that the graphics card holds. */
+  get longestSide(): number {
+    return this.renderer.capabilities.maxTextureSize;
   }
 
   /** `materials`: emission, mean of what goes straight through, reflectance and 0 of each: eight floats. */
   setMaterials(materials: Float32Array): void {
-    const count = Math.max(1, materials.length / 8);
-    const width = Math.min(count, 1024);
-    const height = Math.ceil(count / width);
-    const data = new Float32Array(8 * width * height);
-    data.set(materials);
-    const texture = new THREE.DataTexture(data, 2 * width, height, THREE.RGBAFormat, THREE.FloatType);
-    texture.needsUpdate = true;
-    this.surface.material.uniforms.materials.value = texture;
-    this.surface.material.uniforms.materialsWide.value = width;
+    const table = materialTable(materials);
+    const { uniforms } = this.surface.material;
+    uniforms.materials.value?.dispose();
+    uniforms.materials.value = table;
+    uniforms.materialsWide.value = table.image.width / 2;
+  }
+
+  /** Images of textures come: takePiece(). `table`: see tableOf(). Throws if the graphics card has no memory left. */
+  beginSheet(sheet: Sheet, table: Uint32Array): void {
+    this.dropSheet();
+    this.sheet = new ImageSheet(this.renderer, sheet, table);
+  }
+
+  /** Shows textures as soon as all pieces have come; until then, mean colours. */
+  takePiece(piece: Piece): void {
+    this.sheet?.write(piece);
+    if (this.sheet?.isWhole) this.useSheet(this.sheet);
   }
 
   /** Turns what is drawn so that the scene's upward axis is the picture's. */
@@ -147,6 +94,7 @@ export class Room {
     this.slots = new Slots();
     this.surface.geometry = this.slots.geometry;
     this.unpin();
+    this.dropSheet();
   }
 
   take(change: SurfaceChange): void {
@@ -154,7 +102,7 @@ export class Room {
   }
 
   get slotCount(): number {
-    return this.slots.geometry.drawRange.count / SLOT_INDICES;
+    return this.slots.count;
   }
 
   setAmbient({ r, g, b }: { r: number; g: number; b: number }): void {
@@ -205,6 +153,22 @@ export class Room {
     return this.slots.copy();
   }
 
+  /** Without a sheet, the shaders have no part that looks at images. */
+  private useSheet(sheet: ImageSheet | undefined): void {
+    const { material } = this.surface;
+    material.uniforms.sheet.value = sheet?.texels ?? null;
+    material.uniforms.textures.value = sheet?.table ?? null;
+    material.defines = sheet ? { TEXTURED: "" } : {};
+    material.needsUpdate = true;
+  }
+
+  private dropSheet(): void {
+    if (!this.sheet) return;
+    this.useSheet(undefined);
+    this.sheet.dispose();
+    this.sheet = undefined;
+  }
+
   private draw(look: Look, which: THREE.Mesh<THREE.BufferGeometry, THREE.RawShaderMaterial>): void {
     this.surface.visible = which === this.surface;
     if (this.pinned) this.pinned.visible = which === this.pinned;
@@ -249,6 +213,8 @@ function newMaterial(): THREE.RawShaderMaterial {
     uniforms: {
       materials: { value: null },
       materialsWide: { value: 1 },
+      textures: { value: null },
+      sheet: { value: null },
       colours: { value: colourTexture() },
       ambient: { value: new THREE.Vector3() },
       falseColour: { value: false },

@@ -1,4 +1,7 @@
-// Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices.
+// Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices. With TEXTURED, rho is that of
+// the texels there: see texture_shader.ts.
+
+import { TEXTURE_FRAGMENT, TEXTURE_VERTEX } from "./texture_shader";
 
 export const VERTEX = `
 precision highp float;
@@ -14,6 +17,7 @@ out float centre;
 flat out vec3 emission;
 flat out vec3 reflectance;
 flat out float through;
+${TEXTURE_VERTEX}
 void main() {
   int material = int(value.w + 0.5);
   ivec2 at = ivec2(2 * (material % materialsWide), material / materialsWide);
@@ -21,6 +25,9 @@ void main() {
   emission = first.rgb;
   through = first.a;
   reflectance = texelFetch(materials, at + ivec2(1, 0), 0).rgb;
+#ifdef TEXTURED
+  passImage(at);
+#endif
   irradiance = value.rgb;
   centre = gl_VertexID % 9 == 0 ? 1.0 : 0.0;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
@@ -43,6 +50,7 @@ flat in vec3 emission;
 flat in vec3 reflectance;
 flat in float through;
 out vec4 pixel;
+${TEXTURE_FRAGMENT}
 
 // Bayer's matrix of 4 x 4: of each such square of pixels, a pane leaves the share that light passes.
 const float thresholds[16] = float[](0.0, 8.0, 2.0, 10.0, 12.0, 4.0, 14.0, 6.0, 3.0, 11.0, 1.0, 9.0, 15.0, 7.0, 13.0, 5.0);
@@ -66,11 +74,16 @@ float place(float h) {
   return (h - scale.x) / max(scale.y - scale.x, 1e-30);
 }
 void main() {
+#ifdef TEXTURED
+  vec3 rho = reflectanceThere();
+#else
+  vec3 rho = reflectance;
+#endif
   if (passes()) discard;  // so that through < 1 from here on
   vec3 h = irradiance + ambient;
   vec3 colour;
   if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;
-  else colour = srgb(toned(exposure * (emission + reflectance * h) / (1.0 - through)));  // what is left of a pane has all its light
+  else colour = srgb(toned(exposure * (emission + rho * h) / (1.0 - through)));  // what is left of a pane has all its light
   if (outlines) {
     float line = 1.0 - smoothstep(0.0, 1.2, centre / fwidth(centre));
     float bright = dot(colour, vec3(0.299, 0.587, 0.114));

@@ -1,16 +1,17 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
+import { ReadMeshResponseSchema, Texture_Wrap, TextureSchema } from "../../src/gen/alvor/v1/scene_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { brightnessOf } from "../../src/mirror/brightness";
 import { Mirror } from "../../src/mirror/mirror";
 import { probe } from "../../src/mirror/probe";
+import { LINEAR, type Image } from "../../src/textures/image";
 
 const grey = { name: "grey", emission: { r: 0, g: 0, b: 0 }, reflectance: { r: 0.5, g: 0.5, b: 0.5 } };
 const lamp = { name: "lamp", emission: { r: 9, g: 9, b: 9 }, reflectance: { r: 0, g: 0, b: 0 } };
 
 /** A square from (0, 0) to (1, 1) and a triangle beside it, both looking up, far from the origin. */
-function mesh(): BaseMesh {
+function mesh(textureCoordinates: number[] = []): BaseMesh {
   const at = [1e6, 0, 0];
   const corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [3, 0, 0], [2, 1, 0]];
   return new BaseMesh([
@@ -22,6 +23,7 @@ function mesh(): BaseMesh {
       cornerCoordinates: corners.flatMap((corner) => corner.map((x, n) => x + at[n])),
       neighbours: Array<bigint>(7).fill(0n),
       sceneMaterials: [grey, lamp],
+      textureCoordinates,
     }),
   ]);
 }
@@ -57,6 +59,16 @@ describe("the probe", () => {
     expect(reading.irradiance).toEqual([irradiance, irradiance, irradiance]);
     expect(reading.radiosity[0]).toBe(face === 7 ? 0.5 * irradiance : 9);
     expect(reading.place.x).toBeCloseTo(1e6 + x, 6);
+  });
+
+  it("reads the texel there once images have come, and their mean until then", () => {
+    const textured = mesh([0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0]);
+    textured.materials[0].texture = create(TextureSchema, { wrapS: Texture_Wrap.CLAMP });
+    const image = { columns: 2, rows: 1, texels: Uint8Array.of(0, 0, 0, 200, 100, 50) };
+    const radiosityAt = (x: number, images?: Image[]) => probe(textured, mirror, above(x, 0.8), down, images)!.radiosity;
+    expect(radiosityAt(0.1)).toEqual([1, 1, 1]);
+    expect(radiosityAt(0.1, [image])).toEqual([0, 0, 0]);
+    [200, 100, 50].forEach((byte, band) => expect(radiosityAt(0.9, [image])[band]).toBeCloseTo(3 * LINEAR[byte], 12));
   });
 
   it("sees no backs, and nothing beside", () => {
