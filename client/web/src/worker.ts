@@ -206,8 +206,9 @@ class Watch {
     const change = this.surface.flush();
     const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
     this.counters.preparing = performance.now() - began;
-    const { positions, coordinates, values, triangles } = change;
-    const buffers = [positions, coordinates, values, triangles].flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
+    const { positions, coordinates, colours, values, triangles } = change;
+    const parts = [positions, coordinates, colours, values, triangles];
+    const buffers = parts.flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
     tell({ kind: "change", change, brightness, counters: { ...this.counters } }, buffers);
     void this.showImages(); // not before: the first light needs none
   }

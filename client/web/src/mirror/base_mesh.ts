@@ -24,6 +24,8 @@ export class BaseMesh {
   readonly materials: Material[];
   /** Some material has a texture, and so corners have texture coordinates. */
   readonly hasTextures: boolean;
+  /** Some face has colours at its corners; corners of the other faces are white then. They multiply the reflectance. */
+  readonly hasColours: boolean;
   /** Of each root, m2. */
   readonly area: Float64Array;
   /** The edge on the other side, or -1. */
@@ -34,6 +36,9 @@ export class BaseMesh {
   private readonly smoothPlace: Uint32Array;
   /** s, t of each corner on the image of its material's texture; empty without textures. */
   private readonly textureCoordinates: Float32Array;
+  /** Red, green, blue of each corner, and the mean of each root's corners; both are empty without colours. */
+  private readonly colours: Float32Array;
+  private readonly meanColours: Float32Array;
   private readonly point = new Float64Array(3);
 
   constructor(messages: ReadMeshResponse[]) {
@@ -52,6 +57,9 @@ export class BaseMesh {
     const cornerCount = this.firstCorner[this.rootCount];
     this.textureCoordinates = Float32Array.from(messages.flatMap((message) => message.textureCoordinates));
     this.hasTextures = cornerCount > 0 && this.textureCoordinates.length === 2 * cornerCount;
+    this.colours = Float32Array.from(messages.flatMap((message) => message.cornerColors));
+    this.hasColours = cornerCount > 0 && this.colours.length === 3 * cornerCount;
+    this.meanColours = this.hasColours ? this.meansOfRoots(this.colours) : new Float32Array(0);
     this.opposite = new Int32Array(cornerCount).fill(-1);
     this.smooth = new Uint8Array(cornerCount);
     let corner = 0;
@@ -96,11 +104,21 @@ export class BaseMesh {
   }
 
   /** Writes s, t of a point of a root to `out[at]`. Requires: hasTextures. */
-  textureAt(root: number, { second, ofSecond, ofThird }: Blend, out: Float32Array | Float64Array, at: number): void {
-    const a = 2 * this.firstCorner[root];
-    const b = a + 2 * second;
-    const st = this.textureCoordinates;
-    for (let x = 0; x < 2; ++x) out[at + x] = st[a + x] * (1 - ofSecond - ofThird) + st[b + x] * ofSecond + st[b + 2 + x] * ofThird;
+  textureAt(root: number, blend: Blend, out: Float32Array | Float64Array, at: number): void {
+    this.mix(this.textureCoordinates, 2, root, blend, out, at);
+  }
+
+  /** Writes red, green, blue of a point of a root, by which the reflectance is multiplied, to `out[at]`. Requires: hasColours. */
+  colourAt(root: number, blend: Blend, out: Float32Array | Float64Array, at: number): void {
+    this.mix(this.colours, 3, root, blend, out, at);
+  }
+
+  /** Returns the mean reflectance of a root's material, times the mean of the colours of the root's corners. */
+  meanReflectanceOf(root: number): { r: number; g: number; b: number } {
+    const reflectance = this.materials[this.material[root]].reflectance!;
+    if (!this.hasColours) return reflectance;
+    const colour = (band: number) => this.meanColours[3 * root + band];
+    return { r: reflectance.r * colour(0), g: reflectance.g * colour(1), b: reflectance.b * colour(2) };
   }
 
   /** Points in one place have this number in common. */
@@ -184,6 +202,31 @@ export class BaseMesh {
       join(this.after(edge), other);
     });
     return group.map((_, corner) => find(corner));
+  }
+
+  /** Mixes three corners' values, of which each corner has `count`, and writes them to `out[at]`. */
+  private mix(
+    values: Float32Array,
+    count: number,
+    root: number,
+    { second, ofSecond, ofThird }: Blend,
+    out: Float32Array | Float64Array,
+    at: number,
+  ): void {
+    const a = count * this.firstCorner[root];
+    const b = a + count * second;
+    const c = b + count;
+    const ofFirst = 1 - ofSecond - ofThird;
+    for (let n = 0; n < count; ++n) out[at + n] = values[a + n] * ofFirst + values[b + n] * ofSecond + values[c + n] * ofThird;
+  }
+
+  /** Returns three means of each root: of the three values of each of its corners. */
+  private meansOfRoots(values: Float32Array): Float32Array {
+    const means = new Float32Array(3 * this.rootCount);
+    for (let root = 0; root < this.rootCount; ++root)
+      for (let corner = this.firstCorner[root]; corner < this.firstCorner[root + 1]; ++corner)
+        for (let n = 0; n < 3; ++n) means[3 * root + n] += values[3 * corner + n] / this.cornersOf(root);
+    return means;
   }
 
   private areaOf(root: number): number {

@@ -58,9 +58,8 @@ export function brightnessOf(mesh: BaseMesh, mirror: Mirror, ambient: [number, n
     if (mirror.firstChild[node] !== 0) continue;
     const root = mirror.root[node];
     const area = mesh.area[root] * mirror.shareOf(node);
-    const { emission, reflectance } = mesh.materials[mesh.material[root]];
-    const e = emission!;
-    const rho = reflectance!;
+    const e = mesh.materials[mesh.material[root]].emission!;
+    const rho = mesh.meanReflectanceOf(root);
     const hr = mirror.rgb[3 * node] + ambient[0];
     const hg = mirror.rgb[3 * node + 1] + ambient[1];
     const hb = mirror.rgb[3 * node + 2] + ambient[2];

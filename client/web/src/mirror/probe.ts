@@ -33,7 +33,16 @@ export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction:
   };
 }
 
-function reflectanceOf(mesh: BaseMesh, { root, blend }: Hit, images?: Image[]): [number, number, number] {
+/** Returns the reflectance at a point: the material's there, times the colour there. */
+function reflectanceOf(mesh: BaseMesh, hit: Hit, images?: Image[]): [number, number, number] {
+  const reflectance = materialReflectanceOf(mesh, hit, images);
+  if (!mesh.hasColours) return reflectance;
+  const colour = new Float64Array(3);
+  mesh.colourAt(hit.root, hit.blend, colour, 0);
+  return [reflectance[0] * colour[0], reflectance[1] * colour[1], reflectance[2] * colour[2]];
+}
+
+function materialReflectanceOf(mesh: BaseMesh, { root, blend }: Hit, images?: Image[]): [number, number, number] {
   const { reflectance, texture } = mesh.materials[mesh.material[root]];
   const image = texture && images?.[texture.image];
   if (!image || !mesh.hasTextures) return [reflectance!.r, reflectance!.g, reflectance!.b];

@@ -3,6 +3,7 @@
 // have no area. Only slots that changed are written again.
 
 import type { BaseMesh } from "./base_mesh";
+import type { Blend } from "./blend";
 import { collect, type Change } from "./change";
 import { type Mirror, type MirrorListener, GRID, grown } from "./mirror";
 import { DirtySet, POINTS, PointTable } from "./points";
@@ -16,11 +17,16 @@ export interface SurfaceChange {
   positions: Change;
   /** Texture coordinates s, t of each vertex, of the slots of `positions`; nothing if the mesh has none. */
   coordinates?: Change;
+  /** Red, green, blue of each vertex, by which the reflectance is multiplied, of the slots of `positions`; nothing if the mesh has none. */
+  colours?: Change;
   /** Irradiance r, g, b, W/m2, and the index of the material. */
   values: Change;
   /** Three vertices of each triangle; of one without area three times the same. */
   triangles: Change<Uint32Array>;
 }
+
+/** Writes the numbers of a point of a root to `out[at]`. */
+type WriteMixed = (root: number, blend: Blend, out: Float32Array, at: number) => void;
 
 const QUAD_COLUMNS = [0, 1, 1, 0];
 const QUAD_ROWS = [0, 0, 1, 1];
@@ -87,9 +93,8 @@ export class Surface implements MirrorListener {
     const change: SurfaceChange = {
       slotCount: this.slotCount,
       positions: collect(moved, 3 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writePositions(slot, out, at)),
-      coordinates: this.mesh.hasTextures
-        ? collect(moved, 2 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeCoordinates(slot, out, at))
-        : undefined,
+      coordinates: this.mesh.hasTextures ? this.collectMixed(moved, 2, this.mesh.textureAt.bind(this.mesh)) : undefined,
+      colours: this.mesh.hasColours ? this.collectMixed(moved, 3, this.mesh.colourAt.bind(this.mesh)) : undefined,
       values: collect(all, 4 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeValues(slot, out, at)),
       triangles: collect(moved, SLOT_INDICES, Uint32Array, (slot, out, at) => this.writeTriangles(slot, out, at)),
     };
@@ -224,15 +229,18 @@ export class Surface implements MirrorListener {
     }
   }
 
-  private writeCoordinates(slot: number, out: Float32Array, at: number): void {
-    const node = this.nodeOfSlot[slot];
-    const root = this.mirror.root[node];
-    const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
-    this.mesh.textureAt(root, this.mesh.blendAt(root, this.nodeI[node] + middle, this.nodeJ[node] + middle), out, at);
-    for (let k = 0; k < POINTS; ++k) {
-      this.findPoint(node, k);
-      this.mesh.textureAt(root, this.mesh.blendAt(root, this.pointI, this.pointJ), out, at + 2 * (k + 1));
-    }
+  /** Returns `count` numbers of each vertex of `slots`, which `write` mixes from those of the root's corners. */
+  private collectMixed(slots: Int32Array, count: number, write: WriteMixed): Change {
+    return collect(slots, count * SLOT_VERTICES, Float32Array, (slot, out, at) => {
+      const node = this.nodeOfSlot[slot];
+      const root = this.mirror.root[node];
+      const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
+      write(root, this.mesh.blendAt(root, this.nodeI[node] + middle, this.nodeJ[node] + middle), out, at);
+      for (let k = 0; k < POINTS; ++k) {
+        this.findPoint(node, k);
+        write(root, this.mesh.blendAt(root, this.pointI, this.pointJ), out, at + count * (k + 1));
+      }
+    });
   }
 
   private writeValues(slot: number, out: Float32Array, at: number): void {

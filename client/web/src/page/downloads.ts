@@ -17,10 +17,14 @@ export function reportOf(steps: readonly Step[]): Blob {
   });
 }
 
-/** `drawn` is measured from `centre`, in the scene's axes; the GLB's are y up. Triangles with radiosity and irradiance as float32 attributes, and a colour for viewers that know neither. */
+/**
+ * Returns the triangles with radiosity and irradiance as float32 attributes, and COLOR_0, exposed radiosity, for viewers that know neither.
+ * Colours of the scene's corners are in the radiosity. `drawn` is measured from `centre`, in the scene's axes; the GLB's are y up.
+ */
 export async function glbOf(drawn: BufferGeometry, centre: [number, number, number], materials: Float32Array, exposure: number, isZUp: boolean): Promise<Blob> {
   const geometry = new BufferGeometry();
   const values = drawn.getAttribute("value");
+  const colours = drawn.hasAttribute("vertexColour") ? drawn.getAttribute("vertexColour") : undefined;
   const bands = () => new Float32Array(3 * values.count);
   const [irradiance, radiosity, colour] = [bands(), bands(), bands()];
   for (let n = 0; n < values.count; ++n)
@@ -28,7 +32,8 @@ export async function glbOf(drawn: BufferGeometry, centre: [number, number, numb
       const at = 3 * n + band;
       const material = 8 * values.getW(n) + band;
       irradiance[at] = values.getComponent(n, band);
-      radiosity[at] = materials[material] + materials[material + 4] * irradiance[at];
+      const reflectance = materials[material + 4] * (colours?.getComponent(n, band) ?? 1);
+      radiosity[at] = materials[material] + reflectance * irradiance[at];
       colour[at] = Math.min(1, exposure * radiosity[at]);
     }
   geometry.setAttribute("position", drawn.getAttribute("position"));

@@ -7,7 +7,7 @@ import type { Piece, Sheet } from "../textures/sheet";
 import { colourMap } from "./colour_map";
 import { ImageSheet } from "./image_sheet";
 import { materialTable } from "./material_table";
-import { FRAGMENT, VERTEX } from "./shaders";
+import { FRAGMENT, VERTEX, type ShaderPart } from "./shaders";
 import { Slots } from "./slots";
 
 export type Tone = "aces" | "reinhard" | "linear";
@@ -99,6 +99,7 @@ export class Room {
 
   take(change: SurfaceChange): void {
     this.slots.take(change);
+    this.compile("COLOURED", change.colours !== undefined);
   }
 
   get slotCount(): number {
@@ -155,10 +156,18 @@ export class Room {
 
   /** Without a sheet, the shaders have no part that looks at images. */
   private useSheet(sheet: ImageSheet | undefined): void {
+    const { uniforms } = this.surface.material;
+    uniforms.sheet.value = sheet?.texels ?? null;
+    uniforms.textures.value = sheet?.table ?? null;
+    this.compile("TEXTURED", sheet !== undefined);
+  }
+
+  /** Compiles a part of the shaders in or out. */
+  private compile(part: ShaderPart, isIn: boolean): void {
     const { material } = this.surface;
-    material.uniforms.sheet.value = sheet?.texels ?? null;
-    material.uniforms.textures.value = sheet?.table ?? null;
-    material.defines = sheet ? { TEXTURED: "" } : {};
+    if (part in material.defines === isIn) return;
+    if (isIn) material.defines[part] = "";
+    else delete material.defines[part];
     material.needsUpdate = true;
   }
 

@@ -1,7 +1,10 @@
-// Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices. With TEXTURED, rho is that of
-// the texels there: see texture_shader.ts.
+// Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices. rho is the material's, with
+// TEXTURED that of the texels there (see texture_shader.ts); with COLOURED it is multiplied by the colour interpolated between vertices.
 
 import { TEXTURE_FRAGMENT, TEXTURE_VERTEX } from "./texture_shader";
+
+/** Parts of the shaders that are left out unless they are defined. */
+export type ShaderPart = "TEXTURED" | "COLOURED";
 
 export const VERTEX = `
 precision highp float;
@@ -17,6 +20,10 @@ out float centre;
 flat out vec3 emission;
 flat out vec3 reflectance;
 flat out float through;
+#ifdef COLOURED
+in vec3 vertexColour;
+out vec3 colourThere;
+#endif
 ${TEXTURE_VERTEX}
 void main() {
   int material = int(value.w + 0.5);
@@ -27,6 +34,9 @@ void main() {
   reflectance = texelFetch(materials, at + ivec2(1, 0), 0).rgb;
 #ifdef TEXTURED
   passImage(at);
+#endif
+#ifdef COLOURED
+  colourThere = vertexColour;
 #endif
   irradiance = value.rgb;
   centre = gl_VertexID % 9 == 0 ? 1.0 : 0.0;
@@ -49,6 +59,9 @@ in float centre;
 flat in vec3 emission;
 flat in vec3 reflectance;
 flat in float through;
+#ifdef COLOURED
+in vec3 colourThere;
+#endif
 out vec4 pixel;
 ${TEXTURE_FRAGMENT}
 
@@ -78,6 +91,9 @@ void main() {
   vec3 rho = reflectanceThere();
 #else
   vec3 rho = reflectance;
+#endif
+#ifdef COLOURED
+  rho *= colourThere;
 #endif
   if (passes()) discard;  // so that through < 1 from here on
   vec3 h = irradiance + ambient;

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import type { Change } from "../mirror/change";
 import { SLOT_INDICES, SLOT_VERTICES, type SurfaceChange } from "../mirror/surface";
 
-/** Positions and values of slots as the GPU has them, and texture coordinates where the mesh has some. */
+/** Positions and values of slots as the GPU has them; texture coordinates and colours too if the mesh has them. */
 export class Slots {
   readonly geometry = new THREE.BufferGeometry();
   private room = 4096;
@@ -21,11 +21,11 @@ export class Slots {
   }
 
   take(change: SurfaceChange): void {
-    if (change.coordinates && !this.geometry.hasAttribute("coordinates")) this.add("coordinates", 2);
     this.reserve(change.slotCount);
     this.write("position", change.positions);
     this.write("value", change.values);
-    if (change.coordinates) this.write("coordinates", change.coordinates);
+    this.writeIfAny("coordinates", 2, change.coordinates);
+    this.writeIfAny("vertexColour", 3, change.colours);
     write(this.geometry.index!, change.triangles, SLOT_INDICES);
     this.geometry.setDrawRange(0, change.slotCount * SLOT_INDICES);
   }
@@ -49,6 +49,12 @@ export class Slots {
 
   private add(name: string, size: number): void {
     this.geometry.setAttribute(name, dynamic(new Float32Array(this.room * SLOT_VERTICES * size), size));
+  }
+
+  private writeIfAny(name: string, size: number, change?: Change): void {
+    if (!change) return;
+    if (!this.geometry.hasAttribute(name)) this.add(name, size);
+    this.write(name, change);
   }
 
   private write(name: string, change: Change): void {
