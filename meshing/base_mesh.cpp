@@ -58,12 +58,13 @@ void turn_round(const RootPatch& front, RootPatch& back) {
   std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
 }
 
-/// Brings the texture points of corners that had the vertices `before` into the order of the root's corners.
-void reorder(const std::array<std::uint32_t, 4>& before, const RootPatch& root, std::array<TexturePoint, 4>& points) {
-  const auto old = points;
+/// Brings the values of corners that had the vertices `before` into the order of the root's corners.
+template <class Value>
+void reorder(const std::array<std::uint32_t, 4>& before, const RootPatch& root, std::array<Value, 4>& values) {
+  const auto old = values;
   for (int c = 0; c < root.corner_count; ++c)
     for (int k = 0; k < root.corner_count; ++k)
-      if (before[k] == root.vertex[c]) points[c] = old[k];
+      if (before[k] == root.vertex[c]) values[c] = old[k];
 }
 
 /// Finds neighbours with OpenMesh's half-edge mesh. Roots that lie behind others are left out. OpenMesh cannot attach a face if
@@ -169,7 +170,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   centre_ = lerp(box.low, box.high, 0.5);
   extent_ = box.longest_side();
 
-  find_texture_points(scene, welded);
+  find_corner_values(scene, welded, options.stop);
   pair_back_to_back();
   refuse_stopped(options.stop);
   find_neighbours(options.stop);
@@ -188,19 +189,32 @@ void BaseMesh::add_roots(const Scene& scene, const WeldedFace& face) {
   report_.split_faces += roots_.size() > before + 1;
 }
 
-// Finds the texture point of each corner of a root by its vertex, among the corners of the faces that the root was made of.
-void BaseMesh::find_texture_points(const Scene& scene, std::span<const std::uint32_t> welded) {
-  if (std::ranges::none_of(roots_, [&](const RootPatch& root) { return materials_[root.material].texture.has_value(); })) return;
-  texture_points_.resize(roots_.size());
-  for (std::uint32_t r = 0; r < roots_.size(); ++r)
+// Finds the texture point and the colour of each corner of a root by its vertex, among the corners of the faces that the root was
+// made of.
+void BaseMesh::find_corner_values(const Scene& scene, std::span<const std::uint32_t> welded, const std::stop_token& stop) {
+  const auto has_texture = [&](const RootPatch& root) { return materials_[root.material].texture.has_value(); };
+  if (std::ranges::any_of(roots_, has_texture)) texture_points_.resize(roots_.size());
+  if (!scene.corner_colours.empty()) corner_colours_.resize(roots_.size());
+  if (!has_varying_reflectance()) return;
+  std::vector<std::uint32_t> corner_at(scene.vertices.size());  // of the face at hand, by welded vertex
+  std::uint32_t known = InputFaces::none;
+  for (std::uint32_t r = 0; r < roots_.size(); ++r) {
+    refuse_stopped(stop);
     for (const std::uint32_t f : {roots_[r].input.second, roots_[r].input.first}) {
-      if (f == InputFaces::none || !material_of(r).texture) continue;
+      if (f == InputFaces::none) continue;
       const auto corners = scene.corners_of(scene.faces[f]);
       const auto points = scene.texture_points_of(scene.faces[f]);
-      for (int c = 0; c < roots_[r].corner_count; ++c)
-        for (std::size_t k = 0; k < corners.size(); ++k)
-          if (welded[corners[k]] == roots_[r].vertex[c]) texture_points_[r][c] = points[k];
+      const auto colours = scene.colours_of(scene.faces[f]);
+      for (auto k = static_cast<std::uint32_t>(corners.size()); known != f && k-- > 0;) corner_at[welded[corners[k]]] = k;
+      known = f;
+      for (int c = 0; c < roots_[r].corner_count; ++c) {
+        const std::uint32_t k = corner_at[roots_[r].vertex[c]];
+        if (k >= corners.size() || welded[corners[k]] != roots_[r].vertex[c]) continue;
+        if (!points.empty()) texture_points_[r][c] = points[k];
+        if (!colours.empty()) corner_colours_[r][c] = colours[k];
+      }
     }
+  }
 }
 
 // Makes twins of two one-sided faces in one place that face opposite ways. A ray may hit either of them; the side that the ray
@@ -219,6 +233,7 @@ void BaseMesh::pair_back_to_back() {
     const auto before = root.vertex;
     turn_round(other, root);
     if (has_textures()) reorder(before, root, texture_points_[r]);
+    if (has_colours()) reorder(before, root, corner_colours_[r]);
     root.is_behind = true;
     root.twin = found->second;
     other.twin = r;
@@ -246,9 +261,14 @@ void BaseMesh::add_backs() {
     back.twin = front;
     roots_[front].twin = static_cast<std::uint32_t>(roots_.size());
     roots_.push_back(back);
-    if (!has_textures()) continue;
-    texture_points_.push_back(texture_points_[front]);
-    reorder(roots_[front].vertex, back, texture_points_.back());
+    if (has_textures()) {
+      texture_points_.push_back(texture_points_[front]);
+      reorder(roots_[front].vertex, back, texture_points_.back());
+    }
+    if (has_colours()) {
+      corner_colours_.push_back(corner_colours_[front]);
+      reorder(roots_[front].vertex, back, corner_colours_.back());
+    }
   }
   neighbours_.resize(roots_.size());
   for (std::uint32_t back = 0; back < roots_.size(); ++back) {

@@ -80,6 +80,11 @@ class BaseMesh {
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
   bool has_textures() const { return !texture_points_.empty(); }
+  bool has_colours() const { return !corner_colours_.empty(); }
+  /// Returns whether the reflectance of any root changes over it.
+  bool has_varying_reflectance() const { return has_textures() || has_colours(); }
+  /// Returns the colour at each corner of a root. Requires: has_colours().
+  const std::array<RgbF, 4>& corner_colours(std::uint32_t root) const { return corner_colours_[root]; }
   /// Returns where on its material's texture each corner of a root lies. Requires: the material has a texture.
   const std::array<TexturePoint, 4>& texture_points(std::uint32_t root) const { return texture_points_[root]; }
   std::optional<Neighbour> across(std::uint32_t root, int edge) const;
@@ -95,13 +100,14 @@ class BaseMesh {
 
  private:
   void add_roots(const Scene& scene, const WeldedFace& face);
-  void find_texture_points(const Scene& scene, std::span<const std::uint32_t> welded);
+  void find_corner_values(const Scene& scene, std::span<const std::uint32_t> welded, const std::stop_token& stop);
   void pair_back_to_back();
   void find_neighbours(const std::stop_token& stop);
   void add_backs();
 
   std::vector<RootPatch> roots_;
   std::vector<std::array<TexturePoint, 4>> texture_points_;  // by root; none if no root has a texture
+  std::vector<std::array<RgbF, 4>> corner_colours_;          // by root; none if no face has colours
   std::vector<Material> materials_;
   Rgb absorption_;
   std::vector<Light> lights_;

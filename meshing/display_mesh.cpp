@@ -20,6 +20,13 @@ constexpr double side_offset = 2e-5;
 /// Limit of a vertex's displacement, in units of `side_offset`. At sharper folds a gap of less than a pixel stays open.
 constexpr double longest_miter = 4;
 
+/// What a surface is at a vertex, beside its material.
+struct SurfacePoint {
+  TexturePoint texture_point;  ///< (0, 0) without a texture
+  RgbF colour{1, 1, 1};
+  friend bool operator==(const SurfacePoint&, const SurfacePoint&) = default;
+};
+
 /// The sum of extrapolated values and normals from the leaves around a smooth vertex.
 struct CornerSum {
   Rgb irradiance;
@@ -37,10 +44,6 @@ double clamp_extrapolated(double x, double low, double high) {
 Rgb clamp_extrapolated(const Rgb& x, const LeafSlope& slope) {
   return {clamp_extrapolated(x.r, slope.low.r, slope.high.r), clamp_extrapolated(x.g, slope.low.g, slope.high.g),
           clamp_extrapolated(x.b, slope.low.b, slope.high.b)};
-}
-
-RgbF radiosity_of(const Material& material, const Rgb& irradiance) {
-  return narrow(material.emission + material.reflectance * irradiance);
 }
 
 /// Returns the displacement that moves a vertex by 1 to the front of all faces around it (Kaczmarz' iteration). Folds of a
@@ -130,7 +133,7 @@ class Triangulation {
     const auto points = outline(shape);
     const std::uint32_t centre =
         add_vertex(shape.root, drawn_centre(shape.root, centre_[leaves_[n]]), mesh_.roots()[shape.root].normal,
-                   value_[leaves_[n]], texture_point(shape.root, shape.centre()));
+                   value_[leaves_[n]], surface_at(shape.root, shape.centre()));
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
@@ -140,13 +143,13 @@ class Triangulation {
 
   std::uint32_t corner_vertex(std::uint32_t root, GridPoint p) {
     const VertexKey key = keys_.smooth(root, p);
-    const TexturePoint point = texture_point(root, {double(p.i) / grid_size, double(p.j) / grid_size});
-    const auto [found, added] = vertices_.try_emplace({key, mesh_.roots()[root].material, point});
+    const SurfacePoint at = surface_at(root, {double(p.i) / grid_size, double(p.j) / grid_size});
+    const auto [found, added] = vertices_.try_emplace({key, mesh_.roots()[root].material, at});
     if (added) {
       const CornerSum& sum = sums_[key];
       const Rgb irradiance = sum.weight > 0 ? sum.irradiance * (1 / sum.weight) : Rgb{};
       const Vec3 normal = normalized(sum.normal);
-      found->second = add_vertex(root, drawn_position(root, p, normal), normal, irradiance, point);
+      found->second = add_vertex(root, drawn_position(root, p, normal), normal, irradiance, at);
     }
     return found->second;
   }
@@ -186,34 +189,44 @@ class Triangulation {
     return position + side_offset * mesh_.extent() * miter(normals);
   }
 
-  /// Returns the texture point at (u, v) of a root, rounded so that roots agree on their common edge; (0, 0) without a texture.
-  TexturePoint texture_point(std::uint32_t root, Uv at) const {
-    if (!mesh_.material_of(root).texture) return {};
+  /// Returns what a root's surface is at (u, v), rounded so that roots agree on their common edge.
+  SurfacePoint surface_at(std::uint32_t root, Uv at) const {
     constexpr float steps = 65536;
-    const TexturePoint point = texture_point_at(mesh_, root, at);
-    return {std::round(point.s * steps) / steps, std::round(point.t * steps) / steps};
+    const auto rounded = [](double x) { return std::round(static_cast<float>(x) * steps) / steps + 0.0F; };  // no -0
+    SurfacePoint surface;
+    if (mesh_.material_of(root).texture) {
+      const TexturePoint point = texture_point_at(mesh_, root, at);
+      surface.texture_point = {rounded(point.s), rounded(point.t)};
+    }
+    if (mesh_.has_colours()) {
+      const Rgb colour = colour_at(mesh_, root, at);
+      surface.colour = {rounded(colour.r), rounded(colour.g), rounded(colour.b)};
+    }
+    return surface;
   }
 
-  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance, TexturePoint point) {
-    if (mesh_.has_textures()) out_.texture_points.push_back(point);
+  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance, const SurfacePoint& at) {
+    if (mesh_.has_textures()) out_.texture_points.push_back(at.texture_point);
     out_.positions.push_back(position);
     out_.normals.push_back(normal);
     out_.irradiance.push_back(narrow(irradiance));
-    out_.radiosity.push_back(radiosity_of(mesh_.material_of(root), irradiance));
+    const Material& material = mesh_.material_of(root);
+    out_.radiosity.push_back(narrow(material.emission + material.reflectance * widen(at.colour) * irradiance));
     return static_cast<std::uint32_t>(out_.positions.size() - 1);
   }
 
   struct VertexOfMaterial {
     VertexKey key;
     std::uint32_t material;
-    TexturePoint point;
+    SurfacePoint at;
     bool operator==(const VertexOfMaterial&) const = default;
   };
   struct Hash {
     std::size_t operator()(const VertexOfMaterial& v) const {
-      const std::uint64_t point = std::bit_cast<std::uint32_t>(v.point.s) ^ std::uint64_t{std::bit_cast<std::uint32_t>(v.point.t)}
-                                                                                << 32;
-      return mix_bits(v.key + v.material * 0x9e3779b97f4a7c15u + mix_bits(point));
+      std::uint64_t hash = v.key + v.material * 0x9e3779b97f4a7c15u;
+      for (const float x : {v.at.texture_point.s, v.at.texture_point.t, v.at.colour.r, v.at.colour.g, v.at.colour.b})
+        hash = mix_bits(hash + std::bit_cast<std::uint32_t>(x));
+      return hash;
     }
   };
   struct KeyHash {

@@ -25,12 +25,12 @@ void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run);
 
 /// A triangle mesh with irradiance and radiosity per vertex. Each triangle is (centre of a leaf, corner, next corner),
 /// counter-clockwise, so the side opposite its first vertex lies on the leaf's outline. Triangles share a vertex only where the
-/// surface is smooth and has one material and texture point.
+/// surface is smooth and has one material, texture point and colour.
 struct DisplayMesh {
   std::vector<Vec3> positions;               ///< metres
   std::vector<Vec3> normals;                 ///< unit; point to the front
   std::vector<RgbF> irradiance;              ///< H, W/m2
-  std::vector<RgbF> radiosity;               ///< B = E + rho H, W/m2; rho is the material's mean reflectance
+  std::vector<RgbF> radiosity;               ///< B = E + rho H, W/m2; rho: the material's mean, times the colour
   std::vector<TexturePoint> texture_points;  ///< of the vertices; none if no material has a texture
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<FaceTriangles> faces;  ///< whence the triangles come, in their order; none if that is not known

@@ -21,7 +21,11 @@ Rgb MeshRadiosity::at(std::uint32_t triangle, double u, double v) const {
   };
   const Material& material = *textured_[triangle];
   const Rgb here = material.texture->reflectance_at({point(&TexturePoint::s), point(&TexturePoint::t)});
-  return upper(mean + (here - material.reflectance) * mixed(mesh_.irradiance), {});
+  const auto band = [](double emission, double all, double texel, double usual) {
+    return emission + (usual > 0 ? std::max(0.0, all - emission) * texel / usual : 0);
+  };
+  const Rgb &e = material.emission, &rho = material.reflectance;
+  return {band(e.r, mean.r, here.r, rho.r), band(e.g, mean.g, here.g, rho.g), band(e.b, mean.b, here.b, rho.b)};
 }
 
 }  // namespace alvor

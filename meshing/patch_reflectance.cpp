@@ -2,48 +2,57 @@
 
 #include "meshing/polygon.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <unordered_set>
 #include <vector>
 
 namespace alvor {
 
 namespace {
 
-/// A place in the plane of a root patch: corner 0 + a (corner 1 - corner 0) + b (corner 2 - corner 0).
-struct PlanePoint {
-  double a = 0, b = 0;
-};
+// Share of a patch below which its part on one side of the diagonal is rounding.
+constexpr double sliver = 1e-9;
 
-/// The two triangles of a root patch on its texture: (0, 1, 2), where a >= 0, and of a quad (0, 2, 3), where a <= 0.
-class TexturedRoot {
+/// What is given at the corners of a root patch, on its two triangles: (0, 1, 2), where a >= 0, and of a quad (0, 2, 3), where a
+/// <= 0.
+class TwoTriangles {
  public:
-  TexturedRoot(const BaseMesh& mesh, std::uint32_t root)
-      : root_(mesh.roots()[root]), points_(mesh.texture_points(root)), image_(*mesh.material_of(root).texture->image) {
-    if (root_.corner_count == 4) fourth_ = at(root_.corners[3]);
+  explicit TwoTriangles(const RootPatch& root) : root_(root) {
+    if (root.corner_count == 4) fourth_ = at(root.corners[3]);
   }
 
   PlanePoint at(Vec3 p) const {
     const auto weight = barycentric(p, root_.corners[0], root_.corners[1], root_.corners[2]);
     return {weight[1], weight[2]};
   }
+  bool is_in_second(PlanePoint p) const { return root_.corner_count == 4 && p.a < 0; }
 
-  /// Returns the place on the image, in texels.
-  TexelPoint texel_at(PlanePoint p, bool is_second) const {
-    const double d = is_second ? p.a / fourth_.a : 0, a = is_second ? 0 : p.a, b = is_second ? p.b - d * fourth_.b : p.b;
-    const auto mixed = [&](float TexturePoint::*axis) {
-      const double origin = points_[0].*axis;
-      return origin + a * (points_[1].*axis - origin) + b * (points_[2].*axis - origin) + d * (points_[3].*axis - origin);
-    };
-    return {mixed(&TexturePoint::s) * image_.columns, mixed(&TexturePoint::t) * image_.rows};
+  /// Returns the weights of the corners at a place.
+  std::array<double, 4> weights(PlanePoint p, bool is_second) const {
+    if (!is_second) return {1 - p.a - p.b, p.a, p.b, 0};
+    const double last = p.a / fourth_.a, third = p.b - last * fourth_.b;
+    return {1 - third - last, 0, third, last};
   }
 
  private:
   const RootPatch& root_;
-  const std::array<TexturePoint, 4>& points_;
-  const ColourImage& image_;
   PlanePoint fourth_{-1, 1};
 };
+
+TexelPoint texel_at(const std::array<TexturePoint, 4>& points, const std::array<double, 4>& weight, const ColourImage& image) {
+  TexelPoint sum;
+  for (std::size_t c = 0; c < 4; ++c) sum.x += weight[c] * double{points[c].s}, sum.y += weight[c] * double{points[c].t};
+  return {sum.x * image.columns, sum.y * image.rows};
+}
+
+Rgb mixed(const std::array<RgbF, 4>& colours, const std::array<double, 4>& weight) {
+  Rgb sum;
+  for (std::size_t c = 0; c < 4; ++c) sum += weight[c] * widen(colours[c]);
+  return sum;
+}
 
 /// Returns the part of a polygon on one side of the line a = 0.
 std::vector<PlanePoint> part_of(const std::vector<PlanePoint>& polygon, bool is_second) {
@@ -61,19 +70,88 @@ double area_of(const std::vector<PlanePoint>& polygon) {
   double twice = 0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const PlanePoint p = polygon[k], q = polygon[(k + 1) % polygon.size()];
-    twice += p.a * q.b - q.a * p.b;
+    twice += (p.a - polygon[0].a) * (q.b - polygon[0].b) - (q.a - polygon[0].a) * (p.b - polygon[0].b);
   }
   return std::abs(twice) / 2;
 }
 
+/// Returns the centroid of a convex polygon, at which a linear function has its mean. Requires: it has an area.
+PlanePoint centroid_of(const std::vector<PlanePoint>& polygon) {
+  PlanePoint sum;
+  double twice = 0;
+  const PlanePoint o = polygon[0];
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    const PlanePoint p = polygon[k], q = polygon[k + 1];
+    const double area = (p.a - o.a) * (q.b - o.b) - (q.a - o.a) * (p.b - o.b);
+    sum.a += area * (o.a + p.a + q.a) / 3, sum.b += area * (o.b + p.b + q.b) / 3;
+    twice += area;
+  }
+  return {sum.a / twice, sum.b / twice};
+}
+
 }  // namespace
 
+/// How a triangle of a root lies on an image, in texels. Triangles that lie on a line of the image are drawn apart by a hundredth
+/// of a texel, so that each texel keeps its share of the triangle.
+class PatchReflectance::TextureMap {
+ public:
+  TextureMap(const BaseMesh& mesh, std::uint32_t root, const TwoTriangles& triangles, bool is_second) {
+    const ColourImage& image = *mesh.material_of(root).texture->image;
+    const auto texel = [&](PlanePoint p) { return texel_at(mesh.texture_points(root), triangles.weights(p, is_second), image); };
+    origin_ = texel({0, 0});
+    const TexelPoint a = texel({1, 0}), b = texel({0, 1});
+    along_a_ = {a.x - origin_.x, a.y - origin_.y}, along_b_ = {b.x - origin_.x, b.y - origin_.y};
+    const double size_a = std::hypot(along_a_.x, along_a_.y), size_b = std::hypot(along_b_.x, along_b_.y);
+    constexpr double one_point = 1e-6;
+    is_point_ = std::max(size_a, size_b) < one_point;
+    if (!is_point_ && std::abs(along_a_.x * along_b_.y - along_a_.y * along_b_.x) < apart * std::max(size_a, size_b))
+      draw_apart(size_a > size_b ? along_a_ : along_b_);
+  }
+
+  bool is_point() const { return is_point_; }
+  TexelPoint at(PlanePoint p) const {
+    return {origin_.x + p.a * along_a_.x + p.b * along_b_.x, origin_.y + p.a * along_a_.y + p.b * along_b_.y};
+  }
+
+ private:
+  static constexpr double apart = 1e-2;  // texels
+
+  /// Moves points across the line of this direction, in the direction of the plane that the image does not show.
+  void draw_apart(TexelPoint line) {
+    const double size = std::hypot(line.x, line.y);
+    const TexelPoint across{-line.y / size, line.x / size};
+    const double a = along_a_.x * line.x + along_a_.y * line.y, b = along_b_.x * line.x + along_b_.y * line.y,
+                 both = std::hypot(a, b);
+    along_a_.x -= apart * b / both * across.x, along_a_.y -= apart * b / both * across.y;
+    along_b_.x += apart * a / both * across.x, along_b_.y += apart * a / both * across.y;
+  }
+
+  TexelPoint origin_, along_a_, along_b_;
+  bool is_point_ = false;
+};
+
 TexturePoint texture_point_at(const BaseMesh& mesh, std::uint32_t root, Uv at) {
-  const TexturedRoot textured(mesh, root);
-  const PlanePoint p = textured.at(mesh.roots()[root].at(at.u, at.v));
-  const TexelPoint texel = textured.texel_at(p, mesh.roots()[root].corner_count == 4 && p.a < 0);
-  const ColourImage& image = *mesh.material_of(root).texture->image;
-  return {static_cast<float>(texel.x / image.columns), static_cast<float>(texel.y / image.rows)};
+  const TwoTriangles triangles(mesh.roots()[root]);
+  const PlanePoint p = triangles.at(mesh.roots()[root].at(at.u, at.v));
+  const auto weight = triangles.weights(p, triangles.is_in_second(p));
+  const auto& points = mesh.texture_points(root);
+  double s = 0, t = 0;
+  for (std::size_t c = 0; c < 4; ++c) s += weight[c] * double{points[c].s}, t += weight[c] * double{points[c].t};
+  return {static_cast<float>(s), static_cast<float>(t)};
+}
+
+Rgb colour_at(const BaseMesh& mesh, std::uint32_t root, Uv at) {
+  const TwoTriangles triangles(mesh.roots()[root]);
+  const PlanePoint p = triangles.at(mesh.roots()[root].at(at.u, at.v));
+  return mixed(mesh.corner_colours(root), triangles.weights(p, triangles.is_in_second(p)));
+}
+
+std::size_t PatchReflectance::bytes_for(const BaseMesh& mesh) {
+  std::unordered_set<const ColourImage*> images;
+  std::size_t texels = 0;
+  for (const Material& material : mesh.materials())
+    if (material.texture && images.insert(material.texture->image.get()).second) texels += material.texture->image->texel_count();
+  return TextureMean::bytes_a_texel * texels;
 }
 
 PatchReflectance::PatchReflectance(const BaseMesh& mesh) : mesh_(mesh) {
@@ -81,26 +159,45 @@ PatchReflectance::PatchReflectance(const BaseMesh& mesh) : mesh_(mesh) {
     if (const auto& texture = mesh.materials()[root.material].texture) means_.try_emplace(texture->image.get(), *texture->image);
 }
 
+bool PatchReflectance::varies(std::uint32_t root) const {
+  if (mesh_.material_of(root).texture) return true;
+  if (!mesh_.has_colours()) return false;
+  const auto& colours = mesh_.corner_colours(root);
+  return std::ranges::any_of(std::span(colours).first(static_cast<std::size_t>(mesh_.roots()[root].corner_count)),
+                             [&](const RgbF& colour) { return colour != colours[0]; });
+}
+
+/// Returns the mean of the texture over a part of a root, on one side of the diagonal.
+Rgb PatchReflectance::of_part(std::uint32_t root, const TextureMap& map, std::span<const PlanePoint> part) const {
+  const Texture& texture = *mesh_.material_of(root).texture;
+  if (map.is_point()) return texture.reflectance_at(mesh_.texture_points(root)[0]);
+  std::vector<TexelPoint> texels;
+  for (const PlanePoint& p : part) texels.push_back(map.at(p));
+  return texture.factor * means_.at(texture.image.get()).over(texels, texture.wrap_s, texture.wrap_t);
+}
+
 Rgb PatchReflectance::of(const PatchShape& shape) const {
   const Material& material = mesh_.material_of(shape.root);
-  if (!material.texture) return material.reflectance;
-  const TexturedRoot root(mesh_, shape.root);
+  if (!material.texture && !mesh_.has_colours()) return material.reflectance;
+  const TwoTriangles triangles(mesh_.roots()[shape.root]);
   const auto corners = corners_of(mesh_, shape);
   std::vector<PlanePoint> patch;
-  for (int c = 0; c < shape.corner_count; ++c) patch.push_back(root.at(corners[c]));
+  for (int c = 0; c < shape.corner_count; ++c) patch.push_back(triangles.at(corners[c]));
   Rgb sum;
   double area = 0;
   for (const bool is_second : {false, true}) {
     if (is_second && shape.corner_count == 3) break;
     const std::vector<PlanePoint> part = shape.corner_count == 4 ? part_of(patch, is_second) : patch;
     const double share = area_of(part);
-    if (!(share > 0)) continue;
-    std::vector<TexelPoint> texels;
-    for (const PlanePoint& p : part) texels.push_back(root.texel_at(p, is_second));
-    sum += share * means_.at(material.texture->image.get()).over(texels, material.texture->wrap_s, material.texture->wrap_t);
+    if (!(share > sliver * area_of(patch))) continue;
+    Rgb reflectance = material.reflectance;
+    if (material.texture) reflectance = of_part(shape.root, TextureMap(mesh_, shape.root, triangles, is_second), part);
+    if (mesh_.has_colours())
+      reflectance = reflectance * mixed(mesh_.corner_colours(shape.root), triangles.weights(centroid_of(part), is_second));
+    sum += share * reflectance;
     area += share;
   }
-  return area > 0 ? material.texture->factor * sum * (1 / area) : material.reflectance;
+  return area > 0 ? sum * (1 / area) : material.reflectance;
 }
 
 }  // namespace alvor

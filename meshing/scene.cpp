@@ -84,6 +84,17 @@ std::optional<Fault> fault_in_texture_points(const Scene& scene) {
   return std::nullopt;
 }
 
+std::optional<Fault> fault_in_colours(const Scene& scene) {
+  const std::size_t count = scene.corner_colours.size();
+  if (count != 0 && count != scene.corners.size())
+    return Fault{"scene", "has " + std::to_string(count) + " colours for " + std::to_string(scene.corners.size()) + " corners"};
+  for (std::size_t i = 0; i < count; ++i)
+    for (const float band : {scene.corner_colours[i].r, scene.corner_colours[i].g, scene.corner_colours[i].b})
+      if (!(band >= 0 && band <= 1))
+        return Fault{"corner " + std::to_string(i), "its colour " + number(band) + " is outside [0, 1]"};
+  return std::nullopt;
+}
+
 std::optional<Fault> fault_in_objects(const Scene& scene) {
   std::unordered_set<std::string_view> names;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -96,12 +107,17 @@ std::optional<Fault> fault_in_objects(const Scene& scene) {
 
 }  // namespace
 
-void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t material, std::span<const TexturePoint> points) {
+void Scene::add_face(std::span<const std::uint32_t> polygon, std::uint32_t material, std::span<const TexturePoint> points,
+                     std::span<const RgbF> colours) {
   faces.push_back({static_cast<std::uint32_t>(corners.size()), static_cast<std::uint32_t>(polygon.size()), material});
+  constexpr RgbF white{1, 1, 1};
   if (!points.empty()) texture_points.resize(corners.size());
+  if (!colours.empty()) corner_colours.resize(corners.size(), white);
   corners.insert(corners.end(), polygon.begin(), polygon.end());
   texture_points.insert(texture_points.end(), points.begin(), points.end());
   if (!texture_points.empty()) texture_points.resize(corners.size());
+  corner_colours.insert(corner_colours.end(), colours.begin(), colours.end());
+  if (!corner_colours.empty()) corner_colours.resize(corners.size(), white);
 }
 
 void Scene::add_polygon(std::span<const Vec3> polygon, std::uint32_t material) {
@@ -140,6 +156,7 @@ std::optional<Fault> find_fault(const Scene& scene) {
   for (std::size_t i = 0; i < scene.faces.size(); ++i)
     if (auto reason = fault_in(scene.faces[i], scene)) return Fault{"face " + std::to_string(i), *reason};
   if (auto fault = fault_in_texture_points(scene)) return fault;
+  if (auto fault = fault_in_colours(scene)) return fault;
   return fault_in_objects(scene);
 }
 

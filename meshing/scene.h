@@ -54,6 +54,8 @@ struct Scene {
   std::vector<std::uint32_t> corners;  ///< indices of vertices
   /// Where on the texture of its face's material each corner lies; none if no material has a texture.
   std::vector<TexturePoint> texture_points;
+  /// What the reflectance is multiplied by at each corner, in [0, 1] per band, linear in between; none if no face has colours.
+  std::vector<RgbF> corner_colours;
   std::vector<Face> faces;
   std::vector<Material> materials;
   /// Absorption coefficient of the medium that fills the scene, 1/m per band, >= 0. Light fades by exp(-absorption r); 0 means no
@@ -74,8 +76,14 @@ struct Scene {
     if (!materials[face.material].texture) return {};
     return std::span(texture_points).subspan(face.first_corner, face.corner_count);
   }
-  /// Appends a face. Does not check it; find_fault does. `points` has an entry for each corner, or none.
-  void add_face(std::span<const std::uint32_t> polygon, std::uint32_t material, std::span<const TexturePoint> points = {});
+  /// Returns the colour of each corner of a face; nothing if the scene has none.
+  std::span<const RgbF> colours_of(const Face& face) const {
+    if (corner_colours.empty()) return {};
+    return std::span(corner_colours).subspan(face.first_corner, face.corner_count);
+  }
+  /// Appends a face. Does not check it; find_fault does. `points` and `colours` have an entry for each corner, or none.
+  void add_face(std::span<const std::uint32_t> polygon, std::uint32_t material, std::span<const TexturePoint> points = {},
+                std::span<const RgbF> colours = {});
   /// Appends a face with new vertices. Does not check it; find_fault does.
   void add_polygon(std::span<const Vec3> polygon, std::uint32_t material);
 };
@@ -94,8 +102,8 @@ struct Fault {
 /// the size of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face,
 /// finite coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite
 /// absorption >= 0, reflectance in [0, 1), regular transmittance in [0, 1 - reflectance], sound images, texture points for all
-/// corners if any material has a texture, and objects of different names in an order that fits the faces. Degenerate faces are no
-/// fault.
+/// corners if any material has a texture, colours in [0, 1] for all corners or none, and objects of different names in an order
+/// that fits the faces. Degenerate faces are no fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

@@ -10,8 +10,6 @@ namespace {
 constexpr double unit = 0x1p-19;  // of values: sums over 8192 texels stay below 2^32
 // Texels that the outline of a polygon may cross.
 constexpr double most_crossed = 65536;
-// Share of the squared outline below which a polygon is a line.
-constexpr double line_area = 1e-12;
 
 double signed_area(std::span<const TexelPoint> polygon) {
   double twice = 0;
@@ -30,12 +28,6 @@ double outline(std::span<const TexelPoint> polygon) {
     length += std::abs(b.x - a.x) + std::abs(b.y - a.y);
   }
   return length;
-}
-
-TexelPoint middle_of(std::span<const TexelPoint> polygon) {
-  TexelPoint sum;
-  for (const TexelPoint& p : polygon) sum.x += p.x, sum.y += p.y;
-  return {sum.x / static_cast<double>(polygon.size()), sum.y / static_cast<double>(polygon.size())};
 }
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
@@ -80,7 +72,9 @@ std::array<std::uint32_t, 3> TextureMean::value_of(std::uint32_t column, std::ui
 TextureMean::Sums TextureMean::total_of(std::uint32_t row) const {
   const std::uint32_t last = image_.columns - 1;
   const auto before = sum_before_[std::size_t{row} * image_.columns + last], value = value_of(last, row);
-  return {double{1} * before[0] + value[0], double{1} * before[1] + value[1], double{1} * before[2] + value[2]};
+  Sums total;
+  for (std::size_t band = 0; band < 3; ++band) total[band] = static_cast<double>(before[band]) + value[band];
+  return total;
 }
 
 TextureMean::Column TextureMean::column(std::int64_t index, std::uint32_t row, Wrap wrap) const {
@@ -126,11 +120,6 @@ void TextureMean::add_edge(TexelPoint from, TexelPoint to, Wrap across, Wrap dow
 Rgb TextureMean::over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const {
   const double area = signed_area(polygon), around = outline(polygon);
   if (around > most_crossed) return mean_reflectance(image_);
-  if (!(std::abs(area) > line_area * around * around)) {
-    const TexelPoint at = middle_of(polygon);
-    const auto value = value_of(wrapped(floor_of(at.x), image_.columns, across), wrapped(floor_of(at.y), image_.rows, down));
-    return unit * Rgb{double(value[0]), double(value[1]), double(value[2])};
-  }
   // Sums are small, and so exact, near the first texel. Two periods are one of a mirrored image, too.
   const double columns = 2.0 * image_.columns, shift = across == Wrap::clamp ? 0 : columns * std::floor(polygon[0].x / columns);
   const auto near = [&](std::size_t k) { return TexelPoint{polygon[k].x - shift, polygon[k].y}; };

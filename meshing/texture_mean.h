@@ -19,12 +19,13 @@ struct TexelPoint {
 /// areas. A texel counts as constant; its reflectance is rounded to 2^-19. Immutable; safe from any thread. Borrows the image.
 class TextureMean {
  public:
-  /// Takes 12 bytes a texel. Requires: !fault_in(image).
+  static constexpr std::size_t bytes_a_texel = 12;
+  /// Takes `bytes_a_texel` for each. Requires: !fault_in(image).
   explicit TextureMean(const ColourImage& image);
 
   /// Returns the mean reflectance over a polygon (by Green's theorem: the integral of a texel row's running sum along the
-  /// outline). The reflectance at the middle of its corners if it has no area; that of the whole image if its outline crosses
-  /// more than 65 536 texels. Requires: three corners or more, of which no coordinate is above 1e9.
+  /// outline); that of the whole image if its outline crosses more than 65 536 texels. Requires: three corners or more, of which
+  /// no coordinate is above 1e9, and an area.
   Rgb over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const;
 
  private:

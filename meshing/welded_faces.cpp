@@ -64,30 +64,41 @@ class KnownFaces {
   std::unordered_map<std::vector<std::uint32_t>, const WeldedFace*, RingHash> by_ring_;
 };
 
-/// Returns the texture point of the corner at a welded vertex of a triangle. A triangle keeps the order of its corners.
-TexturePoint texture_point_at(const Scene& scene, const WeldedFace& triangle, std::uint32_t vertex) {
-  const auto corner = std::ranges::find(triangle.ring, vertex) - triangle.ring.begin();
-  return scene.texture_points_of(scene.faces[triangle.input.first])[static_cast<std::size_t>(corner)];
+/// Returns the number of a vertex among a triangle's corners, which keep their order.
+std::size_t corner_at(const WeldedFace& triangle, std::uint32_t vertex) {
+  return static_cast<std::size_t>(std::ranges::find(triangle.ring, vertex) - triangle.ring.begin());
 }
 
-/// Returns whether a texture lies on two triangles with a common edge as on one plane, to a quarter of a texel.
-bool have_one_texture_map(const Scene& scene, const WeldedFace& first, const WeldedFace& second) {
+/// Returns whether a value that is given at the corners of two triangles with a common edge changes as on one plane. `value`
+/// returns it for a triangle and a corner.
+template <class Value>
+bool changes_as_on_one_plane(const Scene& scene, const WeldedFace& first, const WeldedFace& second, double tolerance,
+                             Value value) {
+  const auto at = [&](std::size_t corner) { return scene.vertices[first.ring[corner]]; };
+  return std::ranges::all_of(second.ring, [&](std::uint32_t vertex) {
+    const auto weight = barycentric(scene.vertices[vertex], at(0), at(1), at(2));
+    double expected = 0;
+    for (std::size_t k = 0; k < 3; ++k) expected += weight[k] * value(first, k);
+    return std::abs(value(second, corner_at(second, vertex)) - expected) <= tolerance;
+  });
+}
+
+/// Returns whether texture and colours lie on two triangles as on one plane: to a quarter of a texel, and to a step of 8 bits.
+bool may_be_one_quad(const Scene& scene, const WeldedFace& first, const WeldedFace& second) {
   const auto& texture = scene.materials[first.material].texture;
-  if (!texture) return true;
-  const auto& ring = first.ring;
-  for (const std::uint32_t vertex : second.ring) {
-    const auto weight =
-        barycentric(scene.vertices[vertex], scene.vertices[ring[0]], scene.vertices[ring[1]], scene.vertices[ring[2]]);
-    double s = 0, t = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const TexturePoint point = texture_point_at(scene, first, ring[k]);
-      s += weight[k] * point.s, t += weight[k] * point.t;
-    }
-    const TexturePoint found = texture_point_at(scene, second, vertex);
-    const double columns = texture->image->columns, rows = texture->image->rows;
-    if (std::abs(found.s - s) * columns > 0.25 || std::abs(found.t - t) * rows > 0.25) return false;
-  }
-  return true;
+  const auto face_of = [&](const WeldedFace& triangle) -> const Face& { return scene.faces[triangle.input.first]; };
+  const auto is_one_map = [&](float TexturePoint::*axis, double texels) {
+    return changes_as_on_one_plane(scene, first, second, 0.25 / texels, [&](const WeldedFace& triangle, std::size_t corner) {
+      return double{scene.texture_points_of(face_of(triangle))[corner].*axis};
+    });
+  };
+  if (texture && !(is_one_map(&TexturePoint::s, texture->image->columns) && is_one_map(&TexturePoint::t, texture->image->rows)))
+    return false;
+  return scene.corner_colours.empty() || std::ranges::all_of(std::array{&RgbF::r, &RgbF::g, &RgbF::b}, [&](float RgbF::*band) {
+           return changes_as_on_one_plane(scene, first, second, 1.0 / 255, [&](const WeldedFace& triangle, std::size_t corner) {
+             return double{scene.colours_of(face_of(triangle))[corner].*band};
+           });
+         });
 }
 
 bool has_only_triangles(const Scene& scene) {
@@ -145,7 +156,7 @@ void join_triangle_pairs(const Scene& scene, std::vector<WeldedFace>& faces) {
   for (const WeldedFace& face : faces)
     triangles.push_back({{face.ring[0], face.ring[1], face.ring[2]}, face.material, face.input.first});
   for (const TrianglePair& pair : pair_triangles(triangles, scene.vertices)) {
-    if (!have_one_texture_map(scene, faces[pair.first], faces[pair.second])) continue;
+    if (!may_be_one_quad(scene, faces[pair.first], faces[pair.second])) continue;
     faces[pair.first].ring.assign(pair.corners.begin(), pair.corners.end());
     faces[pair.first].input.second = faces[pair.second].input.first;
     faces[pair.second].ring.clear();

@@ -48,7 +48,7 @@ DuplicateFaces leave_out_duplicates(const Scene& scene, std::vector<WeldedFace>&
 
 /// Joins triangles that were cut from quads (quad_pairing.h); a quad takes the place of its first triangle. Does nothing if a
 /// face of the scene has more than three corners: the exporter of such a file does not cut quads. Leaves triangles alone on which
-/// a texture does not lie as on one plane.
+/// a texture or colours do not lie as on one plane.
 void join_triangle_pairs(const Scene& scene, std::vector<WeldedFace>& faces);
 
 }  // namespace alvor

@@ -23,9 +23,15 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
   for (int c = 0; c < root.corner_count; ++c) {
     for (const double x : {root.corners[c].x, root.corners[c].y, root.corners[c].z}) message.add_corner_coordinates(x);
     message.add_neighbours(encode(mesh.across(index, c)));
-    if (!mesh.has_textures()) continue;
-    const TexturePoint point = mesh.texture_points(index)[static_cast<std::size_t>(c)];
-    message.add_texture_coordinates(point.s), message.add_texture_coordinates(point.t);
+    const auto corner = static_cast<std::size_t>(c);
+    if (mesh.has_textures()) {
+      const TexturePoint point = mesh.texture_points(index)[corner];
+      message.add_texture_coordinates(point.s), message.add_texture_coordinates(point.t);
+    }
+    if (mesh.has_colours()) {
+      const RgbF& colour = mesh.corner_colours(index)[corner];
+      for (const float band : {colour.r, colour.g, colour.b}) message.add_corner_colors(band);
+    }
   }
 }
 

@@ -13,10 +13,6 @@ namespace {
 
 // As many as a scene can have distant lights.
 constexpr std::size_t most_environments = 64;
-constexpr std::size_t most_images = 10'000;
-// Of all images of a scene. While it is solved a texel takes 15 bytes.
-constexpr std::uint64_t most_texels = 64'000'000;
-
 std::string count_of(std::uint64_t count, const char* unit) { return std::to_string(count) + " " + unit; }
 
 /// Requires: no transform, or 12 numbers.
@@ -28,27 +24,9 @@ SceneObject decode_object(const v1::SceneObject& message) {
   return object;
 }
 
-v1::Texture::Wrap encode(Wrap wrap) {
-  switch (wrap) {
-    case Wrap::repeat: return v1::Texture::REPEAT;
-    case Wrap::mirror: return v1::Texture::MIRROR;
-    case Wrap::clamp: return v1::Texture::CLAMP;
-  }
-  return v1::Texture::WRAP_UNSPECIFIED;
-}
-
-Wrap decode(v1::Texture::Wrap wrap) {
-  if (wrap == v1::Texture::MIRROR) return Wrap::mirror;
-  return wrap == v1::Texture::CLAMP ? Wrap::clamp : Wrap::repeat;
-}
-
-v1::Texture encode(const Texture& texture, std::uint32_t image) {
-  v1::Texture message;
-  message.set_image(image);
-  *message.mutable_factor() = encode(texture.factor);
-  message.set_wrap_s(encode(texture.wrap_s));
-  message.set_wrap_t(encode(texture.wrap_t));
-  return message;
+Material decode_material(const v1::Material& message) {
+  return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided(),
+          decode(message.regular_transmittance())};
 }
 
 int items_in(const v1::GeometryChunk& chunk) {
@@ -96,12 +74,11 @@ std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   }
   if (chunk.north_degrees() != 0) scene_.north_degrees = chunk.north_degrees();
   for (const v1::SceneObject& object : chunk.objects()) scene_.objects.push_back(decode_object(object));
-  for (const v1::ColourImage& image : chunk.images()) {
-    images_.push_back(std::make_shared<ColourImage>(ColourImage{image.columns(), image.rows(), {}}));
-    wanted_texels_ += images_.back()->texel_count();
+  images_.add(chunk);
+  for (const v1::Material& material : chunk.materials()) {
+    scene_.materials.push_back(decode_material(material));
+    if (material.has_texture()) scene_.materials.back().texture = images_.decode(material.texture());
   }
-  add_texels(chunk.texels());
-  for (const v1::Material& material : chunk.materials()) scene_.materials.push_back(decode_material(material));
   for (int i = 0; i < chunk.vertex_coordinates_size(); i += 3)
     scene_.vertices.push_back({chunk.vertex_coordinates(i), chunk.vertex_coordinates(i + 1), chunk.vertex_coordinates(i + 2)});
   std::span<const std::uint32_t> corners(chunk.corner_vertices().data(), static_cast<std::size_t>(chunk.corner_vertices_size()));
@@ -109,40 +86,22 @@ std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
   for (int i = 0; i < chunk.texture_coordinates_size(); i += 2)
     points.push_back({chunk.texture_coordinates(i), chunk.texture_coordinates(i + 1)});
   std::span<const TexturePoint> points_left(points);
+  std::vector<RgbF> colours;
+  for (int i = 0; i < chunk.corner_colors_size(); i += 3)
+    colours.push_back({chunk.corner_colors(i), chunk.corner_colors(i + 1), chunk.corner_colors(i + 2)});
+  std::span<const RgbF> colours_left(colours);
   for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
     const std::uint32_t count = chunk.face_corner_counts(i);
     const std::size_t point_count = points.empty() ? 0 : count;
-    scene_.add_face(corners.first(count), chunk.face_materials(i), points_left.first(point_count));
+    const std::size_t colour_count = colours.empty() ? 0 : count;
+    scene_.add_face(corners.first(count), chunk.face_materials(i), points_left.first(point_count),
+                    colours_left.first(colour_count));
     corners = corners.subspan(count);
     points_left = points_left.subspan(point_count);
+    colours_left = colours_left.subspan(colour_count);
   }
   ++chunks_;
   return std::nullopt;
-}
-
-void SceneAssembler::add_texels(std::string_view bytes) {
-  texel_bytes_ += bytes.size();
-  for (; !bytes.empty() && complete_images_ < images_.size(); ++complete_images_) {
-    ColourImage& image = *images_[complete_images_];
-    const std::size_t taken = std::min(bytes.size(), 3 * image.texel_count() - image.texels.size());
-    image.texels.insert(image.texels.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
-    bytes.remove_prefix(taken);
-    if (image.texels.size() < 3 * image.texel_count()) return;
-  }
-}
-
-Material SceneAssembler::decode_material(const v1::Material& message) const {
-  Material material{message.name(),
-                    decode(message.emission()),
-                    decode(message.reflectance()),
-                    message.two_sided(),
-                    decode(message.regular_transmittance()),
-                    std::nullopt};
-  if (!message.has_texture()) return material;
-  const v1::Texture& texture = message.texture();
-  const Rgb factor = texture.has_factor() ? decode(texture.factor()) : Rgb{1, 1, 1};
-  material.texture = Texture{images_[texture.image()], factor, decode(texture.wrap_s()), decode(texture.wrap_t())};
-  return material;
 }
 
 Scene SceneAssembler::take() {
@@ -166,7 +125,7 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
   if (materials != faces)
     return Fault{place_in_chunk("face_materials"), "has " + count_of(materials, "entries for ") + count_of(faces, "faces")};
   if (auto fault = fault_in_environments(chunk)) return fault;
-  if (auto fault = fault_in_textures(chunk)) return fault;
+  if (auto fault = images_.fault_in(chunk, "chunk " + std::to_string(chunks_) + ", ")) return fault;
   if (auto fault = fault_in_lights(chunk)) return fault;
   for (const v1::SceneObject& object : chunk.objects())
     if (!object.transform().empty() && object.transform_size() != 12)
@@ -228,75 +187,7 @@ std::optional<Fault> SceneAssembler::fault_in_environments(const v1::GeometryChu
   return std::nullopt;
 }
 
-std::optional<Fault> SceneAssembler::fault_in_textures(const v1::GeometryChunk& chunk) const {
-  std::uint64_t texels = wanted_texels_;
-  for (const v1::ColourImage& image : chunk.images()) {
-    const std::string size = std::to_string(image.columns()) + " x " + std::to_string(image.rows());
-    if (image.columns() == 0 || image.rows() == 0 || image.columns() > ColourImage::most_columns ||
-        image.rows() > ColourImage::most_rows)
-      return Fault{place_in_chunk("images"), "an image has " + size + " texels, 1 x 1 to 8192 x 8192 are possible"};
-    texels += std::uint64_t{image.columns()} * image.rows();
-  }
-  if (texels > most_texels)
-    return Fault{place_in_chunk("images"), "the scene has " + count_of(texels, "texels, at most 64 million are possible")};
-  if (texel_bytes_ + chunk.texels().size() > 3 * texels)
-    return Fault{place_in_chunk("texels"), "there are " + count_of(texel_bytes_ + chunk.texels().size(), "bytes for ") +
-                                               count_of(texels, "texels of three bytes")};
-  const std::size_t images = images_.size() + static_cast<std::size_t>(chunk.images_size());
-  if (images > most_images)
-    return Fault{place_in_chunk("images"), "the scene has " + count_of(images, "images, at most 10000 are possible")};
-  for (const v1::Material& material : chunk.materials())
-    if (material.has_texture() && material.texture().image() >= images)
-      return Fault{"material '" + material.name() + "'",
-                   "image " + std::to_string(material.texture().image()) + " of its texture is not known"};
-  const int coordinates = chunk.texture_coordinates_size();
-  if (coordinates != 0 && coordinates != 2 * std::int64_t{chunk.corner_vertices_size()})
-    return Fault{place_in_chunk("texture_coordinates"),
-                 "has " + count_of(static_cast<std::uint64_t>(coordinates), "numbers, needs two for each of ") +
-                     count_of(static_cast<std::uint64_t>(chunk.corner_vertices_size()), "corners")};
-  return std::nullopt;
-}
-
 std::string SceneAssembler::place_in_chunk(const char* field) const { return "chunk " + std::to_string(chunks_) + ", " + field; }
-
-ImageList::ImageList(std::span<const Material> materials) {
-  for (const Material& material : materials) {
-    if (!material.texture) continue;
-    const ColourImage* const image = material.texture->image.get();
-    if (number_.try_emplace(image, static_cast<std::uint32_t>(images_.size())).second) images_.push_back(image);
-  }
-}
-
-void ImageList::encode_texture(const Material& material, v1::Material& message) const {
-  if (material.texture) *message.mutable_texture() = encode(*material.texture, number_.at(material.texture->image.get()));
-}
-
-void ImageSlicer::next(google::protobuf::RepeatedPtrField<v1::ColourImage>& images, std::string& texels, std::int64_t& budget) {
-  constexpr std::int64_t bytes_of_image = 16, bytes_of_length = 8;
-  for (; image_ < images_.size() && budget > bytes_of_image + bytes_of_length; ++image_, texel_byte_ = 0, is_announced_ = false) {
-    const ColourImage& image = *images_[image_];
-    if (!is_announced_) {
-      v1::ColourImage* const message = images.Add();
-      message->set_columns(image.columns);
-      message->set_rows(image.rows);
-      is_announced_ = true;
-      budget -= bytes_of_image;
-    }
-    const std::size_t room = static_cast<std::size_t>(budget - bytes_of_length);
-    const std::size_t taken = std::min(room, image.texels.size() - texel_byte_);
-    texels.append(reinterpret_cast<const char*>(&image.texels[texel_byte_]), taken);
-    texel_byte_ += taken;
-    budget -= static_cast<std::int64_t>(taken);
-    if (texel_byte_ < image.texels.size()) return;
-  }
-}
-
-bool MeshImageSlicer::next(v1::ReadImagesResponse& message) {
-  message.Clear();
-  std::int64_t budget = 1 << 20;
-  slicer_.next(*message.mutable_images(), *message.mutable_texels(), budget);
-  return !message.texels().empty();
-}
 
 SceneSlicer::SceneSlicer(const Scene& scene, std::size_t max_bytes)
     : scene_(scene),
@@ -394,8 +285,10 @@ void SceneSlicer::take_faces(v1::GeometryChunk& chunk, std::int64_t& budget) {
   for (; face_ < scene_.faces.size(); ++face_) {
     const Face& face = scene_.faces[face_];
     const auto points = scene_.texture_points_of(face);
-    // Each varint has at most 5 bytes, each pair of texture coordinates 8.
-    const std::int64_t bytes = (has_textures() ? 13 : 5) * (std::int64_t{face.corner_count} + 2);
+    const auto colours = scene_.colours_of(face);
+    // Each varint has at most 5 bytes, each pair of texture coordinates 8, each colour 12.
+    const std::int64_t bytes =
+        (5 + (has_textures() ? 8 : 0) + (colours.empty() ? 0 : 12)) * (std::int64_t{face.corner_count} + 2);
     if (bytes > budget && items_in(chunk) > 0) break;
     chunk.add_face_corner_counts(face.corner_count);
     chunk.add_face_materials(face.material);
@@ -404,6 +297,8 @@ void SceneSlicer::take_faces(v1::GeometryChunk& chunk, std::int64_t& budget) {
       const TexturePoint point = points.empty() ? TexturePoint{} : points[c];
       chunk.add_texture_coordinates(point.s), chunk.add_texture_coordinates(point.t);
     }
+    for (const RgbF& colour : colours)
+      for (const float band : {colour.r, colour.g, colour.b}) chunk.add_corner_colors(band);
     budget -= bytes;
   }
 }

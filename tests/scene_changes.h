@@ -40,6 +40,7 @@ inline Scene with_red_and_green_swapped(Scene scene) {
     material.texture->image = std::make_shared<const ColourImage>(std::move(image));
     material.texture->factor = red_and_green_swapped(material.texture->factor);
   }
+  for (RgbF& colour : scene.corner_colours) colour = red_and_green_swapped(colour);
   scene.absorption = red_and_green_swapped(scene.absorption);
   return scene;
 }
@@ -51,12 +52,19 @@ inline std::vector<TexturePoint> points_of(const Scene& scene, std::uint32_t fac
   return {first, first + scene.faces[face].corner_count};
 }
 
+/// Returns the colours of a face's corners; nothing if the scene has none.
+inline std::vector<RgbF> colours_of(const Scene& scene, std::uint32_t face) {
+  const auto colours = scene.colours_of(scene.faces[face]);
+  return {colours.begin(), colours.end()};
+}
+
 /// Returns the scene with its faces reordered: face n is face order[n] of `scene`.
 inline Scene with_faces_in_order(const Scene& scene, std::span<const std::uint32_t> order) {
   Scene changed = scene;
-  changed.corners.clear(), changed.faces.clear(), changed.texture_points.clear();
+  changed.corners.clear(), changed.faces.clear(), changed.texture_points.clear(), changed.corner_colours.clear();
   for (const std::uint32_t face : order)
-    changed.add_face(scene.corners_of(scene.faces[face]), scene.faces[face].material, points_of(scene, face));
+    changed.add_face(scene.corners_of(scene.faces[face]), scene.faces[face].material, points_of(scene, face),
+                     colours_of(scene, face));
   return changed;
 }
 
@@ -70,8 +78,10 @@ inline Scene with_backs_as_faces(const Scene& scene) {
     std::vector<std::uint32_t> ring(scene.corners_of(face).begin(), scene.corners_of(face).end());
     std::vector<TexturePoint> points = points_of(scene, f);
     std::reverse(ring.begin() + 1, ring.end());
+    std::vector<RgbF> colours = colours_of(scene, f);
     if (!points.empty()) std::reverse(points.begin() + 1, points.end());
-    changed.add_face(ring, face.material, points);
+    if (!colours.empty()) std::reverse(colours.begin() + 1, colours.end());
+    changed.add_face(ring, face.material, points, colours);
   }
   return changed;
 }
@@ -80,26 +90,32 @@ inline Scene with_backs_as_faces(const Scene& scene) {
 /// the last face.
 inline Scene with_face_cut(const Scene& scene, std::uint32_t face) {
   Scene changed = scene;
-  changed.corners.clear(), changed.faces.clear(), changed.texture_points.clear();
+  changed.corners.clear(), changed.faces.clear(), changed.texture_points.clear(), changed.corner_colours.clear();
   const std::vector<TexturePoint> of_face = points_of(scene, face);
   const auto middle =
       of_face.empty() ? TexturePoint{} : TexturePoint{(of_face[1].s + of_face[2].s) / 2, (of_face[1].t + of_face[2].t) / 2};
+  const std::vector<RgbF> face_colours = colours_of(scene, face);
+  const RgbF middle_colour = face_colours.empty() ? RgbF{} : 0.5F * (face_colours[1] + face_colours[2]);
   for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
     const auto corners = scene.corners_of(scene.faces[f]);
     std::vector<std::uint32_t> ring(corners.begin(), corners.end());
     std::vector<TexturePoint> points = points_of(scene, f);
+    std::vector<RgbF> colours = colours_of(scene, f);
     if (f == face) {
+      if (!colours.empty()) colours[1] = middle_colour;
       if (!points.empty()) points[1] = middle;
       changed.vertices.push_back(lerp(scene.vertices[ring[1]], scene.vertices[ring[2]], 0.5));
       ring[1] = static_cast<std::uint32_t>(scene.vertices.size());
     }
-    changed.add_face(ring, scene.faces[f].material, points);
+    changed.add_face(ring, scene.faces[f].material, points, colours);
   }
   const auto corners = scene.corners_of(scene.faces[face]);
   std::vector<TexturePoint> points;
+  std::vector<RgbF> colours;
   if (!of_face.empty()) points = {of_face[0], of_face[1], middle};
+  if (!face_colours.empty()) colours = {face_colours[0], face_colours[1], middle_colour};
   changed.add_face(std::vector{corners[0], corners[1], static_cast<std::uint32_t>(scene.vertices.size())},
-                   scene.faces[face].material, points);
+                   scene.faces[face].material, points, colours);
   return changed;
 }
 

@@ -54,7 +54,6 @@ std::vector<float> opacities_of(const DisplayMesh& mesh) {
   return opacities;
 }
 
-/// Adds a mesh's values at its vertices, relative to `origin`. `opacity` is that of opacities_of().
 /// Returns the reflectance of each vertex that has a texture in the file, 1 for the others; nothing if none has.
 std::vector<Rgb> reflectances_under_textures(const DisplayMesh& mesh, const TriangleGroups& groups) {
   std::vector<Rgb> reflectances;
@@ -74,6 +73,8 @@ Rgb without(const Rgb& reflectance, const Rgb& shown) {
   return {band(shown.r, reflectance.r), band(shown.g, reflectance.g), band(shown.b, reflectance.b)};
 }
 
+/// Adds a mesh's values at its vertices, relative to `origin`. `opacity` is that of opacities_of(),
+/// `under_texture` that of reflectances_under_textures().
 json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& origin, std::span<const float> opacity,
                     std::span<const Rgb> under_texture) {
   const std::size_t count = mesh.positions.size();

@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_groups = 1000;        // of half a kilobyte of JSON each
-constexpr std::size_t most_texels = 64'000'000;  // of all images, as in a scene: a small file can hold large ones
+constexpr std::size_t most_groups = 1000;     // of half a kilobyte of JSON each
+constexpr std::size_t most_texels = 1 << 26;  // of all images, as in a scene: a small file can hold large ones
 
 int mode_of(Wrap wrap) {
   return wrap == Wrap::mirror ? glb::mirrored_repeat : wrap == Wrap::clamp ? glb::clamp_to_edge : glb::repeat;
@@ -37,16 +37,25 @@ std::shared_ptr<const ColourImage> decode(std::string_view bytes) {
       ColourImage{static_cast<std::uint32_t>(picture.width), static_cast<std::uint32_t>(picture.height), std::move(picture.rgb)});
 }
 
+std::size_t whole_number(const json& value) {
+  if (!value.is_number_unsigned()) throw SolutionFileError("one of its numbers is not a whole number");
+  return value.get<std::size_t>();
+}
+
+/// The images that were read, by their numbers in the file.
+struct KnownImages {
+  std::map<std::size_t, std::shared_ptr<const ColourImage>> images;
+  std::size_t texels = 0;
+};
+
 /// Reads an element of the list, with the images that were read before.
 void read_texture(const json& source, const std::function<std::string_view(std::size_t)>& image_bytes, DisplayMesh& mesh,
-                  std::map<std::size_t, std::shared_ptr<const ColourImage>>& images) {
-  const auto material = source.at("material").get<std::size_t>(), image = source.at("image").get<std::size_t>();
+                  KnownImages& known) {
+  const std::size_t material = whole_number(source.at("material")), image = whole_number(source.at("image"));
   if (material >= mesh.materials.size()) throw SolutionFileError("there is no material " + std::to_string(material));
-  const auto [found, is_new] = images.try_emplace(image);
-  if (is_new) found->second = decode(image_bytes(image));
-  std::size_t texels = 0;
-  for (const auto& [number, known] : images) texels += known->texel_count();
-  if (texels > most_texels) throw SolutionFileError("the images have more than 64 million texels");
+  const auto [found, is_new] = known.images.try_emplace(image);
+  if (is_new) known.texels += (found->second = decode(image_bytes(image)))->texel_count();
+  if (known.texels > most_texels) throw SolutionFileError("the images have more than 67108864 texels");
   const auto [r, g, b] = source.at("factor").get<std::array<double, 3>>();
   for (const double band : {r, g, b})
     if (!(band >= 0 && band <= 1)) throw SolutionFileError("its factor is outside [0, 1]");
@@ -64,7 +73,7 @@ TriangleGroups group_by_texture(const DisplayMesh& mesh) {
     runs[has_texture ? std::optional(run.material) : std::nullopt].emplace_back(first, &run);
     first += run.count;
   }
-  if (runs.size() < 2 || runs.size() > most_groups) {
+  if (runs.size() < 2 || runs.size() > most_groups + 1) {
     const auto material = runs.size() == 1 ? runs.begin()->first : std::nullopt;
     return {{{material, mesh.triangles.size()}}, mesh.triangles, mesh.faces};
   }
@@ -106,11 +115,11 @@ void write_textures(const DisplayMesh& mesh, const TriangleGroups& groups, Binar
 }
 
 void read_textures(const json& list, const std::function<std::string_view(std::size_t)>& image_bytes, DisplayMesh& mesh) {
-  std::map<std::size_t, std::shared_ptr<const ColourImage>> images;
+  KnownImages known;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = "texture " + std::to_string(i) + ": ";
     try {
-      read_texture(list[i], image_bytes, mesh, images);
+      read_texture(list[i], image_bytes, mesh, known);
     } catch (const json::exception&) {
       throw SolutionFileError(place + "not as Alvor writes it");
     } catch (const FileError& error) {

@@ -14,26 +14,34 @@ double longest_side(const std::array<Vec3, 3>& corners) {
   return std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
 }
 
-void add_triangle(std::vector<Facet>& facets, const std::array<Vec3, 3>& corners, std::uint32_t face,
-                  const std::array<TexturePoint, 3>& points) {
+/// Appends a triangle, unless it has no area.
+void add_triangle(std::vector<Facet>& facets, Facet facet) {
+  const auto& corners = facet.corners;
   const Vec3 doubled = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double longest = longest_side(corners), area = 0.5 * length(doubled);
-  if (!(area > line_area * longest * longest)) return;
-  facets.push_back({corners, normalized(doubled), area, face, points});
+  const double longest = longest_side(corners);
+  facet.area = 0.5 * length(doubled);
+  if (!(facet.area > line_area * longest * longest)) return;
+  facet.normal = normalized(doubled);
+  facets.push_back(facet);
 }
 
 void add_face(std::vector<Facet>& facets, const Scene& scene, std::uint32_t face) {
   std::vector<Vec3> polygon;
   for (const std::uint32_t corner : scene.corners_of(scene.faces[face])) polygon.push_back(scene.vertices[corner]);
   const auto points = scene.texture_points_of(scene.faces[face]);
-  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    std::array<TexturePoint, 3> at;
-    if (!points.empty()) at = {points[a], points[b], points[c]};
-    add_triangle(facets, {polygon[a], polygon[b], polygon[c]}, face, at);
+  const auto colours = scene.colours_of(scene.faces[face]);
+  const auto add = [&](const std::array<std::uint32_t, 3>& corners) {
+    Facet facet{.face = face};
+    for (std::size_t c = 0; c < 3; ++c) {
+      facet.corners[c] = polygon[corners[c]];
+      if (!points.empty()) facet.texture_points[c] = points[corners[c]];
+      if (!colours.empty()) facet.colours[c] = colours[corners[c]];
+    }
+    add_triangle(facets, facet);
   };
   for (const auto& [a, b, c, d] : pieces_of(polygon)) {
-    add(a, b, c);
-    if (d != no_corner) add(a, c, d);
+    add({a, b, c});
+    if (d != no_corner) add({a, c, d});
   }
 }
 

@@ -61,7 +61,7 @@ void PathTracer::add_surfaces(const Scene& scene, std::span<const Facet> facets)
     const auto& [a, b, c] = facet.corners;
     surfaces_.push_back({(a - extent_.centre) * scale, (b - a) * scale, (c - a) * scale, facet.normal, material.emission,
                          material.reflectance, material.two_sided, static_cast<std::uint32_t>(lights.size()),
-                         material.regular_transmittance, material.texture, facet.texture_points});
+                         material.regular_transmittance, material.texture, facet.texture_points, facet.colours});
     const Surface& s = surfaces_.back();
     has_panes_ |= s.is_pane();
     if (material.emission.is_zero()) continue;
@@ -199,12 +199,14 @@ PathTracer::Met PathTracer::meet(const Bend& bend, Vec3 direction, std::span<con
 }
 
 Rgb PathTracer::Met::reflectance() const {
-  if (!surface->texture) return surface->reflectance;
-  const TexturePoint &a = surface->texture_points[0], &b = surface->texture_points[1], &c = surface->texture_points[2];
+  const Surface& s = *surface;
+  const double w = 1 - u - v;
+  const Rgb colour = w * widen(s.colours[0]) + u * widen(s.colours[1]) + v * widen(s.colours[2]);
+  if (!s.texture) return s.reflectance * colour;
   const auto mixed = [&](float TexturePoint::*axis) {
-    return static_cast<float>((1 - u - v) * a.*axis + u * b.*axis + v * c.*axis);
+    return static_cast<float>(w * s.texture_points[0].*axis + u * s.texture_points[1].*axis + v * s.texture_points[2].*axis);
   };
-  return surface->texture->reflectance_at({mixed(&TexturePoint::s), mixed(&TexturePoint::t)});
+  return s.texture->reflectance_at({mixed(&TexturePoint::s), mixed(&TexturePoint::t)}) * colour;
 }
 
 /// Returns what a ray meets that goes on through all panes.

@@ -61,6 +61,7 @@ class PathTracer {
     Rgb through;              ///< regular transmittance
     std::optional<Texture> texture;
     std::array<TexturePoint, 3> texture_points;  ///< of the corners, if there is a texture
+    std::array<RgbF, 3> colours;                 ///< of the corners
     bool is_pane() const { return !through.is_zero(); }
   };
   /// A point at which a path bends, just above a surface.

@@ -40,6 +40,14 @@ Wrap wrap_of(int mode) {
   return mode == aiTextureMapMode_Mirror ? Wrap::mirror : mode == aiTextureMapMode_Clamp ? Wrap::clamp : Wrap::repeat;
 }
 
+/// Returns a colour that files hold as sRGB of 8 bits.
+RgbF linear_of(const aiColor4D& colour) {
+  const auto band = [](float x) {
+    return static_cast<float>(linear_of_srgb_byte(static_cast<std::uint8_t>(x >= 0 ? std::min(255 * x + 0.5F, 255.0F) : 0)));
+  };
+  return {band(colour.r), band(colour.g), band(colour.b)};
+}
+
 /// Returns whether a material moves or turns its texture of diffuse colour, which no two formats do alike.
 bool moves_texture(const aiMaterial& source) {
   aiUVTransform transform;
@@ -51,12 +59,14 @@ bool moves_texture(const aiMaterial& source) {
 struct Convention {
   UpAxis up = UpAxis::y;
   double metres_per_unit = 1;
+  bool shows_vertex_colours = false;  ///< else they are data that programs keep beside the surface
 };
 
 Convention convention_of(const aiScene& source, const std::string& extension) {
   Convention convention;
   // Collada files state their unit and up axis, and Assimp converts the scene to y-up metres.
   if (extension == ".stl" || extension == ".3ds" || extension == ".ply") convention.up = UpAxis::z;
+  convention.shows_vertex_colours = extension == ".ply" || extension == ".dae";
   if (extension == ".fbx" && source.mMetaData) {
     int up = 1;
     float centimetres = 1;  // the type in which Assimp stores it; Get() refuses another
@@ -81,6 +91,7 @@ class AssimpReader {
     count_lights(unsupported);
     count_materials(unsupported);
     images_.append_warnings(file_.warnings);
+    bare_materials_.append_warnings(file_.scene, file_.warnings);
     unsupported.append_warnings(file_.warnings);
     file_.scene.up = convention_.up;
     return std::move(file_);
@@ -95,29 +106,33 @@ class AssimpReader {
     int two_sided = 0;
     source.Get(AI_MATKEY_TWOSIDED, two_sided);
     const Rgb grey = default_reflectance;
-    const Rgb reflectance = made_up ? grey : colour(source, name, AI_MATKEY_COLOR_DIFFUSE, aiTextureType_DIFFUSE, grey);
-    const Rgb radiance = colour(source, name, AI_MATKEY_COLOR_EMISSIVE, aiTextureType_EMISSIVE, {});
-    file_.scene.materials.push_back({name, emission_of_radiance(radiance), reflectance, two_sided != 0});
     // Formats disagree on whether 0 or 1 is opaque, so 0 counts as opaque: nobody sends what cannot be seen.
     float opacity = 1;
     source.Get(AI_MATKEY_OPACITY, opacity);
-    if (opacity > 0 && opacity < 1) leave(file_.scene.materials.back(), opacity);
-    else if (!made_up) cover(source, file_.scene.materials.back());
+    const bool has_holes = opacity > 0 && opacity < 1;
+    Material material{name, {}, grey, two_sided != 0};
+    if (!made_up && (has_holes || !cover(source, material)))
+      material.reflectance = colour(source, name, AI_MATKEY_COLOR_DIFFUSE, aiTextureType_DIFFUSE, grey);
+    material.emission = emission_of_radiance(colour(source, name, AI_MATKEY_COLOR_EMISSIVE, aiTextureType_EMISSIVE, {}));
+    if (has_holes) leave(material, opacity);
+    file_.scene.materials.push_back(std::move(material));
+    is_made_up_.push_back(made_up);
   }
 
-  /// Gives a material the texture of its diffuse colour.
-  void cover(const aiMaterial& source, Material& material) {
+  /// Gives a material the texture of its diffuse colour. Returns false if it has none that counts by place.
+  bool cover(const aiMaterial& source, Material& material) {
     aiString texture;
-    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != AI_SUCCESS || moves_texture(source)) return;
+    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != AI_SUCCESS || moves_texture(source)) return false;
     const auto image = images_.decoded(texture.C_Str(), bytes_of(texture));
-    if (!image) return;
+    if (!image) return false;
     aiColor3D found;
     const Rgb factor =
         source.Get(AI_MATKEY_COLOR_DIFFUSE, found) == AI_SUCCESS ? Rgb{found.r, found.g, found.b} : default_reflectance;
     int across = aiTextureMapMode_Wrap, down = aiTextureMapMode_Wrap;
     source.Get(AI_MATKEY_MAPPINGMODE_U(aiTextureType_DIFFUSE, 0), across);
     source.Get(AI_MATKEY_MAPPINGMODE_V(aiTextureType_DIFFUSE, 0), down);
-    if (!factor.is_zero()) ColourImages::cover(material, factor, image, wrap_of(across), wrap_of(down));
+    images_.cover(material, factor, image, wrap_of(across), wrap_of(down));
+    return true;
   }
 
   Rgb colour(const aiMaterial& source, const std::string& name, const char* key, unsigned type, unsigned index, aiTextureType map,
@@ -166,6 +181,10 @@ class AssimpReader {
     std::vector<Vec3> vertices;
     for (const aiVector3D& vertex : std::span(mesh.mVertices, mesh.mNumVertices)) vertices.push_back(vec3_of(vertex));
     const std::uint32_t first = add_placed_vertices(file_.scene, vertices, placement);
+    // Colours are all that a file without materials says of its surfaces.
+    if (const std::uint32_t material = material_of(mesh);
+        colours_of(mesh) && material < is_made_up_.size() && is_made_up_[material])
+      file_.scene.materials[material].reflectance = reflectance_of_texel(255) * Rgb{1, 1, 1};
     for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) add_face(face, mesh, first, placement);
   }
 
@@ -173,7 +192,9 @@ class AssimpReader {
     if (face.mNumIndices < 3) return;
     std::vector<std::uint32_t> polygon;
     std::vector<TexturePoint> points;
+    std::vector<RgbF> colours;
     const aiVector3D* const coordinates = texture_coordinates_of(mesh);
+    const aiColor4D* const colour = colours_of(mesh);
     for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
       if (index >= mesh.mNumVertices)
         throw ImportError("face " + std::to_string(file_.scene.faces.size()),
@@ -182,9 +203,15 @@ class AssimpReader {
       polygon.push_back(first_vertex + index);
       // Assimp counts t from the lower edge of images.
       if (coordinates) points.push_back(texture_point(coordinates[index].x, 1 - coordinates[index].y));
+      if (colour) colours.push_back(linear_of(colour[index]));
     }
-    add_placed_face(file_.scene, polygon, material_of(mesh), placement, points);
+    std::uint32_t material = material_of(mesh);
+    if (!coordinates && file_.scene.materials[material].texture) material = bare_materials_.of(file_.scene, material);
+    add_placed_face(file_.scene, polygon, material, placement, points, colours);
   }
+
+  /// Returns the colours of a mesh's vertices; null if they are none of its surface.
+  const aiColor4D* colours_of(const aiMesh& mesh) const { return convention_.shows_vertex_colours ? mesh.mColors[0] : nullptr; }
 
   /// Returns the texture coordinates of a mesh's vertices; null if its material has no texture, or it no coordinates.
   const aiVector3D* texture_coordinates_of(const aiMesh& mesh) {
@@ -225,7 +252,9 @@ class AssimpReader {
   SceneFiles& files_;
   Convention convention_;
   ColourImages images_;
+  BareMaterials bare_materials_;
   SceneFile file_;
+  std::vector<bool> is_made_up_;  // by material: Assimp made it for a file without materials
   std::optional<std::uint32_t> default_material_;
 };
 

@@ -54,16 +54,18 @@ void ColourImages::keep_within_limit() {
   }
 }
 
+const ColourImages::Facts& ColourImages::facts_of(const ColourImage& image) {
+  Facts& facts = facts_[&image];
+  if (facts.columns != image.columns) facts = {image.columns, has_one_colour(image), mean_reflectance(image)};
+  return facts;
+}
+
 void ColourImages::cover(Material& material, const Rgb& factor, std::shared_ptr<const ColourImage> image, Wrap wrap_s,
                          Wrap wrap_t) {
-  if (has_one_colour(*image)) {
-    const auto band = [&](std::size_t b) { return linear_of_srgb_byte(image->texels[b]); };
-    material.reflectance = factor * Rgb{band(0), band(1), band(2)};
-    return;
-  }
   const Rgb within = lower(upper(factor, {}), Rgb{1, 1, 1});
-  material.reflectance = within * mean_reflectance(*image);
-  material.texture = Texture{std::move(image), within, wrap_s, wrap_t};
+  const Facts& facts = facts_of(*image);
+  material.reflectance = within * facts.mean;
+  if (!facts.has_one_colour) material.texture = Texture{std::move(image), within, wrap_s, wrap_t};
 }
 
 void ColourImages::append_warnings(std::vector<std::string>& warnings) const {
@@ -88,6 +90,21 @@ ColourImage halved(const ColourImage& image) {
       }
     }
   return half;
+}
+
+std::uint32_t BareMaterials::of(Scene& scene, std::uint32_t material) {
+  const auto [copy, is_new] = copies_.try_emplace(material, static_cast<std::uint32_t>(scene.materials.size()));
+  if (is_new) {
+    scene.materials.push_back(scene.materials[material]);
+    scene.materials.back().texture.reset();
+  }
+  return copy->second;
+}
+
+void BareMaterials::append_warnings(const Scene& scene, std::vector<std::string>& warnings) const {
+  for (const auto& [material, copy] : copies_)
+    warnings.push_back("material '" + scene.materials[material].name +
+                       "': some faces have no texture coordinates; there its texture counts by its mean colour");
 }
 
 TexturePoint texture_point(double s, double t) { return {on_image(s), on_image(t)}; }

@@ -32,7 +32,7 @@ const tinygltf::Accessor& accessor_of(const tinygltf::Model& model, int index, c
   return model.accessors[static_cast<std::size_t>(index)];
 }
 
-/// Returns the elements of an accessor, checked to lie in its buffer view. `type` is TINYGLTF_TYPE_SCALAR, _VEC2 or _VEC3.
+/// Returns the elements of an accessor, checked to lie in its buffer view. `type` is TINYGLTF_TYPE_SCALAR, _VEC2, _VEC3 or _VEC4.
 Elements elements_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor, int type, const std::string& place) {
   if (accessor.sparse.isSparse) throw ImportError(place, "sparse accessors are not supported");
   if (accessor.type != type) throw ImportError(place, "is not of the type its use asks for");
@@ -121,6 +121,21 @@ std::vector<TexturePoint> read_texture_points(const tinygltf::Model& model, int 
     points.push_back({static_cast<float>(load_coordinate(elements.at(i, 0), source, place)),
                       static_cast<float>(load_coordinate(elements.at(i, 1), source, place))});
   return points;
+}
+
+std::vector<RgbF> read_colours(const tinygltf::Model& model, int accessor) {
+  const std::string place = "accessor " + std::to_string(accessor);
+  const tinygltf::Accessor& source = accessor_of(model, accessor, place);
+  const int type = source.type == TINYGLTF_TYPE_VEC4 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+  const Elements elements = elements_of(model, source, type, place);
+  const auto band = [&](std::size_t i, std::size_t component) {
+    const double value = load_coordinate(elements.at(i, component), source, place);
+    return value >= 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F;
+  };
+  std::vector<RgbF> colours;
+  colours.reserve(elements.count);
+  for (std::size_t i = 0; i < elements.count; ++i) colours.push_back({band(i, 0), band(i, 1), band(i, 2)});
+  return colours;
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor) {

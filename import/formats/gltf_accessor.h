@@ -24,6 +24,8 @@ std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, int v
 std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor);
 /// Returns the texture coordinates in an accessor. Throws ImportError as read_positions does.
 std::vector<TexturePoint> read_texture_points(const tinygltf::Model& model, int accessor);
+/// Returns the colours in an accessor, in [0, 1] and without their alpha. Throws ImportError as read_positions does.
+std::vector<RgbF> read_colours(const tinygltf::Model& model, int accessor);
 /// Returns the indices in an accessor. Throws ImportError as read_positions does.
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor);
 

@@ -1,6 +1,7 @@
 #include "import/formats/gltf_import.h"
 
 #include "import/base/import_error.h"
+#include "import/formats/colour_images.h"
 #include "import/formats/gltf_accessor.h"
 #include "import/formats/gltf_file.h"
 #include "import/formats/gltf_lights.h"
@@ -113,6 +114,7 @@ class GltfReader {
     texture_maps_ = std::move(read.texture_maps);
     add_tree(root_nodes());
     count_unsupported_materials();
+    bare_materials_.append_warnings(file_.scene, file_.warnings);
     unsupported_.append_warnings(file_.warnings);
     lights_.append_warnings(file_.warnings);
     file_.warnings.insert(file_.warnings.end(), luminaires_.warnings().begin(), luminaires_.warnings().end());
@@ -180,7 +182,7 @@ class GltfReader {
 
   void add_mesh(int index, const Placement& placement) {
     const tinygltf::Mesh& mesh = element(model_.meshes, index, "mesh", "scene");
-    std::map<int, Vertices> shared;  // primitives often share their vertices
+    Shared shared;
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p)
       if (!draws_no_surface(mesh.primitives[p].mode))
         add_primitive(mesh.primitives[p], "mesh " + std::to_string(index) + " primitive " + std::to_string(p), placement, shared);
@@ -188,6 +190,12 @@ class GltfReader {
 
   struct Vertices {
     std::uint32_t first, count;
+  };
+  /// What the primitives of a mesh often share, by accessor.
+  struct Shared {
+    std::map<int, Vertices> vertices;
+    std::map<int, std::vector<TexturePoint>> points;
+    std::map<int, std::vector<RgbF>> colours;
   };
 
   Vertices add_vertices(int accessor, const Placement& placement, std::map<int, Vertices>& shared) {
@@ -205,31 +213,64 @@ class GltfReader {
     return all;
   }
 
-  void add_primitive(const tinygltf::Primitive& primitive, const std::string& place, const Placement& placement,
-                     std::map<int, Vertices>& shared) {
+  void add_primitive(const tinygltf::Primitive& primitive, const std::string& place, const Placement& placement, Shared& shared) {
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) throw ImportError(place, "has no POSITION");
-    const Vertices vertices = add_vertices(position->second, placement, shared);
-    const std::uint32_t material = material_of(primitive, place);
-    const std::vector<TexturePoint> points = texture_points_of(primitive, material);
+    const Vertices vertices = add_vertices(position->second, placement, shared.vertices);
+    std::uint32_t material = material_of(primitive, place);
+    const std::vector<TexturePoint>* const points = texture_points_of(primitive, material, vertices.count, shared);
+    const std::vector<RgbF>* const colours = colours_of(primitive, vertices.count, shared);
+    const GltfTextureMap map = points ? texture_maps_[material] : GltfTextureMap();
+    if (!points && file_.scene.materials[material].texture) material = bare_materials_.of(file_.scene, material);
     for (Triangle triangle : triangles_of(primitive.mode, indices_of(primitive, vertices.count), place)) {
-      std::array<TexturePoint, 3> at;
-      for (std::size_t c = 0; c < 3 && !points.empty(); ++c)
-        if (triangle[c] < points.size()) at[c] = points[triangle[c]];
-      for (std::uint32_t& vertex : triangle) vertex = checked(vertex, vertices, place);
-      add_placed_face(file_.scene, triangle, material, placement, std::span(at).first(points.empty() ? 0 : 3));
+      std::array<TexturePoint, 3> points_here;
+      std::array<RgbF, 3> colours_here;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t vertex = triangle[c];
+        triangle[c] = checked(vertex, vertices, place);
+        if (points) points_here[c] = map.of((*points)[vertex]);
+        if (colours) colours_here[c] = (*colours)[vertex];
+      }
+      add_placed_face(file_.scene, triangle, material, placement, std::span(points_here).first(points ? 3 : 0),
+                      std::span(colours_here).first(colours ? 3 : 0));
     }
   }
 
-  /// Returns the texture point of each vertex of a primitive; nothing if its material has no texture, or it no coordinates.
-  std::vector<TexturePoint> texture_points_of(const tinygltf::Primitive& primitive, std::uint32_t material) const {
-    if (!file_.scene.materials[material].texture) return {};
-    const GltfTextureMap& map = texture_maps_[material];
-    const auto accessor = primitive.attributes.find("TEXCOORD_" + std::to_string(map.set));
-    if (accessor == primitive.attributes.end()) return {};
-    std::vector<TexturePoint> points = read_texture_points(model_, accessor->second);
-    for (TexturePoint& point : points) point = map.of(point);
-    return points;
+  /// Returns what an accessor holds for each of `count` vertices, as `read_values` reads it; null, with a warning, if it cannot
+  /// be read or holds too few.
+  template <class Value, class Read>
+  const std::vector<Value>* shared_values(std::map<int, std::vector<Value>>& known, int accessor, std::uint32_t count,
+                                          Read read_values) {
+    const auto [found, is_new] = known.try_emplace(accessor);
+    if (is_new) {
+      try {
+        found->second = read_values(model_, accessor);
+        if (found->second.size() < count)
+          file_.warnings.push_back(place_of("accessor", static_cast<std::size_t>(accessor)) + ": is too short and is left out");
+      } catch (const ImportError& error) {
+        file_.warnings.push_back(std::string(error.what()) + "; it is left out");
+      }
+    }
+    return found->second.size() >= count ? &found->second : nullptr;
+  }
+
+  /// Returns the colours of a primitive's vertices; null if it has none. Colours of unlit materials are light.
+  const std::vector<RgbF>* colours_of(const tinygltf::Primitive& primitive, std::uint32_t count, Shared& shared) {
+    const auto accessor = primitive.attributes.find("COLOR_0");
+    if (accessor == primitive.attributes.end()) return nullptr;
+    const bool is_unlit =
+        primitive.material >= 0 &&
+        model_.materials[static_cast<std::size_t>(primitive.material)].extensions.contains("KHR_materials_unlit");
+    return is_unlit ? nullptr : shared_values(shared.colours, accessor->second, count, read_colours);
+  }
+
+  /// Returns the texture coordinates of a primitive's vertices; null if its material has no texture, or it no coordinates.
+  const std::vector<TexturePoint>* texture_points_of(const tinygltf::Primitive& primitive, std::uint32_t material,
+                                                     std::uint32_t count, Shared& shared) {
+    if (!file_.scene.materials[material].texture) return nullptr;
+    const auto accessor = primitive.attributes.find("TEXCOORD_" + std::to_string(texture_maps_[material].set));
+    if (accessor == primitive.attributes.end()) return nullptr;
+    return shared_values(shared.points, accessor->second, count, read_texture_points);
   }
 
   static std::uint32_t checked(std::uint32_t index, Vertices vertices, const std::string& place) {
@@ -268,6 +309,7 @@ class GltfReader {
   Unsupported unsupported_;
   SceneFile file_;
   std::vector<GltfTextureMap> texture_maps_;  // by material
+  BareMaterials bare_materials_;
   std::optional<std::uint32_t> default_material_;
 };
 

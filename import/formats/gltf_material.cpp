@@ -34,6 +34,12 @@ std::string name_of(const tinygltf::Image* image, int texture) {
   return std::to_string(texture);
 }
 
+/// Returns what no two images of a file have in common: the number, and for people a name.
+std::string key_of(const tinygltf::Model& model, const tinygltf::Image& image) {
+  const auto number = static_cast<std::size_t>(&image - model.images.data());
+  return std::to_string(number) + (image.name.empty() ? "" : " " + image.name);
+}
+
 /// The colour and the opacity that a material has in the mean over a texture.
 struct MeanSurface {
   Rgb colour;
@@ -68,7 +74,8 @@ GltfTextureMap map_of(const tinygltf::TextureInfo& texture) {
   const tinygltf::Value& transform = extension->second;
   read_pair(transform, "offset", map.offset);
   read_pair(transform, "scale", map.scale);
-  map.rotation = number_in(transform, "rotation", 0);
+  const double rotation = number_in(transform, "rotation", 0);
+  map.cosine = std::cos(rotation), map.sine = std::sin(rotation);
   map.set = static_cast<int>(std::clamp(number_in(transform, "texCoord", map.set), 0.0, 1000.0));
   return map;
 }
@@ -104,10 +111,11 @@ double transmission_of(const tinygltf::Material& material) {
   return share >= 0 ? std::min(1.0, share) : 0;
 }
 
-// Offset * rotation * scale, as the extension defines it.
+// Offset * rotation * scale. The rotation turns as in three.js and the Khronos sample viewer, by which the Khronos test model
+// TextureTransformTest is right; the matrix printed in the specification turns the other way.
 TexturePoint GltfTextureMap::of(TexturePoint given) const {
-  const double s = scale[0] * double{given.s}, t = scale[1] * double{given.t}, c = std::cos(rotation), n = std::sin(rotation);
-  return texture_point(c * s + n * t + offset[0], -n * s + c * t + offset[1]);
+  const double s = scale[0] * double{given.s}, t = scale[1] * double{given.t};
+  return texture_point(cosine * s + sine * t + offset[0], -sine * s + cosine * t + offset[1]);
 }
 
 GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings) {
@@ -122,15 +130,13 @@ GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std:
     const double through = transmission_of(source);
     const tinygltf::Image* const image = image_of(model, texture.index);
     const bool is_opaque = alpha.kind == AlphaUse::Kind::ignored && through == 0 && !factor.is_zero();
-    const auto colours =
-        image && is_opaque ? images.decoded(name_of(image, texture.index), encoded_bytes(model, *image)) : nullptr;
+    const auto colours = image && is_opaque ? images.decoded(key_of(model, *image), encoded_bytes(model, *image)) : nullptr;
     read.texture_maps.push_back(map_of(texture));
     Material& material = read.materials.emplace_back(Material{name, {}, {}, source.doubleSided, {}, {}});
     if (colours) {
       const tinygltf::Sampler* const sampler =
           element(model.samplers, model.textures[static_cast<std::size_t>(texture.index)].sampler);
-      ColourImages::cover(material, factor, colours, wrap_of(sampler ? sampler->wrapS : 0),
-                          wrap_of(sampler ? sampler->wrapT : 0));
+      images.cover(material, factor, colours, wrap_of(sampler ? sampler->wrapS : 0), wrap_of(sampler ? sampler->wrapT : 0));
     }
     const MeanSurface mean =
         colours ? MeanSurface{material.reflectance} : mean_surface(model, factor, texture, alpha, name, warnings);

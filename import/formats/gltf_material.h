@@ -21,8 +21,8 @@ double transmission_of(const tinygltf::Material& material);
 
 /// Where a texture lies on faces: a set of texture coordinates, and KHR_texture_transform.
 struct GltfTextureMap {
-  int set = 0;  ///< of TEXCOORD_n
-  double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation = 0;
+  int set = 0;                                                         ///< of TEXCOORD_n
+  double offset[2] = {0, 0}, scale[2] = {1, 1}, cosine = 1, sine = 0;  ///< of the rotation
 
   TexturePoint of(TexturePoint given) const;
 };

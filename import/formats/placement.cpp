@@ -24,13 +24,14 @@ std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, 
 }
 
 void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement,
-                     std::span<const TexturePoint> points) {
+                     std::span<const TexturePoint> points, std::span<const RgbF> colours) {
   refuse_beyond(scene.corners.size() + polygon.size(), max_corners, "corners");
-  scene.add_face(polygon, material, points);
+  scene.add_face(polygon, material, points, colours);
   if (!placement.mirrors()) return;
   const auto all_but_first = static_cast<std::ptrdiff_t>(polygon.size()) - 1;
   std::reverse(scene.corners.end() - all_but_first, scene.corners.end());
   if (!points.empty()) std::reverse(scene.texture_points.end() - all_but_first, scene.texture_points.end());
+  if (!colours.empty()) std::reverse(scene.corner_colours.end() - all_but_first, scene.corner_colours.end());
 }
 
 std::uint32_t add_object(Scene& scene, std::string name, std::optional<std::uint32_t> parent, const Placement& placement) {

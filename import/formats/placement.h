@@ -15,10 +15,10 @@ namespace alvor {
 /// vertices: a file of a few kilobytes can ask for any number.
 std::uint32_t add_placed_vertices(Scene& scene, std::span<const Vec3> vertices, const Placement& placement);
 
-/// Appends a face; `points` as in Scene::add_face. Reverses its corners if the placement mirrors, so that its front stays its
-/// front. Throws ImportError when there are too many.
+/// Appends a face; `points` and `colours` as in Scene::add_face. Reverses its corners if the placement mirrors, so that its front
+/// stays its front. Throws ImportError when there are too many.
 void add_placed_face(Scene& scene, std::span<const std::uint32_t> polygon, std::uint32_t material, const Placement& placement,
-                     std::span<const TexturePoint> points = {});
+                     std::span<const TexturePoint> points = {}, std::span<const RgbF> colours = {});
 
 /// Appends an object that has no faces yet, and returns its number.
 std::uint32_t add_object(Scene& scene, std::string name, std::optional<std::uint32_t> parent, const Placement& placement);

@@ -40,7 +40,7 @@ std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, cons
 /// Returns the means of a file's bytes; nothing if there are none.
 std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha = {});
 
-/// Returns the colours of an encoded image; those of 16 bits rounded to 8, without its alpha. Nothing as above. The image may be
+/// Returns the colours of an encoded image; those of 16 bits cut to 8, without its alpha. Nothing as above. The image may be
 /// larger than ColourImage allows.
 std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded);
 

@@ -1,6 +1,7 @@
 #include "radiosity/plan/scene_census.h"
 
 #include <algorithm>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -36,13 +37,22 @@ bool is_grey(const Light& light) {
   return light.intensity.is_grey() && (!light.environment || std::ranges::all_of(light.environment->pixels, is_grey_pixel));
 }
 
+/// Returns whether the corners of a root have colours that are not grey.
+bool is_coloured(const BaseMesh& mesh, std::uint32_t root) {
+  if (!mesh.has_colours()) return false;
+  const auto corners = static_cast<std::size_t>(mesh.roots()[root].corner_count);
+  return !std::ranges::all_of(std::span(mesh.corner_colours(root)).first(corners), &RgbF::is_grey);
+}
+
 }  // namespace
 
 SceneCensus::SceneCensus(const BaseMesh& mesh) {
-  std::vector<bool> is_used(mesh.materials().size());
+  std::vector<bool> is_used(mesh.materials().size()), has_colours(mesh.materials().size());
   double area = 0, emitting_area = 0;
-  for (const RootPatch& root : mesh.roots()) {
+  for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
+    const RootPatch& root = mesh.roots()[r];
     const Material& material = mesh.materials()[root.material];
+    if (is_coloured(mesh, r)) has_colours[root.material] = true;
     const bool emits = !material.emission.is_zero();
     is_used[root.material] = true;
     area += root.area;
@@ -66,7 +76,7 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     const Material& material = mesh.materials()[m];
     ++materials;
     reflecting_materials += !material.reflectance.is_zero();
-    const bool is_grey = grey.contain(material);
+    const bool is_grey = !has_colours[m] && grey.contain(material);
     grey_materials += is_grey;
     if (!is_grey && !coloured) coloured = &material;
     largest_reflectance = std::max(largest_reflectance, material.largest_reflectance().max());

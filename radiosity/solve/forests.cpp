@@ -55,7 +55,7 @@ Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits&
     : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
   for (const RootPatch& root : mesh.roots()) area_ += root.area;
   split_to_start(plan);
-  if (mesh.has_textures()) split_to_show_textures(plan);
+  if (mesh.has_varying_reflectance()) split_to_show_textures(plan);
   fit_to_nodes();
 }
 
@@ -86,7 +86,7 @@ void Forests::split_to_show_textures(const Plan& plan) {
   std::vector<NodeIndex> split;
   for (NodeIndex node = 0; node < leaves_.node_count(); ++node) {
     const std::uint32_t root = leaves_.id(node).root_face();
-    if (!leaves_.is_leaf(node) || !reflectance_.has_texture(root) || !plan.may_be_lit(root)) continue;
+    if (!leaves_.is_leaf(node) || !reflectance_.varies(root) || !plan.may_be_lit(root)) continue;
     const PatchShape shape = leaves_.shape(node);
     if (longest_edge(mesh_, shape) > start_textured_edge * mesh_.extent() && has_contrast(shape))
       leaves_.split(node, limits_, split);
@@ -100,7 +100,7 @@ void Forests::fit_to_nodes() {
     const PatchShape shape = leaves_.shape(leaf);
     leaf_centre_.push_back(centre_of(mesh_, shape));
     leaf_area_.push_back(area_of(mesh_, shape));
-    if (mesh_.has_textures()) leaf_reflectance_.push_back(reflectance_.of(shape));
+    if (mesh_.has_varying_reflectance()) leaf_reflectance_.push_back(reflectance_.of(shape));
   }
 }
 

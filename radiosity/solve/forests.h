@@ -37,7 +37,8 @@ class Forests {
   double leaf_area(NodeIndex leaf) const { return leaf_area_[leaf]; }  ///< m2
   /// Returns the mean reflectance of a leaf node.
   Rgb reflectance(NodeIndex leaf) const {
-    return mesh_.has_textures() ? leaf_reflectance_[leaf] : mesh_.material_of(leaves_.id(leaf).root_face()).reflectance;
+    return mesh_.has_varying_reflectance() ? leaf_reflectance_[leaf]
+                                           : mesh_.material_of(leaves_.id(leaf).root_face()).reflectance;
   }
 
   /// Returns the smooth neighbours of each leaf of the row or the leaf forest. Requires: leaves of that forest, each once.
@@ -69,7 +70,7 @@ class Forests {
   std::vector<Vec3> row_centre_, leaf_centre_;
   std::vector<double> leaf_area_;
   const PatchReflectance reflectance_;
-  std::vector<Rgb> leaf_reflectance_;  // by leaf node; none if there are no textures
+  std::vector<Rgb> leaf_reflectance_;  // by leaf node; none if no reflectance varies
 };
 
 /// Sorts patches so that any first part of them is spread over the scene and holds much of its area. One patch of each face comes

@@ -20,11 +20,11 @@ PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.r
     for (std::size_t n = first; n < leaves_.size(); ++n) {
       const double area = forests.leaf_area(leaves_[n]);
       patch.area += area;
-      if (!state.mesh.has_textures()) continue;
+      if (!state.mesh.has_varying_reflectance()) continue;
       leaf_reflectance_.push_back(forests.reflectance(leaves_[n]));
       reflecting += area * leaf_reflectance_.back();
     }
-    if (state.mesh.has_textures() && patch.area > 0) patch.reflectance = (1 / patch.area) * reflecting;
+    if (state.mesh.has_varying_reflectance() && patch.area > 0) patch.reflectance = (1 / patch.area) * reflecting;
     patches_.push_back(patch);
   }
   for (const NodeIndex leaf : leaves_) {

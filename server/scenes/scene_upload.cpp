@@ -12,7 +12,7 @@ void refuse_beyond(std::uint64_t count, std::uint64_t limit, const char* unit) {
 
 void SceneUpload::add(const v1::CreateSceneRequest& message) {
   // Sizes in memory; an empty material, light, object, web or map takes only a few bytes on the wire.
-  constexpr std::uint64_t bytes_of_material = 100, bytes_of_light = 300, bytes_of_object = 250, bytes_of_web = 150,
+  constexpr std::uint64_t bytes_of_material = 200, bytes_of_light = 300, bytes_of_object = 250, bytes_of_web = 150,
                           bytes_of_environment = 64;
   bytes_ += message.ByteSizeLong() + bytes_of_material * static_cast<std::uint64_t>(message.chunk().materials_size()) +
             bytes_of_light * static_cast<std::uint64_t>(message.chunk().lights_size()) +

@@ -1,5 +1,6 @@
 // The part of SolveStore that runs solves: whose turn it is, their threads, and which must end when memory is short.
 
+#include "meshing/patch_reflectance.h"
 #include "server/archive/record_codec.h"
 #include "server/base/status_error.h"
 #include "server/solves/solve_memory.h"
@@ -122,7 +123,7 @@ void SolveStore::run(Entry& entry) {
   // What the scene has become may be far more than it was: faces of many corners are cut up.
   const Solver solver = [&](const BaseMesh& mesh, const Plan& plan, const SolveOptions& how, SolutionLog& log,
                             const SolveControl& control) {
-    options_.memory.admit("solve", bytes_a_face * mesh.roots().size());
+    options_.memory.admit("solve", bytes_a_face * mesh.roots().size() + PatchReflectance::bytes_for(mesh));
     return options_.solver(mesh, plan, how, log, control);
   };
   const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),

@@ -108,7 +108,71 @@ TEST(SceneFile, ATextureCountsTexelByTexelAndAMissingOneNotAtAll) {
   EXPECT_FALSE(file.scene.materials[1].texture);
   expect_near(file.scene.materials[1].reflectance, {0.5, 0.5, 0.5});
   EXPECT_EQ(file.warnings,
-            (std::vector<std::string>{"material 'lost': texture 'nowhere.png' cannot be read and is left out"}));
+            (std::vector<std::string>{
+                "material 'lost': texture 'nowhere.png' cannot be read and is left out",
+                "material 'checked': some faces have no texture coordinates; there its texture counts by its mean colour"}));
+}
+
+TEST(SceneFile, ColoursOfPlyVerticesAreTheSurfaces) {
+  const Scene scene = read_scene_file(good_files / "coloured.ply").scene;
+  ASSERT_EQ(scene.corner_colours.size(), 4u);
+  expect_near(scene.materials[scene.faces[0].material].reflectance, reflectance_of_texel(255) * Rgb{1, 1, 1});
+  expect_near(widen(scene.corner_colours[0]), {1, 0, 0});
+  EXPECT_NEAR(scene.corner_colours[1].g, 0.5029, 1e-4) << "sRGB 188";
+  expect_near(widen(scene.corner_colours[3]), {1, 1, 1});
+}
+
+TEST(SceneFile, ColoursOfGltfVerticesMultiplyTheReflectance) {
+  const Scene scene = read_scene_file(good_files / "coloured.gltf").scene;
+  ASSERT_EQ(scene.corner_colours.size(), 6u);
+  expect_near(scene.materials[0].reflectance, {0.5, 0.8, 0.5});
+  expect_near(widen(scene.corner_colours[0]), {1, 0, 0});
+  EXPECT_NEAR(scene.corner_colours[1].g, 128.0 / 255, 1e-6) << "linear";
+  EXPECT_NEAR(scene.corner_colours[2].b, 0.2, 1e-6);
+  // The second is mirrored, and its corners run the other way.
+  EXPECT_EQ(scene.corner_colours[4], scene.corner_colours[2]);
+  EXPECT_EQ(scene.corner_colours[5], scene.corner_colours[1]);
+}
+
+// Scaled by (2, 4), turned by a quarter as the Khronos sample viewer does (s to -t, t to s), and moved by (0.25, 0.5).
+TEST(SceneFile, TexturesOfGltfLieAsTheirTransformSays) {
+  const Scene scene = read_scene_file(good_files / "transformed.gltf").scene;
+  const auto& texture = scene.materials[0].texture;
+  ASSERT_TRUE(texture);
+  EXPECT_EQ(texture->image->texels, (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}));
+  expect_near(texture->factor, {0.5, 1, 1});
+  EXPECT_EQ(texture->wrap_s, Wrap::clamp);
+  EXPECT_EQ(texture->wrap_t, Wrap::mirror);
+  constexpr float rounding = 1e-4F;  // of a half in 16 bits
+  const std::array<TexturePoint, 3> expected{{{0.25F, 0.5F}, {0.25F, -1.5F}, {2.25F, 0.5F}}};
+  ASSERT_EQ(scene.texture_points.size(), 3u);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(scene.texture_points[c].s, expected[c].s, rounding) << c;
+    EXPECT_NEAR(scene.texture_points[c].t, expected[c].t, rounding) << c;
+  }
+}
+
+TEST(SceneFile, ImagesOfGltfAreKnownByTheirNumbersNotTheirNames) {
+  const Scene scene = read_scene_file(good_files / "two_images.gltf").scene;
+  EXPECT_EQ(scene.materials[0].reflectance.g, 0);
+  EXPECT_EQ(scene.materials[1].reflectance.r, 0);
+  EXPECT_EQ(scene.materials[1].texture->image->texels, (std::vector<std::uint8_t>{0, 255, 0, 0, 188, 0}));
+}
+
+TEST(SceneFile, FacesOfGltfWithoutTextureCoordinatesHaveTheMeanOfTheImage) {
+  const SceneFile file = read_scene_file(good_files / "two_images.gltf");
+  const Scene& scene = file.scene;
+  ASSERT_EQ(scene.faces.size(), 4u);
+  for (const std::uint32_t face : {2u, 3u}) {
+    const Material &bare = scene.materials[scene.faces[face].material], &textured = scene.materials[face - 2];
+    EXPECT_FALSE(bare.texture);
+    EXPECT_EQ(bare.reflectance, textured.reflectance);
+  }
+  EXPECT_EQ(file.warnings,
+            (std::vector<std::string>{
+                "accessor 2: is too short and is left out",
+                "material 'red': some faces have no texture coordinates; there its texture counts by its mean colour",
+                "material 'green': some faces have no texture coordinates; there its texture counts by its mean colour"}));
 }
 
 TEST(SceneFile, NamesOfMaterialLibrariesMayHoldBlanks) {

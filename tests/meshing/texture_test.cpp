@@ -85,14 +85,6 @@ TEST(TextureMean, IsThatOfTheImageOverWholeRepeats) {
               rounding);
 }
 
-TEST(TextureMean, OfAPointIsItsTexel) {
-  const ColourImage image = test::noise(4, 4);
-  const Polygon point{{2.5, 1.5}, {2.5, 1.5}, {2.5, 1.5}};
-  const auto* texel = &image.texels[3 * (1 * 4 + 2)];
-  expect_near(TextureMean(image).over(point, Wrap::repeat, Wrap::repeat),
-              {reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])}, rounding);
-}
-
 TEST(TextureMean, OfAHugePolygonIsThatOfTheImage) {
   const ColourImage image = test::noise(64, 64);
   const Polygon huge{{0, 0}, {6e6, 0}, {6e6, 6e6}, {0, 6e6}};
@@ -122,6 +114,15 @@ Scene one_face(const std::vector<Vec3>& corners, const std::vector<TexturePoint>
   return scene;
 }
 
+/// Returns a scene of one face with colours.
+Scene coloured_face(const std::vector<Vec3>& corners, const std::vector<RgbF>& colours) {
+  Scene scene;
+  scene.materials = {{"coloured", {}, {0.9, 0.5, 0.8}, false, {}, {}}};
+  scene.add_polygon(corners, 0);
+  scene.corner_colours = colours;
+  return scene;
+}
+
 struct Shaped {
   const char* name;
   std::vector<Vec3> corners;
@@ -130,8 +131,7 @@ struct Shaped {
 
 class PatchesOfFaces : public testing::TestWithParam<Shaped> {};
 
-TEST_P(PatchesOfFaces, HaveTheMeanOfTheirParts) {
-  const BaseMesh mesh(one_face(GetParam().corners, GetParam().points));
+void expect_means_of_parts(const BaseMesh& mesh) {
   ASSERT_EQ(mesh.roots().size(), 1u);
   const PatchReflectance reflectance(mesh);
   std::vector<PatchShape> parts{shape_of(mesh, PatchId::root(0))};
@@ -149,9 +149,20 @@ TEST_P(PatchesOfFaces, HaveTheMeanOfTheirParts) {
   }
 }
 
+TEST_P(PatchesOfFaces, HaveTheMeanOfTheirParts) {
+  expect_means_of_parts(BaseMesh(one_face(GetParam().corners, GetParam().points)));
+}
+
+TEST_P(PatchesOfFaces, HaveTheMeanOfTheirPartsAlsoWithColours) {
+  std::vector<RgbF> colours{{1, 0, 0.25F}, {0, 1, 0.5F}, {0.5F, 0.25F, 1}, {0.1F, 0.9F, 0}};
+  colours.resize(GetParam().corners.size());
+  expect_means_of_parts(BaseMesh(coloured_face(GetParam().corners, colours)));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Faces, PatchesOfFaces,
     testing::Values(Shaped{"Triangle", {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 0}, {1.3F, 0.2F}, {-0.4F, 0.9F}}},
+                    Shaped{"OnALine", {{0, 0, 0}, {2, 0, 0}, {3, 1, 1}, {1, 1, 1}}, {{0, 0.6F}, {2, 0.6F}, {3, 0.6F}, {1, 0.6F}}},
                     Shaped{"Parallelogram", {{0, 0, 0}, {2, 0, 0}, {3, 1, 1}, {1, 1, 1}}, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}},
                     Shaped{"Trapezoid", {{0, 0, 0}, {3, 0, 0}, {2, 1, 0}, {1, 1, 0}}, {{0, 0}, {2, 0}, {1.5F, 1}, {0.2F, 1.1F}}}),
     [](const auto& shaped) { return shaped.param.name; });
@@ -160,6 +171,43 @@ TEST(PatchReflectance, OfAFaceThatShowsTheImageIsItsMeanTimesTheFactor) {
   const BaseMesh mesh(one_face({{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}}, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}));
   expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))),
               Rgb{0.9, 0.5, 1} * mean_reflectance(*mesh.materials()[0].texture->image), rounding);
+}
+
+// The mean of a linear function over a triangle is that of its corners.
+TEST(PatchReflectance, OfAColouredTriangleIsTheMeanOfItsColours) {
+  const BaseMesh mesh(coloured_face({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}, {{1, 0, 0}, {0, 0.5F, 0}, {0, 0, 0.75F}}));
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))), {0.9 / 3, 0.5 / 6, 0.8 / 4}, 1e-7);
+  expect_near(colour_at(mesh, 0, {0.25, 0.5}), {0.25, 0.125, 0.375}, 1e-7);
+}
+
+TEST(ColouredTriangles, BecomeAQuadOnlyWhereTheColoursLieAsOnOne) {
+  const auto roots = [](float last) {
+    Scene scene = coloured_face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{1, 1, 1}, {0.5F, 1, 1}, {0.25F, 1, 1}});
+    const std::uint32_t ring[]{0, 2, 3};
+    scene.vertices.push_back({0, 1, 0});
+    scene.add_face(ring, 0, {}, std::array<RgbF, 3>{{{1, 1, 1}, {0.25F, 1, 1}, {last, 1, 1}}});
+    return BaseMesh(scene).roots().size();
+  };
+  EXPECT_EQ(roots(0.75F), 1u);
+  EXPECT_EQ(roots(0.5F), 2u);
+}
+
+TEST(PatchReflectance, OfAFaceAtOnePointOfTheImageIsThatOfThePoint) {
+  const BaseMesh mesh(one_face({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}, {{0.3F, 0.7F}, {0.3F, 0.7F}, {0.3F, 0.7F}}));
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0)).child(2)),
+              mesh.materials()[0].texture->reflectance_at({0.3F, 0.7F}), 1e-9);
+}
+
+// Such as a ramp of colours, of which each face shows a line.
+TEST(PatchReflectance, OfAFaceOnALineOfTheImageIsTheMeanAlongIt) {
+  const BaseMesh mesh(one_face({{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}}, {{0, 0.53F}, {1, 0.53F}, {1, 0.53F}, {0, 0.53F}}));
+  const ColourImage& image = *mesh.materials()[0].texture->image;
+  Rgb row;
+  for (std::uint32_t column = 0; column < 16; ++column) {
+    const auto* texel = &image.texels[3 * (8 * 16 + column)];
+    row += Rgb{reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])} * (1.0 / 16);
+  }
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))), Rgb{0.9, 0.5, 1} * row, 1e-5);
 }
 
 TEST(PatchReflectance, IsTheSameOnBothSidesOfAFace) {
@@ -214,6 +262,11 @@ TEST(TexturedScene, HasAFaultWhereItsTextureIsNotSound) {
               scene.materials[0].texture->image = std::make_shared<const ColourImage>(ColourImage{2, 2, {1, 2, 3}});
             }),
             "material 0 'textured': its image of 2 x 2 texels has 3 bytes, needs 12");
+  EXPECT_EQ(fault_with([](Scene& scene) { scene.corner_colours.resize(2); }), "scene: has 2 colours for 3 corners");
+  EXPECT_EQ(fault_with([](Scene& scene) {
+              scene.corner_colours.assign(3, {1, 2, 1});
+            }),
+            "corner 0: its colour 2 is outside [0, 1]");
 }
 
 }  // namespace

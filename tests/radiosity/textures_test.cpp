@@ -126,6 +126,41 @@ TEST(Textures, InAnIntegratingSphereCountByTheirMean) {
   EXPECT_NEAR(irradiance, 1 / (1 - reflected / area), 0.005 / (1 - reflected / area));
 }
 
+// As above, with H = E / (1 - mean rho).
+TEST(Colours, InAnIntegratingSphereCountByTheirMean) {
+  Scene globe, scene;
+  test::add_globe(globe, {0, 0, 0}, 1, 3, 0);
+  scene.materials = {test::grey(1, 0.9)};
+  std::mt19937 random(2);
+  double reflected = 0, area = 0, irradiance = 0;
+  for (const Face& face : globe.faces) {
+    const auto corners = globe.corners_of(face);
+    scene.add_polygon(std::array{globe.vertices[corners[0]], globe.vertices[corners[2]], globe.vertices[corners[1]]}, 0);
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) {
+      const float colour = std::uniform_real_distribution<float>(0, 1)(random);
+      scene.corner_colours.push_back({colour, colour, colour});
+      sum += double{colour} / 3;
+    }
+    const double a = length(cross(globe.vertices[corners[1]] - globe.vertices[corners[0]],
+                                  globe.vertices[corners[2]] - globe.vertices[corners[0]])) /
+                     2;
+    reflected += 0.9 * a * sum, area += a;
+  }
+  const BaseMesh mesh(scene);
+  for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 0.01}))
+    irradiance += area_of(mesh, shape_of(mesh, leaf.patch)) * widen(leaf.irradiance).mean() / area;
+  EXPECT_NEAR(irradiance, 1 / (1 - reflected / area), 0.005 / (1 - reflected / area));
+}
+
+TEST(Colours, ThatAreNotGreyNeedThreeBands) {
+  Scene scene = test::furnace(1, 0.5);
+  scene.corner_colours.assign(scene.corners.size(), {0.5F, 0.5F, 0.5F});
+  EXPECT_FALSE(Plan(BaseMesh(scene), {}).needs(Feature::three_bands));
+  scene.corner_colours[5].r = 0.6F;
+  EXPECT_TRUE(Plan(BaseMesh(scene), {}).needs(Feature::three_bands));
+}
+
 TEST(Textures, OfOneColourAreFacesOfThatColour) {
   Scene plain = test::coloured_room(), scene = plain;
   const ColourImage image{2, 2, {188, 188, 188, 188, 188, 188, 188, 188, 188, 188, 188, 188}};

@@ -74,6 +74,7 @@ class Shrinker {
 
   bool simplify_materials() {
     bool any = attempt([](Trial& t) { return set(t.scene.absorption, Rgb{}); });
+    any |= attempt([](Trial& t) { return !std::exchange(t.scene.corner_colours, {}).empty(); });
     for (std::size_t m = 0; m < trial_.scene.materials.size(); ++m) {
       const auto material = [m](Trial& t) -> Material& { return t.scene.materials[m]; };
       const auto is_lit = [&](Trial& t) { return !material(t).emission.is_zero(); };
@@ -106,7 +107,8 @@ class Shrinker {
     return attempt([](Trial& t) {
       const Scene before = t.scene;
       Scene& scene = t.scene;
-      scene.vertices.clear(), scene.corners.clear(), scene.faces.clear(), scene.materials.clear(), scene.texture_points.clear();
+      scene.vertices.clear(), scene.corners.clear(), scene.faces.clear(), scene.materials.clear(), scene.texture_points.clear(),
+          scene.corner_colours.clear();
       std::vector<std::uint32_t> vertex(before.vertices.size(), ~0u), material(before.materials.size(), ~0u);
       const auto kept = [](auto& from, auto& to, std::uint32_t n, std::uint32_t& place) {
         if (place == ~0u) place = static_cast<std::uint32_t>(to.size()), to.push_back(from[n]);
@@ -117,7 +119,7 @@ class Shrinker {
         std::vector<std::uint32_t> ring;
         for (const std::uint32_t v : before.corners_of(face)) ring.push_back(kept(before.vertices, scene.vertices, v, vertex[v]));
         scene.add_face(ring, kept(before.materials, scene.materials, face.material, material[face.material]),
-                       points_of(before, f));
+                       points_of(before, f), colours_of(before, f));
       }
       return scene.vertices.size() < before.vertices.size() || scene.corners.size() < before.corners.size() ||
              scene.materials.size() < before.materials.size();

@@ -86,6 +86,15 @@ void move(Dice& dice, Scene& scene) {
   scene.absorption = (1 / size) * scene.absorption;
 }
 
+void add_colours(Dice& dice, Scene& scene) {
+  const bool is_grey = dice.happens(0.3);
+  for (std::size_t corner = 0; corner < scene.corners.size(); ++corner) {
+    const auto value = [&] { return static_cast<float>(dice.between(0, 1)); };
+    const float grey = value();
+    scene.corner_colours.push_back(is_grey ? RgbF{grey, grey, grey} : RgbF{grey, value(), value()});
+  }
+}
+
 /// Lays random images on some materials, anyhow.
 void add_textures(Dice& dice, Scene& scene) {
   for (Material& material : scene.materials) {
@@ -119,6 +128,8 @@ Trial random_trial(std::uint64_t seed) {
   if (dice.happens(0.5)) trial.is_well_posed = add_flaws(dice, trial.scene);
   move(dice, trial.scene);
   if (dice.happens(0.2)) add_textures(dice, trial.scene);
+  Dice of_colours(~seed);  // of its own, so that a seed stands for the same scene as before there were colours
+  if (of_colours.happens(0.1)) add_colours(of_colours, trial.scene);
   if (dice.happens(0.03)) trial.faulty_place = add_fault(dice, trial.scene);
   trial.options = random_options(dice, trial.scene);
   return trial;

@@ -182,8 +182,10 @@ Scene textured_squares(std::size_t count) {
   }
   scene.materials.back().texture->wrap_s = Wrap::mirror, scene.materials.back().texture->wrap_t = Wrap::clamp;
   for (std::size_t f = 0; f < count; ++f) scene.faces[f].material = static_cast<std::uint32_t>(f % scene.materials.size());
-  for (std::size_t c = 0; c < scene.corners.size(); ++c)
+  for (std::size_t c = 0; c < scene.corners.size(); ++c) {
     scene.texture_points.push_back({static_cast<float>(c) / 7, -static_cast<float>(c)});
+    scene.corner_colours.push_back({1 / (1 + static_cast<float>(c)), 0.5F, 1});
+  }
   return scene;
 }
 
@@ -197,6 +199,7 @@ TEST(SceneCodec, ChunksCarryTexturesAndEachImageOnce) {
   }
   EXPECT_EQ(images, 2);
   const Scene arrived = assemble(chunks);
+  EXPECT_EQ(arrived.corner_colours, scene.corner_colours);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const auto &sent = scene.materials[m].texture, &found = arrived.materials[m].texture;
     ASSERT_EQ(sent.has_value(), found.has_value());
@@ -242,11 +245,13 @@ TEST(SceneCodec, ChunksWithUnsoundTexturesAreRefusedByName) {
        [](auto& c) { c.mutable_images(0)->set_columns(0); }},
       {"chunk 0, images: an image has 8193 x 30 texels, 1 x 1 to 8192 x 8192 are possible",
        [](auto& c) { c.mutable_images(0)->set_columns(8193); }},
-      {"chunk 0, images: the scene has 67108870 texels, at most 64 million are possible",
+      {"chunk 0, images: the scene has 67108870 texels, at most 67108864 are possible",
        [](auto& c) { c.mutable_images(0)->set_columns(8192), c.mutable_images(0)->set_rows(8192); }},
       {"chunk 0, texels: there are 3619 bytes for 1206 texels of three bytes", [](auto& c) { c.mutable_texels()->push_back(0); }},
       {"chunk 0, texture_coordinates: has 33 numbers, needs two for each of 16 corners",
        [](auto& c) { c.add_texture_coordinates(1); }},
+      {"chunk 0, corner_colors: has 47 numbers, needs three for each of 16 corners",
+       [](auto& c) { c.mutable_corner_colors()->RemoveLast(); }},
       {"material 'textured': image 2 of its texture is not known",
        [](auto& c) { c.mutable_materials(c.materials_size() - 1)->mutable_texture()->set_image(2); }},
       {"chunk 0, images: the scene has 10002 images, at most 10000 are possible",

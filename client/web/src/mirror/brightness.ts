@@ -1,4 +1,4 @@
-// How bright the lit surfaces are: what exposure shows them well, and the range of a false-colour scale. As client/tone_map.cpp.
+// How bright the lit surfaces are: what exposure shows them well, and the range of a false-colour scale. As client/picture/tone_map.cpp.
 
 import type { Brightness } from "../messages";
 import type { BaseMesh } from "./base_mesh";

@@ -1,0 +1,144 @@
+#include "import/formats/obj_materials.h"
+
+#include "import/formats/obj_lines.h"
+#include "import/formats/see_through.h"
+#include "import/formats/texture_colour.h"
+#include "import/formats/unsupported.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string_view>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> colour_lines{"Kd", "Ke"};
+Rgb rgb_of(const tinyobj::real_t (&bands)[3]) { return {bands[0], bands[1], bands[2]}; }
+
+/// Returns the names of the materials in an MTL text that have a line with this key.
+std::set<std::string> materials_with(std::string_view key, const std::string& text) {
+  std::set<std::string> names;
+  std::istringstream lines(text);
+  std::string line, word, material;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    if (!(words >> word)) continue;
+    if (word == "newmtl") std::getline(words >> std::ws, material);
+    else if (word == key) names.insert(material);
+  }
+  return names;
+}
+
+/// Sets the colour factor to 1 where a material has a texture but no colour, as Blender writes it.
+void fill_factors(std::span<tinyobj::material_t> materials, const std::string& text) {
+  const auto with_diffuse = materials_with("Kd", text), with_emission = materials_with("Ke", text);
+  for (tinyobj::material_t& material : materials) {
+    if (!material.diffuse_texname.empty() && !with_diffuse.contains(material.name)) std::ranges::fill(material.diffuse, 1.0);
+    if (!material.emissive_texname.empty() && !with_emission.contains(material.name)) std::ranges::fill(material.emission, 1.0);
+  }
+}
+
+std::string with_slashes(std::string path) {
+  std::ranges::replace(path, '\\', '/');
+  return path;
+}
+
+std::string place_of(const std::string& texture, const Material& material) {
+  return "material '" + material.name + "': texture '" + with_slashes(texture) + "'";
+}
+
+}  // namespace
+
+bool MaterialLibrary::operator()(const std::string& file, std::vector<tinyobj::material_t>* materials,
+                                 std::map<std::string, int>* index, std::string*, std::string* error) {
+  if (file.empty()) return false;
+  const std::string* bytes = files_.find(file);
+  if (!bytes) {
+    missing_.insert(file);
+    return false;
+  }
+  std::istringstream stream(*bytes);
+  load(stream, file, materials, index, error);
+  return true;
+}
+
+const tinyobj::material_t* MaterialLibrary::find(const std::string& name) const {
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? nullptr : &found->second;
+}
+
+void MaterialLibrary::load(std::istream& stream, const std::string& file, std::vector<tinyobj::material_t>* materials,
+                           std::map<std::string, int>* index, std::string* error) {
+  const std::string text = clean_lines(stream, colour_lines, file);
+  std::istringstream lines(text);
+  const std::size_t known = materials->size();
+  std::string warning;
+  tinyobj::LoadMtl(index, materials, &lines, &warning, error);
+  fill_factors(std::span(*materials).subspan(known), text);
+  for (std::size_t m = known; m < materials->size(); ++m) by_name_.emplace((*materials)[m].name, (*materials)[m]);
+}
+
+void ObjMaterials::fill() {
+  Unsupported unsupported;
+  for (Material& material : scene_.materials) {
+    const tinyobj::material_t* const found = library_.find(material.name);
+    if (found) {
+      unsupported.metals += found->metallic > 0.5;
+      fill(material, *found);
+    } else if (!material.name.empty()) {
+      warnings_.push_back("material '" + material.name + "' is in no material library: grey, reflectance 0.5");
+    } else {
+      material.name = "default";
+    }
+  }
+  images_.append_warnings(warnings_);
+  unsupported.append_warnings(warnings_);
+}
+
+void ObjMaterials::place_textures() {
+  for (const Face& face : scene_.faces) {
+    const tinyobj::material_t* const found = library_.find(scene_.materials[face.material].name);
+    if (!found || !scene_.materials[face.material].texture) continue;
+    const tinyobj::texture_option_t& option = found->diffuse_texopt;
+    for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+      TexturePoint& point = scene_.texture_points[c];
+      point = texture_point(option.scale[0] * point.s + option.origin_offset[0],
+                            1 - (option.scale[1] * (1 - point.t) + option.origin_offset[1]));
+    }
+  }
+}
+
+void ObjMaterials::fill(Material& material, const tinyobj::material_t& found) {
+  const Rgb diffuse = rgb_of(found.diffuse);
+  const double opacity = opacity_of(found, material);
+  const bool is_covered = opacity == 1 && !diffuse.is_zero() && !found.diffuse_texname.empty();
+  const auto image = is_covered ? images_.decoded(found.diffuse_texname, bytes_of(found.diffuse_texname)) : nullptr;
+  const Wrap wrap = found.diffuse_texopt.clamp ? Wrap::clamp : Wrap::repeat;
+  if (image) images_.cover(material, diffuse, image, wrap, wrap);
+  else material.reflectance = under_texture(diffuse, found.diffuse_texname, material);
+  material.emission = emission_of_radiance(under_texture(rgb_of(found.emission), found.emissive_texname, material));
+  if (opacity < 1) leave(material, opacity);
+}
+
+const std::string* ObjMaterials::bytes_of(const std::string& texture) { return files_.find(with_slashes(texture)); }
+
+Rgb ObjMaterials::under_texture(const Rgb& factor, const std::string& texture, const Material& material) {
+  if (texture.empty() || factor.is_zero()) return factor;
+  return textured(factor, mean_texel(bytes_of(texture)), place_of(texture, material), warnings_);
+}
+
+/// Returns the share of a material's surface that is there: `d`, times the mean of `map_d`: of the image's alpha if it has any,
+/// else of its values.
+double ObjMaterials::opacity_of(const tinyobj::material_t& found, const Material& material) {
+  const double factor = std::clamp<double>(found.dissolve, 0, 1);
+  if (found.alpha_texname.empty()) return factor;
+  const auto mean = mean_texel(bytes_of(found.alpha_texname), {AlphaUse::Kind::blended});
+  warnings_.push_back(place_of(found.alpha_texname, material) +
+                      (mean ? " counts by its mean opacity" : " cannot be read and is left out"));
+  if (!mean) return factor;
+  return factor * (mean->has_alpha ? mean->opacity : mean->level);
+}
+
+}  // namespace alvor
