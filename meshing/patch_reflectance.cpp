@@ -116,14 +116,15 @@ class PatchReflectance::TextureMap {
  private:
   static constexpr double apart = 1e-2;  // texels
 
-  /// Moves points across the line of this direction, in the direction of the plane that the image does not show.
+  /// Puts points on the line of this direction, and moves them across it by where they lie in the direction of the plane that the
+  /// image does not show.
   void draw_apart(TexelPoint line) {
     const double size = std::hypot(line.x, line.y);
-    const TexelPoint across{-line.y / size, line.x / size};
-    const double a = along_a_.x * line.x + along_a_.y * line.y, b = along_b_.x * line.x + along_b_.y * line.y,
-                 both = std::hypot(a, b);
-    along_a_.x -= apart * b / both * across.x, along_a_.y -= apart * b / both * across.y;
-    along_b_.x += apart * a / both * across.x, along_b_.y += apart * a / both * across.y;
+    const TexelPoint unit{line.x / size, line.y / size}, across{-unit.y, unit.x};
+    const double a = along_a_.x * unit.x + along_a_.y * unit.y, b = along_b_.x * unit.x + along_b_.y * unit.y;
+    const double off_a = -apart * b / std::hypot(a, b), off_b = apart * a / std::hypot(a, b);
+    along_a_ = {a * unit.x + off_a * across.x, a * unit.y + off_a * across.y};
+    along_b_ = {b * unit.x + off_b * across.x, b * unit.y + off_b * across.y};
   }
 
   TexelPoint origin_, along_a_, along_b_;

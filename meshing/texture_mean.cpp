@@ -120,6 +120,11 @@ void TextureMean::add_edge(TexelPoint from, TexelPoint to, Wrap across, Wrap dow
 Rgb TextureMean::over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const {
   const double area = signed_area(polygon), around = outline(polygon);
   if (around > most_crossed) return mean_reflectance(image_);
+  if (area == 0) {  // also by rounding, far from the image
+    const auto value =
+        value_of(wrapped(floor_of(polygon[0].x), image_.columns, across), wrapped(floor_of(polygon[0].y), image_.rows, down));
+    return unit * Rgb{double(value[0]), double(value[1]), double(value[2])};
+  }
   // Sums are small, and so exact, near the first texel. Two periods are one of a mirrored image, too.
   const double columns = 2.0 * image_.columns, shift = across == Wrap::clamp ? 0 : columns * std::floor(polygon[0].x / columns);
   const auto near = [&](std::size_t k) { return TexelPoint{polygon[k].x - shift, polygon[k].y}; };

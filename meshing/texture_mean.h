@@ -24,8 +24,8 @@ class TextureMean {
   explicit TextureMean(const ColourImage& image);
 
   /// Returns the mean reflectance over a polygon (by Green's theorem: the integral of a texel row's running sum along the
-  /// outline); that of the whole image if its outline crosses more than 65 536 texels. Requires: three corners or more, of which
-  /// no coordinate is above 1e9, and an area.
+  /// outline); that of the whole image if its outline crosses more than 65 536 texels; the texel of its first corner if it has no
+  /// area. Requires: three corners or more, of which no coordinate is above 1e9.
   Rgb over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const;
 
  private:

@@ -85,6 +85,14 @@ TEST(TextureMean, IsThatOfTheImageOverWholeRepeats) {
               rounding);
 }
 
+TEST(TextureMean, OfAPolygonWithoutAreaIsATexel) {
+  const ColourImage image = test::noise(4, 4);
+  const Polygon point{{2.5, 1.5}, {2.5, 1.5}, {2.5, 1.5}};
+  const auto* texel = &image.texels[3 * (1 * 4 + 2)];
+  expect_near(TextureMean(image).over(point, Wrap::repeat, Wrap::repeat),
+              {reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])}, rounding);
+}
+
 TEST(TextureMean, OfAHugePolygonIsThatOfTheImage) {
   const ColourImage image = test::noise(64, 64);
   const Polygon huge{{0, 0}, {6e6, 0}, {6e6, 6e6}, {0, 6e6}};
