@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -20,7 +19,7 @@ constexpr double side_offset = 2e-5;
 /// Limit of a vertex's displacement, in units of `side_offset`. At sharper folds a gap of less than a pixel stays open.
 constexpr double longest_miter = 4;
 
-/// What a surface is at a vertex, beside its material.
+/// The texture point and the colour of a surface at a vertex.
 struct SurfacePoint {
   TexturePoint texture_point;  ///< (0, 0) without a texture
   RgbF colour{1, 1, 1};
@@ -222,12 +221,8 @@ class Triangulation {
     bool operator==(const VertexOfMaterial&) const = default;
   };
   struct Hash {
-    std::size_t operator()(const VertexOfMaterial& v) const {
-      std::uint64_t hash = v.key + v.material * 0x9e3779b97f4a7c15u;
-      for (const float x : {v.at.texture_point.s, v.at.texture_point.t, v.at.colour.r, v.at.colour.g, v.at.colour.b})
-        hash = mix_bits(hash + std::bit_cast<std::uint32_t>(x));
-      return hash;
-    }
+    /// Few vertices differ only in what the surface is there: those along seams.
+    std::size_t operator()(const VertexOfMaterial& v) const { return mix_bits(v.key + v.material * 0x9e3779b97f4a7c15u); }
   };
   struct KeyHash {
     std::size_t operator()(VertexKey key) const { return mix_bits(key); }

@@ -1,14 +1,13 @@
 #include "meshing/texture.h"
 
+#include "solution/srgb.h"
+
 #include <array>
 #include <cmath>
 
 namespace alvor {
 
 namespace {
-
-/// Returns the linear value of an sRGB value (IEC 61966-2-1).
-double linear_of_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 
 std::array<double, 256> reflectance_by_value() {
   std::array<double, 256> table;

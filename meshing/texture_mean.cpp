@@ -50,7 +50,8 @@ class Crossings {
 
 }  // namespace
 
-TextureMean::TextureMean(const ColourImage& image) : image_(image), sum_before_(image.texel_count()) {
+TextureMean::TextureMean(const ColourImage& image)
+    : image_(image), mean_(mean_reflectance(image)), sum_before_(image.texel_count()) {
   for (std::size_t value = 0; value < value_of_byte_.size(); ++value)
     value_of_byte_[value] =
         static_cast<std::uint32_t>(std::lround(reflectance_of_texel(static_cast<std::uint8_t>(value)) / unit));
@@ -119,7 +120,7 @@ void TextureMean::add_edge(TexelPoint from, TexelPoint to, Wrap across, Wrap dow
 
 Rgb TextureMean::over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const {
   const double area = signed_area(polygon), around = outline(polygon);
-  if (around > most_crossed) return mean_reflectance(image_);
+  if (around > most_crossed) return mean_;
   if (area == 0) {  // also by rounding, far from the image
     const auto value =
         value_of(wrapped(floor_of(polygon[0].x), image_.columns, across), wrapped(floor_of(polygon[0].y), image_.rows, down));

@@ -40,6 +40,7 @@ class TextureMean {
   void add_edge(TexelPoint from, TexelPoint to, Wrap across, Wrap down, Sums& integral) const;
 
   const ColourImage& image_;
+  const Rgb mean_;                                        // of the whole image
   std::array<std::uint32_t, 256> value_of_byte_;          // reflectance in units of 2^-19
   std::vector<std::array<std::uint32_t, 3>> sum_before_;  // by texel: sum of the values before it in its row
 };

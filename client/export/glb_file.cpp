@@ -16,7 +16,6 @@
 #include <array>
 #include <limits>
 #include <span>
-#include <tuple>
 #include <vector>
 
 namespace alvor {
@@ -114,7 +113,7 @@ json unlit_material(bool has_panes) {
   return material;
 }
 
-std::size_t add_faces(BinaryChunk& chunk, const std::vector<FaceTriangles>& faces) {
+std::size_t add_faces(BinaryChunk& chunk, std::span<const FaceTriangles> faces) {
   std::string bytes;
   for (const FaceTriangles& run : faces)
     for (const std::uint32_t number : {run.faces.first, run.faces.second, run.material, run.count}) append_value(bytes, number);
@@ -161,7 +160,7 @@ std::vector<std::size_t> add_indices(BinaryChunk& chunk, const TriangleGroups& g
   std::vector<std::size_t> accessors;
   std::size_t first = 0;
   for (const TriangleGroups::Group& group : groups.groups) {
-    accessors.push_back(chunk.add_indices(std::span(groups.triangles).subspan(first, group.count)));
+    accessors.push_back(chunk.add_indices(groups.triangles.subspan(first, group.count)));
     first += group.count;
   }
   return accessors;

@@ -75,18 +75,19 @@ TriangleGroups group_by_texture(const DisplayMesh& mesh) {
   }
   if (runs.size() < 2 || runs.size() > most_groups + 1) {
     const auto material = runs.size() == 1 ? runs.begin()->first : std::nullopt;
-    return {{{material, mesh.triangles.size()}}, mesh.triangles, mesh.faces};
+    return {{{material, mesh.triangles.size()}}, mesh.triangles, mesh.faces, {}, {}};
   }
   TriangleGroups all;
   for (const auto& [material, of_material] : runs) {
     all.groups.push_back({material, 0});
     for (const auto& [start, run] : of_material) {
       const auto begin = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(start);
-      all.triangles.insert(all.triangles.end(), begin, begin + static_cast<std::ptrdiff_t>(run->count));
-      all.faces.push_back(*run);
+      all.reordered_triangles.insert(all.reordered_triangles.end(), begin, begin + static_cast<std::ptrdiff_t>(run->count));
+      all.reordered_faces.push_back(*run);
       all.groups.back().count += run->count;
     }
   }
+  all.triangles = all.reordered_triangles, all.faces = all.reordered_faces;
   return all;
 }
 

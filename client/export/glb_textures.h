@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -19,11 +20,15 @@ struct TriangleGroups {
     std::size_t count = 0;                  ///< of triangles
   };
   std::vector<Group> groups;  ///< not empty
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<FaceTriangles> faces;  ///< of the triangles in this order; none if that is not known
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const FaceTriangles> faces;  ///< of the triangles in this order; none if that is not known
+
+  /// Hold triangles and faces if their order is not the mesh's.
+  std::vector<std::array<std::uint32_t, 3>> reordered_triangles;
+  std::vector<FaceTriangles> reordered_faces;
 };
 
-/// Returns one group if no material has a texture, or more than a thousand have one.
+/// Returns one group if no material has a texture, or more than a thousand have one. The mesh must outlive it.
 TriangleGroups group_by_texture(const DisplayMesh& mesh);
 
 /// Adds the images, samplers and textures of the groups to `root`, and for each group that has a texture a copy of the first

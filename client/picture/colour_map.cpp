@@ -1,5 +1,7 @@
 #include "client/picture/colour_map.h"
 
+#include "solution/srgb.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,10 +36,7 @@ constexpr std::array<Rgb, 11> diverging_anchors{{{5, 48, 97},
                                                  {178, 24, 43},
                                                  {103, 0, 31}}};
 
-double linear_of(double srgb_byte) {
-  const double encoded = srgb_byte / 255;
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
+double linear_of(double srgb_byte) { return linear_of_srgb(srgb_byte / 255); }
 
 Rgb between(const std::array<Rgb, 11>& colours, double position) {
   const double place = std::clamp(position, 0.0, 1.0) * (colours.size() - 1);

@@ -1,5 +1,7 @@
 #include "client/picture/tone_map.h"
 
+#include "solution/srgb.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -75,7 +77,7 @@ Rgb tone_map(const Rgb& exposed) { return {filmic(exposed.r), filmic(exposed.g),
 
 std::uint8_t srgb_byte(double linear) {
   linear = std::clamp(linear, 0.0, 1.0);
-  const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+  const double encoded = srgb_of_linear(linear);
   return static_cast<std::uint8_t>(std::lround(255 * encoded));
 }
 

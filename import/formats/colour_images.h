@@ -33,7 +33,7 @@ class ColourImages {
     std::shared_ptr<ColourImage> image;   ///< null: it cannot be decoded
     std::uint32_t columns = 0, rows = 0;  ///< of the file
   };
-  /// What many materials ask of one image.
+  /// Properties of an image, found once for all materials that it covers.
   struct Facts {
     std::uint32_t columns = 0;  ///< when they were found: it may be halved later
     bool has_one_colour = false;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 
 namespace alvor {
@@ -99,53 +100,58 @@ std::span<const unsigned char> bytes_of_view(const tinygltf::Model& model, int v
   return buffer.subspan(range.byteOffset, range.byteLength);
 }
 
-std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor) {
+namespace {
+
+/// Returns the values of an accessor of one of these types. `value` makes one of the elements, the accessor and its place, and
+/// the number of the element.
+template <class Value>
+auto read_all(const tinygltf::Model& model, int accessor, std::initializer_list<int> types, Value value) {
   const std::string place = "accessor " + std::to_string(accessor);
   const tinygltf::Accessor& source = accessor_of(model, accessor, place);
-  const Elements elements = elements_of(model, source, TINYGLTF_TYPE_VEC3, place);
-  std::vector<Vec3> positions;
-  positions.reserve(elements.count);
-  for (std::size_t i = 0; i < elements.count; ++i)
-    positions.push_back({load_coordinate(elements.at(i, 0), source, place), load_coordinate(elements.at(i, 1), source, place),
-                         load_coordinate(elements.at(i, 2), source, place)});
-  return positions;
+  const bool is_wanted = std::ranges::find(types, source.type) != types.end();
+  const Elements elements = elements_of(model, source, is_wanted ? source.type : *types.begin(), place);
+  std::vector<decltype(value(elements, source, place, std::size_t{}))> values;
+  values.reserve(elements.count);
+  for (std::size_t i = 0; i < elements.count; ++i) values.push_back(value(elements, source, place, i));
+  return values;
+}
+
+}  // namespace
+
+std::vector<Vec3> read_positions(const tinygltf::Model& model, int accessor) {
+  return read_all(model, accessor, {TINYGLTF_TYPE_VEC3},
+                  [](const Elements& elements, const tinygltf::Accessor& source, const std::string& place, std::size_t i) {
+                    const auto axis = [&](std::size_t n) { return load_coordinate(elements.at(i, n), source, place); };
+                    return Vec3{axis(0), axis(1), axis(2)};
+                  });
 }
 
 std::vector<TexturePoint> read_texture_points(const tinygltf::Model& model, int accessor) {
-  const std::string place = "accessor " + std::to_string(accessor);
-  const tinygltf::Accessor& source = accessor_of(model, accessor, place);
-  const Elements elements = elements_of(model, source, TINYGLTF_TYPE_VEC2, place);
-  std::vector<TexturePoint> points;
-  points.reserve(elements.count);
-  for (std::size_t i = 0; i < elements.count; ++i)
-    points.push_back({static_cast<float>(load_coordinate(elements.at(i, 0), source, place)),
-                      static_cast<float>(load_coordinate(elements.at(i, 1), source, place))});
-  return points;
+  return read_all(model, accessor, {TINYGLTF_TYPE_VEC2},
+                  [](const Elements& elements, const tinygltf::Accessor& source, const std::string& place, std::size_t i) {
+                    const auto axis = [&](std::size_t n) {
+                      return static_cast<float>(load_coordinate(elements.at(i, n), source, place));
+                    };
+                    return TexturePoint{axis(0), axis(1)};
+                  });
 }
 
 std::vector<RgbF> read_colours(const tinygltf::Model& model, int accessor) {
-  const std::string place = "accessor " + std::to_string(accessor);
-  const tinygltf::Accessor& source = accessor_of(model, accessor, place);
-  const int type = source.type == TINYGLTF_TYPE_VEC4 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
-  const Elements elements = elements_of(model, source, type, place);
-  const auto band = [&](std::size_t i, std::size_t component) {
-    const double value = load_coordinate(elements.at(i, component), source, place);
-    return value >= 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F;
-  };
-  std::vector<RgbF> colours;
-  colours.reserve(elements.count);
-  for (std::size_t i = 0; i < elements.count; ++i) colours.push_back({band(i, 0), band(i, 1), band(i, 2)});
-  return colours;
+  return read_all(model, accessor, {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
+                  [](const Elements& elements, const tinygltf::Accessor& source, const std::string& place, std::size_t i) {
+                    const auto band = [&](std::size_t n) {
+                      const double value = load_coordinate(elements.at(i, n), source, place);
+                      return value >= 0 ? static_cast<float>(std::min(value, 1.0)) : 0.0F;
+                    };
+                    return RgbF{band(0), band(1), band(2)};
+                  });
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor) {
-  const std::string place = "accessor " + std::to_string(accessor);
-  const tinygltf::Accessor& source = accessor_of(model, accessor, place);
-  const Elements elements = elements_of(model, source, TINYGLTF_TYPE_SCALAR, place);
-  std::vector<std::uint32_t> indices;
-  indices.reserve(elements.count);
-  for (std::size_t i = 0; i < elements.count; ++i) indices.push_back(load_index(elements.at(i), source.componentType, place));
-  return indices;
+  return read_all(model, accessor, {TINYGLTF_TYPE_SCALAR},
+                  [](const Elements& elements, const tinygltf::Accessor& source, const std::string& place, std::size_t i) {
+                    return load_index(elements.at(i), source.componentType, place);
+                  });
 }
 
 double number_in(const tinygltf::Value& object, const char* name, double otherwise) {

@@ -191,7 +191,7 @@ class GltfReader {
   struct Vertices {
     std::uint32_t first, count;
   };
-  /// What the primitives of a mesh often share, by accessor.
+  /// Vertices, texture coordinates and colours, by accessor: the primitives of a mesh often share them.
   struct Shared {
     std::map<int, Vertices> vertices;
     std::map<int, std::vector<TexturePoint>> points;

@@ -19,7 +19,8 @@ bool is_metal(const tinygltf::Material& material);
 /// Returns the share of light that KHR_materials_transmission lets through, in [0, 1]. Metal lets none through.
 double transmission_of(const tinygltf::Material& material);
 
-/// Where a texture lies on faces: a set of texture coordinates, and KHR_texture_transform.
+/// Maps texture coordinates of a glTF file to points of a texture: chooses a set of coordinates and applies
+/// KHR_texture_transform.
 struct GltfTextureMap {
   int set = 0;                                                         ///< of TEXCOORD_n
   double offset[2] = {0, 0}, scale[2] = {1, 1}, cosine = 1, sine = 0;  ///< of the rotation

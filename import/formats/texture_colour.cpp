@@ -1,5 +1,7 @@
 #include "import/formats/texture_colour.h"
 
+#include "solution/srgb.h"
+
 #include <cstddef>
 #include <cstdlib>
 
@@ -47,9 +49,6 @@ constexpr std::size_t most_pixels = 1 << 28;
 #endif
 /// Allocations of stb_image beside the file and the pixels: tables, and blocks of 16 x 16 pixels at the edges.
 constexpr std::size_t bytes_beside = 1 << 24;
-
-/// Returns the linear value of an sRGB value (IEC 61966-2-1).
-double linear_of_srgb(double s) { return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4); }
 
 template <class Sample>
 std::vector<double> linear_table() {
@@ -138,10 +137,8 @@ std::uint8_t srgb_byte_of_linear(double linear) {
   constexpr int finest = 65535;  // fine enough for the darkest steps, of 1 / 3295
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> bytes;
-    for (int i = 0; i <= finest; ++i) {
-      const double x = static_cast<double>(i) / finest, s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-      bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * s)));
-    }
+    for (int i = 0; i <= finest; ++i)
+      bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * srgb_of_linear(static_cast<double>(i) / finest))));
     return bytes;
   }();
   return table[static_cast<std::size_t>(std::lround(finest * std::clamp(linear, 0.0, 1.0)))];

@@ -1,4 +1,4 @@
-// Where a point of a root patch lies among three of its corners.
+// Weights of a root patch's corners at a point of it: values that are given at corners are mixed by them.
 
 /** A point is corner 0, corner `second` and the corner after it, mixed; corner 0 has the share that is left. */
 export interface Blend {

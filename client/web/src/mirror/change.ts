@@ -1,4 +1,4 @@
-// What of a surface must be drawn anew.
+// The parts of the drawn surface that changed since they were last sent to the page.
 
 /** Slots that changed since the last time: pairs of the first and how many, and their new contents one after the other. */
 export interface Change<Data = Float32Array> {

@@ -1,4 +1,4 @@
-// What the shaders know of materials: two texels of a texture for each.
+// The table of materials that the shaders read: a texture with two texels for each material.
 
 import * as THREE from "three";
 

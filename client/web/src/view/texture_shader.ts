@@ -28,7 +28,7 @@ const uint MIRROR = 2u;
 const uint CLAMP = 3u;
 const vec3 BRIGHTEST = vec3(0.991102);  // of a byte of 254, for which 255 counts
 
-// Where between 0 and 1 the texels lie that stand for those beyond the image's edge.
+// Folds a texture coordinate outside [0, 1] back into the image, as its wrap mode says.
 float folded(float x, uint wrap) {
   if (wrap == CLAMP) return clamp(x, 0.0, 1.0);
   if (wrap == MIRROR) return 1.0 - abs(mod(x, 2.0) - 1.0);
