@@ -79,6 +79,8 @@ class BaseMesh {
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }
+  /// Returns whether light that meets the other side of a root leaves its front, too. Then its twin is its other side.
+  bool is_translucent(std::uint32_t root) const { return material_of(root).is_translucent(); }
   bool has_textures() const { return !texture_points_.empty(); }
   bool has_colours() const { return !corner_colours_.empty(); }
   /// Returns whether the reflectance of any root changes over it.

@@ -31,6 +31,8 @@ struct CornerSum {
   Rgb irradiance;
   double weight = 0;
   Vec3 normal;
+
+  Rgb mean() const { return weight > 0 ? irradiance * (1 / weight) : Rgb{}; }
 };
 
 /// Clamps a linear extrapolation to the range of the neighbourhood, widened by half the range at each end (at a crease it must go
@@ -130,9 +132,10 @@ class Triangulation {
   void emit(std::size_t n) {
     const PatchShape shape = forest_.shape(leaves_[n]);
     const auto points = outline(shape);
-    const std::uint32_t centre =
-        add_vertex(shape.root, drawn_centre(shape.root, centre_[leaves_[n]]), mesh_.roots()[shape.root].normal,
-                   value_[leaves_[n]], surface_at(shape.root, shape.centre()));
+    const NodeIndex behind = forest_.leaf_behind(leaves_[n]);
+    const std::uint32_t centre = add_vertex(
+        shape.root, drawn_centre(shape.root, centre_[leaves_[n]]), mesh_.roots()[shape.root].normal,
+        {value_[leaves_[n]], behind == PatchForest::no_node ? Rgb{} : value_[behind]}, surface_at(shape.root, shape.centre()));
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
@@ -146,11 +149,20 @@ class Triangulation {
     const auto [found, added] = vertices_.try_emplace({key, mesh_.roots()[root].material, at});
     if (added) {
       const CornerSum& sum = sums_[key];
-      const Rgb irradiance = sum.weight > 0 ? sum.irradiance * (1 / sum.weight) : Rgb{};
       const Vec3 normal = normalized(sum.normal);
-      found->second = add_vertex(root, drawn_position(root, p, normal), normal, irradiance, at);
+      found->second = add_vertex(root, drawn_position(root, p, normal), normal, {sum.mean(), irradiance_behind(root, p)}, at);
     }
     return found->second;
+  }
+
+  /// Returns the irradiance at a corner on the other side of a translucent face; 0 for other faces.
+  Rgb irradiance_behind(std::uint32_t root, GridPoint p) const {
+    if (!mesh_.is_translucent(root)) return {};
+    const std::uint32_t twin = mesh_.roots()[root].twin;
+    if (const auto sum = sums_.find(keys_.smooth(twin, {p.j, p.i})); sum != sums_.end()) return sum->second.mean();
+    // The leaves of the other side are not those of this side, as in the middle of a stream.
+    const Uv at{double(p.j) / grid_size, double(p.i) / grid_size};
+    return value_[forest_.leaf_at(finest_patch(mesh_, twin, at))];
   }
 
   /// Returns the vertex normal and the normals of the faces across the creases on which the vertex lies.
@@ -204,13 +216,19 @@ class Triangulation {
     return surface;
   }
 
-  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const Rgb& irradiance, const SurfacePoint& at) {
+  /// The irradiance of both sides of a face at a vertex.
+  struct BothSides {
+    Rgb here, behind;  ///< behind: 0 unless the face is translucent
+  };
+  std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const BothSides& irradiance, const SurfacePoint& at) {
     if (mesh_.has_textures()) out_.texture_points.push_back(at.texture_point);
     out_.positions.push_back(position);
     out_.normals.push_back(normal);
-    out_.irradiance.push_back(narrow(irradiance));
+    out_.irradiance.push_back(narrow(irradiance.here));
     const Material& material = mesh_.material_of(root);
-    out_.radiosity.push_back(narrow(material.emission + material.reflectance * widen(at.colour) * irradiance));
+    const Rgb transmitted = material.diffuse_transmittance * irradiance.behind;
+    if (has_translucent_) out_.transmitted.push_back(narrow(transmitted));
+    out_.radiosity.push_back(narrow(material.emission + material.reflectance * widen(at.colour) * irradiance.here + transmitted));
     return static_cast<std::uint32_t>(out_.positions.size() - 1);
   }
 
@@ -232,6 +250,7 @@ class Triangulation {
   PatchForest forest_;
   VertexKeys keys_;
   std::vector<NodeIndex> leaves_;
+  const bool has_translucent_ = std::ranges::any_of(mesh_.materials(), &Material::is_translucent);
   std::vector<Rgb> value_;    // by node
   std::vector<Vec3> centre_;  // by node
   std::vector<LeafSlope> slopes_;

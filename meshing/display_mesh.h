@@ -30,7 +30,8 @@ struct DisplayMesh {
   std::vector<Vec3> positions;               ///< metres
   std::vector<Vec3> normals;                 ///< unit; point to the front
   std::vector<RgbF> irradiance;              ///< H, W/m2
-  std::vector<RgbF> radiosity;               ///< B = E + rho H, W/m2; rho: the material's mean, times the colour
+  std::vector<RgbF> radiosity;               ///< B = E + rho H + transmitted, W/m2; rho: the material's mean, times the colour
+  std::vector<RgbF> transmitted;             ///< tau H of the other side, W/m2; none if no material is translucent
   std::vector<TexturePoint> texture_points;  ///< of the vertices; none if no material has a texture
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<FaceTriangles> faces;  ///< whence the triangles come, in their order; none if that is not known

@@ -29,7 +29,8 @@ NodeIndex PatchForest::leaf_across(const PatchShape& shape, int edge, double fra
 }
 
 bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits) const {
-  if (id(leaf).level() >= limits.max_level || leaf_count_ + 3 > limits.max_leaves) return false;
+  const std::uint64_t more = mesh_->is_translucent(id(leaf).root_face()) ? 6 : 3;
+  if (id(leaf).level() >= limits.max_level || leaf_count_ + more > limits.max_leaves) return false;
   if (limits.min_edge <= 0) return true;
   const PatchShape patch = shape(leaf);
   const auto corners = corners_of(*mesh_, patch);
@@ -38,18 +39,29 @@ bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits) cons
   return true;
 }
 
-bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches) {
-  assert(is_leaf(leaf));
-  if (!may_split(leaf, limits)) return false;
+bool PatchForest::split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits,
+                                           std::vector<NodeIndex>& split_patches) {
   const PatchShape patch = shape(leaf);
   for (int e = 0; e < patch.corner_count; ++e) {
     const NodeIndex other = leaf_across(patch, e, 0.5);
     if (other == no_node || id(other).level() >= id(leaf).level()) continue;
     if (!split(other, limits, split_patches)) return false;
   }
+  return true;
+}
+
+bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches) {
+  assert(is_leaf(leaf));
   if (!may_split(leaf, limits)) return false;
-  split_one(leaf);
-  split_patches.push_back(leaf);
+  const NodeIndex behind = leaf_behind(leaf);
+  if (!split_coarser_neighbours(leaf, limits, split_patches)) return false;
+  if (behind != no_node && !split_coarser_neighbours(behind, limits, split_patches)) return false;
+  if (!may_split(leaf, limits)) return false;
+  for (const NodeIndex side : {leaf, behind}) {
+    if (side == no_node) continue;
+    split_one(side);
+    split_patches.push_back(side);
+  }
   return true;
 }
 

@@ -20,8 +20,8 @@ struct RefinementLimits {
   double min_edge = 0;  ///< metres; no split makes an edge shorter than this
 };
 
-/// Keeps neighbouring leaves balanced: the levels of leaves that share an edge differ by at most one, also across roots. Borrows
-/// the mesh.
+/// Keeps neighbouring leaves balanced: the levels of leaves that share an edge differ by at most one, also across roots. The two
+/// sides of a translucent face are split alike. Borrows the mesh.
 class PatchForest {
  public:
   explicit PatchForest(const BaseMesh& mesh);
@@ -54,16 +54,21 @@ class PatchForest {
   /// Returns the leaf across `edge` at `fraction` along it, or `no_node` where the surface ends.
   NodeIndex leaf_across(const PatchShape& shape, int edge, double fraction) const;
   static constexpr NodeIndex no_node = ~NodeIndex{0};
+  /// Returns the leaf in the place of `leaf` on the other side of a translucent face; `no_node` for other faces.
+  NodeIndex leaf_behind(NodeIndex leaf) const {
+    return mesh_->is_translucent(id(leaf).root_face()) ? leaf_at(twin_of(*mesh_, id(leaf))) : no_node;
+  }
 
   bool may_split(NodeIndex leaf, const RefinementLimits& limits) const;
-  /// Splits `leaf`, after splitting coarser neighbours as the balance demands. Appends every patch that was split to `split`.
-  /// Returns false if a limit forbids the split of the leaf or of such a neighbour; neighbours split before that stay split.
-  /// Requires: is_leaf(leaf).
+  /// Splits `leaf`, and the leaf behind it, after splitting coarser neighbours as the balance demands. Appends every patch that
+  /// was split to `split`. Returns false if a limit forbids the split of the leaf or of such a neighbour; neighbours split before
+  /// that stay split. Requires: is_leaf(leaf).
   bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
-  /// Splits until every patch of `patches` is a node, without balancing. Requires: valid ids of this mesh.
+  /// Splits until every patch of `patches` is a node, without balancing, each side by itself. Requires: valid ids of this mesh.
   void split_down_to(std::span<const LeafValue> patches);
 
  private:
+  bool split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
   void split_one(NodeIndex leaf);
 
   const BaseMesh* mesh_;

@@ -150,6 +150,8 @@ PatchId finest_patch(const BaseMesh& mesh, std::uint32_t root, Uv at) {
   return PatchId::finest(root, path);
 }
 
+PatchId twin_of(const BaseMesh& mesh, PatchId patch) { return patch.mirrored(mesh.roots()[patch.root_face()].twin); }
+
 std::optional<int> root_edge_of(const PatchShape& shape, int edge) {
   const auto corners = shape.corners();
   const GridPoint a = corners[edge], b = corners[(edge + 1) % shape.corner_count];

@@ -52,6 +52,9 @@ void finest_triangle_paths(const float* u, const float* v, std::uint32_t* path);
 /// Returns the finest patch that contains a point of a root. Coordinates outside the root are clamped into it.
 PatchId finest_patch(const BaseMesh& mesh, std::uint32_t root, Uv at);
 
+/// Returns the patch in the same place on the other side: on the twin of its root. Requires: its root has a twin.
+PatchId twin_of(const BaseMesh& mesh, PatchId patch);
+
 /// Returns the root edge on which the patch's edge lies, or nothing if it lies inside the root.
 std::optional<int> root_edge_of(const PatchShape& shape, int edge);
 

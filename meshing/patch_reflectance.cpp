@@ -149,10 +149,11 @@ Rgb colour_at(const BaseMesh& mesh, std::uint32_t root, Uv at) {
 
 std::size_t PatchReflectance::bytes_for(const BaseMesh& mesh) {
   std::unordered_set<const ColourImage*> images;
-  std::size_t texels = 0;
+  std::size_t bytes = 0;
   for (const Material& material : mesh.materials())
-    if (material.texture && images.insert(material.texture->image.get()).second) texels += material.texture->image->texel_count();
-  return TextureMean::bytes_a_texel * texels;
+    if (material.texture && images.insert(material.texture->image.get()).second)
+      bytes += TextureMean::bytes_for(*material.texture->image);
+  return bytes;
 }
 
 PatchReflectance::PatchReflectance(const BaseMesh& mesh) : mesh_(mesh) {
@@ -169,36 +170,43 @@ bool PatchReflectance::varies(std::uint32_t root) const {
 }
 
 /// Returns the mean of the texture over a part of a root, on one side of the diagonal.
-Rgb PatchReflectance::of_part(std::uint32_t root, const TextureMap& map, std::span<const PlanePoint> part) const {
+MeanSurface PatchReflectance::of_part(std::uint32_t root, const TextureMap& map, std::span<const PlanePoint> part) const {
   const Texture& texture = *mesh_.material_of(root).texture;
-  if (map.is_point()) return texture.reflectance_at(mesh_.texture_points(root)[0]);
+  if (map.is_point()) {
+    const TexturePoint point = mesh_.texture_points(root)[0];
+    return {texture.reflectance_at(point), texture.opacity_at(point)};
+  }
   std::vector<TexelPoint> texels;
   for (const PlanePoint& p : part) texels.push_back(map.at(p));
-  return texture.factor * means_.at(texture.image.get()).over(texels, texture.wrap_s, texture.wrap_t);
+  const MeanSurface mean = means_.at(texture.image.get()).over(texels, texture.wrap_s, texture.wrap_t);
+  return {texture.factor * mean.reflectance, mean.cover};
 }
 
-Rgb PatchReflectance::of(const PatchShape& shape) const {
+MeanSurface PatchReflectance::of(const PatchShape& shape) const {
   const Material& material = mesh_.material_of(shape.root);
-  if (!material.texture && !mesh_.has_colours()) return material.reflectance;
+  if (!material.texture && !mesh_.has_colours()) return {material.reflectance};
   const TwoTriangles triangles(mesh_.roots()[shape.root]);
   const auto corners = corners_of(mesh_, shape);
   std::vector<PlanePoint> patch;
   for (int c = 0; c < shape.corner_count; ++c) patch.push_back(triangles.at(corners[c]));
   Rgb sum;
-  double area = 0;
+  double area = 0, covered = 0;
   for (const bool is_second : {false, true}) {
     if (is_second && shape.corner_count == 3) break;
     const std::vector<PlanePoint> part = shape.corner_count == 4 ? part_of(patch, is_second) : patch;
     const double share = area_of(part);
     if (!(share > sliver * area_of(patch))) continue;
-    Rgb reflectance = material.reflectance;
-    if (material.texture) reflectance = of_part(shape.root, TextureMap(mesh_, shape.root, triangles, is_second), part);
+    MeanSurface mean{material.reflectance};
+    if (material.texture) mean = of_part(shape.root, TextureMap(mesh_, shape.root, triangles, is_second), part);
     if (mesh_.has_colours())
-      reflectance = reflectance * mixed(mesh_.corner_colours(shape.root), triangles.weights(centroid_of(part), is_second));
-    sum += share * reflectance;
+      mean.reflectance =
+          mean.reflectance * mixed(mesh_.corner_colours(shape.root), triangles.weights(centroid_of(part), is_second));
+    sum += share * mean.cover * mean.reflectance;
+    covered += share * mean.cover;
     area += share;
   }
-  return area > 0 ? sum * (1 / area) : material.reflectance;
+  if (area == 0) return {material.reflectance};
+  return {covered > 0 ? sum * (1 / covered) : Rgb{}, covered / area};
 }
 
 }  // namespace alvor

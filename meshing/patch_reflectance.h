@@ -24,22 +24,22 @@ TexturePoint texture_point_at(const BaseMesh& mesh, std::uint32_t root, Uv at);
 /// Returns the colour at (u, v) of a root patch, by which its reflectance is multiplied; linear as texture points are.
 Rgb colour_at(const BaseMesh& mesh, std::uint32_t root, Uv at);
 
-/// Mean reflectances of patches. A patch on a texture has the mean of the texels that it covers, so that a patch has the
-/// area-weighted mean of its children; so does one with colours. Of a patch with both, each counts by its mean on each side of
-/// the diagonal. Immutable; safe from any thread. Borrows the mesh.
+/// Mean reflectances and covers of patches. A patch on a texture has the mean of the texels that it covers, so that a patch has
+/// the area-weighted mean of what is there of its children; so does one with colours. Of a patch with both, each counts by its
+/// mean on each side of the diagonal. Immutable; safe from any thread. Borrows the mesh.
 class PatchReflectance {
  public:
   explicit PatchReflectance(const BaseMesh& mesh);
   /// Returns how much memory it takes for a mesh, bytes.
   static std::size_t bytes_for(const BaseMesh& mesh);
 
-  Rgb of(const PatchShape& shape) const;
-  /// Returns whether the reflectance of a root changes over it.
+  MeanSurface of(const PatchShape& shape) const;
+  /// Returns whether the reflectance or the cover of a root changes over it.
   bool varies(std::uint32_t root) const;
 
  private:
   class TextureMap;
-  Rgb of_part(std::uint32_t root, const TextureMap& map, std::span<const PlanePoint> part) const;
+  MeanSurface of_part(std::uint32_t root, const TextureMap& map, std::span<const PlanePoint> part) const;
 
   const BaseMesh& mesh_;
   std::unordered_map<const ColourImage*, TextureMean> means_;  // of the images that faces use

@@ -30,6 +30,20 @@ std::optional<std::string> fault_in_texture(const Material& material) {
   return material.texture->image ? fault_in(*material.texture->image) : "its texture has no image";
 }
 
+std::optional<std::string> fault_in_transmittance(const Material& material) {
+  const Rgb &straight = material.regular_transmittance, &scattered = material.diffuse_transmittance;
+  const Rgb albedo = scattered + upper(material.reflectance, material.largest_reflectance()), all = straight + albedo;
+  for (const double band : {straight.r, straight.g, straight.b})
+    if (!(band >= 0 && band <= 1)) return "regular transmittance " + number(band) + " is outside [0, 1]";
+  for (const double band : {scattered.r, scattered.g, scattered.b})
+    if (!(band >= 0 && band < 1)) return "diffuse transmittance " + number(band) + " is outside [0, 1)";
+  if (!(albedo.max() < 1))
+    return "reflectance and diffuse transmittance are " + number(albedo.max()) + " together, must be below 1";
+  if (all.max() > 1 + rounding) return "reflectance and transmittance are " + number(all.max()) + " together, beyond 1";
+  if (material.is_translucent() && !material.two_sided) return "diffuse transmittance needs two sides";
+  return std::nullopt;
+}
+
 std::optional<std::string> fault_in(const Material& material) {
   const double bands[2][3] = {{material.emission.r, material.emission.g, material.emission.b},
                               {material.reflectance.r, material.reflectance.g, material.reflectance.b}};
@@ -40,12 +54,7 @@ std::optional<std::string> fault_in(const Material& material) {
   for (const double reflectance : bands[1])
     if (!(reflectance >= 0 && reflectance < 1)) return "reflectance " + number(reflectance) + " is outside [0, 1)";
   if (auto reason = fault_in_texture(material)) return reason;
-  const Rgb &through = material.regular_transmittance,
-            both = through + upper(material.reflectance, material.largest_reflectance());
-  for (const double band : {through.r, through.g, through.b})
-    if (!(band >= 0 && band <= 1)) return "regular transmittance " + number(band) + " is outside [0, 1]";
-  if (both.max() > 1 + rounding) return "reflectance and regular transmittance are " + number(both.max()) + " together, beyond 1";
-  return std::nullopt;
+  return fault_in_transmittance(material);
 }
 
 std::optional<std::string> fault_in(Vec3 vertex) {

@@ -22,16 +22,25 @@ inline constexpr double clamped_reflectance = 0.95;
 struct Material {
   std::string name;
   Rgb emission;     ///< E: radiant exitance, W/m2 per band, >= 0
-  Rgb reflectance;  ///< rho: diffuse, in [0, 1) per band; the mean of the texture's image, if there is one
+  Rgb reflectance;  ///< rho: diffuse, in [0, 1) per band; the mean of what the texture's image does not cut out, if there is one
   bool two_sided = false;
   /// Share of light that goes straight on through a face, from either side, tinted: of clear glass, or of what holes leave of a
   /// cloth (CIE: regular transmittance). In [0, 1] per band, and at most 1 with the reflectance.
   Rgb regular_transmittance;
-  std::optional<Texture> texture;  ///< the reflectance by place
+  std::optional<Texture> texture;  ///< the reflectance by place, and what is cut out
+  /// tau: share of light that a face scatters into all directions behind it, from either side: of paper, cloth, a lamp shade
+  /// (CIE: diffuse transmittance). In [0, 1) per band, and below 1 with the reflectance. Needs two sides.
+  Rgb diffuse_transmittance{};
 
-  bool is_pane() const { return !regular_transmittance.is_zero(); }
+  /// Returns whether light goes straight through some place of a face.
+  bool is_pane() const { return !regular_transmittance.is_zero() || has_cutout(); }
+  /// Returns whether parts of a face are holes, as the texture's image says.
+  bool has_cutout() const { return texture && texture->image && texture->image->has_opacity; }
+  bool is_translucent() const { return !diffuse_transmittance.is_zero(); }
   /// Returns an upper bound on the reflectance of any place, below 1.
   Rgb largest_reflectance() const { return texture ? reflectance_of_texel(255) * texture->factor : reflectance; }
+  /// Returns an upper bound on the share of light that any place scatters, to both sides together; below 1.
+  Rgb largest_albedo() const { return largest_reflectance() + diffuse_transmittance; }
 };
 
 /// A polygon. Its corners are scene.corners[first_corner .. first_corner + corner_count), counter-clockwise seen from its front.
@@ -101,9 +110,10 @@ struct Fault {
 /// Returns the first fault of the scene; looks at counts, then materials, lights, vertices, faces and objects in order. Linear in
 /// the size of the scene; never reads out of bounds, whatever the scene holds. A scene without fault has at least one face,
 /// finite coordinates within 1e9 m, indices in range, faces of three corners or more, emission in [0, 1e30] W/m2, finite
-/// absorption >= 0, reflectance in [0, 1), regular transmittance in [0, 1 - reflectance], sound images, texture points for all
-/// corners if any material has a texture, colours in [0, 1] for all corners or none, and objects of different names in an order
-/// that fits the faces. Degenerate faces are no fault.
+/// absorption >= 0, reflectance and diffuse transmittance in [0, 1) and below 1 together, at most 1 with the regular
+/// transmittance, two sides where the diffuse transmittance is not 0, sound images, texture points for all corners if any
+/// material has a texture, colours in [0, 1] for all corners or none, and objects of different names in an order that fits the
+/// faces. Degenerate faces are no fault.
 std::optional<Fault> find_fault(const Scene& scene);
 
 }  // namespace alvor

@@ -16,9 +16,18 @@ std::array<double, 256> reflectance_by_value() {
   return table;
 }
 
-Rgb reflectance_of(const ColourImage& image, std::uint32_t column, std::uint32_t row) {
-  const std::uint8_t* const texel = &image.texels[3 * (std::size_t{row} * image.columns + column)];
-  return {reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])};
+constexpr double opaque = 255;
+
+/// The reflectance of some texels, weighted by how much of them is there.
+struct Weighted {
+  Rgb reflectance;
+  double weight = 0;
+};
+
+Weighted weighted(const ColourImage& image, std::uint32_t column, std::uint32_t row) {
+  const std::uint8_t* const texel = image.texel(column, row);
+  const double weight = image.has_opacity ? texel[3] / opaque : 1;
+  return {weight * Rgb{reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])}, weight};
 }
 
 /// The two texels between whose middles a point lies, and the weight of the second.
@@ -33,7 +42,9 @@ struct Between {
   double weight;
 };
 
-Rgb mix(const Rgb& a, const Rgb& b, double weight) { return (1 - weight) * a + weight * b; }
+Weighted mix(const Weighted& a, const Weighted& b, double share) {
+  return {(1 - share) * a.reflectance + share * b.reflectance, (1 - share) * a.weight + share * b.weight};
+}
 
 }  // namespace
 
@@ -42,9 +53,9 @@ std::optional<std::string> fault_in(const ColourImage& image) {
   if (image.columns == 0 || image.rows == 0) return "its image has no texels";
   if (image.columns > ColourImage::most_columns || image.rows > ColourImage::most_rows)
     return "its image has " + size + " texels, at most 8192 x 8192 are possible";
-  if (image.texels.size() != 3 * image.texel_count())
+  if (image.texels.size() != image.byte_count())
     return "its image of " + size + " texels has " + std::to_string(image.texels.size()) + " bytes, needs " +
-           std::to_string(3 * image.texel_count());
+           std::to_string(image.byte_count());
   return std::nullopt;
 }
 
@@ -53,14 +64,22 @@ double reflectance_of_texel(std::uint8_t value) {
   return table[value];
 }
 
-Rgb mean_reflectance(const ColourImage& image) {
-  std::array<std::array<std::uint64_t, 256>, 3> count{};
-  for (std::size_t i = 0; i < image.texels.size(); ++i) ++count[i % 3][image.texels[i]];
+MeanSurface mean_surface(const ColourImage& image) {
+  std::array<std::array<std::uint64_t, 256>, 3> count{};  // of texels by value, each counted by its opacity
+  std::uint64_t there = 0;
+  const std::size_t stride = image.bytes_a_texel();
+  for (std::size_t i = 0; i < image.texels.size(); i += stride) {
+    const std::uint64_t opacity = image.has_opacity ? image.texels[i + 3] : static_cast<std::uint64_t>(opaque);
+    there += opacity;
+    for (std::size_t band = 0; band < 3; ++band) count[band][image.texels[i + band]] += opacity;
+  }
   std::array<double, 3> sum{};
   for (std::size_t band = 0; band < 3; ++band)
     for (std::size_t value = 0; value < 256; ++value)
       sum[band] += static_cast<double>(count[band][value]) * reflectance_of_texel(static_cast<std::uint8_t>(value));
-  return Rgb{sum[0], sum[1], sum[2]} * (1 / static_cast<double>(image.texel_count()));
+  const auto weight = static_cast<double>(there);
+  return {there > 0 ? Rgb{sum[0], sum[1], sum[2]} * (1 / weight) : Rgb{},
+          weight / (opaque * static_cast<double>(image.texel_count()))};
 }
 
 std::uint32_t wrapped(std::int64_t index, std::uint32_t count, Wrap wrap) {
@@ -72,10 +91,19 @@ std::uint32_t wrapped(std::int64_t index, std::uint32_t count, Wrap wrap) {
 
 Rgb Texture::reflectance_at(TexturePoint point) const {
   const Between s(double{point.s}, image->columns, wrap_s), t(double{point.t}, image->rows, wrap_t);
-  const auto row = [&](std::uint32_t r) {
-    return mix(reflectance_of(*image, s.first, r), reflectance_of(*image, s.second, r), s.weight);
+  const auto row = [&](std::uint32_t r) { return mix(weighted(*image, s.first, r), weighted(*image, s.second, r), s.weight); };
+  const Weighted here = mix(row(t.first), row(t.second), t.weight);
+  return here.weight > 0 ? factor * here.reflectance * (1 / here.weight) : Rgb{};
+}
+
+double Texture::opacity_at(TexturePoint point) const {
+  if (!image->has_opacity) return 1;
+  const auto index = [](float position, std::uint32_t count) {
+    return static_cast<std::int64_t>(std::floor(double{position} * count));
   };
-  return factor * mix(row(t.first), row(t.second), t.weight);
+  return image->texel(wrapped(index(point.s, image->columns), image->columns, wrap_s),
+                      wrapped(index(point.t, image->rows), image->rows, wrap_t))[3] /
+         opaque;
 }
 
 }  // namespace alvor

@@ -12,15 +12,22 @@
 
 namespace alvor {
 
-/// An image of surface colours: sRGB (IEC 61966-2-1), 8 bits a band. Immutable once made; materials share it.
+/// An image of surface colours: sRGB (IEC 61966-2-1), 8 bits a band, and if it has any opacity of each texel: 255 is all there, 0
+/// a hole. Immutable once made; materials share it.
 struct ColourImage {
   static constexpr std::uint32_t most_columns = 8192, most_rows = 8192;
 
   std::uint32_t columns = 0, rows = 0;  ///< > 0
-  /// Red, green and blue of the first texel of the top row, then of the next one. Has 3 columns rows entries.
+  /// Red, green, blue, and if it has any opacity, of the first texel of the top row, then of the next one.
   std::vector<std::uint8_t> texels;
+  bool has_opacity = false;
 
   std::size_t texel_count() const { return std::size_t{columns} * rows; }
+  std::size_t bytes_a_texel() const { return has_opacity ? 4 : 3; }
+  std::size_t byte_count() const { return bytes_a_texel() * texel_count(); }
+  const std::uint8_t* texel(std::uint32_t column, std::uint32_t row) const {
+    return &texels[bytes_a_texel() * (std::size_t{row} * columns + column)];
+  }
 };
 
 /// Returns why an image cannot be used.
@@ -30,8 +37,14 @@ std::optional<std::string> fault_in(const ColourImage& image);
 /// between faces that reflect everything would never fade.
 double reflectance_of_texel(std::uint8_t value);
 
-/// Returns the mean reflectance of all texels.
-Rgb mean_reflectance(const ColourImage& image);
+/// A surface in the mean over some area.
+struct MeanSurface {
+  Rgb reflectance;   ///< of what is there
+  double cover = 1;  ///< share of the area that is there and no hole
+};
+
+/// Returns the mean over all texels.
+MeanSurface mean_surface(const ColourImage& image);
 
 /// A place on an image: (0, 0) is its upper left corner and (1, 1) its lower right one, as in glTF.
 struct TexturePoint {
@@ -53,8 +66,10 @@ struct Texture {
   Rgb factor{1, 1, 1};  ///< multiplies the image; in [0, 1]
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
 
-  /// Returns the reflectance at a point, bilinear between the middles of texels.
+  /// Returns the reflectance at a point, bilinear between the middles of texels, of what is there.
   Rgb reflectance_at(TexturePoint point) const;
+  /// Returns the opacity of the texel at a point, in [0, 1].
+  double opacity_at(TexturePoint point) const;
 };
 
 }  // namespace alvor

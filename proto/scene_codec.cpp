@@ -25,8 +25,13 @@ SceneObject decode_object(const v1::SceneObject& message) {
 }
 
 Material decode_material(const v1::Material& message) {
-  return {message.name(), decode(message.emission()), decode(message.reflectance()), message.two_sided(),
-          decode(message.regular_transmittance())};
+  return {message.name(),
+          decode(message.emission()),
+          decode(message.reflectance()),
+          message.two_sided(),
+          decode(message.regular_transmittance()),
+          std::nullopt,
+          decode(message.diffuse_transmittance())};
 }
 
 int items_in(const v1::GeometryChunk& chunk) {
@@ -42,7 +47,9 @@ v1::Material encode(const Material& material) {
   *message.mutable_emission() = encode(material.emission);
   *message.mutable_reflectance() = encode(material.reflectance);
   message.set_two_sided(material.two_sided);
-  if (material.is_pane()) *message.mutable_regular_transmittance() = encode(material.regular_transmittance);
+  if (!material.regular_transmittance.is_zero())
+    *message.mutable_regular_transmittance() = encode(material.regular_transmittance);
+  if (material.is_translucent()) *message.mutable_diffuse_transmittance() = encode(material.diffuse_transmittance);
   return message;
 }
 
@@ -105,12 +112,12 @@ std::optional<Fault> SceneAssembler::add(const v1::GeometryChunk& chunk) {
 }
 
 Scene SceneAssembler::take() {
-  std::unordered_map<const ColourImage*, Rgb> means;
+  std::unordered_map<const ColourImage*, MeanSurface> means;
   for (Material& material : scene_.materials) {
     if (!material.texture || alvor::fault_in(*material.texture->image)) continue;
     const auto [found, is_new] = means.try_emplace(material.texture->image.get());
-    if (is_new) found->second = mean_reflectance(*material.texture->image);
-    material.reflectance = material.texture->factor * found->second;
+    if (is_new) found->second = mean_surface(*material.texture->image);
+    material.reflectance = material.texture->factor * found->second.reflectance;
   }
   return std::move(scene_);
 }

@@ -9,7 +9,7 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t most_images = 10'000;
-// Of all images of a scene. While it is solved a texel takes 15 bytes.
+// Of all images of a scene. While it is solved a texel takes 15 or 20 bytes.
 constexpr std::uint64_t most_texels = 1u << 26;
 
 std::string count_of(std::uint64_t count, const char* unit) { return std::to_string(count) + " " + unit; }
@@ -40,19 +40,20 @@ v1::Texture encode(const Texture& texture, std::uint32_t image) {
 }  // namespace
 
 std::optional<Fault> ImageAssembler::fault_in(const v1::GeometryChunk& chunk, const std::string& place) const {
-  std::uint64_t texels = wanted_texels_;
+  std::uint64_t texels = wanted_texels_, bytes = wanted_bytes_;
   for (const v1::ColourImage& image : chunk.images()) {
     const std::string size = std::to_string(image.columns()) + " x " + std::to_string(image.rows());
     if (image.columns() == 0 || image.rows() == 0 || image.columns() > ColourImage::most_columns ||
         image.rows() > ColourImage::most_rows)
       return Fault{place + "images", "an image has " + size + " texels, 1 x 1 to 8192 x 8192 are possible"};
     texels += std::uint64_t{image.columns()} * image.rows();
+    bytes += std::uint64_t{image.columns()} * image.rows() * (image.has_opacity() ? 4 : 3);
   }
   if (texels > most_texels)
     return Fault{place + "images", "the scene has " + count_of(texels, "texels, at most 67108864 are possible")};
-  if (texel_bytes_ + chunk.texels().size() > 3 * texels)
+  if (texel_bytes_ + chunk.texels().size() > bytes)
     return Fault{place + "texels", "there are " + count_of(texel_bytes_ + chunk.texels().size(), "bytes for ") +
-                                       count_of(texels, "texels of three bytes")};
+                                       count_of(texels, "texels, which have ") + count_of(bytes, "bytes")};
   const std::size_t images = images_.size() + static_cast<std::size_t>(chunk.images_size());
   if (images > most_images)
     return Fault{place + "images", "the scene has " + count_of(images, "images, at most 10000 are possible")};
@@ -75,17 +76,18 @@ std::optional<Fault> ImageAssembler::fault_in(const v1::GeometryChunk& chunk, co
 
 void ImageAssembler::add(const v1::GeometryChunk& chunk) {
   for (const v1::ColourImage& image : chunk.images()) {
-    images_.push_back(std::make_shared<ColourImage>(ColourImage{image.columns(), image.rows(), {}}));
+    images_.push_back(std::make_shared<ColourImage>(ColourImage{image.columns(), image.rows(), {}, image.has_opacity()}));
     wanted_texels_ += images_.back()->texel_count();
+    wanted_bytes_ += images_.back()->byte_count();
   }
   texel_bytes_ += chunk.texels().size();
   std::string_view bytes = chunk.texels();
   for (; !bytes.empty() && complete_ < images_.size(); ++complete_) {
     ColourImage& image = *images_[complete_];
-    const std::size_t taken = std::min(bytes.size(), 3 * image.texel_count() - image.texels.size());
+    const std::size_t taken = std::min(bytes.size(), image.byte_count() - image.texels.size());
     image.texels.insert(image.texels.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
     bytes.remove_prefix(taken);
-    if (image.texels.size() < 3 * image.texel_count()) return;
+    if (image.texels.size() < image.byte_count()) return;
   }
 }
 
@@ -114,6 +116,7 @@ void ImageSlicer::next(google::protobuf::RepeatedPtrField<v1::ColourImage>& imag
       v1::ColourImage* const message = images.Add();
       message->set_columns(image.columns);
       message->set_rows(image.rows);
+      message->set_has_opacity(image.has_opacity);
       is_announced_ = true;
       budget -= bytes_of_image;
     }

@@ -29,8 +29,9 @@ class ImageAssembler {
 
  private:
   std::vector<std::shared_ptr<ColourImage>> images_;
-  std::size_t complete_ = 0;                           // images that have all their texels
-  std::uint64_t wanted_texels_ = 0, texel_bytes_ = 0;  // texels of all images that have arrived, and bytes of their texels
+  std::size_t complete_ = 0;                            // images that have all their texels
+  std::uint64_t wanted_texels_ = 0, wanted_bytes_ = 0;  // texels of all images that have arrived, and the bytes that they need
+  std::uint64_t texel_bytes_ = 0;                       // bytes of texels that have arrived
 };
 
 /// The images of a scene's textures, each once, numbered in the order of the materials.

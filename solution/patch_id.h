@@ -57,6 +57,13 @@ class PatchId {
   /// Returns which child (0 to 3) of its ancestor at `level` - 1 contains this patch. Requires: 1 <= level <= this->level().
   constexpr int child_index(int level) const { return static_cast<int>(bits_ >> (2 * (max_level - level) + 1)) & 3; }
 
+  /// Returns the patch of root `face` with children 1 and 2 exchanged at each level: u and v are exchanged.
+  constexpr PatchId mirrored(std::uint32_t face) const {
+    const auto lsb = static_cast<std::uint32_t>(lsb_()), path = static_cast<std::uint32_t>(bits_) - lsb;
+    const std::uint32_t swapped = (path & 0x55555554u) >> 1 | (path & 0x2aaaaaaau) << 1;
+    return PatchId((std::uint64_t{face} << 32) | swapped | lsb);
+  }
+
   constexpr PatchId range_min() const { return PatchId(bits_ - (lsb_() - 1)); }
   constexpr PatchId range_max() const { return PatchId(bits_ + (lsb_() - 1)); }
   constexpr bool contains(PatchId other) const { return range_min() <= other && other <= range_max(); }

@@ -34,9 +34,10 @@ inline Scene with_red_and_green_swapped(Scene scene) {
     material.emission = red_and_green_swapped(material.emission);
     material.reflectance = red_and_green_swapped(material.reflectance);
     material.regular_transmittance = red_and_green_swapped(material.regular_transmittance);
+    material.diffuse_transmittance = red_and_green_swapped(material.diffuse_transmittance);
     if (!material.texture) continue;
     ColourImage image = *material.texture->image;
-    for (std::size_t texel = 0; texel < image.texels.size(); texel += 3) std::swap(image.texels[texel], image.texels[texel + 1]);
+    for (std::size_t texel = 0; texel < image.texels.size(); texel += image.bytes_a_texel()) std::swap(image.texels[texel], image.texels[texel + 1]);
     material.texture->image = std::make_shared<const ColourImage>(std::move(image));
     material.texture->factor = red_and_green_swapped(material.texture->factor);
   }

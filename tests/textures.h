@@ -29,7 +29,7 @@ inline ColourImage checkerboard(std::uint32_t squares, std::uint8_t dark, std::u
 }
 
 inline Material textured(ColourImage image, const Rgb& factor = {1, 1, 1}, Wrap wrap = Wrap::repeat) {
-  Material material{"textured", {}, factor * mean_reflectance(image), false, {}, {}};
+  Material material{"textured", {}, factor * mean_surface(image).reflectance, false, {}, {}};
   material.texture = Texture{std::make_shared<const ColourImage>(std::move(image)), factor, wrap, wrap};
   return material;
 }

@@ -43,7 +43,7 @@ Vec3 middle_of_box(const std::vector<Vec3>& points) {
 
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
-/// Returns the share of each vertex that hides what is behind it; nothing if the mesh has no panes.
+/// Returns the share of each vertex that hides what is behind it, where nothing is cut out; nothing if the mesh has no panes.
 std::vector<float> opacities_of(const DisplayMesh& mesh) {
   const std::vector<const Material*> panes = panes_of(mesh);
   std::vector<float> opacities(panes.empty() ? 0 : mesh.positions.size(), 1);
@@ -84,6 +84,8 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   attributes["NORMAL"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.normals[i]); });
   attributes["_IRRADIANCE"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.irradiance[i]); });
   attributes["_RADIOSITY"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.radiosity[i]); });
+  if (!mesh.transmitted.empty())
+    attributes["_TRANSMITTED"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.transmitted[i]); });
   // glTF defines COLOR_0 as linear: no sRGB encoding here.
   const auto colour = [&](std::size_t i) {
     // Panes are drawn whole or not at all (see unlit_material), so those that are drawn get the colour of the part that is there.
@@ -103,7 +105,8 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
 }
 
 /// Returns the material, shown unlit because the light is in the vertex colours. The base values are for viewers without that
-/// extension. Faces through which more than half of the light goes are not drawn: blended, they would have to be sorted.
+/// extension. Parts of faces through which more than half of the light goes are not drawn: blended, they would have to be sorted.
+/// Textures say by their alpha what is cut out.
 json unlit_material(bool has_panes) {
   json material{{"name", "solution"},
                 {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
@@ -183,8 +186,9 @@ void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes
 
 std::string encode_glb(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) throw SolutionFileError("mesh: has no triangles");
+  const std::size_t vectors = mesh.transmitted.empty() ? 6 : 7;
   const std::size_t estimate =
-      mesh.positions.size() * (6 * vec3_size) + mesh.triangles.size() * vec3_size + mesh.faces.size() * sizeof(FaceTriangles);
+      mesh.positions.size() * vectors * vec3_size + mesh.triangles.size() * vec3_size + mesh.faces.size() * sizeof(FaceTriangles);
   if (estimate > std::numeric_limits<std::uint32_t>::max() - largest_json)
     throw SolutionFileError("mesh: too large for GLB, which ends at 4 GB");
 

@@ -141,6 +141,13 @@ std::vector<T> read_vectors(const json& root, std::string_view binary, const cha
   return vectors;
 }
 
+/// Returns one attribute of the primitive as read_vectors() does; nothing if there is none.
+std::vector<RgbF> read_vectors_if_there(const json& root, std::string_view binary, const char* name) {
+  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
+  if (!member(primitive, "attributes", "meshes[0].primitives[0]").contains(name)) return {};
+  return read_vectors<RgbF>(root, binary, name, {});
+}
+
 std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::string_view binary) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   const json& primitives = member(element(root, "meshes", 0), "primitives", "meshes[0]");
@@ -233,6 +240,7 @@ DisplayMesh decode_glb(std::string_view bytes) {
   mesh.normals = read_vectors<Vec3>(root, chunks.binary, "NORMAL", {});
   mesh.irradiance = read_vectors<RgbF>(root, chunks.binary, "_IRRADIANCE", {});
   mesh.radiosity = read_vectors<RgbF>(root, chunks.binary, "_RADIOSITY", {});
+  mesh.transmitted = read_vectors_if_there(root, chunks.binary, "_TRANSMITTED");
   mesh.triangles = read_triangles(root, chunks.binary);
   return mesh;
 }

@@ -28,13 +28,14 @@ Wrap wrap_of(const json& mode) {
 }
 
 std::string encode(const ColourImage& image) {
-  return encode_png({static_cast<int>(image.columns), static_cast<int>(image.rows), image.texels}, "texture");
+  return encode_png({static_cast<int>(image.columns), static_cast<int>(image.rows), image.texels, image.has_opacity}, "texture");
 }
 
 std::shared_ptr<const ColourImage> decode(std::string_view bytes) {
   Image picture = decode_png(bytes, ColourImage::most_columns, ColourImage::most_rows);
-  return std::make_shared<const ColourImage>(
-      ColourImage{static_cast<std::uint32_t>(picture.width), static_cast<std::uint32_t>(picture.height), std::move(picture.rgb)});
+  return std::make_shared<const ColourImage>(ColourImage{static_cast<std::uint32_t>(picture.width),
+                                                         static_cast<std::uint32_t>(picture.height), std::move(picture.rgb),
+                                                         picture.has_opacity});
 }
 
 std::size_t whole_number(const json& value) {

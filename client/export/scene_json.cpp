@@ -50,15 +50,17 @@ json json_of(const Material& material) {
               {"emission", json_of(material.emission)},
               {"reflectance", json_of(material.reflectance)},
               {"two_sided", material.two_sided}};
-  if (material.is_pane()) result["regular_transmittance"] = json_of(material.regular_transmittance);
+  if (!material.regular_transmittance.is_zero()) result["regular_transmittance"] = json_of(material.regular_transmittance);
+  if (material.is_translucent()) result["diffuse_transmittance"] = json_of(material.diffuse_transmittance);
   return result;
 }
 
 Material material_of(const json& source, std::size_t number) {
   return naming("material ", number, [&]() -> Material {
-    return {source.at("name").get<std::string>(), rgb_of(source.at("emission")), rgb_of(source.at("reflectance")),
-            source.at("two_sided").get<bool>(),
-            source.contains("regular_transmittance") ? rgb_of(source["regular_transmittance"]) : Rgb{}};
+    const auto share = [&](const char* name) { return source.contains(name) ? rgb_of(source[name]) : Rgb{}; };
+    return {source.at("name").get<std::string>(), rgb_of(source.at("emission")),  rgb_of(source.at("reflectance")),
+            source.at("two_sided").get<bool>(),   share("regular_transmittance"), std::nullopt,
+            share("diffuse_transmittance")};
   });
 }
 

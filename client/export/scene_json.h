@@ -11,8 +11,8 @@
 
 namespace alvor {
 
-/// Returns {"name", "emission", "reflectance", "two_sided"}, with "regular_transmittance" of a pane; emission in W/m2 or lm/m2,
-/// the shares of light without a unit, per band.
+/// Returns {"name", "emission", "reflectance", "two_sided"}, with "regular_transmittance" and
+/// "diffuse_transmittance" where they are not zero; emission in W/m2 or lm/m2, the shares of light without a unit, per band.
 nlohmann::json json_of(const Material& material);
 /// Reads what json_of() wrote. Throws SolutionFileError that names the material by `number`.
 Material material_of(const nlohmann::json& json, std::size_t number);

@@ -18,7 +18,7 @@ struct PngWriter {
     header.version = PNG_IMAGE_VERSION;
     header.width = static_cast<png_uint_32>(image.width);
     header.height = static_cast<png_uint_32>(image.height);
-    header.format = PNG_FORMAT_RGB;
+    header.format = image.has_opacity ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   }
   ~PngWriter() { png_image_free(&header); }
   PngWriter(const PngWriter&) = delete;
@@ -32,7 +32,8 @@ struct PngWriter {
 }  // namespace
 
 std::string encode_png(const Image& image, const std::string& name) {
-  assert(image.rgb.size() == std::size_t{3} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  assert(image.rgb.size() ==
+         image.bytes_a_pixel() * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   PngWriter writer(image);
   // An upper bound of the file's size, from libpng: incompressible pixels take a few bytes more than their own.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(writer.header);
@@ -49,8 +50,9 @@ Image decode_png(std::string_view bytes, std::uint32_t most_columns, std::uint32
     throw FileError(std::string("decode: ") + header.message);
   const std::unique_ptr<png_image, decltype(&png_image_free)> freed(&header, png_image_free);
   if (header.width > most_columns || header.height > most_rows) throw FileError("decode: the picture is too large");
-  header.format = PNG_FORMAT_RGB;
-  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
+  const bool has_opacity = (header.format & PNG_FORMAT_FLAG_ALPHA) != 0;  // so far the file's own format
+  header.format = has_opacity ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}, has_opacity};
   image.rgb.resize(PNG_IMAGE_SIZE(header));
   if (png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr) == 0)
     throw FileError(std::string("decode: ") + header.message);

@@ -3,20 +3,21 @@
 namespace alvor {
 
 Stage::Stage(const DisplayMesh& mesh)
-    : mesh_(mesh), caster_(mesh.positions, mesh.triangles), radiosity_(mesh), panes_(panes_of(mesh)) {}
+    : mesh_(mesh), caster_(mesh.positions, mesh.triangles), radiosity_(mesh), transmittance_(mesh) {}
 
 std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
   auto hit = caster_.cast_front(origin, direction);
   if (!hit) return std::nullopt;
   Seen seen{hit->triangle, hit->u, hit->v};
   std::vector<std::uint32_t> passed;
-  while (!panes_.empty() && panes_[seen.triangle] && passed.size() < TriangleCaster::most_passed) {
+  while (passed.size() < TriangleCaster::most_passed) {
+    const Rgb through = transmittance_.at(seen.triangle, seen.u, seen.v);
+    if (through.is_zero()) break;
     passed.push_back(seen.triangle);
     hit = caster_.cast_front(origin, direction, passed);
     if (!hit && radiosity(seen).is_zero()) return std::nullopt;
     if (!hit) break;
-    const Material& pane = *panes_[seen.triangle];
-    seen = {hit->triangle, hit->u, hit->v, seen.tint * narrow(pane.regular_transmittance), radiosity(seen)};
+    seen = {hit->triangle, hit->u, hit->v, seen.tint * narrow(through), radiosity(seen)};
   }
   return seen;
 }

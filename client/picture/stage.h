@@ -3,6 +3,7 @@
 
 #include "client/picture/camera.h"
 #include "meshing/mesh_radiosity.h"
+#include "meshing/mesh_transmittance.h"
 #include "radiosity/rays/triangle_caster.h"
 
 #include <functional>
@@ -14,7 +15,7 @@ namespace alvor {
 struct Seen {
   std::uint32_t triangle = 0;
   double u = 0, v = 0;
-  RgbF tint{1, 1, 1};  ///< share of its light that panes before it let through
+  RgbF tint{1, 1, 1};  ///< share of its light that goes through the panes before it
   RgbF before;         ///< radiosity of these panes, as far as it reaches the eye
 };
 
@@ -25,8 +26,8 @@ class Stage {
   const DisplayMesh& mesh() const { return mesh_; }
   const TriangleCaster& caster() const { return caster_; }
 
-  /// Returns the first front side along a ray that is no pane. If there is none, returns the last pane if any of them shines.
-  /// Back sides are transparent, so that a closed room can be seen from outside.
+  /// Returns the first front side along a ray at a place that lets no light through. If there is none, returns the last pane if
+  /// any of them shines. Back sides are transparent, so that a closed room can be seen from outside.
   std::optional<Seen> look(Vec3 origin, Vec3 direction) const;
   /// Calls `on_seen` for the points of a coarse picture, the same for any size of the camera's picture: enough for exposure and
   /// scales.
@@ -51,7 +52,7 @@ class Stage {
   const DisplayMesh& mesh_;
   TriangleCaster caster_;
   MeshRadiosity radiosity_;
-  std::vector<const Material*> panes_;  // by triangle, see panes_of()
+  MeshTransmittance transmittance_;
 };
 
 }  // namespace alvor

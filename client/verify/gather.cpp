@@ -32,6 +32,13 @@ struct Unblocked {
   Rgb irradiance;
 };
 
+/// Returns whether the surface emits at a vertex. Light that comes through it from behind does not count.
+bool emits_at(const DisplayMesh& mesh, std::uint32_t vertex) {
+  constexpr float rounded_up = 1 + 1e-6F;  // radiosity is rounded to 6e-8
+  const RgbF& received = mesh.irradiance[vertex];
+  return emits(mesh.radiosity[vertex], mesh.transmitted.empty() ? received : received + rounded_up * mesh.transmitted[vertex]);
+}
+
 }  // namespace
 
 Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption)
@@ -42,8 +49,8 @@ Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const 
       lamps_(mesh.lights, {{}, 1}, mesh.positions),
       skies_(mesh.lights),
       is_emitter_(mesh.triangles.size()),
-      panes_(panes_of(mesh)) {
-  const auto vertex_emits = [&](std::uint32_t vertex) { return emits(mesh.radiosity[vertex], mesh.irradiance[vertex]); };
+      transmittance_(mesh) {
+  const auto vertex_emits = [&](std::uint32_t vertex) { return emits_at(mesh, vertex); };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     is_emitter_[t] = std::ranges::any_of(mesh.triangles[t], vertex_emits);
     if (is_emitter_[t]) emitters_.push_back(t);
@@ -58,16 +65,17 @@ std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std:
                             std::hypot(first.standard_error, second.standard_error, third.standard_error)};
 }
 
-Rgb Gatherer::through(std::uint32_t triangle, Vec3 direction) const {
-  if (panes_.empty() || !panes_[triangle]) return {};
-  const bool is_seen_by_twin = panes_[triangle]->two_sided && !meets_front(triangle, direction);
-  return is_seen_by_twin ? Rgb{1, 1, 1} : panes_[triangle]->regular_transmittance;
+Rgb Gatherer::through(const TriangleCaster::Hit& hit, Vec3 direction) const {
+  const Material* const pane = transmittance_.pane(hit.triangle);
+  if (!pane) return {};
+  const bool is_seen_by_twin = pane->two_sided && !meets_front(hit.triangle, direction);
+  return is_seen_by_twin ? Rgb{1, 1, 1} : transmittance_.at(hit.triangle, hit.u, hit.v);
 }
 
 /// Returns the share of light that goes straight from one place to another, per band.
 Rgb Gatherer::passing(Vec3 from, Vec3 to) const {
-  return transmittance_between(caster_, from, to, !panes_.empty(),
-                               [&](std::uint32_t triangle, Vec3 direction) { return through(triangle, direction); });
+  return transmittance_between(caster_, from, to, transmittance_.has_panes(),
+                               [&](const TriangleCaster::Hit& hit, Vec3 direction) { return through(hit, direction); });
 }
 
 bool Gatherer::meets_front(std::uint32_t triangle, Vec3 direction) const {
@@ -88,7 +96,7 @@ Rgb Gatherer::from_direction(Vec3 point, Vec3 direction) const {
     }
     if (meets_front(hit->triangle, direction) && !is_emitter_[hit->triangle])
       arriving += share * medium_.transmittance(hit->distance) * radiosity_.at(hit->triangle, hit->u, hit->v);
-    share = share * through(hit->triangle, direction);
+    share = share * through(*hit, direction);
     passed.push_back(hit->triangle);
   }
   return arriving;
@@ -102,7 +110,7 @@ bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
     const Vec3 direction = uniform_direction(directions[n]);
     auto hit = caster_.cast(point, direction);
     std::vector<std::uint32_t> passed;
-    while (hit && !panes_.empty() && panes_[hit->triangle] && passed.size() < TriangleCaster::most_passed) {
+    while (hit && passed.size() < TriangleCaster::most_passed && !through(*hit, direction).is_zero()) {
       passed.push_back(hit->triangle);
       hit = caster_.cast(point, direction, passed);
     }
@@ -118,7 +126,7 @@ GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_
     const std::array<Vec3, 3> corners{corner(t, 0), corner(t, 1), corner(t, 2)};
     const double form_factor = point_to_polygon(point, normal, corners);
     if (form_factor <= 0) continue;
-    unblocked.push_back({t, form_factor * radiosity_.at(t, 1.0 / 3, 1.0 / 3)});
+    unblocked.push_back({t, form_factor * radiosity_.of_what_is_there(t, 1.0 / 3, 1.0 / 3)});
     total += unblocked.back().irradiance.mean();
   }
   GatheredIrradiance sum;
@@ -167,14 +175,17 @@ Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uin
   double all = 0, all_squared = 0, product = 0, arriving_squared = 0, used = 0;
   for (std::uint32_t n = 0; n < rays; ++n) {
     const auto [u, v] = places[n];
-    const double edge = std::sqrt(u);
-    const Vec3 place = a + edge * (1 - v) * (b - a) + edge * v * (c - a), way = place - point;
+    const double edge = std::sqrt(u), along_b = edge * (1 - v), along_c = edge * v;
+    const Vec3 place = a + along_b * (b - a) + along_c * (c - a), way = place - point;
     const double kernel = std::max(0.0, dot(normal, way)) * std::max(0.0, -dot(area, way)) / std::pow(dot(way, way), 2);
     if (!(kernel > 0)) continue;
     ++used;
     all += kernel;
     all_squared += kernel * kernel;
-    const Rgb light = kernel * medium_.transmittance(length(way)) * passing(point, lerp(place, point, before_emitter));
+    const double there = transmittance_.opacity_at(triangle, along_b, along_c);
+    Rgb light;
+    if (there > 0)
+      light = kernel * there * medium_.transmittance(length(way)) * passing(point, lerp(place, point, before_emitter));
     arriving += light;
     product += kernel * light.mean();
     arriving_squared += light.mean() * light.mean();

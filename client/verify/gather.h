@@ -4,6 +4,7 @@
 #include "client/verify/lamps.h"
 #include "client/verify/skies.h"
 #include "meshing/mesh_radiosity.h"
+#include "meshing/mesh_transmittance.h"
 #include "radiosity/rays/medium.h"
 #include "radiosity/rays/triangle_caster.h"
 
@@ -40,9 +41,9 @@ class Gatherer {
     double variance = 0;  ///< variance of mean.mean()
   };
 
-  /// The share of light that goes straight through a triangle, from the side that it is met on. The back of a two-sided pane is
-  /// passed: its front, drawn close to it, dims.
-  Rgb through(std::uint32_t triangle, Vec3 direction) const;
+  /// The share of light that goes straight on where a triangle is hit, from the side that it is met on. The back of a two-sided
+  /// pane is passed: its front, drawn close to it, dims.
+  Rgb through(const TriangleCaster::Hit& hit, Vec3 direction) const;
   bool meets_front(std::uint32_t triangle, Vec3 direction) const;
   Rgb passing(Vec3 from, Vec3 to) const;
   Rgb from_direction(Vec3 point, Vec3 direction) const;
@@ -61,7 +62,7 @@ class Gatherer {
   Skies skies_;
   std::vector<std::uint32_t> emitters_;  ///< indices of the triangles that emit
   std::vector<bool> is_emitter_;         ///< by triangle
-  std::vector<const Material*> panes_;   ///< by triangle, see panes_of()
+  MeshTransmittance transmittance_;
 };
 
 }  // namespace alvor

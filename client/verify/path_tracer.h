@@ -31,8 +31,10 @@ struct SurfacePoint {
 /// sampled in two ways: by choosing a place on an emitter, and by following the path. They are weighted by the balance heuristic
 /// (Veach & Guibas 1995), so no sample exceeds the brightest emission, even in a corner of two emitters. Lamps and distant lights
 /// are sampled one at a time, chosen by what they bring unblocked; environments in two ways, as emitters are. At a pane a path
-/// bends or goes straight on, by chance; shadow rays go on through panes. One systematic error remains: rays start 1e-6 of the
-/// scene's extent above their surface, so that they do not hit it. Immutable; safe from any thread.
+/// bends or goes straight on, by chance; shadow rays go on through panes. Where a texture cuts a surface out, both go on as the
+/// opacity of the texel says. At a translucent surface a path bends to the side that it came from or to the other, by chance. One
+/// systematic error remains: rays start 1e-6 of the scene's extent above their surface, so that they do not hit it. Immutable;
+/// safe from any thread.
 class PathTracer {
  public:
   /// Copies what it needs of `scene`. Requires: !find_fault(scene), and at least one face with area.
@@ -57,12 +59,21 @@ class PathTracer {
     Vec3 corner, side_u, side_v, normal;
     Rgb emission, reflectance;
     bool two_sided = false;
-    std::uint32_t light = 0;  ///< index in lights_ if the surface emits
-    Rgb through;              ///< regular transmittance
+    std::uint32_t light = 0;  ///< index in lights_ and surface_of_light_ if the surface emits
+    Rgb through;              ///< regular transmittance of what is there
     std::optional<Texture> texture;
     std::array<TexturePoint, 3> texture_points;  ///< of the corners, if there is a texture
     std::array<RgbF, 3> colours;                 ///< of the corners
-    bool is_pane() const { return !through.is_zero(); }
+    Rgb scattered;                               ///< diffuse transmittance
+    bool has_cutout() const { return texture && texture->image->has_opacity; }
+    bool is_pane() const { return !through.is_zero() || has_cutout(); }
+    TexturePoint texture_point_at(double u, double v) const;
+    /// Returns the reflectance of what is there at a place.
+    Rgb reflectance_at(double u, double v) const;
+    /// Returns the share of the surface that is there at a place, in [0, 1].
+    double opacity_at(double u, double v) const { return has_cutout() ? texture->opacity_at(texture_point_at(u, v)) : 1; }
+    /// Returns the share of light that goes straight on at a place.
+    Rgb through_at(double u, double v) const;
   };
   /// A point at which a path bends, just above a surface.
   struct Bend {
@@ -79,9 +90,11 @@ class PathTracer {
     double distance = 0, cosine = 0;  ///< cosine on the side that was hit, > 0
     double u = 0, v = 0;              ///< on the surface
     bool is_outside = false;          ///< the path leaves the scene
-    Rgb reflectance() const;
-    /// The number of the surface that the ray hits, from either side, if light goes straight on through that surface.
+    /// The number of the surface that the ray hits, from either side, if light goes straight on there.
     std::optional<std::uint32_t> pane;
+    Rgb through;         ///< share of light that goes straight on
+    double opacity = 1;  ///< share of the surface that is there
+    double chance_to_go_on() const;
   };
 
   Bend start_at(const SurfacePoint& point) const;
@@ -95,6 +108,7 @@ class PathTracer {
   Met meet(const Bend& bend, Vec3 direction, std::span<const std::uint32_t> passed = {}) const;
   Met behind_panes(const Bend& bend, Vec3 direction) const;
   Met follow(const Bend& bend, Vec3 direction, PathRandom& random, Rgb& throughput) const;
+  static Bend bend_at(const Met& met, PathRandom& random, Rgb& throughput);
   Rgb passing(Vec3 from, Vec3 to) const;
   Rgb transmittance(double distance) const;
 
@@ -103,6 +117,7 @@ class PathTracer {
   bool clear_ = true, has_panes_ = false;
   std::vector<Surface> surfaces_;
   EmitterTree lights_{{}};
+  std::vector<std::uint32_t> surface_of_light_;
   Lamps lamps_;
   Skies skies_;
   std::unique_ptr<const TriangleCaster> caster_;

@@ -9,9 +9,9 @@
 
 namespace alvor {
 
-/// Returns the share of light that goes straight from `from` to `to`, per band. `through(triangle, direction)` returns the share
-/// that goes on through a triangle that is met in a direction (unit): zero unless it is a pane. Requires: `has_panes` if any
-/// triangle lets light through.
+/// Returns the share of light that goes straight from `from` to `to`, per band. `through(hit, direction)` returns the share that
+/// goes on at the point of a triangle that is met in a direction (unit): zero unless it is of a pane. Requires: `has_panes` if
+/// any triangle lets light through.
 template <class Through>
 Rgb transmittance_between(const TriangleCaster& caster, Vec3 from, Vec3 to, bool has_panes, Through through) {
   Rgb share{1, 1, 1};
@@ -23,7 +23,7 @@ Rgb transmittance_between(const TriangleCaster& caster, Vec3 from, Vec3 to, bool
   while (passed.size() < TriangleCaster::most_passed && !share.is_zero()) {
     const auto hit = caster.cast(from, direction, passed);
     if (!hit || hit->distance >= distance) return share;
-    share = share * through(hit->triangle, direction);
+    share = share * through(*hit, direction);
     passed.push_back(hit->triangle);
   }
   return {};

@@ -3,6 +3,7 @@
 #include "import/base/bytes.h"
 #include "import/base/glb_format.h"
 #include "import/base/import_error.h"
+#include "import/formats/gltf_material.h"
 #include "import/formats/named_file.h"
 #include "import/formats/tiny_gltf.h"
 
@@ -202,6 +203,11 @@ void ask_for_images(const json& gltf, SceneFiles& files) {
     const json* const surface = member(material, "pbrMetallicRoughness");
     ask_for_texture(surface ? member(*surface, "baseColorTexture") : nullptr);
     ask_for_texture(member(material, "emissiveTexture"));
+    const json* const extensions = member(material, "extensions");
+    const json* const scattering = extensions ? member(*extensions, "KHR_materials_diffuse_transmission") : nullptr;
+    if (!scattering) continue;
+    ask_for_texture(member(*scattering, "diffuseTransmissionTexture"));
+    ask_for_texture(member(*scattering, "diffuseTransmissionColorTexture"));
   }
 }
 
@@ -222,7 +228,7 @@ void ask_for_files(const json& gltf, SceneFiles& files) {
 std::set<int> colour_images(const tinygltf::Model& model) {
   std::set<int> images;
   for (const tinygltf::Material& material : model.materials)
-    for (const int texture : {material.pbrMetallicRoughness.baseColorTexture.index, material.emissiveTexture.index})
+    for (const int texture : textures_of(material))
       if (texture >= 0 && texture < static_cast<int>(model.textures.size()))
         images.insert(model.textures[static_cast<std::size_t>(texture)].source);
   return images;

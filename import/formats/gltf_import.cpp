@@ -298,7 +298,6 @@ class GltfReader {
       unsupported_.clear_materials += transmission_of(material) > 0;
       unsupported_.transmission_textures +=
           transmission != material.extensions.end() && transmission->second.Has("transmissionTexture");
-      unsupported_.translucent_materials += material.extensions.contains("KHR_materials_diffuse_transmission");
     }
   }
 

@@ -40,31 +40,23 @@ std::string key_of(const tinygltf::Model& model, const tinygltf::Image& image) {
   return std::to_string(number) + (image.name.empty() ? "" : " " + image.name);
 }
 
-/// The colour and the opacity that a material has in the mean over a texture.
-struct MeanSurface {
-  Rgb colour;
-  double opacity = 1;
-};
-
-MeanSurface mean_surface(const tinygltf::Model& model, const Rgb& factor, const tinygltf::TextureInfo& texture,
-                         const AlphaUse& alpha, const std::string& material, std::vector<std::string>& warnings) {
-  if (texture.index < 0 || (factor.is_zero() && alpha.kind == AlphaUse::Kind::ignored)) return {factor, alpha.opacity(1)};
-  const tinygltf::Image* image = image_of(model, texture.index);
-  const std::string name = "material '" + material + "': texture '" + name_of(image, texture.index) + "'";
-  const auto mean = image ? mean_texel(encoded_bytes(model, *image), alpha) : std::nullopt;
-  return {textured(factor, mean, name, warnings), mean ? mean->opacity : alpha.opacity(1)};
-}
-
 Wrap wrap_of(int mode) {
   if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
   return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
-/// Returns the two numbers of KHR_texture_transform's array `name`.
-void read_pair(const tinygltf::Value& transform, const char* name, double (&pair)[2]) {
-  if (!transform.Has(name) || !transform.Get(name).IsArray() || transform.Get(name).ArrayLen() != 2) return;
-  for (std::size_t i = 0; i < 2; ++i)
-    if (const tinygltf::Value& number = transform.Get(name).Get(i); number.IsNumber()) pair[i] = number.GetNumberAsDouble();
+/// Replaces `numbers` by those of the array `name`; an array of another length is ignored, and what is no number in it.
+template <std::size_t count>
+void read_numbers(const tinygltf::Value& object, const char* name, double (&numbers)[count]) {
+  if (!object.IsObject() || !object.Has(name) || !object.Get(name).IsArray() || object.Get(name).ArrayLen() != count) return;
+  for (std::size_t i = 0; i < count; ++i)
+    if (const tinygltf::Value& number = object.Get(name).Get(i); number.IsNumber()) numbers[i] = number.GetNumberAsDouble();
+}
+
+/// Returns the number of the texture that an extension uses as `name`; -1 if there is none.
+int texture_in(const tinygltf::Value& extension, const char* name) {
+  if (!extension.IsObject() || !extension.Has(name)) return -1;
+  return static_cast<int>(std::clamp(number_in(extension.Get(name), "index", -1), -1.0, 1e9));
 }
 
 GltfTextureMap map_of(const tinygltf::TextureInfo& texture) {
@@ -72,8 +64,8 @@ GltfTextureMap map_of(const tinygltf::TextureInfo& texture) {
   const auto extension = texture.extensions.find("KHR_texture_transform");
   if (extension == texture.extensions.end() || !extension->second.IsObject()) return map;
   const tinygltf::Value& transform = extension->second;
-  read_pair(transform, "offset", map.offset);
-  read_pair(transform, "scale", map.scale);
+  read_numbers(transform, "offset", map.offset);
+  read_numbers(transform, "scale", map.scale);
   const double rotation = number_in(transform, "rotation", 0);
   map.cosine = std::cos(rotation), map.sine = std::sin(rotation);
   map.set = static_cast<int>(std::clamp(number_in(transform, "texCoord", map.set), 0.0, 1000.0));
@@ -96,6 +88,97 @@ double emissive_strength(const tinygltf::Material& material) {
   return extension->second.Get("emissiveStrength").GetNumberAsDouble();
 }
 
+constexpr const char *diffuse_transmission = "KHR_materials_diffuse_transmission",
+                     *transmission_texture = "diffuseTransmissionTexture",
+                     *transmission_colour_texture = "diffuseTransmissionColorTexture";
+
+/// Reads the materials of a model, each by itself, with the images that they share. Borrows both.
+class MaterialReader {
+ public:
+  MaterialReader(const tinygltf::Model& model, std::vector<std::string>& warnings) : model_(model), warnings_(warnings) {}
+
+  Material read(const tinygltf::Material& source, const std::string& name) {
+    Material material{name, {}, {}, source.doubleSided, {}, {}};
+    const double opacity = cover(source, material);
+    const Rgb light = emissive_strength(source) * rgb_of(source.emissiveFactor);
+    material.emission = emission_of_radiance(averaged(light, source.emissiveTexture.index, {}, name).colour);
+    const double through = transmission_of(source);
+    if (through > 0) let_through(material, through);
+    scatter(source, 1 - through, material);
+    if (opacity < 1) leave(material, opacity);
+    return material;
+  }
+
+  void append_warnings() const { images_.append_warnings(warnings_); }
+
+ private:
+  /// The colour and the opacity that a material has in the mean over a texture.
+  struct Average {
+    Rgb colour;
+    double opacity = 1;
+  };
+
+  Average averaged(const Rgb& factor, int texture, const AlphaUse& alpha, const std::string& material) {
+    if (texture < 0 || (factor.is_zero() && alpha.is_ignored())) return {factor, alpha.opacity(1)};
+    const auto mean = mean_of(texture, alpha);
+    return {textured(factor, mean, place_of(texture, material), warnings_), mean ? mean->opacity : alpha.opacity(1)};
+  }
+
+  std::optional<MeanTexel> mean_of(int texture, const AlphaUse& alpha) const {
+    const tinygltf::Image* const image = image_of(model_, texture);
+    return image ? mean_texel(encoded_bytes(model_, *image), alpha) : std::nullopt;
+  }
+
+  std::string place_of(int texture, const std::string& material) const {
+    return "material '" + material + "': texture '" + name_of(image_of(model_, texture), texture) + "'";
+  }
+
+  /// Sets the reflectance of a material and cuts out its holes, by place if it has a texture. Returns the share of the surface
+  /// that is there if it is the same everywhere, else 1.
+  double cover(const tinygltf::Material& source, Material& material) {
+    const int texture = source.pbrMetallicRoughness.baseColorTexture.index;
+    const Rgb factor = rgb_of(source.pbrMetallicRoughness.baseColorFactor);
+    const AlphaUse alpha = alpha_use_of(source);
+    const bool is_clear = transmission_of(source) > 0;  // has one tint; only its holes count by place
+    const tinygltf::Image* const image = image_of(model_, texture);
+    const bool is_read = image && (!alpha.is_ignored() || (!is_clear && !factor.is_zero()));
+    const auto colours = is_read ? images_.decoded(key_of(model_, *image), encoded_bytes(model_, *image), alpha) : nullptr;
+    if (!colours || (is_clear && !colours->has_opacity)) {
+      const Average mean = averaged(factor, texture, alpha, material.name);
+      material.reflectance = mean.colour;
+      return mean.opacity;
+    }
+    const tinygltf::Sampler* const sampler = element(model_.samplers, model_.textures[static_cast<std::size_t>(texture)].sampler);
+    return images_.cover(material, factor, colours, wrap_of(sampler ? sampler->wrapS : 0), wrap_of(sampler ? sampler->wrapT : 0));
+  }
+
+  /// Makes a material translucent as KHR_materials_diffuse_transmission says. `rest` is the share of light that does not go
+  /// straight through. Metal scatters none behind it.
+  void scatter(const tinygltf::Material& source, double rest, Material& material) {
+    const auto found = source.extensions.find(diffuse_transmission);
+    if (found == source.extensions.end() || is_metal(source)) return;
+    const tinygltf::Value& extension = found->second;
+    const double given = number_in(extension, "diffuseTransmissionFactor", 0);
+    double share = given >= 0 ? std::min(1.0, given) : 0, bands[3] = {1, 1, 1};
+    if (share == 0) return;
+    read_numbers(extension, "diffuseTransmissionColorFactor", bands);
+    if (const int texture = texture_in(extension, transmission_texture); texture >= 0) {
+      const auto mean = mean_of(texture, {AlphaUse::Kind::blended});
+      if (mean) share *= mean->opacity;
+      warnings_.push_back(place_of(texture, material.name) +
+                          (mean ? " counts by the mean of its alpha" : " cannot be read and is left out"));
+    }
+    const int colour_texture = texture_in(extension, transmission_colour_texture);
+    const Rgb colour = averaged({bands[0], bands[1], bands[2]}, colour_texture, {}, material.name).colour;
+    scale_albedo(material, 1 - share);
+    make_translucent(material, rest * share * colour);
+  }
+
+  const tinygltf::Model& model_;
+  std::vector<std::string>& warnings_;
+  ColourImages images_;
+};
+
 }  // namespace
 
 // With a texture, metallicFactor is usually left at its default 1, also for materials that are no metals.
@@ -111,6 +194,14 @@ double transmission_of(const tinygltf::Material& material) {
   return share >= 0 ? std::min(1.0, share) : 0;
 }
 
+std::vector<int> textures_of(const tinygltf::Material& material) {
+  std::vector<int> textures{material.pbrMetallicRoughness.baseColorTexture.index, material.emissiveTexture.index};
+  if (const auto found = material.extensions.find(diffuse_transmission); found != material.extensions.end())
+    for (const char* const name : {transmission_texture, transmission_colour_texture})
+      textures.push_back(texture_in(found->second, name));
+  return textures;
+}
+
 // Offset * rotation * scale. The rotation turns as in three.js and the Khronos sample viewer, by which the Khronos test model
 // TextureTransformTest is right; the matrix printed in the specification turns the other way.
 TexturePoint GltfTextureMap::of(TexturePoint given) const {
@@ -120,32 +211,13 @@ TexturePoint GltfTextureMap::of(TexturePoint given) const {
 
 GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings) {
   GltfMaterials read;
-  ColourImages images;
+  MaterialReader reader(model, warnings);
   for (const tinygltf::Material& source : model.materials) {
     const std::string name = source.name.empty() ? std::to_string(read.materials.size()) : source.name;
-    const tinygltf::PbrMetallicRoughness& surface = source.pbrMetallicRoughness;
-    const tinygltf::TextureInfo& texture = surface.baseColorTexture;
-    const AlphaUse alpha = alpha_use_of(source);
-    const Rgb factor = rgb_of(surface.baseColorFactor), light = emissive_strength(source) * rgb_of(source.emissiveFactor);
-    const double through = transmission_of(source);
-    const tinygltf::Image* const image = image_of(model, texture.index);
-    const bool is_opaque = alpha.kind == AlphaUse::Kind::ignored && through == 0 && !factor.is_zero();
-    const auto colours = image && is_opaque ? images.decoded(key_of(model, *image), encoded_bytes(model, *image)) : nullptr;
-    read.texture_maps.push_back(map_of(texture));
-    Material& material = read.materials.emplace_back(Material{name, {}, {}, source.doubleSided, {}, {}});
-    if (colours) {
-      const tinygltf::Sampler* const sampler =
-          element(model.samplers, model.textures[static_cast<std::size_t>(texture.index)].sampler);
-      images.cover(material, factor, colours, wrap_of(sampler ? sampler->wrapS : 0), wrap_of(sampler ? sampler->wrapT : 0));
-    }
-    const MeanSurface mean =
-        colours ? MeanSurface{material.reflectance} : mean_surface(model, factor, texture, alpha, name, warnings);
-    material.reflectance = mean.colour;
-    material.emission = emission_of_radiance(mean_surface(model, light, source.emissiveTexture, {}, name, warnings).colour);
-    if (through > 0) let_through(material, through);
-    if (mean.opacity < 1) leave(material, mean.opacity);
+    read.texture_maps.push_back(map_of(source.pbrMetallicRoughness.baseColorTexture));
+    read.materials.push_back(reader.read(source, name));
   }
-  images.append_warnings(warnings);
+  reader.append_warnings();
   return read;
 }
 

@@ -19,6 +19,9 @@ bool is_metal(const tinygltf::Material& material);
 /// Returns the share of light that KHR_materials_transmission lets through, in [0, 1]. Metal lets none through.
 double transmission_of(const tinygltf::Material& material);
 
+/// Returns the numbers of the textures that read_gltf_materials() reads for a material. Some may not be in the file.
+std::vector<int> textures_of(const tinygltf::Material& material);
+
 /// Maps texture coordinates of a glTF file to points of a texture: chooses a set of coordinates and applies
 /// KHR_texture_transform.
 struct GltfTextureMap {
@@ -34,8 +37,10 @@ struct GltfMaterials {
 };
 
 /// Returns the model's materials. baseColorFactor and its texture become reflectance; emissiveFactor x
-/// KHR_materials_emissive_strength, a radiance, becomes emission. Alpha (BLEND, MASK) and KHR_materials_transmission let light
-/// straight through. Textures of emission, and those of materials that let light through, count by their mean colour and opacity.
+/// KHR_materials_emissive_strength, a radiance, becomes emission. Alpha (BLEND, MASK), by place if a texture has it, and
+/// KHR_materials_transmission let light straight through; KHR_materials_diffuse_transmission scatters it behind the surface.
+/// Textures of emission and of diffuse transmission count by their mean, and so does that of the base colour of clear glass
+/// without holes.
 /// Requires: `model.images` hold encoded bytes.
 GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings);
 

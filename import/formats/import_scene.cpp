@@ -9,11 +9,13 @@
 #include "import/formats/obj_import.h"
 #include "import/formats/placed_environment.h"
 #include "import/formats/placed_luminaires.h"
+#include "import/formats/see_through.h"
 #include "proto/codec.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <new>
+#include <span>
 
 namespace alvor {
 
@@ -66,15 +68,56 @@ std::string text_of(const Rgb& bands) {
   return text;
 }
 
+/// Scales what a translucent material scatters to both sides below 1 in all bands. NaN stays as it is and is a fault.
+void clamp_albedo(Material& material, std::vector<std::string>& warnings) {
+  if (!material.diffuse_transmittance.is_finite()) return;
+  material.diffuse_transmittance = upper(material.diffuse_transmittance, {});
+  if (!material.is_translucent()) return;
+  const Rgb albedo = upper(material.largest_albedo(), material.reflectance + material.diffuse_transmittance);
+  if (albedo.is_finite() && albedo.max() >= 1) {
+    scale_albedo(material, clamped_reflectance / albedo.max());
+    warnings.push_back("material '" + material.name + "': reflectance and diffuse transmittance, together " + text_of(albedo) +
+                       ", are scaled to " + text_of(clamped_reflectance / albedo.max() * albedo));
+  }
+  const Rgb rest = Rgb{1, 1, 1} - upper(material.largest_albedo(), material.reflectance + material.diffuse_transmittance);
+  material.regular_transmittance = upper(lower(material.regular_transmittance, rest), {});
+}
+
 void clamp_reflectance(SceneFile& file) {
   for (Material& material : file.scene.materials) {
     const Rgb given = material.reflectance;
     if (!given.is_finite()) continue;
     material.reflectance = {clamped(given.r), clamped(given.g), clamped(given.b)};
     material.regular_transmittance = upper(lower(material.regular_transmittance, Rgb{1, 1, 1} - material.reflectance), Rgb{});
-    if (material.reflectance == given) continue;
-    file.warnings.push_back("material '" + material.name + "': reflectance " + text_of(given) + " is clamped to " +
-                            text_of(material.reflectance));
+    if (material.reflectance != given)
+      file.warnings.push_back("material '" + material.name + "': reflectance " + text_of(given) + " is clamped to " +
+                              text_of(material.reflectance));
+    clamp_albedo(material, file.warnings);
+  }
+}
+
+/// Returns the first names for an error message, in quotes.
+std::string first_names(std::span<const Material> materials) {
+  if (materials.empty()) return "none";
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (const Material& material : materials.first(std::min(most, materials.size())))
+    text += (text.empty() ? "'" : ", '") + material.name + "'";
+  return materials.size() > most ? text + " and " + std::to_string(materials.size() - most) + " more" : text;
+}
+
+/// Makes the materials translucent that the options name. Requires: materials have different names.
+void take_translucent(const v1::ImportOptions& options, Scene& scene) {
+  for (const v1::TranslucentMaterial& wanted : options.translucent()) {
+    const std::string place = "translucent material '" + wanted.material() + "'";
+    const Rgb transmittance = decode(wanted.diffuse_transmittance());
+    for (const double band : {transmittance.r, transmittance.g, transmittance.b})
+      if (!(band >= 0 && band <= 1))
+        throw ImportError(place, "its diffuse transmittance " + text_of(transmittance) + " is outside [0, 1]");
+    const auto found = std::ranges::find(scene.materials, wanted.material(), &Material::name);
+    if (found == scene.materials.end())
+      throw ImportError(place, "is not in the scene, which has " + first_names(scene.materials));
+    make_translucent(*found, transmittance);
   }
 }
 
@@ -115,9 +158,10 @@ void complete_texture_points(Scene& scene) {
   scene.texture_points.resize(are_needed ? scene.corners.size() : 0);
 }
 
-SceneFile checked(SceneFile file) {
+SceneFile checked(SceneFile file, const v1::ImportOptions& options) {
   complete_texture_points(file.scene);
   make_names_unique(file.scene);
+  take_translucent(options, file.scene);
   clamp_reflectance(file);
   refuse_faulty(file.scene);
   for (std::string& warning : file.warnings) warning = one_line_of(warning);
@@ -133,7 +177,7 @@ ImportedScene imported(SceneFiles& files, const v1::ImportOptions& options) {
     files.require_found();
     take_options(options, file.scene);
     add_lights(options, files, file);
-    return {checked(std::move(file)), {}};
+    return {checked(std::move(file), options), {}};
   } catch (const MissingFileError&) {
     if (files.missing().empty()) throw;  // it is absent
     return {{}, {files.missing().begin(), files.missing().end()}};

@@ -19,7 +19,8 @@ struct ImportedScene {
 
 /// Reads a scene: OBJ+MTL through tinyobjloader, glTF 2.0 / GLB through tinygltf, other formats through Assimp. Faces keep the
 /// order and the corners of the file. Node transforms are applied; radiance becomes emission (E = pi L). Reflectance of 1 or more
-/// is clamped to 0.95 with a warning. The scene has no fault (find_fault). Throws ImportError.
+/// is clamped to 0.95 with a warning, and so is reflectance with diffuse transmittance. The scene has no fault (find_fault).
+/// Throws ImportError.
 ImportedScene import_scene(SceneFiles& files, const v1::ImportOptions& options);
 
 }  // namespace alvor

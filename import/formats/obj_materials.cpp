@@ -14,7 +14,8 @@ namespace alvor {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> colour_lines{"Kd", "Ke"};
+/// Beside Kd and Ke of MTL there is Td, which is Alvor's own: the diffuse transmittance.
+constexpr std::array<std::string_view, 3> colour_lines{"Kd", "Ke", "Td"};
 Rgb rgb_of(const tinyobj::real_t (&bands)[3]) { return {bands[0], bands[1], bands[2]}; }
 
 /// Returns the names of the materials in an MTL text that have a line with this key.
@@ -48,6 +49,32 @@ std::string with_slashes(std::string path) {
 std::string place_of(const std::string& texture, const Material& material) {
   return "material '" + material.name + "': texture '" + with_slashes(texture) + "'";
 }
+
+/// Returns the three numbers of a Td line, which clean_lines() has checked; 0 if there is none.
+Rgb diffuse_transmittance_of(const tinyobj::material_t& material) {
+  Rgb bands;
+  if (const auto found = material.unknown_parameter.find("Td"); found != material.unknown_parameter.end())
+    std::istringstream(found->second) >> bands.r >> bands.g >> bands.b;
+  return bands;
+}
+
+std::span<const unsigned char> bytes_in(const std::string* file) {
+  if (!file) return {};
+  return {reinterpret_cast<const unsigned char*>(file->data()), file->size()};
+}
+
+/// Returns the options with which a material's image lies on faces.
+const tinyobj::texture_option_t& placing_options(const tinyobj::material_t& material) {
+  return material.diffuse_texname.empty() ? material.alpha_texopt : material.diffuse_texopt;
+}
+
+/// Returns whether map_d lies on faces as map_Kd does.
+bool lie_alike(const tinyobj::texture_option_t& a, const tinyobj::texture_option_t& b) {
+  return std::equal(a.origin_offset, a.origin_offset + 2, b.origin_offset) && std::equal(a.scale, a.scale + 2, b.scale) &&
+         a.clamp == b.clamp;
+}
+
+double dissolve_of(const tinyobj::material_t& material) { return std::clamp<double>(material.dissolve, 0, 1); }
 
 }  // namespace
 
@@ -101,7 +128,7 @@ void ObjMaterials::place_textures() {
   for (const Face& face : scene_.faces) {
     const tinyobj::material_t* const found = library_.find(scene_.materials[face.material].name);
     if (!found || !scene_.materials[face.material].texture) continue;
-    const tinyobj::texture_option_t& option = found->diffuse_texopt;
+    const tinyobj::texture_option_t& option = placing_options(*found);
     for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
       TexturePoint& point = scene_.texture_points[c];
       point = texture_point(option.scale[0] * point.s + option.origin_offset[0],
@@ -111,15 +138,45 @@ void ObjMaterials::place_textures() {
 }
 
 void ObjMaterials::fill(Material& material, const tinyobj::material_t& found) {
+  const double opacity = cover(found, material);
+  material.emission = emission_of_radiance(under_texture(rgb_of(found.emission), found.emissive_texname, material));
+  make_translucent(material, diffuse_transmittance_of(found));
+  if (opacity < 1) leave(material, opacity);
+}
+
+/// Sets the reflectance of a material and cuts out its holes, by place if it has a texture. Returns the share of the surface that
+/// is there if it is the same everywhere, else 1.
+double ObjMaterials::cover(const tinyobj::material_t& found, Material& material) {
   const Rgb diffuse = rgb_of(found.diffuse);
-  const double opacity = opacity_of(found, material);
+  const Wrap wrap = placing_options(found).clamp ? Wrap::clamp : Wrap::repeat;
+  if (const auto image = cut_out(found)) {
+    // Without map_Kd the image is white, which stands for slightly less than 1.
+    const Rgb factor = found.diffuse_texname.empty() ? diffuse * (1 / reflectance_of_texel(255)) : diffuse;
+    return images_.cover(material, factor, image, wrap, wrap);
+  }
+  const double opacity = mean_opacity(found, material);
   const bool is_covered = opacity == 1 && !diffuse.is_zero() && !found.diffuse_texname.empty();
   const auto image = is_covered ? images_.decoded(found.diffuse_texname, bytes_of(found.diffuse_texname)) : nullptr;
-  const Wrap wrap = found.diffuse_texopt.clamp ? Wrap::clamp : Wrap::repeat;
-  if (image) images_.cover(material, diffuse, image, wrap, wrap);
-  else material.reflectance = under_texture(diffuse, found.diffuse_texname, material);
-  material.emission = emission_of_radiance(under_texture(rgb_of(found.emission), found.emissive_texname, material));
-  if (opacity < 1) leave(material, opacity);
+  if (image) return images_.cover(material, diffuse, image, wrap, wrap);
+  material.reflectance = under_texture(diffuse, found.diffuse_texname, material);
+  return opacity;
+}
+
+/// Returns the image of map_Kd, or a white one if there is none, with the opacity of map_d, times `d`. Returns null if there is
+/// no map_d, if it does not lie as map_Kd does, or if one of the images cannot be read.
+std::shared_ptr<const ColourImage> ObjMaterials::cut_out(const tinyobj::material_t& found) {
+  const std::string &colour = found.diffuse_texname, &alpha = found.alpha_texname;
+  if (alpha.empty() || (!colour.empty() && !lie_alike(found.diffuse_texopt, found.alpha_texopt))) return nullptr;
+  const std::string* const colour_bytes = colour.empty() ? nullptr : bytes_of(colour);
+  const std::string* const alpha_bytes = bytes_of(alpha);
+  const auto make = [&]() -> std::optional<ColourImage> {
+    auto opacity = decode_opacity(bytes_in(alpha_bytes), dissolve_of(found));
+    if (!opacity || colour.empty()) return opacity;
+    const auto colours = decode_colours(bytes_in(colour_bytes));
+    return colours ? std::optional(with_opacity(*colours, *opacity)) : std::nullopt;
+  };
+  const std::string use = "map_d " + std::to_string(dissolve_of(found)) + " " + alpha;
+  return images_.made(colour.empty() ? alpha : colour, colour.empty() ? "without map_Kd " + use : use, make);
 }
 
 const std::string* ObjMaterials::bytes_of(const std::string& texture) { return files_.find(with_slashes(texture)); }
@@ -131,8 +188,8 @@ Rgb ObjMaterials::under_texture(const Rgb& factor, const std::string& texture, c
 
 /// Returns the share of a material's surface that is there: `d`, times the mean of `map_d`: of the image's alpha if it has any,
 /// else of its values.
-double ObjMaterials::opacity_of(const tinyobj::material_t& found, const Material& material) {
-  const double factor = std::clamp<double>(found.dissolve, 0, 1);
+double ObjMaterials::mean_opacity(const tinyobj::material_t& found, const Material& material) {
+  const double factor = dissolve_of(found);
   if (found.alpha_texname.empty()) return factor;
   const auto mean = mean_texel(bytes_of(found.alpha_texname), {AlphaUse::Kind::blended});
   warnings_.push_back(place_of(found.alpha_texname, material) +

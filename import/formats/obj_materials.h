@@ -7,6 +7,7 @@
 
 #include <istream>
 #include <map>
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -43,14 +44,17 @@ class ObjMaterials {
 
   /// Fills in the colours and textures of the materials, which have only names.
   void fill();
-  /// Moves the texture points of the scene as the options -o and -s of map_Kd say. Requires: all corners have one, or none.
+  /// Moves the texture points of the scene as the options -o and -s of map_Kd say; of map_d where there is no map_Kd. Requires:
+  /// all corners have one, or none.
   void place_textures();
 
  private:
   void fill(Material& material, const tinyobj::material_t& found);
   const std::string* bytes_of(const std::string& texture);
   Rgb under_texture(const Rgb& factor, const std::string& texture, const Material& material);
-  double opacity_of(const tinyobj::material_t& found, const Material& material);
+  double cover(const tinyobj::material_t& found, Material& material);
+  std::shared_ptr<const ColourImage> cut_out(const tinyobj::material_t& found);
+  double mean_opacity(const tinyobj::material_t& found, const Material& material);
 
   Scene& scene_;
   std::vector<std::string>& warnings_;

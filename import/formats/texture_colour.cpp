@@ -2,6 +2,7 @@
 
 #include "solution/srgb.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdlib>
 
@@ -96,6 +97,45 @@ std::optional<Header> open_image(std::span<const unsigned char> encoded) {
   return header;
 }
 
+/// An image as it is decoded: of four channels, its opacity is its alpha.
+struct Decoded {
+  ColourImage image;
+  bool has_alpha = false;
+};
+
+/// Returns the image in 8 bits. Requires: channels is 3 or 4.
+std::optional<Decoded> decode_bytes(std::span<const unsigned char> encoded, int channels) {
+  auto header = open_image(encoded);
+  if (!header) return std::nullopt;
+  auto& [width, height, in_file] = *header;
+  const Pixels pixels(
+      stbi_load_from_memory(encoded.data(), static_cast<int>(encoded.size()), &width, &height, &in_file, channels),
+      stbi_image_free);
+  if (!pixels) return std::nullopt;
+  ColourImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}, channels == 4};
+  const auto* const bytes = static_cast<const std::uint8_t*>(pixels.get());
+  image.texels.assign(bytes, bytes + image.byte_count());
+  return Decoded{std::move(image), in_file == 2 || in_file == 4};
+}
+
+/// Returns the byte nearest to a share in [0, 1]; 255 for NaN.
+std::uint8_t byte_of(double share) {
+  return share < 1 ? static_cast<std::uint8_t>(std::lround(255 * std::max(0.0, share))) : 255;
+}
+
+/// Returns an image without the opacity of its texels if they are all opaque. Requires: image.has_opacity.
+ColourImage without_full_opacity(ColourImage image) {
+  std::vector<std::uint8_t>& texels = image.texels;
+  for (std::size_t i = 3; i < texels.size(); i += 4)
+    if (texels[i] != 255) return image;
+  const std::size_t count = image.texel_count();
+  for (std::size_t t = 1; t < count; ++t) std::copy_n(&texels[4 * t], 3, &texels[3 * t]);
+  texels.resize(3 * count);
+  texels.shrink_to_fit();
+  image.has_opacity = false;
+  return image;
+}
+
 }  // namespace
 
 std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, const AlphaUse& alpha) {
@@ -115,17 +155,49 @@ std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, cons
   return mean;
 }
 
-std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded) {
-  auto header = open_image(encoded);
-  if (!header) return std::nullopt;
-  auto& [width, height, channels] = *header;
-  const Pixels rgb(stbi_load_from_memory(encoded.data(), static_cast<int>(encoded.size()), &width, &height, &channels, 3),
-                   stbi_image_free);
-  if (!rgb) return std::nullopt;
-  ColourImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  const auto* const bytes = static_cast<const std::uint8_t*>(rgb.get());
-  image.texels.assign(bytes, bytes + 3 * header->count());
-  return image;
+std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded, const AlphaUse& alpha) {
+  auto decoded = decode_bytes(encoded, alpha.is_ignored() ? 3 : 4);
+  if (!decoded) return std::nullopt;
+  ColourImage& image = decoded->image;
+  if (!image.has_opacity) return std::move(image);
+  std::array<std::uint8_t, 256> opacity;
+  for (std::size_t value = 0; value < opacity.size(); ++value)
+    opacity[value] = byte_of(alpha.opacity(static_cast<double>(value) / 255));
+  for (std::size_t i = 3; i < image.texels.size(); i += 4) image.texels[i] = opacity[image.texels[i]];
+  return without_full_opacity(std::move(image));
+}
+
+std::optional<ColourImage> decode_opacity(std::span<const unsigned char> encoded, double factor) {
+  auto decoded = decode_bytes(encoded, 4);
+  if (!decoded) return std::nullopt;
+  std::vector<std::uint8_t>& texels = decoded->image.texels;
+  for (std::size_t i = 0; i < texels.size(); i += 4) {
+    const double value = decoded->has_alpha ? texels[i + 3] : (texels[i] + texels[i + 1] + texels[i + 2]) / 3.0;
+    std::fill_n(&texels[i], 3, std::uint8_t{255});
+    texels[i + 3] = byte_of(factor * value / 255);
+  }
+  return without_full_opacity(std::move(decoded->image));
+}
+
+ColourImage with_opacity(const ColourImage& colours, const ColourImage& opacity) {
+  if (!opacity.has_opacity) return colours;
+  const ColourImage& larger = colours.texel_count() < opacity.texel_count() ? opacity : colours;
+  ColourImage image{larger.columns, larger.rows, {}, true};
+  image.texels.reserve(image.byte_count());
+  // Returns the number of the texel, of `of`, in which the middle of texel `index` of the result lies.
+  const auto nearest = [](std::uint32_t index, std::uint32_t count, std::uint32_t of) {
+    return static_cast<std::uint32_t>((2 * std::uint64_t{index} + 1) * of / (2 * std::uint64_t{count}));
+  };
+  for (std::uint32_t row = 0; row < image.rows; ++row)
+    for (std::uint32_t column = 0; column < image.columns; ++column) {
+      const auto texel_of = [&](const ColourImage& source) {
+        return source.texel(nearest(column, image.columns, source.columns), nearest(row, image.rows, source.rows));
+      };
+      const std::uint8_t* const colour = texel_of(colours);
+      image.texels.insert(image.texels.end(), colour, colour + 3);
+      image.texels.push_back(texel_of(opacity)[3]);
+    }
+  return without_full_opacity(std::move(image));
 }
 
 double linear_of_srgb_byte(std::uint8_t value) {
@@ -151,9 +223,7 @@ std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& 
 
 Rgb textured(const Rgb& factor, const std::optional<MeanTexel>& mean, const std::string& texture,
              std::vector<std::string>& warnings) {
-  const char* const treatment = !mean               ? " cannot be read and is left out"
-                                : mean->opacity < 1 ? " counts by its mean colour and opacity"
-                                                    : " counts by its mean colour";
+  const char* const treatment = mean ? " counts by its mean colour" : " cannot be read and is left out";
   warnings.push_back(texture + treatment);
   return mean ? factor * mean->colour : factor;
 }

@@ -19,9 +19,10 @@ struct AlphaUse {
   enum class Kind : unsigned char { ignored, blended, cut } kind = Kind::ignored;
   double factor = 1, cutoff = 0.5;
 
+  bool is_ignored() const { return kind == Kind::ignored; }
   /// Returns the share of a surface that is there where its texture has this alpha, in [0, 1].
   double opacity(double alpha) const {
-    if (kind == Kind::ignored) return 1;
+    if (is_ignored()) return 1;
     return kind == Kind::cut ? double(alpha * factor >= cutoff) : std::clamp(alpha * factor, 0.0, 1.0);
   }
 };
@@ -40,9 +41,17 @@ std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, cons
 /// Returns the means of a file's bytes; nothing if there are none.
 std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha = {});
 
-/// Returns the colours of an encoded image; those of 16 bits cut to 8, without its alpha. Nothing as above. The image may be
-/// larger than ColourImage allows.
-std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded);
+/// Returns the colours of an encoded image, those of 16 bits cut to 8. The image has opacity where its alpha, used so, makes any
+/// texel less than opaque. Returns nothing if the image cannot be decoded. The result may be larger than ColourImage allows.
+std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded, const AlphaUse& alpha = {});
+
+/// Returns a white image whose opacity is `factor` times the alpha of an encoded image, or, if that has no alpha, times the mean
+/// of its three bands. Otherwise as decode_colours().
+std::optional<ColourImage> decode_opacity(std::span<const unsigned char> encoded, double factor);
+
+/// Returns `colours` with the opacity of another image, which covers the same area. The result has the size of the larger of the
+/// two; of the smaller one it takes the nearest texel.
+ColourImage with_opacity(const ColourImage& colours, const ColourImage& opacity);
 
 /// Returns the linear value, in [0, 1], of an sRGB value (IEC 61966-2-1).
 double linear_of_srgb_byte(std::uint8_t value);

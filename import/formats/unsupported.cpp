@@ -27,7 +27,6 @@ void Unsupported::append_warnings(std::vector<std::string>& warnings) const {
   append(warnings, metals, {"metallic material", "metallic materials", "taken for diffuse"});
   append(warnings, clear_materials, {"clear material", "clear materials", "taken for thin panes, without refraction"});
   append(warnings, transmission_textures, {"texture of transmission", "textures of transmission", "ignored"});
-  append(warnings, translucent_materials, {"translucent material", "translucent materials", "taken for opaque"});
 }
 
 std::vector<bool> used_materials(const Scene& scene) {

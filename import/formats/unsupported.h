@@ -12,7 +12,7 @@ namespace alvor {
 /// Counts, by kind, the things that an importer left out or simplified.
 struct Unsupported {
   std::size_t point_lights = 0, spot_lights = 0, directional_lights = 0, area_lights = 0, other_lights = 0;
-  std::size_t metals = 0, clear_materials = 0, transmission_textures = 0, translucent_materials = 0;
+  std::size_t metals = 0, clear_materials = 0, transmission_textures = 0;
 
   /// Appends one sentence with the count for each kind that is not zero.
   void append_warnings(std::vector<std::string>& warnings) const;

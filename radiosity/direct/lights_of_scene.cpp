@@ -109,11 +109,17 @@ std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const Emis
   return emission;
 }
 
-OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit) {
+OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit,
+                            const std::function<double(std::uint32_t root)>& cover) {
   OwnedLights lights;
   const auto emission_of = emission_by_material(scene.mesh(), unit);
   for (std::vector<std::uint32_t>& roots : lamps_of_faces(scene)) {
-    const RelativeLight& emission = emission_of[scene.mesh().roots()[roots.front()].material];
+    double area = 0, there = 0;
+    for (const std::uint32_t root : roots) {
+      area += scene.mesh().roots()[root].area;
+      there += cover(root) * scene.mesh().roots()[root].area;
+    }
+    const RelativeLight emission = (there / area) * emission_of[scene.mesh().roots()[roots.front()].material];
     if (roots.size() == 1) lights.push_back(std::make_unique<FaceLight>(scene, roots.front(), emission));
     else lights.push_back(std::make_unique<MeshLight>(scene, std::move(roots), emission));
   }

@@ -5,6 +5,8 @@
 #include "radiosity/direct/light_source.h"
 #include "radiosity/rays/local_scene.h"
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,7 +18,10 @@ using OwnedLights = std::vector<std::unique_ptr<const LightSource>>;
 std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const EmissionUnit& unit);
 
 /// Returns a light for each root patch that emits and for each lamp of many such faces (see MeshLight), in the order of the roots.
-OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit);
+/// `cover(root)` returns the share of a root's area that is there and emits; it counts as spread evenly over the light.
+OwnedLights lights_of_faces(
+    const LocalScene& scene, const EmissionUnit& unit,
+    const std::function<double(std::uint32_t root)>& cover = [](std::uint32_t) { return 1.0; });
 
 /// Returns the lights of the mesh that are not faces and not black, in their order. Their numbers follow those of the roots.
 OwnedLights lights_beside_faces(const LocalScene& scene, const EmissionUnit& unit);

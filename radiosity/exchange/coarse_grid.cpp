@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace alvor {
 
 std::array<CoarseGrid::Matrix, 3> CoarseGrid::matrices(const CoarseUnits& units, const RowHits& hits,
@@ -9,6 +11,7 @@ std::array<CoarseGrid::Matrix, 3> CoarseGrid::matrices(const CoarseUnits& units,
   std::array<Matrix, 3> bands;
   for (Matrix& band : bands) band.assign(units.count, std::vector<double>(units.count));
   const auto members = units.members();
+  const bool lets_light_through = std::ranges::any_of(hits.patches, &ShootingPatch::is_translucent);
   tbb::parallel_for(std::size_t{0}, units.count, [&](std::size_t unit) {
     const auto add = [&](std::size_t to, const Rgb& entry) {
       bands[0][unit][to] += entry.r;
@@ -19,6 +22,13 @@ std::array<CoarseGrid::Matrix, 3> CoarseGrid::matrices(const CoarseUnits& units,
     for (const std::uint32_t patch : members[unit])
       hits.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {
         add(units.of_patch[hit], -weight[patch] * (share * hits.patches[hit].reflectance));
+      });
+    if (!lets_light_through) return;
+    for (const std::uint32_t patch : members[unit])
+      hits.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {
+        const std::uint32_t behind = hits.patches[hit].behind;
+        if (behind == ShootingPatch::none) return;
+        add(units.of_patch[behind], -weight[patch] * (share * hits.patches[behind].diffuse_transmittance));
       });
   });
   return bands;

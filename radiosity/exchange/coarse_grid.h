@@ -8,7 +8,7 @@
 
 namespace alvor {
 
-/// The system y = F (e + rho y) restricted to irradiance that is constant over each unit, averaged over the unit's area (two-grid
+/// The system y = F (e + R y) restricted to irradiance that is constant over each unit, averaged over the unit's area (two-grid
 /// correction, Galerkin). Light that converges slowly, in a white room or from room to room through small doors, is nearly
 /// constant over units.
 class CoarseGrid {

@@ -46,13 +46,13 @@ Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std
       residual_(patches.size()),
       ids_(std::move(ids)) {
   for (const ShootingPatch& patch : patches_) {
-    power_weight_.push_back(patch.area * patch.reflectance);
+    power_weight_.push_back(patch.area * patch.albedo());
     area_ += patch.area;
   }
   find_own_power();
   ambient_gain_ = ambient_gain(patches_);
-  amplification_ = alvor::amplification(patches_, reflectance_seen(), reflectance_);
-  spread([this](std::size_t p, std::uint32_t place) { return own_radiosity_[place] + reflectance(p, place) * irradiance_[p]; });
+  amplification_ = alvor::amplification(patches_, albedo_seen(), reflectance_);
+  spread(irradiance_, [this](std::uint32_t place) { return own_radiosity_[place]; });
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
   find_unshot();
@@ -80,12 +80,17 @@ void Gathering::watch_decrease() {
   is_finest_ = true;
 }
 
-template <class Light>
-void Gathering::spread(Light&& light) {
+template <class Own>
+void Gathering::spread(std::span<const RelativeLight> received, Own&& own) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    const RelativeLight through = from_behind(p, received);
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      leaving_.set(leaf_of_place_[k], light(p, k));
+      leaving_.set(leaf_of_place_[k], own(k) + reflectance(p, k) * received[p] + through);
   });
+}
+
+void Gathering::spread(std::span<const RelativeLight> received) {
+  spread(received, [](std::uint32_t) { return RelativeLight{}; });
 }
 
 RelativeLight Gathering::row_times_radiosity(std::size_t p) const {
@@ -99,11 +104,11 @@ void Gathering::gather(std::vector<RelativeLight>& received) {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
 }
 
-// A row sees as much reflectance as it would gather light if all patches reflected an irradiance of 1.
-std::vector<Rgb> Gathering::reflectance_seen() {
+// A row sees as much albedo as it would gather light if all patches scattered an irradiance of 1.
+std::vector<Rgb> Gathering::albedo_seen() {
   static constexpr RelativeLight one{1, 1, 1};
-  std::vector<RelativeLight> received(patches_.size());
-  spread([this](std::size_t p, std::uint32_t place) { return reflectance(p, place) * one; });
+  std::vector<RelativeLight> received(patches_.size(), one);
+  spread(received);
   gather(received);
   std::vector<Rgb> seen;
   for (const RelativeLight& light : received) seen.push_back(light / one);
@@ -157,7 +162,7 @@ std::size_t Gathering::sweep() {
 /// Takes the step y := F (e + rho y).
 void Gathering::plain_step() {
   for (std::size_t p = 0; p < patches_.size(); ++p) irradiance_[p] += residual_[p];
-  spread([this](std::size_t p, std::uint32_t place) { return reflectance(p, place) * residual_[p]; });
+  spread(residual_);
   gather(residual_);
 }
 
@@ -165,7 +170,7 @@ void Gathering::conjugate_step() {
   watch_decrease();
   Direction next{residual_, std::vector<RelativeLight>(patches_.size()), {}};
   if (coarse_) coarse_->correct(residual_, next.step);
-  spread([&](std::size_t p, std::uint32_t place) { return reflectance(p, place) * next.step[p]; });
+  spread(next.step);
   gather(next.change);
   for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
   const Direction plain = next;

@@ -20,12 +20,12 @@ struct GatheringNeeds {
   bool acceleration = true;  ///< false: only plain steps, for systems that need few of them
 };
 
-/// The exchange of light as a linear system with one unknown per patch and band: y = F (e + rho y), the irradiance by the patch's
-/// row. Each sweep gathers once at all patches, in parallel. A coarse grid first improves the residual to a step; a finer grid
-/// takes its place if the residual falls slowly. The step is then combined with the last six directions so that the smallest
-/// residual is left (GCR, Eisenstat, Elman & Schultz 1983). Bands are systems of their own; a band that gains less than 1 % takes
-/// the step without combination. No transpose of the rows is needed. The residual times the reflectance is the unshot radiosity,
-/// of either sign. Results do not depend on the number of threads.
+/// The exchange of light as a linear system with one unknown per patch and band: y = F (e + R y), the irradiance by the patch's
+/// row. R reflects irradiance, and lets it through to the patch behind a translucent one. Each sweep gathers once at all patches,
+/// in parallel. A coarse grid first improves the residual to a step; a finer grid takes its place if the residual falls slowly.
+/// The step is then combined with the last six directions so that the smallest residual is left (GCR, Eisenstat, Elman & Schultz
+/// 1983). Bands are systems of their own; a band that gains less than 1 % takes the step without combination. No transpose of the
+/// rows is needed. R times the residual is the unshot radiosity, of either sign. Results do not depend on the number of threads.
 class Gathering : public Exchange {
  public:
   /// Makes an exchange between no patches.
@@ -64,16 +64,23 @@ class Gathering : public Exchange {
   Rgb helps(const Rgb& length, const Rgb& overlap) const;
   void advance(const Rgb& length, std::span<const RelativeLight> step, std::span<const RelativeLight> change);
   void remember(Direction direction, const Rgb& in_bands);
-  std::vector<Rgb> reflectance_seen();
+  std::vector<Rgb> albedo_seen();
   void coarsen(CoarseUnits units);
   /// Looks at the residual every four sweeps and takes a finer coarse grid if it falls by less than half per sweep.
   void watch_decrease();
   const Rgb& reflectance(std::size_t patch, std::uint32_t place) const {
     return reflectance_.empty() ? patches_[patch].reflectance : reflectance_[place];
   }
-  /// Sets the light that leaves each leaf to light(patch, place). In parallel.
-  template <class Light>
-  void spread(Light&& light);
+  /// Returns the part of the irradiance `received`, by patch, that leaves a patch because the patch behind it received it.
+  RelativeLight from_behind(std::size_t patch, std::span<const RelativeLight> received) const {
+    const std::uint32_t behind = patches_[patch].behind;
+    return behind == ShootingPatch::none ? RelativeLight{} : patches_[behind].diffuse_transmittance * received[behind];
+  }
+  /// Sets the light that leaves each leaf to the reflected and transmitted part of the irradiance `received`, by patch, and
+  /// own(place). In parallel.
+  template <class Own>
+  void spread(std::span<const RelativeLight> received, Own&& own);
+  void spread(std::span<const RelativeLight> received);
   void find_own_power();
   void find_unshot();
   /// Returns the scalar product of two functions of the patches, weighted by area, per band, in emission units squared times m2.
@@ -89,7 +96,7 @@ class Gathering : public Exchange {
   bool is_accelerated_ = true;
   LightByLeaf leaving_{0, true};                      // light that the next gathering finds at each leaf
   std::vector<RelativeLight> irradiance_, residual_;  // by patch
-  std::vector<Rgb> power_weight_;                     // by patch: area times reflectance
+  std::vector<Rgb> power_weight_;                     // by patch: area times albedo
   std::vector<Direction> directions_;                 // the last directions, in a ring
   std::size_t steps_ = 0;
   std::vector<PatchId> ids_;                  // by patch

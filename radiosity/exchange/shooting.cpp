@@ -13,7 +13,7 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches) {
   double area = 0;
   for (const ShootingPatch& patch : patches) {
     area += patch.area;
-    reflected += patch.area * patch.reflectance;
+    reflected += patch.area * patch.albedo();
     if (!patch.row->is_hidden()) kept += (patch.area / patch.row->ray_count()) * patch.row->stored_weight();
   }
   if (area == 0) return {};
@@ -21,13 +21,15 @@ Rgb ambient_gain(std::span<const ShootingPatch> patches) {
   return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
 }
 
-Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen,
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> albedo_seen,
                   std::span<const Rgb> leaf_reflectance) {
   Rgb largest, most_seen;
-  for (const Rgb& reflectance : leaf_reflectance) largest = upper(largest, reflectance);
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    largest = upper(largest, patches[p].reflectance);
-    most_seen = upper(most_seen, reflectance_seen[p]);
+    const ShootingPatch& patch = patches[p];
+    largest = upper(largest, patch.albedo());
+    most_seen = upper(most_seen, albedo_seen[p]);
+    for (std::uint32_t k = patch.first_leaf; !leaf_reflectance.empty() && k < patch.first_leaf + patch.leaf_count; ++k)
+      largest = upper(largest, leaf_reflectance[k] + patch.diffuse_transmittance);
   }
   const auto band = [](double reflected, double seen) { return 1 / (1 - std::sqrt(reflected * std::min(reflected, seen))); };
   return {band(largest.r, most_seen.r), band(largest.g, most_seen.g), band(largest.b, most_seen.b)};
@@ -53,14 +55,15 @@ Shooting::Shooting(std::span<const ShootingPatch> patches, std::vector<ShootingL
   }
   transpose();
   ambient_gain_ = ambient_gain(patches_);
-  amplification_ = alvor::amplification(patches_, reflectance_seen(), leaf_reflectance_);
+  amplification_ = alvor::amplification(patches_, albedo_seen(), leaf_reflectance_);
 }
 
-std::vector<Rgb> Shooting::reflectance_seen() const {
+std::vector<Rgb> Shooting::albedo_seen() const {
   std::vector<Rgb> seen(patches_.size());
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
-    seen[p] = receivers_[p].weight *
-              row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return reflectance(leaf); });
+    seen[p] = receivers_[p].weight * row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) {
+                return reflectance(leaf) + patches_[patch_of_leaf_[leaf]].diffuse_transmittance;
+              });
   });
   return seen;
 }
@@ -104,16 +107,21 @@ std::invoke_result_t<Radiosity, std::uint32_t> Shooting::row_sum(std::size_t pat
 void Shooting::find_unshot() {
   for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf)
     leaves_[leaf].shot += reflectance(leaf) * shot_irradiance_[patch_of_leaf_[leaf]];
-  tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
+  std::vector<RelativeLight> more(patches_.size());  // irradiance by patch, beyond what its leaves know of
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     const RelativeLight sum =
         row_sum(p, first_hit_[p], first_hit_[p + 1], [this](std::uint32_t leaf) { return leaves_[leaf].shot; });
     const RelativeLight before = gathered_[p] + shot_irradiance_[p];
     gathered_[p] = receivers_[p].weight * sum;
+    more[p] = gathered_[p] - before;
     shot_irradiance_[p] = receivers_[p].unshot = {};
+  });
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
+    const RelativeLight through = from_behind(p, [&](std::uint32_t behind) { return more[behind]; });
     leaf_power_[p] = 0;
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k) {
       ShootingLeaf& leaf = leaves_[k];
-      leaf.unshot += reflectance(k) * (gathered_[p] - before);
+      leaf.unshot += reflectance(k) * more[p] + through;
       leaf_power_[p] += leaf.area * absolute(leaf.unshot).sum();
     }
   });
@@ -123,16 +131,17 @@ void Shooting::find_unshot() {
 void Shooting::adopt_unshot() {
   account_.reset();
   for (std::uint32_t p = 0; p < patches_.size(); ++p) {
-    const RelativeLight newly = shot_irradiance_[p] + receivers_[p].unshot;
+    const RelativeLight newly = shot_irradiance_[p] + receivers_[p].unshot, through = unshot_from_behind(p);
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k) {
       ShootingLeaf& leaf = leaves_[k];
-      leaf.shot += leaf.unshot + reflectance(k) * newly;
+      leaf.shot += leaf.unshot + reflectance(k) * newly + through;
       leaf.unshot = {};
     }
     gathered_[p] += newly;
-    shot_irradiance_[p] = receivers_[p].unshot = {};
+    shot_irradiance_[p] = {};
     leaf_power_[p] = 0;
   }
+  for (Receiver& receiver : receivers_) receiver.unshot = {};
 }
 
 // The irradiance from elsewhere, and from the patch's own emission, is divided by m_ii = 1 - rho F_ii.
@@ -142,19 +151,25 @@ void Shooting::gather(std::uint32_t receiver) {
   const double weight = receivers_[receiver].weight;
   const std::uint64_t first = first_hit_[receiver], last = first_hit_[receiver + 1];
   const auto is_own = [&](std::uint32_t leaf) { return leaf - patch.first_leaf < patch.leaf_count; };
+  const RelativeLight through = gathered_from_behind(receiver);
   bool sees_itself = false;
   const RelativeLight sum = row_sum(receiver, first, last, [&](std::uint32_t leaf) {
     if (!is_own(leaf)) return leaves_[leaf].shot;
     sees_itself = true;
-    return emission_of(leaf, receiver);
+    return emission_of(leaf, receiver) + through;
   });
   Rgb own;
   if (sees_itself)
     own = weight * row_sum(receiver, first, last, [&](std::uint32_t leaf) { return is_own(leaf) ? reflectance(leaf) : Rgb{}; });
   const RelativeLight irradiance = weight * RelativeLight{sum.r / (1 - own.r), sum.g / (1 - own.g), sum.b / (1 - own.b)};
   for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf) {
-    leaves_[leaf].shot = emission_of(leaf, receiver) + reflectance(leaf) * irradiance;
+    leaves_[leaf].shot = emission_of(leaf, receiver) + reflectance(leaf) * irradiance + through;
     leaves_[leaf].unshot = {};
+  }
+  if (patch.is_translucent()) {
+    const ShootingPatch& behind = patches_[patch.behind];
+    const RelativeLight more = patch.diffuse_transmittance * (irradiance - gathered_[receiver]);
+    for (std::uint32_t k = 0; k < behind.leaf_count; ++k) leaves_[behind.first_leaf + k].shot += more;
   }
   gathered_[receiver] = irradiance;
   receivers_[receiver].unshot = {};
@@ -172,7 +187,7 @@ void Shooting::for_each_leaf(Body&& body) const {
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
       body(leaves_[k].area, leaves_[k].shot + reflectance(k) * shot_irradiance_[p],
-           leaves_[k].unshot + reflectance(k) * receivers_[p].unshot);
+           leaves_[k].unshot + reflectance(k) * receivers_[p].unshot + unshot_from_behind(p));
   }
 }
 
@@ -218,6 +233,7 @@ void Shooting::shoot(std::uint32_t shooter, const RelativeLight& advance) {
   shot_irradiance_[shooter] += irradiance;
   receivers_[shooter].unshot = RelativeLight{} - advance;
   if (account_) book(shooter, irradiance);
+  if (patch.is_translucent()) let_through(shooter, irradiance);
   const bool leaves_differ = leaf_power_[shooter] != 0;
   if (!leaf_reflectance_.empty())
     send(shooter, [&](std::uint32_t leaf) { return leaves_[leaf].unshot + leaf_reflectance_[leaf] * irradiance; });
@@ -232,11 +248,21 @@ void Shooting::shoot(std::uint32_t shooter, const RelativeLight& advance) {
   }
 }
 
+void Shooting::let_through(std::uint32_t patch, const RelativeLight& irradiance) {
+  const std::uint32_t behind = patches_[patch].behind;
+  const RelativeLight through = patches_[patch].diffuse_transmittance * irradiance;
+  leaf_power_[behind] = 0;
+  for (std::uint32_t k = patches_[behind].first_leaf; k < patches_[behind].first_leaf + patches_[behind].leaf_count; ++k) {
+    leaves_[k].unshot += through;
+    leaf_power_[behind] += leaves_[k].area * absolute(leaves_[k].unshot).sum();
+  }
+}
+
 RelativeLight Shooting::signed_unshot_power() const {
   RelativeLight power;
   for (std::size_t p = 0; p < patches_.size(); ++p) {
     const ShootingPatch& patch = patches_[p];
-    power += (patch.area * patch.reflectance) * receivers_[p].unshot;
+    power += (patch.area * patch.albedo()) * receivers_[p].unshot;
     for (std::uint32_t k = 0; k < patch.leaf_count; ++k)
       power += leaves_[patch.first_leaf + k].area * leaves_[patch.first_leaf + k].unshot;
   }
@@ -246,7 +272,7 @@ RelativeLight Shooting::signed_unshot_power() const {
 void Shooting::keep_ambient_account() {
   account_ = Account{std::vector<Rgb>(leaves_.size()), signed_unshot_power()};
   for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const Rgb reflecting = (patches_[p].area * receivers_[p].weight) * patches_[p].reflectance;
+    const Rgb reflecting = (patches_[p].area * receivers_[p].weight) * patches_[p].albedo();
     const auto& weight = patches_[p].row->hit_weight;
     for (std::uint64_t h = first_hit_[p]; h < first_hit_[p + 1]; ++h)
       account_->gain[hit_leaf_[h]] += weight.empty() ? reflecting : widen(weight[h - first_hit_[p]]) * reflecting;
@@ -289,7 +315,7 @@ std::vector<RelativeLight> Shooting::unshot_by_leaf() const {
   all.reserve(leaves_.size());
   for (std::uint32_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const std::uint32_t p = patch_of_leaf_[leaf];
-    all.push_back(leaves_[leaf].unshot + reflectance(leaf) * receivers_[p].unshot);
+    all.push_back(leaves_[leaf].unshot + reflectance(leaf) * receivers_[p].unshot + unshot_from_behind(p));
   }
   return all;
 }

@@ -14,20 +14,28 @@ namespace alvor {
 
 /// A patch that has a row: it shoots and receives light. Its leaves are consecutive in the list of leaves.
 struct ShootingPatch {
+  static constexpr std::uint32_t none = ~0u;
+
   const TransportRow* row = nullptr;
   std::uint32_t first_leaf = 0, leaf_count = 0;
-  Rgb reflectance;  ///< mean over its area
-  double area = 0;  ///< m2
+  Rgb reflectance;              ///< mean over its area
+  double area = 0;              ///< m2
+  std::uint32_t behind = none;  ///< the patch on the other side of a translucent face, of the same area
+  Rgb diffuse_transmittance{};  ///< share of the irradiance that leaves the other side; 0 unless there is one
+
+  bool is_translucent() const { return behind != none; }
+  /// Returns the share of the irradiance that the patch scatters to both sides together.
+  Rgb albedo() const { return reflectance + diffuse_transmittance; }
 };
 
 /// Returns the ambient irradiance (see Exchange) of one unit of unshot power, per band, 1/m2.
 Rgb ambient_gain(std::span<const ShootingPatch> patches);
 
 /// Returns 1 / (1 - q) per band (see Exchange::amplification), where q bounds the share of the RMS radiosity that is left after a
-/// reflection. The largest radiosity is multiplied by at most the largest mean reflectance that a row sees (`reflectance_seen`,
-/// by patch); the power by at most the largest reflectance, if rows are reciprocal. For the RMS q is their geometric mean (Riesz
-/// & Thorin). `leaf_reflectance` as in Shooting.
-Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> reflectance_seen,
+/// reflection. The largest radiosity is multiplied by at most the largest mean albedo that a row sees (`albedo_seen`, by patch);
+/// the power by at most the largest albedo, if rows are reciprocal. For the RMS q is their geometric mean (Riesz & Thorin).
+/// `leaf_reflectance` as in Shooting.
+Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> albedo_seen,
                   std::span<const Rgb> leaf_reflectance);
 
 /// The radiosity of a leaf: distributed and not yet distributed.
@@ -37,9 +45,10 @@ struct ShootingLeaf {
   RelativeLight shot;    ///< radiosity distributed so far
 };
 
-/// The system x = e + rho F x, solved one patch at a time. x is the shot radiosity, the irradiance of a patch is its row times x,
-/// and the unshot radiosity is exactly the residual e + rho F x - x, so a split or an edited light is no special case. All leaves
-/// of a patch receive the same light by its row. radiosity/exchange/strategies.h chooses the next patch.
+/// The system x = e + R F x, solved one patch at a time. x is the shot radiosity, the irradiance of a patch is its row times x, R
+/// reflects it, and lets it through to the patch behind a translucent one. The unshot radiosity is exactly the residual e + R F x
+/// - x, so a split or an edited light is no special case. All leaves of a patch receive the same light by its row.
+/// radiosity/exchange/strategies.h chooses the next patch.
 class Shooting {
  public:
   /// `hit_leaf` lists, row after row, the leaf that each hit of the row finds. `leaf_reflectance` (by leaf) has no entry if all
@@ -89,6 +98,7 @@ class Shooting {
   /// Calls body(patch) for each patch that a shot of `shooter` reaches; for some of them more than once.
   template <class Body>
   void for_each_receiver(std::uint32_t shooter, Body&& body) const {
+    if (patches_[shooter].is_translucent()) body(patches_[shooter].behind);
     for (std::uint64_t e = first_entry_[shooter]; e < first_entry_[shooter + 1]; ++e) body(entries_[e].receiver);
   }
 
@@ -105,7 +115,7 @@ class Shooting {
   };
   /// The part of a receiving patch that shots read and write, on one cache line.
   struct alignas(32) Receiver {
-    RelativeLight unshot;  ///< irradiance received and not yet reflected; rho times it is unshot on every leaf
+    RelativeLight unshot;  ///< irradiance received and not yet reflected; rho times it is unshot on every leaf, tau behind it
     double weight = 0;     ///< weight of one hit of its row
   };
   /// Running sum of the signed unshot power.
@@ -115,7 +125,7 @@ class Shooting {
   };
   void transpose();
   void transpose_weights();
-  std::vector<Rgb> reflectance_seen() const;
+  std::vector<Rgb> albedo_seen() const;
   /// Calls body(area, shot radiosity, unshot radiosity) for each leaf.
   template <class Body>
   void for_each_leaf(Body&& body) const;
@@ -126,12 +136,26 @@ class Shooting {
   /// Adds to each receiver its hit's weight times leaving(leaf), for all hits on leaves of the shooter.
   template <class Leaving>
   void send(std::uint32_t shooter, Leaving&& leaving);
+  /// Returns the part of some light, by patch, that leaves a patch because the patch behind it received it.
+  template <class Received>
+  RelativeLight from_behind(std::size_t patch, Received&& received) const {
+    const std::uint32_t behind = patches_[patch].behind;
+    return behind == ShootingPatch::none ? RelativeLight{} : patches_[behind].diffuse_transmittance * received(behind);
+  }
+  RelativeLight unshot_from_behind(std::size_t patch) const {
+    return from_behind(patch, [this](std::uint32_t behind) { return receivers_[behind].unshot; });
+  }
+  RelativeLight gathered_from_behind(std::size_t patch) const {
+    return from_behind(patch, [this](std::uint32_t behind) { return gathered_[behind]; });
+  }
+  /// Adds irradiance of a patch to the unshot radiosity of the leaves behind it, as much as it lets through.
+  void let_through(std::uint32_t patch, const RelativeLight& irradiance);
   /// Brings the running sum of the unshot power up to date for a shot that is about to be made.
   void book(std::uint32_t shooter, const RelativeLight& irradiance);
   RelativeLight signed_unshot_power() const;
   /// Returns the emission and reflected direct light of a leaf, computed from its residual.
   RelativeLight emission_of(std::uint32_t leaf, std::uint32_t patch) const {
-    return leaves_[leaf].unshot + leaves_[leaf].shot - reflectance(leaf) * gathered_[patch];
+    return leaves_[leaf].unshot + leaves_[leaf].shot - reflectance(leaf) * gathered_[patch] - gathered_from_behind(patch);
   }
 
   std::span<const ShootingPatch> patches_;
@@ -154,7 +178,7 @@ class Shooting {
 
 inline double Shooting::unshot_power_of(std::uint32_t patch, const RelativeLight& advance) const {
   const RelativeLight irradiance = receivers_[patch].unshot + advance;
-  return leaf_power_[patch] + patches_[patch].area * absolute(patches_[patch].reflectance * irradiance).sum();
+  return leaf_power_[patch] + patches_[patch].area * absolute(patches_[patch].albedo() * irradiance).sum();
 }
 
 }  // namespace alvor

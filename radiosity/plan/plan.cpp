@@ -196,7 +196,8 @@ class Planner {
   }
 
   static std::string passes(const Material& material) {
-    return material.is_pane() ? sentence(" and lets ", bands(material.regular_transmittance), " through") : "";
+    return !material.regular_transmittance.is_zero() ? sentence(" and lets ", bands(material.regular_transmittance), " through")
+                                                     : "";
   }
   std::string by_rows() const {
     return sentence("emitters are ", 100 * census_.emitting_share, " % of all area, so rows carry their light");

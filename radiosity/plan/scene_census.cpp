@@ -10,7 +10,7 @@ namespace alvor {
 namespace {
 
 bool is_grey(const ColourImage& image) {
-  for (std::size_t i = 0; i < image.texels.size(); i += 3)
+  for (std::size_t i = 0; i < image.texels.size(); i += image.bytes_a_texel())
     if (image.texels[i] != image.texels[i + 1] || image.texels[i] != image.texels[i + 2]) return false;
   return true;
 }
@@ -20,6 +20,7 @@ class GreyMaterials {
  public:
   bool contain(const Material& material) {
     return material.emission.is_grey() && material.reflectance.is_grey() && material.regular_transmittance.is_grey() &&
+           material.diffuse_transmittance.is_grey() &&
            (!material.texture || (material.texture->factor.is_grey() && contain(*material.texture->image)));
   }
 
@@ -75,11 +76,11 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     if (!is_used[m]) continue;
     const Material& material = mesh.materials()[m];
     ++materials;
-    reflecting_materials += !material.reflectance.is_zero();
+    reflecting_materials += !material.reflectance.is_zero() || material.is_translucent();
     const bool is_grey = !has_colours[m] && grey.contain(material);
     grey_materials += is_grey;
     if (!is_grey && !coloured) coloured = &material;
-    largest_reflectance = std::max(largest_reflectance, material.largest_reflectance().max());
+    largest_reflectance = std::max(largest_reflectance, material.largest_albedo().max());
   }
 }
 

@@ -22,6 +22,8 @@ std::span<const Vec3> corners_of(const RootPatch& root) {
   return std::span(root.corners).first(static_cast<std::size_t>(root.corner_count));
 }
 
+bool lets_light_through(const Material& material) { return material.is_pane() || material.is_translucent(); }
+
 /// Finds the sealed rooms among the connected parts of a mesh.
 class RoomFinder {
  public:
@@ -47,7 +49,7 @@ class RoomFinder {
       const RootPatch& root = mesh_.roots()[part[n]];
       for (int e = 0; e < root.corner_count; ++e) {
         const auto neighbour = mesh_.across(part[n], e);
-        is_closed &= neighbour.has_value() && !mesh_.material_of(part[n]).is_pane();
+        is_closed &= neighbour.has_value() && !lets_light_through(mesh_.material_of(part[n]));
         if (!neighbour || is_seen_[neighbour->root]) continue;
         is_seen_[neighbour->root] = true;
         part.push_back(neighbour->root);

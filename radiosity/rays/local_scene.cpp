@@ -49,8 +49,7 @@ Uv bilinear(const LocalRoot& root, double u, double v) {
 
 }  // namespace
 
-LocalScene::LocalScene(const BaseMesh& mesh)
-    : mesh_(&mesh), frame_{mesh.centre(), mesh.extent()}, visibility_(mesh.roots(), mesh.materials(), frame_) {
+LocalScene::LocalScene(const BaseMesh& mesh) : mesh_(&mesh), frame_{mesh.centre(), mesh.extent()}, visibility_(mesh, frame_) {
   for (const RootPatch& root : mesh.roots()) {
     std::array<Vec3, 4> corners;
     for (int c = 0; c < root.corner_count; ++c) corners[c] = frame_.to_local(root.corners[c]);

@@ -1,5 +1,6 @@
 #include "radiosity/rays/transport_rows.h"
 
+#include "radiosity/rays/cutouts.h"
 #include "radiosity/rays/medium.h"
 #include "radiosity/rays/pane_sample.h"
 #include "radiosity/rays/ray_source.h"
@@ -229,8 +230,12 @@ class RowTracer {
     return true;
   }
   const Material& material_of(std::uint32_t root) const { return scene_.mesh().material_of(root); }
+  /// Returns the share of light that goes straight on at a crossing.
+  RgbF through(const Crossing& crossing) const {
+    return straight_through(narrow(material_of(crossing.root).regular_transmittance), crossing.opacity);
+  }
   void dim(Visibility::Tints& tints, const Crossing& crossing) const {
-    tints[crossing.lane] = tints[crossing.lane] * narrow(material_of(crossing.root).regular_transmittance);
+    tints[crossing.lane] = tints[crossing.lane] * through(crossing);
   }
   /// Returns the weight of a hit at the distance `t` of a ray, but for panes.
   RgbF weight_at(std::size_t p, std::uint32_t lane, float t) const {
@@ -253,10 +258,11 @@ class RowTracer {
       const Material& material = material_of(crossing.root);
       if (const auto hit = seen_at(crossing, p)) {
         const double taken = material.emission.is_zero() ? 1 - material.regular_transmittance.min() : 1;
-        seen_.add({*hit, tint * weight_at(p, crossing.lane, crossing.t), RgbF{1, 1, 1} - narrow(material.regular_transmittance),
-                   taken * tint.max()});
+        const RgbF there = crossing.opacity * tint;
+        seen_.add({*hit, there * weight_at(p, crossing.lane, crossing.t), RgbF{1, 1, 1} - narrow(material.regular_transmittance),
+                   taken * there.max()});
       }
-      tint = tint * narrow(material.regular_transmittance);
+      tint = tint * through(crossing);
     }
     const auto ray = static_cast<double>(p * RayPacket::width + crossings.front().lane);
     for (const SeenPane& pane : seen_.drawn(turn_ + ray * std::numbers::phi))

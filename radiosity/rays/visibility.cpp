@@ -1,5 +1,6 @@
 #include "radiosity/rays/visibility.h"
 
+#include "radiosity/rays/cutouts.h"
 #include "radiosity/rays/embree_scene.h"
 
 #include <algorithm>
@@ -37,6 +38,8 @@ alignas(64) constexpr int all_lanes[RayPacket::width] = {-1, -1, -1, -1, -1, -1,
 }  // namespace
 
 struct Visibility::Handles {
+  explicit Handles(const BaseMesh& mesh) : cutouts(mesh) {}
+
   // Panes that the rays of a packet cross, beyond which panes end rays: memory must not grow with what a scene piles up.
   static constexpr std::size_t most_crossings = 16 * RayPacket::width * 256;
   /// Numbers of Embree's geometries: faces of four and of three corners, then the panes among them.
@@ -44,7 +47,14 @@ struct Visibility::Handles {
   EmbreeScene scene;
   std::vector<std::uint32_t> root_of[4];  // root patch of each primitive, by geometry
   std::vector<RgbF> transmittance_of[4];  // of each primitive of panes, by geometry
+  const Cutouts cutouts;
 
+  /// Returns the share of the surface that is there where a ray hits a pane.
+  float opacity_at(const RTCHit& hit) const { return cutouts.opacity(root_of[hit.geomID][hit.primID], hit.u, hit.v); }
+  /// Returns whether a ray ends where it hits a pane: something is there, and lets no light through.
+  bool ends_ray(const RTCHit& hit, float opacity) const {
+    return opacity == 1 && transmittance_of[hit.geomID][hit.primID] == RgbF{};
+  }
   static void cross(const RTCFilterFunctionNArguments* arguments);
   static void dim(const RTCFilterFunctionNArguments* arguments);
 };
@@ -68,11 +78,13 @@ void Visibility::Handles::cross(const RTCFilterFunctionNArguments* arguments) {
   auto* const crossings = reinterpret_cast<PacketContext*>(arguments->context)->crossings;
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0 || (crossings && crossings->size() >= most_crossings)) continue;
-    arguments->valid[i] = 0;
-    if (!crossings) continue;
-    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
     const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
-    crossings->push_back({ray.id, handles.root_of[hit.geomID][hit.primID], hit.u, hit.v, ray.tfar});
+    const float opacity = handles.opacity_at(hit);
+    if (handles.ends_ray(hit, opacity)) continue;
+    arguments->valid[i] = 0;
+    if (!crossings || opacity == 0) continue;
+    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
+    crossings->push_back({ray.id, handles.root_of[hit.geomID][hit.primID], hit.u, hit.v, ray.tfar, opacity});
   }
 }
 
@@ -82,16 +94,18 @@ void Visibility::Handles::dim(const RTCFilterFunctionNArguments* arguments) {
   auto* const tints = reinterpret_cast<PacketContext*>(arguments->context)->tints;
   for (unsigned i = 0; i < arguments->N; ++i) {
     if (arguments->valid[i] == 0) continue;
+    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
+    const float opacity = handles.opacity_at(hit);
+    if (handles.ends_ray(hit, opacity)) continue;
     arguments->valid[i] = 0;
     if (!tints) continue;
-    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
     RgbF& tint = (*tints)[RTCRayN_id(arguments->ray, arguments->N, i)];
-    tint = tint * handles.transmittance_of[hit.geomID][hit.primID];
+    tint = tint * straight_through(handles.transmittance_of[hit.geomID][hit.primID], opacity);
   }
 }
 
-Visibility::Visibility(std::span<const RootPatch> roots, std::span<const Material> materials, const LocalFrame& frame)
-    : handles_(std::make_unique<Handles>()) {
+Visibility::Visibility(const BaseMesh& mesh, const LocalFrame& frame) : handles_(std::make_unique<Handles>(mesh)) {
+  const std::span<const RootPatch> roots = mesh.roots();
   std::vector<std::array<float, 3>> vertices;
   std::vector<std::array<std::uint32_t, 4>> quads[2];
   std::vector<std::array<std::uint32_t, 3>> triangles[2];
@@ -100,7 +114,7 @@ Visibility::Visibility(std::span<const RootPatch> roots, std::span<const Materia
     const int corners = roots[root].corner_count;
     if (roots[root].is_behind) continue;
     for (int c = 0; c < corners; ++c) vertices.push_back(to_float(frame.to_local(roots[root].corners[c])));
-    const Material& material = materials[roots[root].material];
+    const Material& material = mesh.material_of(root);
     const bool is_pane = material.is_pane();
     const unsigned geometry = (corners == 4 ? Handles::quads : Handles::triangles) + (is_pane ? Handles::panes : 0);
     handles_->root_of[geometry].push_back(root);

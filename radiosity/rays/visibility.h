@@ -38,10 +38,12 @@ struct alignas(64) HitPacket {
   float t[RayPacket::width];
 };
 
-/// A face that lets light straight through, where a ray of a packet crossed it on its way. u, v and t as in HitPacket.
+/// A face that lets light straight through, where a ray of a packet crossed it on its way. u, v and t as in HitPacket. Whole
+/// holes are not crossings.
 struct Crossing {
   std::uint32_t lane = 0, root = 0;
   float u = 0, v = 0, t = 0;
+  float opacity = 1;  ///< share of the surface that is there
 };
 
 /// Maps metres to local coordinates: the scene's centre is 0 and its longest side 1, so that float32 traversal depends neither on
@@ -53,23 +55,24 @@ struct LocalFrame {
 };
 
 /// Embree's scene of all root patches in local coordinates, without the backs of two-sided faces (a hit from behind belongs to
-/// the twin). Rays go on through panes (Material::is_pane), from either side. Immutable; any number of threads may trace at a
-/// time.
+/// the twin). Rays go on through panes (Material::is_pane), from either side, but where what is there of a pane lets none
+/// through. Immutable; any number of threads may trace at a time.
 class Visibility {
  public:
-  Visibility(std::span<const RootPatch> roots, std::span<const Material> materials, const LocalFrame& frame);
+  Visibility(const BaseMesh& mesh, const LocalFrame& frame);
   ~Visibility();
   Visibility(const Visibility&) = delete;
   Visibility& operator=(const Visibility&) = delete;
 
-  /// Writes the nearest hit of every ray on a face that is no pane, between its t_min and t_max, to `hits`. Writes the panes that
-  /// the rays of packet p crossed before, ordered by lane and then along the ray, to `crossings[p]`, unless `crossings` is empty.
+  /// Writes the nearest hit of every ray on a face through which it does not go on, between its t_min and t_max, to `hits`.
+  /// Writes the panes that the rays of packet p crossed before, ordered by lane and then along the ray, to `crossings[p]`, unless
+  /// `crossings` is empty.
   void closest_hits(std::span<const RayPacket> packets, std::span<HitPacket> hits,
                     std::span<std::vector<Crossing>> crossings = {}) const;
   /// The share of light that the panes on the way of each ray of a packet let through, per band.
   using Tints = std::array<RgbF, RayPacket::width>;
-  /// Sets bit i of `blocked[p]` if ray i of packet p meets a face that is no pane between its t_min and t_max, and clears it
-  /// otherwise. Sets `tints[p]` unless `tints` is empty; the tint of a blocked ray is arbitrary.
+  /// Sets bit i of `blocked[p]` if ray i of packet p meets a face through which it does not go on between its t_min and t_max,
+  /// and clears it otherwise. Sets `tints[p]` unless `tints` is empty; the tint of a blocked ray is arbitrary.
   void occlusions(std::span<const RayPacket> packets, std::span<std::uint16_t> blocked, std::span<Tints> tints = {}) const;
 
  private:

@@ -58,8 +58,10 @@ class Reference {
     const auto own = unshot_system.unshot_by_leaf();
     for (std::size_t p = 0; p < irradiance_.size(); ++p) {
       const ShootingPatch& patch = unshot_system.patches()[p];
+      RelativeLight through;
+      if (patch.is_translucent()) through = patch.diffuse_transmittance * irradiance_[patch.behind];
       for (std::uint32_t leaf = patch.first_leaf; leaf < patch.first_leaf + patch.leaf_count; ++leaf)
-        norm_ += unshot_system.leaf_area(leaf) * square(own[leaf] + unshot_system.reflectance(leaf) * irradiance_[p]);
+        norm_ += unshot_system.leaf_area(leaf) * square(own[leaf] + unshot_system.reflectance(leaf) * irradiance_[p] + through);
     }
   }
 
@@ -70,7 +72,7 @@ class Reference {
     for (std::size_t p = 0; p < irradiance.size(); ++p) {
       const ShootingPatch& patch = system.patches()[p];
       const RelativeLight shown = patch.row->is_hidden() ? irradiance[p] : irradiance[p] + ambient;
-      sum += patch.area * square(patch.reflectance * (shown - irradiance_[p]));
+      sum += patch.area * square(patch.albedo() * (shown - irradiance_[p]));
     }
     return norm_ > 0 ? std::sqrt(sum / norm_) : 0;
   }

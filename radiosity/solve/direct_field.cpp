@@ -36,7 +36,9 @@ DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOp
 void DirectField::choose_lights() {
   const EmissionUnit unit(forests_.mesh());
   emission_ = emission_by_material(forests_.mesh(), unit);
-  OwnedLights faces = lights_of_faces(scene_, unit), others = lights_beside_faces(scene_, unit);
+  // The first nodes of a forest are the roots.
+  OwnedLights faces = lights_of_faces(scene_, unit, [this](std::uint32_t root) { return forests_.cover(root); });
+  OwnedLights others = lights_beside_faces(scene_, unit);
   for (const auto* list : {&faces, &others})
     for (const auto& light : *list) {
       power_ += light->power();

@@ -47,6 +47,11 @@ void load_leaves(PatchForest& forest, PlainReader& in) {
   const auto leaves = forest.leaves();
   if (!std::ranges::equal(leaves, ids, {}, [&](NodeIndex leaf) { return forest.id(leaf); }))
     throw BadBytes("leaves: do not tile the scene");
+  for (const NodeIndex leaf : leaves) {
+    const NodeIndex behind = forest.leaf_behind(leaf);
+    if (behind != PatchForest::no_node && forest.id(behind) != twin_of(forest.mesh(), forest.id(leaf)))
+      throw BadBytes("leaves: two sides of a translucent face differ");
+  }
 }
 
 }  // namespace
@@ -70,7 +75,8 @@ void Forests::split_to_start(const Plan& plan) {
   for (NodeIndex node = 0; node < rows_.node_count(); ++node)
     if (rows_.is_leaf(node) && is_coarse(node)) rows_.split(node, limits_, split);
   std::vector<NodeIndex> copies;
-  for (const NodeIndex row : split) leaves_.split(leaf_node_of(row), limits_, copies);
+  for (const NodeIndex row : split)
+    if (const NodeIndex leaf = leaf_node_of(row); leaves_.is_leaf(leaf)) leaves_.split(leaf, limits_, copies);
 }
 
 /// Splits leaves on textures where the reflectance of their quarters differs. Rows need not be as fine: irradiance is smoother.
@@ -78,8 +84,9 @@ void Forests::split_to_show_textures(const Plan& plan) {
   const auto has_contrast = [&](const PatchShape& shape) {
     Rgb low{1, 1, 1}, high;
     for (int k = 0; k < 4; ++k) {
-      const Rgb quarter = reflectance_.of(shape.child(k));
-      low = lower(low, quarter), high = upper(high, quarter);
+      const MeanSurface quarter = reflectance_.of(shape.child(k));
+      if (quarter.cover == 0) continue;
+      low = lower(low, quarter.reflectance), high = upper(high, quarter.reflectance);
     }
     return (high - low).max() > start_contrast;
   };
@@ -100,7 +107,7 @@ void Forests::fit_to_nodes() {
     const PatchShape shape = leaves_.shape(leaf);
     leaf_centre_.push_back(centre_of(mesh_, shape));
     leaf_area_.push_back(area_of(mesh_, shape));
-    if (mesh_.has_varying_reflectance()) leaf_reflectance_.push_back(reflectance_.of(shape));
+    if (mesh_.has_varying_reflectance()) leaf_surface_.push_back(reflectance_.of(shape));
   }
 }
 

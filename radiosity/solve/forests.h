@@ -35,11 +35,15 @@ class Forests {
   std::span<const Vec3> row_centres() const { return row_centre_; }    ///< by row node
   std::span<const Vec3> leaf_centres() const { return leaf_centre_; }  ///< by leaf node
   double leaf_area(NodeIndex leaf) const { return leaf_area_[leaf]; }  ///< m2
-  /// Returns the mean reflectance of a leaf node.
+  /// Returns the mean reflectance of what is there of a leaf node.
   Rgb reflectance(NodeIndex leaf) const {
-    return mesh_.has_varying_reflectance() ? leaf_reflectance_[leaf]
-                                           : mesh_.material_of(leaves_.id(leaf).root_face()).reflectance;
+    return mesh_.has_varying_reflectance() ? leaf_surface_[leaf].reflectance : material_of(leaf).reflectance;
   }
+  /// Returns the share of a leaf node's area that is there and no hole.
+  double cover(NodeIndex leaf) const { return mesh_.has_textures() ? leaf_surface_[leaf].cover : 1; }
+  const Material& material_of(NodeIndex leaf) const { return mesh_.material_of(leaves_.id(leaf).root_face()); }
+  /// Returns the leaf behind a leaf of a translucent face, PatchForest::no_node for others.
+  NodeIndex leaf_behind(NodeIndex leaf) const { return leaves_.leaf_behind(leaf); }
 
   /// Returns the smooth neighbours of each leaf of the row or the leaf forest. Requires: leaves of that forest, each once.
   std::vector<SmoothNeighbours> row_neighbours(std::span<const NodeIndex> rows) { return row_neighbours_.of(rows); }
@@ -70,7 +74,7 @@ class Forests {
   std::vector<Vec3> row_centre_, leaf_centre_;
   std::vector<double> leaf_area_;
   const PatchReflectance reflectance_;
-  std::vector<Rgb> leaf_reflectance_;  // by leaf node; none if no reflectance varies
+  std::vector<MeanSurface> leaf_surface_;  // by leaf node; none if no reflectance varies
 };
 
 /// Sorts patches so that any first part of them is spread over the scene and holds much of its area. One patch of each face comes

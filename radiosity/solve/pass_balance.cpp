@@ -39,14 +39,18 @@ PowerBalance Pass::balance() const {
     const TransportRow& row = *patch.row;
     const std::uint32_t root = state_.forests.rows().id(system_->rows()[p]).root_face();
     const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * taken_up(row);
-    const Rgb kept = white - state_.mesh.material_of(root).regular_transmittance;
+    const Material& material = state_.mesh.material_of(root);
+    const Rgb kept = white - material.regular_transmittance - material.diffuse_transmittance;
+    RelativeLight through;
+    if (patch.is_translucent()) through = patch.diffuse_transmittance * irradiance[patch.behind];
     const double open = row.visible_share();
     for (const NodeIndex leaf : system_->leaves_of(p)) {
-      const double area = state_.forests.leaf_area(leaf), seen = open * area;
+      const double area = state_.forests.cover(leaf) * state_.forests.leaf_area(leaf), seen = open * area;
       const Rgb reflectance = state_.forests.reflectance(leaf);
       const RelativeLight arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
+      const RelativeLight leaving = emission + reflectance * irradiance[p] + through + state_.scattered_direct_light(leaf);
       absorbed += seen * ((kept - reflectance) * arriving);
-      lost += seen * ((white - found) * (emission + reflectance * arriving)) + (area - seen) * emission;
+      lost += seen * ((white - found) * leaving) + (area - seen) * emission;
     }
   }
   balance.absorbed = state_.in_watts(absorbed.sum());

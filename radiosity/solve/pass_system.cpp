@@ -15,24 +15,41 @@ PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.r
     const auto first = static_cast<std::uint32_t>(leaves_.size());
     forests.append_leaves_of_row(row, leaves_);
     ShootingPatch patch{&state.rows[row], first, static_cast<std::uint32_t>(leaves_.size()) - first,
-                        state.mesh.material_of(forests.rows().id(row).root_face()).reflectance, 0};
+                        state.mesh.material_of(forests.rows().id(row).root_face()).reflectance};
     Rgb reflecting;
+    double covered = 0;
     for (std::size_t n = first; n < leaves_.size(); ++n) {
       const double area = forests.leaf_area(leaves_[n]);
       patch.area += area;
       if (!state.mesh.has_varying_reflectance()) continue;
       leaf_reflectance_.push_back(forests.reflectance(leaves_[n]));
-      reflecting += area * leaf_reflectance_.back();
+      reflecting += area * forests.cover(leaves_[n]) * leaf_reflectance_.back();
+      covered += area * forests.cover(leaves_[n]);
     }
-    if (state.mesh.has_varying_reflectance() && patch.area > 0) patch.reflectance = (1 / patch.area) * reflecting;
+    if (covered > 0) patch.reflectance = (1 / covered) * reflecting;
     patches_.push_back(patch);
   }
+  find_patches_behind();
   for (const NodeIndex leaf : leaves_) {
     const std::uint32_t root = forests.leaves().id(leaf).root_face();
-    own_radiosity_.push_back(state.direct.emission_by_rows(root) + forests.reflectance(leaf) * state.direct[leaf].irradiance);
+    own_radiosity_.push_back(state.direct.emission_by_rows(root) + state.scattered_direct_light(leaf));
   }
   if (state.rows.carry_light())
     tbb::parallel_for(std::size_t{0}, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
+}
+
+void PassSystem::find_patches_behind() {
+  const Forests& forests = state_.forests;
+  const auto is_translucent = [](const Material& material) { return material.is_translucent(); };
+  if (std::ranges::none_of(state_.mesh.materials(), is_translucent)) return;
+  std::vector<std::uint32_t> patch_of_row(forests.rows().node_count());
+  for (std::uint32_t p = 0; p < rows_.size(); ++p) patch_of_row[rows_[p]] = p;
+  for (std::size_t p = 0; p < rows_.size(); ++p) {
+    const NodeIndex behind = forests.rows().leaf_behind(rows_[p]);
+    if (behind == PatchForest::no_node) continue;
+    patches_[p].behind = patch_of_row[behind];
+    patches_[p].diffuse_transmittance = state_.mesh.material_of(forests.rows().id(rows_[p]).root_face()).diffuse_transmittance;
+  }
 }
 
 std::unique_ptr<Exchange> PassSystem::begin_exchange() const {
@@ -75,9 +92,14 @@ Shooting PassSystem::shooting() const {
 
 LightByLeaf PassSystem::radiosity() const {
   LightByLeaf radiosity(state_.forests.leaves().node_count(), state_.plan.needs(Feature::three_bands));
-  for (std::size_t p = 0; p < patches_.size(); ++p)
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const RelativeLight irradiance = state_.field.irradiance(rows_[p]);
+    RelativeLight through;
+    if (patches_[p].is_translucent())
+      through = patches_[p].diffuse_transmittance * state_.field.irradiance(rows_[patches_[p].behind]);
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
-      radiosity.set(leaves_[k], own_radiosity_[k] + state_.forests.reflectance(leaves_[k]) * state_.field.irradiance(rows_[p]));
+      radiosity.set(leaves_[k], own_radiosity_[k] + state_.forests.reflectance(leaves_[k]) * irradiance + through);
+  }
   return radiosity;
 }
 

@@ -29,18 +29,19 @@ class PassSystem {
   std::unique_ptr<Exchange> begin_exchange() const;
   /// Returns the system with the shots that are recorded in the state (SolveState::shot).
   Shooting shooting() const;
-  /// Returns the radiosity of each leaf node that rows carry: emission (see DirectField::emission_by_rows), and reflection of
-  /// direct light and of the irradiance that its row received (SolveState::field).
+  /// Returns the radiosity of each leaf node that rows carry: emission (see DirectField::emission_by_rows), and what is reflected
+  /// and let through of direct light and of the irradiance that its row received (SolveState::field).
   LightByLeaf radiosity() const;
 
  private:
   std::unique_ptr<Exchange> begin_gathering() const;
+  void find_patches_behind();
 
   SolveState& state_;
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
-  std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and reflected direct light
-  std::vector<Rgb> leaf_reflectance_;         ///< by place; none if the mesh has no textures
+  std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and scattered direct light
+  std::vector<Rgb> leaf_reflectance_;         ///< by place; none if no reflectance varies
 };
 
 }  // namespace alvor

@@ -12,23 +12,24 @@ namespace {
 // Largest irradiance that is published, W/m2: a 34th of the largest float32 (3.4e38), which leaves room for sums.
 constexpr double held_by_floats = 1e37;
 
-/// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max rho). If every surface emitted and
-/// reflected like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth does
-/// not. Near a lamp, under a sky that is brighter beside its zenith, and among panes that emit, irradiance has no such bound.
+/// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max albedo). If every surface emitted
+/// and scattered like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth
+/// does not. Near a lamp, under a sky that is brighter beside its zenith, and among panes that emit, irradiance has no such
+/// bound.
 Rgb largest_irradiance(const BaseMesh& mesh) {
-  Rgb emission, reflectance;
+  Rgb emission, albedo;
   for (const RootPatch& root : mesh.roots()) {
     const Material& material = mesh.materials()[root.material];
     if (material.is_pane() && !material.emission.is_zero()) return {held_by_floats, held_by_floats, held_by_floats};
     emission = upper(emission, material.emission);
-    reflectance = upper(reflectance, material.largest_reflectance());
+    albedo = upper(albedo, material.largest_albedo());
   }
   for (const Light& light : mesh.lights()) {
     if (light.kind != LightKind::directional && !light.intensity.is_zero())
       return {held_by_floats, held_by_floats, held_by_floats};
     emission += light.intensity;
   }
-  const Rgb most{emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
+  const Rgb most{emission.r / (1 - albedo.r), emission.g / (1 - albedo.g), emission.b / (1 - albedo.b)};
   return lower(most, {held_by_floats, held_by_floats, held_by_floats});
 }
 
@@ -67,9 +68,7 @@ std::vector<LeafValue> SolveState::leaf_values() const {
 
 double SolveState::unshot_power() const {
   double power = direct.waiting_power();
-  for (const NodeIndex leaf : forests.leaves().leaves()) {
-    power += forests.leaf_area(leaf) * (forests.reflectance(leaf) * direct[leaf].irradiance).sum();
-  }
+  for (const NodeIndex leaf : forests.leaves().leaves()) power += forests.leaf_area(leaf) * scattered_direct_light(leaf).sum();
   return power;
 }
 

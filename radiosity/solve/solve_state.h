@@ -35,6 +35,13 @@ class SolveState {
   std::vector<RelativeLight> shot;  ///< by leaf node: radiosity that shots distributed so far; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
+  /// Returns the direct light that a leaf reflects, and that comes through from the leaf behind it.
+  RelativeLight scattered_direct_light(NodeIndex leaf) const {
+    const RelativeLight reflected = forests.reflectance(leaf) * direct[leaf].irradiance;
+    const NodeIndex behind = forests.leaf_behind(leaf);
+    if (behind == PatchForest::no_node) return reflected;
+    return reflected + forests.material_of(leaf).diffuse_transmittance * direct[behind].irradiance;
+  }
   /// Returns the irradiance that rows bring to the centre of a leaf.
   RelativeLight indirect(NodeIndex leaf) const { return field.at(forests.row_of(leaf), forests.leaf_centres()[leaf]); }
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
@@ -44,8 +51,8 @@ class SolveState {
   Rgb in_watts_per_m2(const RelativeLight& light) const { return unit_.to_watts_per_m2(light); }
   /// Returns W for a power in emission units times m2.
   double in_watts(double power) const { return unit_.to_watts(power); }
-  /// Returns the power that is not distributed yet if no exchange has begun: the emitters' waiting power and the reflection of
-  /// direct light. Summed over bands, in emission units times m2.
+  /// Returns the power that is not distributed yet if no exchange has begun: the emitters' waiting power and the scattered direct
+  /// light. Summed over bands, in emission units times m2.
   double unshot_power() const;
 
   /// Splits a leaf of the leaf forest. Also splits the row of the same place, if there is one and it is not traced or a solid's

@@ -9,7 +9,7 @@ namespace alvor {
 namespace {
 
 constexpr double largest_light_scale = 1e12;
-constexpr std::size_t most_files = 10'000, most_luminaires = 10'000;
+constexpr std::size_t most_files = 10'000, most_luminaires = 10'000, most_translucent = 10'000;
 /// What a file takes in memory besides its bytes.
 constexpr std::uint64_t bytes_of_file = 200;
 
@@ -18,6 +18,7 @@ void check(const v1::ImportOptions& options) {
     throw invalid_field("options.light_scale", options.light_scale(), "is not in [0, 1e12]");
   refuse_beyond(static_cast<std::uint64_t>(options.absent_files_size()), most_files, "absent files");
   refuse_beyond(static_cast<std::uint64_t>(options.luminaires_size()), most_luminaires, "luminaires");
+  refuse_beyond(static_cast<std::uint64_t>(options.translucent_size()), most_translucent, "translucent materials");
   const std::string& scene = options.scene_file();
   const std::string reason = reason_against_name(scene);
   if (!reason.empty()) throw invalid_argument("options.scene_file: '" + scene + "' " + reason);

@@ -37,8 +37,9 @@ TEST_F(Command, HelpIsNoError) { EXPECT_EQ(run("solve --help").status, 0); }
 TEST_F(Command, UnknownFlagsAreUsageErrors) { EXPECT_EQ(run("solve " + cornell_box + " --no-such-flag").status, 2); }
 
 TEST_F(Command, ImpossibleOptionValuesAreUsageErrors) {
-  for (const std::string option :
-       {"--tolerance 2", "--tolerance nan", "--max-depth 16", "--time-limit -1", "--strategy magic", "--seed -1"})
+  for (const std::string option : {"--tolerance 2", "--tolerance nan", "--max-depth 16", "--time-limit -1", "--strategy magic",
+                                   "--seed -1", "--translucent white", "--translucent =0.5", "--translucent white=2",
+                                   "--translucent white=0.1,0.2", "--translucent white=nan"})
     EXPECT_EQ(run("solve " + cornell_box + " " + option).status, 2) << option;
 }
 
@@ -51,6 +52,12 @@ TEST_F(Command, OutputsThatCannotBeWrittenAreFoundBeforeTheSolve) {
 }
 
 TEST_F(Command, MissingSceneIsNamedInOneLine) { expect_bad_input(run("solve missing.obj"), "missing.obj"); }
+
+TEST_F(Command, AMaterialThatIsToBeTranslucentMustBeInTheScene) {
+  expect_bad_input(run("solve " + cornell_box + " --translucent curtain=0.3"),
+                   "'curtain': is not in the scene, which has 'white'");
+  EXPECT_EQ(run("explain " + cornell_box + " --translucent white=0.1,0.2,0.3 --translucent green=0.1").status, 0);
+}
 
 TEST_F(Command, SolutionThatIsNoneIsNamedInOneLine) {
   write("room.ply", "not a solution\n");

@@ -3,6 +3,7 @@
 #include "client/verify/probe.h"
 #include "import/base/whole_file.h"
 #include "tests/client/hand_made_mesh.h"
+#include "tests/cutouts.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -117,6 +118,67 @@ TEST(Probe, GathersThroughPanes) {
     EXPECT_NEAR(tinted.irradiance.g, blocked.irradiance.g + 0.2 * hidden, noise);
     EXPECT_NEAR(tinted.irradiance.b, clear.irradiance.g, noise);
   }
+}
+
+/// Returns a material of one texel that reflects half of the light, of which this share of 255 is there.
+Material cut_out(std::uint8_t opacity) { return test::textured(test::cut_out(1, 1, 255, {opacity}), {0.5, 0.5, 0.5}); }
+
+TEST(Probe, AShareOfASheetThatIsCutOutCountsAsAPane) {
+  const std::vector<ProbePoint> point{{{1, 1, 1}, {0, 1, 0}}};
+  const auto with_sheet = [&](const Material& material, float radiosity) {
+    DisplayMesh room = lit_room(2);
+    const auto walls = static_cast<std::uint32_t>(room.triangles.size());
+    room.materials = {{"wall", {}, {0.5, 0.5, 0.5}, false}, material};
+    add_wall(room, {0, 1.50001, 0}, {0, 0, 2}, {1, 0, 0}, 1, [&](const Vec3&) { return grey(radiosity); });
+    add_wall(room, {0, 1.5, 0}, {1, 0, 0}, {0, 0, 2}, 1, [&](const Vec3&) { return grey(radiosity); });
+    room.faces = {{{}, 0, walls}, {{}, 1, static_cast<std::uint32_t>(room.triangles.size()) - walls}};
+    if (material.texture) room.texture_points.assign(room.positions.size(), {0.5F, 0.5F});
+    return probe(room, point)[0].irradiance;
+  };
+  // Of the first sheet 0.4 is there, and lets half of the light through.
+  Material sheet = cut_out(102), pane{"pane", {}, {0.2, 0.2, 0.2}, true, {0.8, 0.8, 0.8}};
+  sheet.two_sided = true;
+  sheet.regular_transmittance = {0.5, 0.5, 0.5};
+  EXPECT_NEAR(with_sheet(sheet, 0.5F).g, with_sheet(pane, 0.4F * 0.5F).g, 1e-5);
+  Material hole = cut_out(0);
+  hole.two_sided = true;
+  EXPECT_NEAR(with_sheet(hole, 0.5F).g, probe(lit_room(2), point)[0].irradiance.g, 1e-5);
+}
+
+TEST(Probe, AnEmitterShinesWhereItIsThere) {
+  DisplayMesh room = lit_room(2);
+  room.materials = {{"wall", {}, {0.5, 0.5, 0.5}, false}, cut_out(102)};
+  room.materials[1].emission = {1, 1, 1};
+  const auto walls = static_cast<std::uint32_t>(room.triangles.size()) * 5 / 6;
+  room.faces = {{{}, 0, walls}, {{}, 1, walls / 5}};
+  room.texture_points.assign(room.positions.size(), {0.5F, 0.5F});
+  const double ceiling = 0.554144;  // see GathersInTheAir
+  const auto sample = probe(room, std::vector<ProbePoint>{{{1, 1, 1}, {0, 1, 0}}})[0];
+  EXPECT_NEAR(sample.irradiance.g, 0.4 * ceiling + 0.25 * (1 - ceiling), 3 * sample.standard_error + 1e-6);
+}
+
+// More leaves a translucent sheet than its front receives, and yet it is no emitter.
+TEST(Probe, GathersLightThatComesThroughASheet) {
+  const std::vector<ProbePoint> point{{{1, 1, 1}, {0, 1, 0}}};
+  DisplayMesh room = lit_room(2);
+  room.transmitted.resize(room.positions.size());
+  for (std::size_t v = 0; v < room.positions.size(); ++v)
+    if (room.irradiance[v].r == 0) room.transmitted[v] = room.radiosity[v];
+  const double ceiling = 0.554144;
+  const auto sample = probe(room, point)[0];
+  EXPECT_NEAR(sample.irradiance.g, ceiling + 0.25 * (1 - ceiling), 4 * sample.standard_error);
+  EXPECT_LT(sample.standard_error, 0.02);
+}
+
+TEST(Probe, PointsInHolesHaveIrradianceAndNoRadiosity) {
+  DisplayMesh mesh = sloping_floor();
+  mesh.materials = {test::textured(test::cut_out(2, 1, 255, {0, 255}), {0.5, 0.5, 0.5}, Wrap::clamp)};
+  mesh.faces = {{{}, 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
+  for (const Vec3& p : mesh.positions) mesh.texture_points.push_back({static_cast<float>(p.x), static_cast<float>(p.z)});
+  const auto samples = probe(mesh, std::vector<ProbePoint>{{{0.31, 0, 0.77}, {0, 1, 0}}, {{0.71, 0, 0.77}, {0, 1, 0}}});
+  EXPECT_NEAR(samples[0].irradiance.r, 2 * (1 + 0.31 + 2 * 0.77), 1e-5);
+  EXPECT_EQ(samples[0].radiosity, grey(0));
+  EXPECT_NEAR(samples[1].radiosity.g, 1 + 0.71 + 2 * 0.77, 1e-5);
 }
 
 TEST(Probe, AMediumDimsWhatIsGathered) {

@@ -3,6 +3,7 @@
 #include "client/picture/render.h"
 #include "client/picture/tone_map.h"
 #include "tests/client/pictures.h"
+#include "tests/cutouts.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -54,6 +55,40 @@ TEST(Render, PanesAreLookedThroughAndAddTheirOwnLight) {
   const Rgb shown = tone_map({0.25 * 0.4, 0.1 + 0.25 * 0.1 + 0.0625 * 0.4, 0.4});
   EXPECT_EQ(pixel(render(mesh, fixed(facing_wall())), 32, 34),
             (Pixel{srgb_byte(shown.r), srgb_byte(shown.g), srgb_byte(shown.b)}));
+}
+
+// The left half of the card has an opacity, its right half is all there.
+TEST(Render, HolesAreLookedThroughAsTheOpacityOfTheTexelSays) {
+  const RgbF behind = grey(0.4f), card{0, 0.1f, 0.3f};
+  for (const auto& [opacity, share] : {std::pair{std::uint8_t{0}, 0.0}, {std::uint8_t{102}, 0.4}}) {
+    DisplayMesh mesh = wall(behind);
+    const auto of_wall = static_cast<std::uint32_t>(mesh.triangles.size());
+    mesh.materials = {{"wall", {}, {0.5, 0.5, 0.5}, false},
+                      test::textured(test::cut_out(2, 1, 200, {opacity, 255}), {1, 1, 1}, Wrap::clamp)};
+    add_wall(mesh, {0, 0, 0.3}, {1, 0, 0}, {0, 1, 0}, 1, [&](const Vec3&) { return card; });
+    mesh.faces = {{{}, 0, of_wall}, {{}, 1, static_cast<std::uint32_t>(mesh.triangles.size()) - of_wall}};
+    for (const Vec3& p : mesh.positions) mesh.texture_points.push_back({static_cast<float>(p.x), static_cast<float>(p.y)});
+    const Image image = render(mesh, fixed(facing_wall()));
+    const auto expect_pixel = [&](int x, const Rgb& radiosity) {
+      const Rgb shown = tone_map(radiosity);
+      const Pixel found = pixel(image, x, 34);
+      EXPECT_NEAR(found[0], srgb_byte(shown.r), 1) << x;
+      EXPECT_NEAR(found[1], srgb_byte(shown.g), 1) << x;
+      EXPECT_NEAR(found[2], srgb_byte(shown.b), 1) << x;
+    };
+    const double there = share;
+    expect_pixel(24, there * widen(card) + (1 - there) * widen(behind));
+    expect_pixel(40, widen(card));
+  }
+}
+
+TEST(Render, NothingIsSeenThroughAHoleWithNothingBehindIt) {
+  DisplayMesh mesh = wall(grey(0.4f));
+  mesh.materials = {test::textured(test::cut_out(1, 1, 200, {0}))};
+  mesh.faces = {{{}, 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
+  mesh.texture_points.resize(mesh.positions.size());
+  const Image image = render(mesh, fixed(facing_wall()));
+  EXPECT_EQ(pixel(image, 32, 34), pixel(image, 4, 4));
 }
 
 TEST(Render, OfFacesBackToBackInOnePlaceTheFrontIsSeenInEveryPixel) {
@@ -164,6 +199,18 @@ TEST(PngFile, HoldsTheSamePixels) {
   ASSERT_TRUE(png_image_finish_read(&header, nullptr, rgb.data(), 0, nullptr));
   EXPECT_EQ(rgb, image.rgb);
   std::filesystem::remove(path);
+}
+
+TEST(PngFile, HoldsTheOpacityOfPixelsAndTheColoursOfHoles) {
+  Image image{256, 3, {}, true};
+  for (int n = 0; n < 256 * 3; ++n)
+    for (const int byte : {n, 7 * n, 1023 - n, n / 3}) image.rgb.push_back(static_cast<std::uint8_t>(byte % 256));
+  const Image back = decode_png(encode_png(image, "picture"), 256, 3);
+  EXPECT_TRUE(back.has_opacity);
+  EXPECT_EQ(back.rgb, image.rgb);
+  const Image opaque{2, 1, {1, 2, 3, 253, 254, 255}};
+  EXPECT_FALSE(decode_png(encode_png(opaque, "picture"), 2, 1).has_opacity);
+  EXPECT_EQ(decode_png(encode_png(opaque, "picture"), 2, 1).rgb, opaque.rgb);
 }
 
 }  // namespace

@@ -5,10 +5,11 @@
 #include "client/export/ply_file.h"
 #include "import/base/whole_file.h"
 #include "meshing/mesh_radiosity.h"
+#include "meshing/mesh_transmittance.h"
 #include "tests/client/hand_made_mesh.h"
+#include "tests/cutouts.h"
 #include "tests/environments.h"
 #include "tests/scenes.h"
-#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -154,6 +155,79 @@ TEST(SolutionGlb, RemembersTextures) {
     EXPECT_NEAR(radiosity.g, after.at(place).g, 1e-5);
   }
   EXPECT_EQ(encode_solution(back, ".glb"), bytes);
+}
+
+/// Returns textured_mesh() with holes in the image of the floor.
+DisplayMesh cut_out_mesh() {
+  DisplayMesh mesh = textured_mesh();
+  Texture& texture = *mesh.materials[3].texture;
+  texture.image = std::make_shared<const ColourImage>(test::with_holes(*texture.image));
+  return mesh;
+}
+
+TEST(SolutionGlb, RemembersWhatTexturesCutOut) {
+  const DisplayMesh mesh = cut_out_mesh();
+  const std::string bytes = encode_solution(mesh, ".glb");
+  EXPECT_NE(bytes.find(R"("alphaMode":"MASK")"), std::string::npos);
+  const DisplayMesh back = decode_solution(bytes, ".glb", "room");
+  ASSERT_EQ(back.materials.size(), 6u);
+  EXPECT_TRUE(back.materials[3].has_cutout());
+  EXPECT_FALSE(back.materials[4].has_cutout());
+  EXPECT_EQ(back.materials[3].texture->image->texels, mesh.materials[3].texture->image->texels);
+  const auto before = radiosities(mesh), after = radiosities(back);
+  ASSERT_EQ(before.size(), after.size());
+  for (const auto& [place, radiosity] : before) {
+    ASSERT_TRUE(after.contains(place));
+    EXPECT_NEAR(radiosity.g, after.at(place).g, 1e-5);
+  }
+  EXPECT_EQ(encode_solution(back, ".glb"), bytes);
+}
+
+TEST(MeshTransmittance, IsThatOfTheTexelAtThePlace) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  const auto others = static_cast<std::uint32_t>(mesh.triangles.size()) - 4;
+  mesh.materials = {test::grey(0, 0.5), test::textured(test::cut_out(2, 1, 255, {0, 102}), {0.5, 0.5, 0.5}, Wrap::clamp)};
+  mesh.materials[1].regular_transmittance = {0.5, 0.25, 0};
+  mesh.faces = {{{}, 1, 4}, {{}, 0, others}};
+  EXPECT_EQ(MeshTransmittance(mesh).at(0, 0.2, 0.3), (Rgb{0.5, 0.25, 0}));  // nobody says where its texture lies
+  mesh.texture_points.assign(mesh.positions.size(), {0.25F, 0.5F});
+  mesh.texture_points[mesh.triangles[0][1]].s = 1;
+  const MeshTransmittance transmittance(mesh);
+  EXPECT_TRUE(transmittance.has_panes());
+  EXPECT_EQ(transmittance.pane(0), &mesh.materials[1]);
+  EXPECT_EQ(transmittance.pane(4), nullptr);
+  EXPECT_TRUE(transmittance.at(4, 0.2, 0.3).is_zero());
+  EXPECT_EQ(transmittance.opacity_at(4, 0.2, 0.3), 1);
+  EXPECT_EQ(transmittance.at(0, 0.3, 0.3), (Rgb{1, 1, 1}));  // s = 0.475
+  const Rgb partly = transmittance.at(0, 0.4, 0.3);          // s = 0.55
+  EXPECT_NEAR(partly.r, 0.4 * 0.5 + 0.6, 1e-12);
+  EXPECT_NEAR(partly.g, 0.4 * 0.25 + 0.6, 1e-12);
+  EXPECT_NEAR(partly.b, 0.6, 1e-12);
+  mesh.materials.resize(1);
+  mesh.faces = {{{}, 0, others + 4}};
+  EXPECT_FALSE(MeshTransmittance(mesh).has_panes());
+}
+
+TEST(MeshRadiosity, UnderATextureOnlyWhatIsReflectedFollowsTheTexels) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  ColourImage image{2, 1, {100, 100, 100, 255, 200, 200, 200, 51}, true};
+  mesh.materials = {test::textured(image, {0.5, 0.5, 0.5}, Wrap::clamp)};
+  Material& paper = mesh.materials[0];
+  paper.emission = {0.125, 0.125, 0.125};
+  paper.diffuse_transmittance = {0.25, 0.25, 0.25};
+  paper.two_sided = true;
+  mesh.faces = {{{}, 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
+  mesh.transmitted.assign(mesh.positions.size(), {0.5F, 0.25F, 0});
+  for (RgbF& each : mesh.radiosity) each = narrow(paper.emission + Rgb{0.5, 0.25, 0} + 2 * paper.reflectance);
+  for (const auto& [s, value, opacity] : {std::tuple{0.0F, 100, 1.0}, {1.0F, 200, 0.2}}) {
+    mesh.texture_points.assign(mesh.positions.size(), {s, 0.5F});
+    const Rgb there = MeshRadiosity(mesh).of_what_is_there(1, 0.2, 0.3), leaving = MeshRadiosity(mesh).at(1, 0.2, 0.3);
+    const double reflected = 2 * 0.5 * reflectance_of_texel(static_cast<std::uint8_t>(value));
+    EXPECT_NEAR(there.r, 0.125 + 0.5 + reflected, 1e-6);
+    EXPECT_NEAR(there.g, 0.125 + 0.25 + reflected, 1e-6);
+    EXPECT_NEAR(there.b, 0.125 + reflected, 1e-6);
+    EXPECT_NEAR(leaving.g, opacity * there.g, 1e-12);
+  }
 }
 
 TEST(SolutionGlb, UnsoundTexturesAreRefused) {
@@ -331,6 +405,41 @@ TEST(GlbFile, CountsAndPlacesBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THROW(decode_glb(with_json(glb, count, "\"count\":999")), SolutionFileError);
   EXPECT_THROW(decode_glb(with_json(glb, "\"byteOffset\":0", "\"byteStride\":0")), SolutionFileError);
   EXPECT_THROW(decode_glb(with_json(glb, "\"_RADIOSITY\"", "\"_RADIANCE\"")), SolutionFileError);
+}
+
+TEST(GlbFile, RemembersTheLightThatComesThroughFromBehind) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  const std::string plain = encode_glb(mesh);
+  EXPECT_EQ(plain.find("_TRANSMITTED"), std::string::npos);
+  EXPECT_TRUE(decode_glb(plain).transmitted.empty());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.transmitted.push_back({0.5F, static_cast<float>(i), 0});
+  EXPECT_EQ(decode_solution(encode_glb(mesh), ".glb", "room").transmitted, mesh.transmitted);
+}
+
+TEST(GlbFile, LightFromBehindThatIsNoneIsRefused) {
+  const auto refusal = [](const std::string& bytes) {
+    try {
+      decode_solution(bytes, ".glb", "room");
+      return std::string();
+    } catch (const SolutionFileError& error) {
+      return std::string(error.what());
+    }
+  };
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  mesh.transmitted.assign(mesh.positions.size(), {1, 1, 1});
+  const std::string good = encode_glb(mesh);
+  ASSERT_EQ(refusal(good), "");
+  for (const float wrong : {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    mesh.transmitted[5].g = wrong;
+    EXPECT_EQ(refusal(encode_glb(mesh)), "room: vertex 5: the light that comes through it is negative or not finite");
+  }
+  const std::string attribute = "\"_TRANSMITTED\":4",
+                    kind = "\"bufferView\":4,\"componentType\":5126,\"count\":", count = std::to_string(mesh.positions.size());
+  EXPECT_EQ(refusal(with_json(good, kind + count, kind + "9")),
+            "room: vertices: positions, normals and values are not equally many");
+  EXPECT_NE(refusal(with_json(good, kind + count, kind + "99")).find("beyond its bufferView"), std::string::npos);
+  EXPECT_NE(refusal(with_json(good, attribute, "\"_TRANSMITTED\":6")).find("not of the type"), std::string::npos);  // indices
+  EXPECT_NE(refusal(with_json(good, attribute, "\"_TRANSMITTED\":9")).find("no element 9"), std::string::npos);
 }
 
 TEST(GlbFile, ViewersLeaveOutWhatLightGoesThrough) {

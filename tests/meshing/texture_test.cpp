@@ -2,7 +2,7 @@
 
 #include "meshing/patch_reflectance.h"
 #include "tests/scenes.h"
-#include "tests/textures.h"
+#include "tests/cutouts.h"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,9 @@ Polygon above(const Polygon& polygon, Height height) {
 }
 
 /// Returns the mean over a convex polygon as the sum over all texels of the area of their common part.
-Rgb mean_of_parts(const ColourImage& image, const Polygon& polygon, Wrap wrap) {
+MeanSurface mean_of_parts(const ColourImage& image, const Polygon& polygon, Wrap wrap) {
   Rgb sum;
+  double covered = 0;
   constexpr int far = 20;
   for (int row = -far; row < far; ++row)
     for (int column = -far; column < far; ++column) {
@@ -46,11 +47,12 @@ Rgb mean_of_parts(const ColourImage& image, const Polygon& polygon, Wrap wrap) {
       part = above(part, [&](TexelPoint p) { return p.y - row; });
       part = above(part, [&](TexelPoint p) { return row + 1 - p.y; });
       if (part.size() < 3) continue;
-      const auto* texel =
-          &image.texels[3 * (wrapped(row, image.rows, wrap) * image.columns + wrapped(column, image.columns, wrap))];
-      sum += area_of(part) * Rgb{reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])};
+      const auto* texel = image.texel(wrapped(column, image.columns, wrap), wrapped(row, image.rows, wrap));
+      const double there = area_of(part) * (image.has_opacity ? texel[3] / 255.0 : 1);
+      sum += there * Rgb{reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])};
+      covered += there;
     }
-  return sum * (1 / area_of(polygon));
+  return {sum * (1 / covered), covered / area_of(polygon)};
 }
 
 void expect_near(const Rgb& a, const Rgb& b, double tolerance) {
@@ -61,8 +63,12 @@ void expect_near(const Rgb& a, const Rgb& b, double tolerance) {
 
 constexpr double rounding = 2e-6;  // texels are rounded to 2^-19
 
-TEST(TextureMean, IsThatOfTheTexelsThatAPolygonCovers) {
-  const ColourImage image = test::noise(7, 5);
+void expect_near(const MeanSurface& a, const MeanSurface& b, double tolerance) {
+  expect_near(a.reflectance, b.reflectance, tolerance / std::min(a.cover, b.cover));
+  EXPECT_NEAR(a.cover, b.cover, tolerance);
+}
+
+void expect_means_over_polygons(const ColourImage& image) {
   const TextureMean mean(image);
   std::mt19937 random(3);
   const auto place = [&] { return std::uniform_real_distribution<>(-18, 18)(random); };
@@ -74,29 +80,32 @@ TEST(TextureMean, IsThatOfTheTexelsThatAPolygonCovers) {
     }
 }
 
+TEST(TextureMean, IsThatOfTheTexelsThatAPolygonCovers) { expect_means_over_polygons(test::noise(7, 5)); }
+
+TEST(TextureMean, CountsTexelsByWhatIsThereOfThem) { expect_means_over_polygons(test::with_holes(test::noise(7, 5))); }
+
 TEST(TextureMean, IsThatOfTheImageOverWholeRepeats) {
   const ColourImage image = test::noise(33, 20);
   const TextureMean mean(image);
   for (const Wrap wrap : {Wrap::repeat, Wrap::mirror}) {
     const Polygon all{{-330, 40}, {33 * 4, 40}, {33 * 4, -60}, {-330, -60}};
-    expect_near(mean.over(all, wrap, wrap), mean_reflectance(image), rounding);
+    expect_near(mean.over(all, wrap, wrap), mean_surface(image), rounding);
   }
-  expect_near(mean.over(Polygon{{0, 0}, {33, 0}, {33, 20}, {0, 20}}, Wrap::clamp, Wrap::clamp), mean_reflectance(image),
-              rounding);
+  expect_near(mean.over(Polygon{{0, 0}, {33, 0}, {33, 20}, {0, 20}}, Wrap::clamp, Wrap::clamp), mean_surface(image), rounding);
 }
 
 TEST(TextureMean, OfAPolygonWithoutAreaIsATexel) {
   const ColourImage image = test::noise(4, 4);
   const Polygon point{{2.5, 1.5}, {2.5, 1.5}, {2.5, 1.5}};
   const auto* texel = &image.texels[3 * (1 * 4 + 2)];
-  expect_near(TextureMean(image).over(point, Wrap::repeat, Wrap::repeat),
+  expect_near(TextureMean(image).over(point, Wrap::repeat, Wrap::repeat).reflectance,
               {reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])}, rounding);
 }
 
 TEST(TextureMean, OfAHugePolygonIsThatOfTheImage) {
   const ColourImage image = test::noise(64, 64);
   const Polygon huge{{0, 0}, {6e6, 0}, {6e6, 6e6}, {0, 6e6}};
-  expect_near(TextureMean(image).over(huge, Wrap::repeat, Wrap::repeat), mean_reflectance(image), rounding);
+  expect_near(TextureMean(image).over(huge, Wrap::repeat, Wrap::repeat), mean_surface(image), rounding);
 }
 
 TEST(Texture, ReflectsLessThanAllLight) {
@@ -143,22 +152,32 @@ void expect_means_of_parts(const BaseMesh& mesh) {
   ASSERT_EQ(mesh.roots().size(), 1u);
   const PatchReflectance reflectance(mesh);
   std::vector<PatchShape> parts{shape_of(mesh, PatchId::root(0))};
-  const Rgb whole = reflectance.of(parts[0]);
+  const MeanSurface whole = reflectance.of(parts[0]);
   for (int level = 0; level < 4; ++level) {
     std::vector<PatchShape> finer;
     Rgb sum;
+    double covered = 0;
     for (const PatchShape& part : parts)
       for (int k = 0; k < 4; ++k) {
         finer.push_back(part.child(k));
-        sum += area_of(mesh, finer.back()) * reflectance.of(finer.back());
+        const MeanSurface mean = reflectance.of(finer.back());
+        sum += area_of(mesh, finer.back()) * mean.cover * mean.reflectance;
+        covered += area_of(mesh, finer.back()) * mean.cover;
       }
-    expect_near(sum * (1 / mesh.roots()[0].area), whole, rounding);
+    expect_near({sum * (1 / covered), covered / mesh.roots()[0].area}, whole, rounding);
     parts = std::move(finer);
   }
 }
 
 TEST_P(PatchesOfFaces, HaveTheMeanOfTheirParts) {
   expect_means_of_parts(BaseMesh(one_face(GetParam().corners, GetParam().points)));
+}
+
+TEST_P(PatchesOfFaces, HaveTheMeanOfTheirPartsAlsoWithHoles) {
+  Scene scene = one_face(GetParam().corners, GetParam().points);
+  Texture& texture = *scene.materials[0].texture;
+  texture.image = std::make_shared<const ColourImage>(test::with_holes(*texture.image));
+  expect_means_of_parts(BaseMesh(scene));
 }
 
 TEST_P(PatchesOfFaces, HaveTheMeanOfTheirPartsAlsoWithColours) {
@@ -177,14 +196,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(PatchReflectance, OfAFaceThatShowsTheImageIsItsMeanTimesTheFactor) {
   const BaseMesh mesh(one_face({{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}}, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}));
-  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))),
-              Rgb{0.9, 0.5, 1} * mean_reflectance(*mesh.materials()[0].texture->image), rounding);
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))).reflectance,
+              Rgb{0.9, 0.5, 1} * mean_surface(*mesh.materials()[0].texture->image).reflectance, rounding);
 }
 
 // The mean of a linear function over a triangle is that of its corners.
 TEST(PatchReflectance, OfAColouredTriangleIsTheMeanOfItsColours) {
   const BaseMesh mesh(coloured_face({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}, {{1, 0, 0}, {0, 0.5F, 0}, {0, 0, 0.75F}}));
-  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))), {0.9 / 3, 0.5 / 6, 0.8 / 4}, 1e-7);
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))).reflectance, {0.9 / 3, 0.5 / 6, 0.8 / 4}, 1e-7);
   expect_near(colour_at(mesh, 0, {0.25, 0.5}), {0.25, 0.125, 0.375}, 1e-7);
 }
 
@@ -202,7 +221,7 @@ TEST(ColouredTriangles, BecomeAQuadOnlyWhereTheColoursLieAsOnOne) {
 
 TEST(PatchReflectance, OfAFaceAtOnePointOfTheImageIsThatOfThePoint) {
   const BaseMesh mesh(one_face({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}, {{0.3F, 0.7F}, {0.3F, 0.7F}, {0.3F, 0.7F}}));
-  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0)).child(2)),
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0)).child(2)).reflectance,
               mesh.materials()[0].texture->reflectance_at({0.3F, 0.7F}), 1e-9);
 }
 
@@ -215,7 +234,7 @@ TEST(PatchReflectance, OfAFaceOnALineOfTheImageIsTheMeanAlongIt) {
     const auto* texel = &image.texels[3 * (8 * 16 + column)];
     row += Rgb{reflectance_of_texel(texel[0]), reflectance_of_texel(texel[1]), reflectance_of_texel(texel[2])} * (1.0 / 16);
   }
-  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))), Rgb{0.9, 0.5, 1} * row, 1e-5);
+  expect_near(PatchReflectance(mesh).of(shape_of(mesh, PatchId::root(0))).reflectance, Rgb{0.9, 0.5, 1} * row, 1e-5);
 }
 
 TEST(PatchReflectance, IsTheSameOnBothSidesOfAFace) {

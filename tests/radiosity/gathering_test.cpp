@@ -135,6 +135,15 @@ std::vector<System> some_systems() {
   return systems;
 }
 
+TEST(Gathering, SolvesSystemsWithTranslucentFaces) {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    const System opaque(seed), system = opaque.with_translucent_faces(seed);
+    Gatherer gatherer(system);
+    gatherer.sweep_down_to(1e-12);
+    expect_near(gatherer->irradiance(), system.gathered(system.solved()), float_noise);
+  }
+}
+
 TEST(Gathering, ArrivesAtTheSolution) {
   for (const System& system : some_systems()) {
     Gatherer run(system);

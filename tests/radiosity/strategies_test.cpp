@@ -41,6 +41,41 @@ TEST(Strategies, StepsOfAllEndAtTheSameSolution) {
   }
 }
 
+TEST(Strategies, OfAllEndAtTheSameSolutionWithTranslucentFaces) {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    const System opaque(seed), system = opaque.with_translucent_faces(seed);
+    const auto solved = system.solved();
+    for (const Strategy strategy : all) {
+      SCOPED_TRACE(text(strategy));
+      Shooting stepped = system.begun();
+      step_until(strategy, stepped, 1e-10 * stepped.unshot_power());
+      test::expect_near(stepped.shot(), solved, 1e-6);
+      Shooting swept = system.begun();
+      const auto stepper = make_stepper(strategy, swept);
+      const double enough = 1e-10 * swept.unshot_power();
+      for (int n = 0; n < 10'000 && swept.unshot_power() > enough; ++n) stepper->sweep();
+      test::expect_near(swept.shot(), solved, 1e-6);
+    }
+  }
+}
+
+// Also halfway: e + R F x - x of what is shot, with what is shot of the irradiance.
+TEST(Strategies, KnowTheUnshotLightOfTranslucentFaces) {
+  const System opaque(4), system = opaque.with_translucent_faces(4);
+  Shooting shooting = system.begun();
+  shooting.keep_ambient_account();
+  const auto stepper = make_stepper(Strategy::sorted, shooting);
+  for (int n = 0; n < 30; ++n) stepper->step();
+  const auto left = system.residual(shooting.shot()), unshot = shooting.unshot_by_leaf();
+  RelativeLight power;
+  for (std::uint32_t leaf = 0; leaf < left.size(); ++leaf) {
+    EXPECT_LT(absolute(left[leaf] - unshot[leaf]).max(), 1e-12) << leaf;
+    power += shooting.leaf_area(leaf) * left[leaf];
+  }
+  const RelativeLight known = shooting.ambient_irradiance(), fresh = ambient_gain(system.patches) * power;
+  EXPECT_LT(absolute(known - fresh).max(), 1e-9 * fresh.max());
+}
+
 TEST(Strategies, SweepsOfAllEndAtTheSameSolution) {
   const System system(8, 50);
   for (const Strategy strategy : all) {

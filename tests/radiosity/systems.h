@@ -13,7 +13,7 @@
 
 namespace alvor::test {
 
-/// A closed system x = e + rho F x with nothing shot: `unshot` of its leaves is e.
+/// A closed system x = e + R F x with nothing shot: `unshot` of its leaves is e.
 struct System {
   std::vector<TransportRow> rows;
   std::vector<ShootingPatch> patches;
@@ -57,6 +57,23 @@ struct System {
     return system;
   }
 
+  /// Returns the system with patches 2 n and 2 n + 1 as the sides of translucent faces of equal area.
+  System with_translucent_faces(unsigned seed) const {
+    System system = *this;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0.1, 0.9);
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      ShootingPatch &patch = system.patches[p], &front = system.patches[p & ~std::size_t{1}];
+      patch.row = &rows[p];  // of this system
+      patch.behind = static_cast<std::uint32_t>(p ^ 1);
+      const Rgb left = Rgb{1, 1, 1} - patch.reflectance;
+      patch.diffuse_transmittance = uniform(random) * left;
+      for (std::uint32_t k = 0; k < patch.leaf_count; ++k) system.leaves[patch.first_leaf + k].area *= front.area / patch.area;
+      patch.area = front.area;
+    }
+    return system;
+  }
+
   /// Returns the irradiance of each patch: its row times x.
   std::vector<RelativeLight> gathered(std::span<const RelativeLight> x) const {
     std::vector<RelativeLight> irradiance;
@@ -69,13 +86,17 @@ struct System {
     return irradiance;
   }
 
-  /// Returns the residual e + rho F x - x of each leaf.
+  /// Returns the residual e + R F x - x of each leaf.
   std::vector<RelativeLight> residual(std::span<const RelativeLight> x) const {
     std::vector<RelativeLight> left;
     const auto irradiance = gathered(x);
-    for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      RelativeLight scattered = patches[p].reflectance * irradiance[p];
+      if (const std::uint32_t behind = patches[p].behind; behind != ShootingPatch::none)
+        scattered += patches[behind].diffuse_transmittance * irradiance[behind];
       for (std::uint32_t leaf = patches[p].first_leaf; leaf < patches[p].first_leaf + patches[p].leaf_count; ++leaf)
-        left.push_back(leaves[leaf].unshot + patches[p].reflectance * irradiance[p] - x[leaf]);
+        left.push_back(leaves[leaf].unshot + scattered - x[leaf]);
+    }
     return left;
   }
 

@@ -119,7 +119,7 @@ TEST(Textures, InAnIntegratingSphereCountByTheirMean) {
   double reflected = 0, area = 0, irradiance = 0;
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
     area += mesh.roots()[root].area;
-    reflected += mesh.roots()[root].area * reflectance.of(shape_of(mesh, PatchId::root(root))).mean();
+    reflected += mesh.roots()[root].area * reflectance.of(shape_of(mesh, PatchId::root(root))).reflectance.mean();
   }
   for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 0.01}))
     irradiance += area_of(mesh, shape_of(mesh, leaf.patch)) * widen(leaf.irradiance).mean() / area;

@@ -24,7 +24,7 @@ TEST(Visibility, ClosestHitNamesTheRootPatchAmongQuadsAndTriangles) {
   test::add_polygon(scene, {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}});
   const BaseMesh mesh(scene);
   const LocalFrame frame{mesh.centre(), mesh.extent()};
-  const Visibility visibility(mesh.roots(), mesh.materials(), frame);
+  const Visibility visibility(mesh, frame);
   const auto infinity = std::numeric_limits<float>::infinity();
   const auto first_root = [&](Vec3 from, Vec3 towards) {
     const RayPacket rays = packet(frame.to_local(from), towards, infinity);
@@ -41,7 +41,7 @@ TEST(Visibility, ClosestHitNamesTheRootPatchAmongQuadsAndTriangles) {
 TEST(Visibility, OcclusionEndsAtTMax) {
   const BaseMesh mesh(test::furnace(1, 0.5));
   const LocalFrame frame{mesh.centre(), mesh.extent()};
-  const Visibility visibility(mesh.roots(), mesh.materials(), frame);
+  const Visibility visibility(mesh, frame);
   for (const auto& [t_max, expected] : {std::pair{0.2f, 0}, std::pair{2.0f, 0xffff}}) {
     const RayPacket rays = packet({0, 0, 0}, {0, 0, 1}, t_max);
     std::uint16_t blocked = 1;
@@ -66,7 +66,7 @@ Scene wall_behind_panes() {
 TEST(Visibility, RaysCrossThePanesBeforeTheirHitInOrderAndNoneBehindIt) {
   const BaseMesh mesh(wall_behind_panes());
   const LocalFrame frame{mesh.centre(), mesh.extent()};
-  const Visibility visibility(mesh.roots(), mesh.materials(), frame);
+  const Visibility visibility(mesh, frame);
   RayPacket rays = packet(frame.to_local({0.3, 0.4, 5}), {0, 0, -1}, std::numeric_limits<float>::infinity());
   rays.set(5, frame.to_local({0.3, 0.4, 2}), {0, 0, 1}, std::numeric_limits<float>::infinity());
   HitPacket hits;
@@ -86,7 +86,7 @@ TEST(Visibility, RaysCrossThePanesBeforeTheirHitInOrderAndNoneBehindIt) {
 TEST(Visibility, ShadowRaysTakeTheTintOfThePanesOnTheirWay) {
   const BaseMesh mesh(wall_behind_panes());
   const LocalFrame frame{mesh.centre(), mesh.extent()};
-  const Visibility visibility(mesh.roots(), mesh.materials(), frame);
+  const Visibility visibility(mesh, frame);
   const RayPacket rays = packet(frame.to_local({0.3, 0.4, 5}), Vec3{0, 0, -4.5} / mesh.extent(), 1);
   std::uint16_t blocked = 1;
   Visibility::Tints tints;

@@ -61,14 +61,14 @@ Finding published_numbers_are_finite(const Subject& s) {
   return std::nullopt;
 }
 
-/// Returns an upper bound of the radiosity: largest emission / (1 - largest reflectance).
+/// Returns an upper bound of the radiosity: largest emission / (1 - largest albedo).
 Rgb brightest_radiosity(const BaseMesh& mesh) {
-  Rgb emission, reflectance;
+  Rgb emission, albedo;
   for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
     emission = upper(emission, mesh.material_of(r).emission);
-    reflectance = upper(reflectance, mesh.material_of(r).largest_reflectance());
+    albedo = upper(albedo, mesh.material_of(r).largest_albedo());
   }
-  return {emission.r / (1 - reflectance.r), emission.g / (1 - reflectance.g), emission.b / (1 - reflectance.b)};
+  return {emission.r / (1 - albedo.r), emission.g / (1 - albedo.g), emission.b / (1 - albedo.b)};
 }
 
 /// Returns whether any material lets light straight through and satisfies a condition.
@@ -180,7 +180,9 @@ double mean_irradiance(const BaseMesh& mesh, const Solved& solved) {
 
 /// Returns whether a reflectance is above 0.95. Then the noise of rows is amplified, which the estimates do not know.
 bool reflects_nearly_all(const Scene& scene) {
-  return std::ranges::any_of(scene.materials, [](const Material& material) { return material.reflectance.max() > 0.95; });
+  return std::ranges::any_of(scene.materials, [](const Material& material) {
+    return (material.reflectance + material.diffuse_transmittance).max() > 0.95;
+  });
 }
 
 /// Solves `changed`, which must have the same solution. The two may differ by what their estimated errors allow.
@@ -239,8 +241,9 @@ Finding cutting_a_face_does_not_matter(const Subject& s) {
 Finding two_sides_are_two_faces(const Subject& s) {
   const bool has_backs = std::ranges::any_of(s.mesh.roots(), [](const RootPatch& root) { return root.is_back; });
   if (!has_backs || !s.trial.is_well_posed) return std::nullopt;
-  // Two panes in one place dim twice.
+  // Two panes in one place dim twice, and a translucent face needs both sides.
   if (any_pane(s, [](const Material& m) { return m.two_sided; })) return std::nullopt;
+  if (std::ranges::any_of(s.trial.scene.materials, &Material::is_translucent)) return std::nullopt;
   return disagreement(s, with_backs_as_faces(s.trial.scene), s.trial.options);
 }
 

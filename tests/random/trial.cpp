@@ -70,7 +70,8 @@ SolveOptions random_options(Dice& dice, const Scene& scene) {
     options.max_leaves = std::min<std::uint64_t>(options.max_leaves, 60);
   }
   double most = 0;
-  for (const Material& material : scene.materials) most = std::max(most, material.reflectance.max());
+  for (const Material& material : scene.materials)
+    most = std::max(most, (material.reflectance + material.diffuse_transmittance).max());
   if (most < 0.95)
     options.strategy = dice.one_of({Strategy::automatic, Strategy::automatic, Strategy::sorted, Strategy::sorted_ambient,
                                     Strategy::gather, Strategy::shoot, Strategy::overshoot});
@@ -107,13 +108,34 @@ void add_textures(Dice& dice, Scene& scene) {
       image.texels.insert(image.texels.end(), {red, green, blue});
     }
     const Rgb factor = random_bands(dice, 0, 1);
-    material.reflectance = factor * mean_reflectance(image);
+    material.reflectance = factor * mean_surface(image).reflectance;
     material.texture = Texture{std::make_shared<const ColourImage>(std::move(image)), factor,
                                dice.one_of({Wrap::repeat, Wrap::mirror, Wrap::clamp}), Wrap::repeat};
   }
   const auto far = static_cast<float>(dice.one_of({0.3, 2.0, 50.0}));
   const auto place = [&] { return static_cast<float>(dice.between(-1, 1)) * far; };
   for (std::size_t corner = 0; corner < scene.corners.size(); ++corner) scene.texture_points.push_back({place(), place()});
+}
+
+/// Cuts holes into some of the images, and makes some materials translucent.
+void add_holes_and_translucence(Dice& dice, Scene& scene) {
+  for (Material& material : scene.materials) {
+    if (material.texture && dice.happens(0.5)) {
+      ColourImage image{material.texture->image->columns, material.texture->image->rows, {}, true};
+      for (std::size_t i = 0; i < material.texture->image->texels.size(); ++i) {
+        image.texels.push_back(material.texture->image->texels[i]);
+        if (i % 3 == 2)
+          image.texels.push_back(dice.happens(0.6) ? (dice.happens(0.5) ? 0 : 255) : static_cast<std::uint8_t>(dice.below(256)));
+      }
+      material.reflectance = material.texture->factor * mean_surface(image).reflectance;
+      material.texture->image = std::make_shared<const ColourImage>(std::move(image));
+    }
+    if (!dice.happens(0.4)) continue;
+    const Rgb left =
+        Rgb{0.999, 0.999, 0.999} - material.regular_transmittance - upper(material.reflectance, material.largest_reflectance());
+    material.diffuse_transmittance = random_bands(dice, 0, 1) * upper(left, Rgb{});
+    material.two_sided |= material.is_translucent();
+  }
 }
 
 }  // namespace
@@ -130,6 +152,8 @@ Trial random_trial(std::uint64_t seed) {
   if (dice.happens(0.2)) add_textures(dice, trial.scene);
   Dice of_colours(~seed);  // of its own, so that a seed stands for the same scene as before there were colours
   if (of_colours.happens(0.1)) add_colours(of_colours, trial.scene);
+  Dice of_sheets(seed ^ 0x5bd1e995u);  // of its own, likewise
+  if (of_sheets.happens(0.2)) add_holes_and_translucence(of_sheets, trial.scene);
   if (dice.happens(0.03)) trial.faulty_place = add_fault(dice, trial.scene);
   trial.options = random_options(dice, trial.scene);
   return trial;

@@ -2,9 +2,9 @@
 #include "proto/leaf_codec.h"
 #include "proto/mesh_codec.h"
 
+#include "tests/cutouts.h"
 #include "tests/environments.h"
 #include "tests/server/sample_scenes.h"
-#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -219,12 +219,26 @@ TEST(SceneCodec, ChunksCarryTexturesAndEachImageOnce) {
   EXPECT_EQ(slice(arrived, 1 << 20)[0].SerializeAsString(), slice(scene, 1 << 20)[0].SerializeAsString());
 }
 
+TEST(SceneCodec, ChunksCarryHolesAndWhatComesThrough) {
+  Scene scene = textured_squares(50);
+  Texture& texture = *scene.materials.back().texture;
+  texture.image = std::make_shared<const ColourImage>(test::with_holes(*texture.image));
+  scene.materials.back().reflectance = texture.factor * mean_surface(*texture.image).reflectance;
+  scene.materials[0].two_sided = true;
+  scene.materials[0].diffuse_transmittance = {0.1, 0.2, 0.05};
+  const Scene arrived = assemble(slice(scene, 300));
+  EXPECT_TRUE(arrived.materials.back().texture->image->has_opacity);
+  EXPECT_EQ(arrived.materials.back().texture->image->texels, texture.image->texels);
+  EXPECT_EQ(arrived.materials[0].diffuse_transmittance, scene.materials[0].diffuse_transmittance);
+  EXPECT_EQ(slice(arrived, 1 << 20)[0].SerializeAsString(), slice(scene, 1 << 20)[0].SerializeAsString());
+}
+
 TEST(SceneCodec, TexturedMaterialsReflectTheMeanOfTheirImageWhateverTheySay) {
   auto chunk = slice(textured_squares(4), 1 << 20)[0];
   for (v1::Material& material : *chunk.mutable_materials()) *material.mutable_reflectance() = encode(Rgb{0.9, 0.9, 0.9});
   const Scene scene = assemble({chunk});
   EXPECT_EQ(scene.materials.back().reflectance,
-            scene.materials.back().texture->factor * mean_reflectance(*scene.materials.back().texture->image));
+            scene.materials.back().texture->factor * mean_surface(*scene.materials.back().texture->image).reflectance);
 }
 
 TEST(SceneCodec, ImagesWithoutAllTheirTexelsAreAFault) {
@@ -247,7 +261,8 @@ TEST(SceneCodec, ChunksWithUnsoundTexturesAreRefusedByName) {
        [](auto& c) { c.mutable_images(0)->set_columns(8193); }},
       {"chunk 0, images: the scene has 67108870 texels, at most 67108864 are possible",
        [](auto& c) { c.mutable_images(0)->set_columns(8192), c.mutable_images(0)->set_rows(8192); }},
-      {"chunk 0, texels: there are 3619 bytes for 1206 texels of three bytes", [](auto& c) { c.mutable_texels()->push_back(0); }},
+      {"chunk 0, texels: there are 3619 bytes for 1206 texels, which have 3618 bytes",
+       [](auto& c) { c.mutable_texels()->push_back(0); }},
       {"chunk 0, texture_coordinates: has 33 numbers, needs two for each of 16 corners",
        [](auto& c) { c.add_texture_coordinates(1); }},
       {"chunk 0, corner_colors: has 47 numbers, needs three for each of 16 corners",

@@ -56,7 +56,7 @@ class FixedMeshShooting {
   FixedMeshShooting(const BaseMesh& mesh, const FixedMeshOptions& options)
       : options_(options),
         frame_{mesh.centre(), mesh.extent()},
-        visibility_(mesh.roots(), mesh.materials(), frame_),
+        visibility_(mesh, frame_),
         cut_(cut_evenly(mesh, mesh.extent() / options.cells, frame_)),
         irradiance_(cut_.elements.size()),
         form_factor_(cut_.elements.size()),

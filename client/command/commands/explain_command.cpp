@@ -5,6 +5,7 @@
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
 #include "client/command/options/light_options.h"
+#include "client/command/options/translucent_option.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/command/output/notes.h"
@@ -28,6 +29,7 @@ struct ExplainCommand {
   std::string format;      ///< format of a scene from stdin
   std::string absorption;  ///< three numbers; empty: none
   LightOptions light;
+  std::vector<std::string> translucent;  ///< MATERIAL=T
   int max_depth = SolveOptions().max_depth;
   bool json = false;
   bool form_factors = false;
@@ -59,6 +61,7 @@ void run_explain(const ExplainCommand& command) {
   require_inputs({{InputKind::scene, command.scene}}, command.format);
   SceneImport import;
   take_light_options(command.light, import);
+  take_translucent(command.translucent, import.options);
   SceneFile file = read_scene(command.scene, command.format, import);
   take_absorption(command.absorption, file.scene);
   warn(file.warnings);
@@ -78,6 +81,7 @@ void add_explain_command(CLI::App& app) {
       ->check(CLI::Range(0, PatchId::max_level));
   add_absorption_option(command, options->absorption);
   add_light_options(command, options->light);
+  add_translucent_option(command, options->translucent);
   command.add_flag("--form-factors", options->form_factors,
                    "Check reciprocity, additivity and closure of form factors instead of showing the plan");
   command.add_option("--pairs", options->pairs, "Number of random pairs of faces to check (50)");

@@ -8,6 +8,7 @@
 #include "client/command/options/input_file.h"
 #include "client/command/options/light_options.h"
 #include "client/command/options/option_checks.h"
+#include "client/command/options/translucent_option.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
@@ -58,7 +59,8 @@ struct SolveCommand {
   std::optional<double> pace_s;
   std::string absorption;  ///< three numbers; empty: none
   LightOptions light;
-  std::string up;  ///< "y" or "z"; empty: as the file says
+  std::vector<std::string> translucent;  ///< MATERIAL=T
+  std::string up;                        ///< "y" or "z"; empty: as the file says
 };
 
 v1::SolveSpec spec_of(const SolveCommand& command) {
@@ -82,6 +84,7 @@ SceneImport import_of(const SolveCommand& command, const std::string& file) {
   SceneImport import;
   v1::ImportOptions& options = import.options;
   take_light_options(command.light, import);
+  take_translucent(command.translucent, options);
   options.set_scene_file(file);
   options.set_display_name(as_utf8(std::filesystem::path(name_of(command.scene)).filename().string()));
   Scene given;
@@ -157,6 +160,7 @@ void add_method(CLI::App& command, SolveCommand& options) {
       ->check(CLI::IsMember({"auto", "nusselt", "hemicube", "analytic"}));
   add_absorption_option(command, options.absorption);
   add_light_options(command, options.light);
+  add_translucent_option(command, options.translucent);
   command.add_option("--threads", options.threads, "Worker threads (as many as the machine has)")->check(whole_from(1));
   command.add_option("--pace", options.pace_s, "Pause after each step, seconds; not counted as run time (0; 0.04 with --frames)")
       ->check(CLI::Range(0.0, 60.0));

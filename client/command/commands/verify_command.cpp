@@ -6,6 +6,7 @@
 #include "client/command/options/input_file.h"
 #include "client/command/options/light_options.h"
 #include "client/command/options/option_checks.h"
+#include "client/command/options/translucent_option.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
@@ -32,7 +33,8 @@ struct VerifyCommand {
   VerifyOptions options;
   std::string absorption;  ///< three numbers; empty: none
   LightOptions light;
-  std::string up;  ///< "y" or "z"; empty: as the solution says
+  std::vector<std::string> translucent;  ///< MATERIAL=T
+  std::string up;                        ///< "y" or "z"; empty: as the solution says
   std::optional<double> max_error;
   std::filesystem::path csv, picture;  ///< empty: not asked for
   bool json = false;
@@ -77,6 +79,7 @@ void run_verify(const VerifyCommand& command) {
   require_outputs(command);
   SceneImport import;
   take_light_options(command.light, import);
+  take_translucent(command.translucent, import.options);
   DisplayMesh solution = read_solution(command.solution, command.format);
   take_up(command.up, solution.up);
   import.options.set_up_axis(encode(solution.up));
@@ -132,6 +135,7 @@ void add_verify_command(CLI::App& app) {
   add_format_option(command, options->format);
   add_absorption_option(command, options->absorption);
   add_light_options(command, options->light);
+  add_translucent_option(command, options->translucent);
   add_effort(command, *options);
   add_results(command, *options);
   command.callback([options] { run_verify(*options); });

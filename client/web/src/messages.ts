@@ -52,6 +52,8 @@ export type FromWorker =
       corners: Float32Array;
       counts: Uint8Array;
       materials: Float32Array;
+      /** Share that comes through scattered, r, g, b, and five zeros of each material; nothing if no root is translucent. */
+      transmittances?: Float32Array;
       isZUp: boolean;
       isPhotometric: boolean;
     }

@@ -109,8 +109,12 @@ class Watch {
         return [e!.r, e!.g, e!.b, through, r!.r, r!.g, r!.b, 0];
       }),
     );
+    const transmittances = this.mesh.isTranslucent
+      ? Float32Array.from(this.mesh.materials.flatMap(({ diffuseTransmittance: t }) => [t?.r ?? 0, t?.g ?? 0, t?.b ?? 0, 0, 0, 0, 0, 0]))
+      : undefined;
     const counts = Uint8Array.from({ length: this.mesh.rootCount }, (_, root) => this.mesh.cornersOf(root));
-    tell({ kind: "mesh", centre, extent, corners: Float32Array.from(this.mesh.corners), counts, materials, isZUp, isPhotometric });
+    const corners = Float32Array.from(this.mesh.corners);
+    tell({ kind: "mesh", centre, extent, corners, counts, materials, transmittances, isZUp, isPhotometric });
   }
 
   private forget(): void {
@@ -206,8 +210,8 @@ class Watch {
     const change = this.surface.flush();
     const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
     this.counters.preparing = performance.now() - began;
-    const { positions, coordinates, colours, values, triangles } = change;
-    const parts = [positions, coordinates, colours, values, triangles];
+    const { positions, coordinates, colours, values, transmitted, triangles } = change;
+    const parts = [positions, coordinates, colours, values, transmitted, triangles];
     const buffers = parts.flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
     tell({ kind: "change", change, brightness, counters: { ...this.counters } }, buffers);
     void this.showImages(); // not before: the first light needs none

@@ -1,6 +1,6 @@
 // The root patches that patch ids refer to, as ReadMesh sends them.
 
-import { Quantity, UpAxis, type Material, type ReadMeshResponse } from "../gen/alvor/v1/scene_service_pb";
+import { Quantity, UpAxis, type Material, type ReadMeshResponse, type Rgb } from "../gen/alvor/v1/scene_service_pb";
 import { type Blend, blendOnQuad } from "./blend";
 import { GRID } from "./mirror";
 
@@ -26,6 +26,8 @@ export class BaseMesh {
   readonly hasTextures: boolean;
   /** Some face has colours at its corners; corners of the other faces are white then. They multiply the reflectance. */
   readonly hasColours: boolean;
+  /** Some root lets through light that its other side receives, scattered: see otherSideOf(). */
+  readonly isTranslucent: boolean;
   /** Of each root, m2. */
   readonly area: Float64Array;
   /** The edge on the other side, or -1. */
@@ -39,6 +41,8 @@ export class BaseMesh {
   /** Red, green, blue of each corner, and the mean of each root's corners; both are empty without colours. */
   private readonly colours: Float32Array;
   private readonly meanColours: Float32Array;
+  /** Of each translucent root the one on its other side, -1 elsewhere; empty if none is translucent. */
+  private readonly otherSide: Int32Array;
   private readonly point = new Float64Array(3);
 
   constructor(messages: ReadMeshResponse[]) {
@@ -60,6 +64,8 @@ export class BaseMesh {
     this.colours = Float32Array.from(messages.flatMap((message) => message.cornerColors));
     this.hasColours = cornerCount > 0 && this.colours.length === 3 * cornerCount;
     this.meanColours = this.hasColours ? this.meansOfRoots(this.colours) : new Float32Array(0);
+    this.otherSide = this.pairSides();
+    this.isTranslucent = this.otherSide.some((other) => other >= 0);
     this.opposite = new Int32Array(cornerCount).fill(-1);
     this.smooth = new Uint8Array(cornerCount);
     let corner = 0;
@@ -71,6 +77,19 @@ export class BaseMesh {
 
   cornersOf(root: number): number {
     return this.firstCorner[root + 1] - this.firstCorner[root];
+  }
+
+  /**
+   * Returns the root that faces the other way in the same place, if light comes through from there scattered; else -1. Its corners are this
+   * root's in the order 0, n - 1, ..., 1, so its (u, v) is this root's (v, u).
+   */
+  otherSideOf(root: number): number {
+    return this.otherSide[root] ?? -1;
+  }
+
+  /** Returns the share of the other side's irradiance that comes through. Requires: otherSideOf(root) >= 0. */
+  transmittanceOf(root: number): Rgb {
+    return this.materials[this.material[root]].diffuseTransmittance!;
   }
 
   /** The scene's faces that a root stands for: one, or two triangles. */
@@ -202,6 +221,33 @@ export class BaseMesh {
       join(this.after(edge), other);
     });
     return group.map((_, corner) => find(corner));
+  }
+
+  /** The server does not say which roots are two sides of one face: they have one material, and the same corners in reverse order. */
+  private pairSides(): Int32Array {
+    const isTranslucent = this.materials.map(({ diffuseTransmittance: t }) => t !== undefined && (t.r > 0 || t.g > 0 || t.b > 0));
+    if (!isTranslucent.includes(true)) return new Int32Array(0);
+    const otherSide = new Int32Array(this.rootCount).fill(-1);
+    const unpaired = new Map<string, number>(); // by the corners that the other side has
+    for (let root = 0; root < this.rootCount; ++root) {
+      if (!isTranslucent[this.material[root]]) continue;
+      const [first, ...others] = this.cornerNamesOf(root);
+      const name = [this.material[root], first, ...others].join();
+      const other = unpaired.get(name);
+      if (other === undefined) {
+        unpaired.set([this.material[root], first, ...others.reverse()].join(), root);
+        continue;
+      }
+      unpaired.delete(name);
+      otherSide[root] = other;
+      otherSide[other] = root;
+    }
+    return otherSide;
+  }
+
+  private cornerNamesOf(root: number): string[] {
+    const first = this.firstCorner[root];
+    return Array.from({ length: this.cornersOf(root) }, (_, c) => this.corners.subarray(3 * (first + c), 3 * (first + c + 1)).join());
   }
 
   /** Mixes three corners' values, of which each corner has `count`, and writes them to `out[at]`. */

@@ -50,6 +50,16 @@ class Histogram {
 
 const valueOf = (bin: number) => 2 ** (bin / BINS_PER_OCTAVE - 256);
 
+/** Returns the luminance of the light that comes through a leaf from its other side. */
+function transmittedTo(mesh: BaseMesh, mirror: Mirror, node: number, ambient: [number, number, number]): number {
+  const root = mirror.root[node];
+  const other = mesh.otherSideOf(root);
+  if (other < 0) return 0;
+  const { r, g, b } = mesh.transmittanceOf(root);
+  const h = mirror.meanIrradiance(mirror.nodeBehind(node, other));
+  return luminance(r * (h[0] + ambient[0]), g * (h[1] + ambient[1]), b * (h[2] + ambient[2]));
+}
+
 export function brightnessOf(mesh: BaseMesh, mirror: Mirror, ambient: [number, number, number]): Brightness {
   const reflecting = new Histogram();
   const emitting = new Histogram();
@@ -64,7 +74,8 @@ export function brightnessOf(mesh: BaseMesh, mirror: Mirror, ambient: [number, n
     const hg = mirror.rgb[3 * node + 1] + ambient[1];
     const hb = mirror.rgb[3 * node + 2] + ambient[2];
     irradiance.add(luminance(hr, hg, hb), area);
-    const b = luminance(e.r + rho.r * hr, e.g + rho.g * hg, e.b + rho.b * hb);
+    const through = mesh.isTranslucent ? transmittedTo(mesh, mirror, node, ambient) : 0;
+    const b = luminance(e.r + rho.r * hr, e.g + rho.g * hg, e.b + rho.b * hb) + through;
     (e.r > 0 || e.g > 0 || e.b > 0 ? emitting : reflecting).add(b, area);
   }
   const seen = reflecting.isEmpty ? emitting : reflecting;

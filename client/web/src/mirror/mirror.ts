@@ -77,6 +77,34 @@ export class Mirror {
     return node;
   }
 
+  /** The node of the same size that lies behind a node, on a root whose (u, v) is its root's (v, u); if there is none, the leaf around it. */
+  nodeBehind(node: number, root: number): number {
+    const path = mirrored(this.path[node]);
+    let behind = root;
+    const end = levelOf(path);
+    for (let level = 1; level <= end && this.firstChild[behind] !== 0; ++level)
+      behind = this.firstChild[behind] + childIndex(path, level);
+    return behind;
+  }
+
+  /** A leaf, or all leaves that a node was split into. */
+  *leavesUnder(node: number): Generator<number> {
+    const first = this.firstChild[node];
+    if (first === 0) yield node;
+    else for (let k = 0; k < 4; ++k) yield* this.leavesUnder(first + k);
+  }
+
+  /** Of the leaves under a node, W/m2; their areas count by their sizes on the grid. */
+  meanIrradiance(node: number): [number, number, number] {
+    if (this.firstChild[node] === 0) return [this.rgb[3 * node], this.rgb[3 * node + 1], this.rgb[3 * node + 2]];
+    const mean: [number, number, number] = [0, 0, 0];
+    for (const leaf of this.leavesUnder(node)) {
+      const share = 4 ** (this.levelOf(node) - this.levelOf(leaf));
+      for (let band = 0; band < 3; ++band) mean[band] += share * this.rgb[3 * leaf + band];
+    }
+    return mean;
+  }
+
   /** All leaves that something was said about, in the order of their ids. */
   *leaves(): Generator<{ face: number; path: number; rgb: [number, number, number] }> {
     for (let root = 0; root < this.rootCount; ++root) if (this.known[root]) yield* this.leavesOf(root);
@@ -147,6 +175,13 @@ export class Mirror {
 /** Which child of its ancestor at `level` - 1 contains the patch of this path. */
 export function childIndex(path: number, level: number): number {
   return (path >>> (2 * (MAX_LEVEL - level) + 1)) & 3;
+}
+
+/** Returns the path of the patch in the same place of a root whose (u, v) is this one's (v, u): children 1 and 2 change places. */
+export function mirrored(path: number): number {
+  const end = path & -path;
+  const children = (path - end) >>> 1;
+  return 2 * (((children & 0x15555555) << 1) | ((children >>> 1) & 0x15555555)) + end;
 }
 
 export function grown<T extends Int32Array | Uint32Array | Float32Array | Uint8Array>(

@@ -33,6 +33,11 @@ export class PointTable {
     this.head[point] = link;
   }
 
+  /** Returns the point of this key, or -1. */
+  find(key: number): number {
+    return this.index.get(key) ?? -1;
+  }
+
   unlink(link: number): void {
     const before = this.previous[link];
     const after = this.next[link];

@@ -1,10 +1,12 @@
-// What lies where a ray first meets a front.
+// What lies where a ray first meets a front that is no hole there.
 
 import type { Reading, Vector } from "../messages";
-import { reflectanceAt, type Image } from "../textures/image";
+import { opacityAt, reflectanceAt, type Image } from "../textures/image";
 import type { BaseMesh } from "./base_mesh";
 import type { Blend } from "./blend";
-import { type Mirror, GRID } from "./mirror";
+import { type Mirror, GRID, mirrored } from "./mirror";
+
+const LEAST_OPACITY = 1 / 32; // the picture draws no dot of what is less: `thresholds` of view/shaders.ts
 
 interface Hit {
   root: number;
@@ -13,15 +15,17 @@ interface Hit {
   blend: Blend;
 }
 
-/** `origin` is measured from the middle of the mesh. `images`: of the textures; without them, reflectance is its mean. */
+/** `origin` is measured from the middle of the mesh. `images`: of the textures; without them, reflectance is its mean and nothing is a hole. */
 export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction: Vector, images?: Image[]): Reading | null {
-  const hit = firstFront(mesh, origin, direction);
+  const hit = firstFront(mesh, origin, direction, images);
   if (!hit) return null;
-  const node = mirror.leafAt(hit.root, pathOf(hit.blend, mesh.cornersOf(hit.root)));
+  const path = pathOf(hit.blend, mesh.cornersOf(hit.root));
+  const node = mirror.leafAt(hit.root, path);
   const material = mesh.materials[mesh.material[hit.root]];
   const irradiance = [0, 1, 2].map((band) => mirror.rgb[3 * node + band]) as [number, number, number];
   const e = material.emission!;
   const [r, g, b] = reflectanceOf(mesh, hit, images);
+  const through = transmittedTo(mesh, mirror, hit.root, path);
   const along = (x: "x" | "y" | "z", n: number) => mesh.centre[n] + origin[x] + hit.distance * direction[x];
   return {
     faces: mesh.sceneFacesOf(hit.root),
@@ -29,8 +33,17 @@ export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction:
     material: material.name,
     place: { x: along("x", 0), y: along("y", 1), z: along("z", 2) },
     irradiance,
-    radiosity: [e.r + r * irradiance[0], e.g + g * irradiance[1], e.b + b * irradiance[2]],
+    radiosity: [e.r + r * irradiance[0] + through[0], e.g + g * irradiance[1] + through[1], e.b + b * irradiance[2] + through[2]],
   };
+}
+
+/** Returns the light that comes through from the other side, W/m2. */
+function transmittedTo(mesh: BaseMesh, mirror: Mirror, root: number, path: number): [number, number, number] {
+  const other = mesh.otherSideOf(root);
+  if (other < 0) return [0, 0, 0];
+  const { r, g, b } = mesh.transmittanceOf(root);
+  const at = 3 * mirror.leafAt(other, mirrored(path));
+  return [r * mirror.rgb[at], g * mirror.rgb[at + 1], b * mirror.rgb[at + 2]];
 }
 
 /** Returns the reflectance at a point: the material's there, times the colour there. */
@@ -44,14 +57,30 @@ function reflectanceOf(mesh: BaseMesh, hit: Hit, images?: Image[]): [number, num
 
 function materialReflectanceOf(mesh: BaseMesh, { root, blend }: Hit, images?: Image[]): [number, number, number] {
   const { reflectance, texture } = mesh.materials[mesh.material[root]];
-  const image = texture && images?.[texture.image];
-  if (!image || !mesh.hasTextures) return [reflectance!.r, reflectance!.g, reflectance!.b];
-  const st = new Float64Array(2);
-  mesh.textureAt(root, blend, st, 0);
-  return reflectanceAt(image, texture, st[0], st[1]);
+  const image = imageOf(mesh, root, images);
+  if (!image) return [reflectance!.r, reflectance!.g, reflectance!.b];
+  return reflectanceAt(image, texture!, ...placeOnImage(mesh, root, blend));
 }
 
-function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector): Hit | null {
+function isHole(mesh: BaseMesh, { root, blend }: Hit, images?: Image[]): boolean {
+  const image = imageOf(mesh, root, images);
+  if (!image?.hasOpacity) return false;
+  return opacityAt(image, mesh.materials[mesh.material[root]].texture!, ...placeOnImage(mesh, root, blend)) < LEAST_OPACITY;
+}
+
+function imageOf(mesh: BaseMesh, root: number, images?: Image[]): Image | undefined {
+  const { texture } = mesh.materials[mesh.material[root]];
+  return texture && mesh.hasTextures ? images?.[texture.image] : undefined;
+}
+
+/** Returns s and t of a point of a root. */
+function placeOnImage(mesh: BaseMesh, root: number, blend: Blend): [number, number] {
+  const st = new Float64Array(2);
+  mesh.textureAt(root, blend, st, 0);
+  return [st[0], st[1]];
+}
+
+function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector, images?: Image[]): Hit | null {
   let best: Hit | null = null;
   for (let root = 0; root < mesh.rootCount; ++root) {
     const first = 3 * mesh.firstCorner[root];
@@ -63,7 +92,8 @@ function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector): Hit | nu
     for (const second of mesh.cornersOf(root) === 4 ? ([1, 2] as const) : ([1] as const)) {
       const met = meet(corner(0), corner(second), corner(second + 1), origin, direction);
       if (!met || (best && met.distance >= best.distance)) continue;
-      best = { root, distance: met.distance, blend: { second, ofSecond: met.b, ofThird: met.c } };
+      const hit: Hit = { root, distance: met.distance, blend: { second, ofSecond: met.b, ofThird: met.c } };
+      if (!isHole(mesh, hit, images)) best = hit;
     }
   }
   return best;

@@ -21,6 +21,8 @@ export interface SurfaceChange {
   colours?: Change;
   /** Irradiance r, g, b, W/m2, and the index of the material. */
   values: Change;
+  /** Light of the other side that comes through, r, g, b of each vertex, W/m2; nothing if no root is translucent. */
+  transmitted?: Change;
   /** Three vertices of each triangle; of one without area three times the same. */
   triangles: Change<Uint32Array>;
 }
@@ -35,6 +37,7 @@ const TRIANGLE_ROWS = [0, 0, 1];
 
 const VALUES = 1;
 const POSITIONS = 2;
+const TRANSMITTED = 4;
 
 export class Surface implements MirrorListener {
   private slotCount = 0;
@@ -88,18 +91,36 @@ export class Surface implements MirrorListener {
       for (let link = this.smooth.head[point]; link >= 0; link = this.smooth.next[link]) this.dirtySlots.add(link >> 3, VALUES);
     }
     this.dirtyPoints.clear();
+    if (this.mesh.isTranslucent) this.markTransmitted();
     const all = Int32Array.from(this.dirtySlots.list).sort();
-    const moved = all.filter((slot) => this.dirtySlots.flags[slot] & POSITIONS);
+    const those = (what: number) => all.filter((slot) => this.dirtySlots.flags[slot] & what);
+    const moved = those(POSITIONS);
     const change: SurfaceChange = {
       slotCount: this.slotCount,
       positions: collect(moved, 3 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writePositions(slot, out, at)),
       coordinates: this.mesh.hasTextures ? this.collectMixed(moved, 2, this.mesh.textureAt.bind(this.mesh)) : undefined,
       colours: this.mesh.hasColours ? this.collectMixed(moved, 3, this.mesh.colourAt.bind(this.mesh)) : undefined,
-      values: collect(all, 4 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeValues(slot, out, at)),
+      values: collect(those(VALUES), 4 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeValues(slot, out, at)),
+      transmitted: this.mesh.isTranslucent
+        ? collect(those(TRANSMITTED), 3 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeTransmitted(slot, out, at))
+        : undefined,
       triangles: collect(moved, SLOT_INDICES, Uint32Array, (slot, out, at) => this.writeTriangles(slot, out, at)),
     };
     this.dirtySlots.clear();
     return change;
+  }
+
+  /** Where a leaf is new, light comes through to it; where its light changed, to the leaves behind it. */
+  private markTransmitted(): void {
+    for (const slot of [...this.dirtySlots.list]) {
+      const node = this.nodeOfSlot[slot];
+      const other = this.mesh.otherSideOf(this.mirror.root[node]);
+      if (other < 0) continue;
+      if (this.dirtySlots.flags[slot] & POSITIONS) this.dirtySlots.add(slot, TRANSMITTED);
+      const behind = this.mirror.nodeBehind(node, other);
+      if (this.slotOfNode[behind] >= 0) this.dirtySlots.add(this.slotOfNode[behind], TRANSMITTED);
+      else for (const leaf of this.mirror.leavesUnder(behind)) this.dirtySlots.add(this.slotOfNode[leaf], TRANSMITTED);
+    }
   }
 
   private isQuad(node: number): boolean {
@@ -256,6 +277,46 @@ export class Surface implements MirrorListener {
       out[at + 2] = values[from + 2];
       out[at + 3] = material;
     }
+  }
+
+  /** Leaves of roots that are not translucent keep their zeros. */
+  private writeTransmitted(slot: number, out: Float32Array, at: number): void {
+    const node = this.nodeOfSlot[slot];
+    const root = this.mirror.root[node];
+    const other = this.mesh.otherSideOf(root);
+    if (other < 0) return;
+    const { r, g, b } = this.mesh.transmittanceOf(root);
+    const behind = this.mirror.nodeBehind(node, other);
+    const mean = this.mirror.meanIrradiance(behind);
+    const isCoarser = this.mirror.levelOf(behind) < this.mirror.levelOf(node);
+    for (let v = 0; v < SLOT_VERTICES; ++v, at += 3) {
+      const point = v === 0 || isCoarser ? -1 : this.pointBehind(node, v - 1, behind, other);
+      const values = point < 0 ? mean : this.pointValue;
+      const from = point < 0 ? 0 : 3 * point;
+      out[at] = r * values[from];
+      out[at + 1] = g * values[from + 1];
+      out[at + 2] = b * values[from + 2];
+    }
+  }
+
+  /** Returns the smooth point in the same place on the other side; -1 if no leaf there has a corner in that place. */
+  private pointBehind(node: number, k: number, behind: number, other: number): number {
+    if (!this.hasPoint(node, k)) return -1;
+    const slot = this.slotOfNode[behind];
+    if (slot < 0) return this.pointOfSmallerBehind(node, k, other);
+    const corners = this.isQuad(node) ? 4 : 3;
+    const link = POINTS * slot + (k < 4 ? (corners - k) % corners : 4 + corners - 1 - (k - 4));
+    return this.isOpen(link) ? this.smooth.pointOf[link] : -1;
+  }
+
+  /** As pointBehind, where leaves there are smaller: none of them has all points of `node`. */
+  private pointOfSmallerBehind(node: number, k: number, other: number): number {
+    this.findPoint(node, k);
+    const key = this.mesh.placeKey(other, this.pointJ, this.pointI);
+    const place = this.places.find(key);
+    if (place < 0 || this.cornersHere[place] === 0) return -1;
+    const point = this.smooth.find(this.mesh.smoothKey(other, this.pointJ, this.pointI, key));
+    return point >= 0 && this.smooth.head[point] >= 0 ? point : -1;
   }
 
   private writeTriangles(slot: number, out: Uint32Array, at: number): void {

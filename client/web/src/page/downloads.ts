@@ -19,12 +19,13 @@ export function reportOf(steps: readonly Step[]): Blob {
 
 /**
  * Returns the triangles with radiosity and irradiance as float32 attributes, and COLOR_0, exposed radiosity, for viewers that know neither.
- * Colours of the scene's corners are in the radiosity. `drawn` is measured from `centre`, in the scene's axes; the GLB's are y up.
+ * Colours of the scene's corners are in the radiosity, and so is light that comes through. `drawn` is measured from `centre`, in the scene's axes; the GLB's are y up.
  */
 export async function glbOf(drawn: BufferGeometry, centre: [number, number, number], materials: Float32Array, exposure: number, isZUp: boolean): Promise<Blob> {
   const geometry = new BufferGeometry();
   const values = drawn.getAttribute("value");
   const colours = drawn.hasAttribute("vertexColour") ? drawn.getAttribute("vertexColour") : undefined;
+  const transmitted = drawn.hasAttribute("transmitted") ? drawn.getAttribute("transmitted") : undefined;
   const bands = () => new Float32Array(3 * values.count);
   const [irradiance, radiosity, colour] = [bands(), bands(), bands()];
   for (let n = 0; n < values.count; ++n)
@@ -33,7 +34,7 @@ export async function glbOf(drawn: BufferGeometry, centre: [number, number, numb
       const material = 8 * values.getW(n) + band;
       irradiance[at] = values.getComponent(n, band);
       const reflectance = materials[material + 4] * (colours?.getComponent(n, band) ?? 1);
-      radiosity[at] = materials[material] + reflectance * irradiance[at];
+      radiosity[at] = materials[material] + reflectance * irradiance[at] + (transmitted?.getComponent(n, band) ?? 0);
       colour[at] = Math.min(1, exposure * radiosity[at]);
     }
   geometry.setAttribute("position", drawn.getAttribute("position"));

@@ -335,7 +335,7 @@ function take(message: FromWorker): void {
     case "mesh":
       materials = message.materials as Float32Array<ArrayBuffer>;
       centre = message.centre;
-      room.setMaterials(materials);
+      room.setMaterials(materials, message.transmittances);
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
       isZUp = message.isZUp;
       setPhotometric(message.isPhotometric);

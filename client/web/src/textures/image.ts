@@ -2,12 +2,17 @@
 
 import { Texture_Wrap, type ReadImagesResponse, type Texture } from "../gen/alvor/v1/scene_service_pb";
 
-/** Red, green and blue of each texel, sRGB, row by row from the top. */
+/** Red, green and blue of each texel, sRGB, row by row from the top; after blue its opacity, if the image has any. */
 export interface Image {
   columns: number;
   rows: number;
+  /** Texels have a fourth byte: 255 is all there, 0 is a hole. */
+  hasOpacity: boolean;
   texels: Uint8Array;
 }
+
+/** Returns how many bytes a texel has. */
+export const bytesOf = ({ hasOpacity }: { hasOpacity: boolean }) => (hasOpacity ? 4 : 3);
 
 const BRIGHTEST = 254; // what reflects everything would never grow dark: GeometryChunk.texels
 
@@ -26,7 +31,8 @@ export class ImageCollector {
 
   /** Throws on texels that belong to no image. */
   take({ images, texels }: Pick<ReadImagesResponse, "images" | "texels">): void {
-    for (const { columns, rows } of images) this.images.push({ columns, rows, texels: new Uint8Array(3 * columns * rows) });
+    for (const { columns, rows, hasOpacity } of images)
+      this.images.push({ columns, rows, hasOpacity, texels: new Uint8Array(bytesOf({ hasOpacity }) * columns * rows) });
     for (let from = 0; from < texels.length; ) {
       const image = this.images[this.filling];
       if (!image) throw new Error("there are more texels than the images have");
@@ -54,19 +60,41 @@ export function wrapped(n: number, count: number, wrap: Texture_Wrap): number {
   return there < count ? there : 2 * count - 1 - there;
 }
 
-/** Returns the reflectance at (s, t), bilinear between the middles of texels. The shaders of view/ do the same. */
+/**
+ * Returns the reflectance at (s, t) of what is there, bilinear between the middles of texels; 0 if nothing is there. The shaders of view/ do
+ * the same.
+ */
 export function reflectanceAt(image: Image, texture: Texture, s: number, t: number): [number, number, number] {
   const x = s * image.columns - 0.5;
   const y = t * image.rows - 0.5;
   const [column, row] = [Math.floor(x), Math.floor(y)];
   const sum: [number, number, number] = [0, 0, 0];
+  let there = 0;
   for (const [n, shareX] of [[column, column + 1 - x], [column + 1, x - column]])
     for (const [m, shareY] of [[row, row + 1 - y], [row + 1, y - row]]) {
-      const texel = 3 * (wrapped(m, image.rows, texture.wrapT) * image.columns + wrapped(n, image.columns, texture.wrapS));
-      for (let band = 0; band < 3; ++band) sum[band] += shareX * shareY * LINEAR[image.texels[texel + band]];
+      const texel = texelAt(image, texture, n, m);
+      const weight = shareX * shareY * opacityOf(image, texel);
+      for (let band = 0; band < 3; ++band) sum[band] += weight * LINEAR[image.texels[texel + band]];
+      there += weight;
     }
+  if (!(there > 0)) return [0, 0, 0];
+  const scale = image.hasOpacity ? 1 / there : 1;
   const [r, g, b] = factorOf(texture);
-  return [r * sum[0], g * sum[1], b * sum[2]];
+  return [r * scale * sum[0], g * scale * sum[1], b * scale * sum[2]];
+}
+
+/** Returns which share of the surface is there at (s, t): the opacity of the texel there, so that outlines are sharp. */
+export function opacityAt(image: Image, texture: Texture, s: number, t: number): number {
+  return opacityOf(image, texelAt(image, texture, Math.floor(s * image.columns), Math.floor(t * image.rows)));
+}
+
+/** Returns where the bytes begin of the texel that is seen in a column and a row, which may lie beyond the image. */
+function texelAt(image: Image, texture: Texture, column: number, row: number): number {
+  return bytesOf(image) * (wrapped(row, image.rows, texture.wrapT) * image.columns + wrapped(column, image.columns, texture.wrapS));
+}
+
+function opacityOf({ hasOpacity, texels }: Image, texel: number): number {
+  return hasOpacity ? texels[texel + 3] / 255 : 1;
 }
 
 export function factorOf({ factor }: Texture): [number, number, number] {

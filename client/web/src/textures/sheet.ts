@@ -1,8 +1,8 @@
 // All images with their pyramids on one sheet, texel after texel and row after row, as the graphics card gets them.
 
 import { Texture_Wrap, type Material } from "../gen/alvor/v1/scene_service_pb";
-import { factorOf, type Image } from "./image";
-import { encoding, levelsOf, texelsOf, type Level } from "./pyramid";
+import { bytesOf, factorOf, type Image } from "./image";
+import { byteOfOpacity, encoding, levelsOf, texelsOf, type Level } from "./pyramid";
 
 export interface Sheet {
   /** Texels of a row. */
@@ -10,7 +10,7 @@ export interface Sheet {
   height: number;
 }
 
-/** Some whole rows of a sheet: r, g, b, 255 of each texel, sRGB. */
+/** Some whole rows of a sheet: r, g, b of each texel, sRGB, and its opacity, which is 255 where the image has none. */
 export interface Piece {
   row: number;
   texels: Uint8Array<ArrayBuffer>;
@@ -53,11 +53,12 @@ export function* piecesOf(images: Image[], { width, height }: Sheet): Generator<
 }
 
 /** Writes `count` texels of a level from texel `from` on to `out[at]`. `bytes`: of encoding(). */
-function writeTexels({ bands }: Level, from: number, count: number, bytes: Uint8Array, out: Uint8Array, at: number): void {
+function writeTexels({ hasOpacity, bands }: Level, from: number, count: number, bytes: Uint8Array, out: Uint8Array, at: number): void {
   const isEncoded = bands instanceof Uint8Array;
-  for (let n = 3 * from; n < 3 * (from + count); n += 3, at += 4) {
+  const stride = bytesOf({ hasOpacity });
+  for (let n = stride * from; n < stride * (from + count); n += stride, at += 4) {
     for (let band = 0; band < 3; ++band) out[at + band] = isEncoded ? bands[n + band] : bytes[bands[n + band]];
-    out[at + 3] = 255;
+    out[at + 3] = !hasOpacity ? 255 : isEncoded ? bands[n + 3] : byteOfOpacity(bands[n + 3]);
   }
 }
 

@@ -61,13 +61,15 @@ export class Room {
     return this.renderer.capabilities.maxTextureSize;
   }
 
-  /** `materials`: emission, mean of what goes straight through, reflectance and 0 of each: eight floats. */
-  setMaterials(materials: Float32Array): void {
+  /** Eight floats of each: `materials`: emission, mean of what goes straight through, reflectance and 0; `transmittances`: see FromWorker. */
+  setMaterials(materials: Float32Array, transmittances?: Float32Array): void {
     const table = materialTable(materials);
     const { uniforms } = this.surface.material;
     uniforms.materials.value?.dispose();
     uniforms.materials.value = table;
     uniforms.materialsWide.value = table.image.width / 2;
+    uniforms.transmittances.value?.dispose();
+    uniforms.transmittances.value = transmittances ? materialTable(transmittances) : null;
   }
 
   /** Images of textures come: takePiece(). `table`: see tableOf(). Throws if the graphics card has no memory left. */
@@ -100,6 +102,7 @@ export class Room {
   take(change: SurfaceChange): void {
     this.slots.take(change);
     this.compile("COLOURED", change.colours !== undefined);
+    this.compile("TRANSLUCENT", change.transmitted !== undefined);
   }
 
   get slotCount(): number {
@@ -222,6 +225,7 @@ function newMaterial(): THREE.RawShaderMaterial {
     uniforms: {
       materials: { value: null },
       materialsWide: { value: 1 },
+      transmittances: { value: null },
       textures: { value: null },
       sheet: { value: null },
       colours: { value: colourTexture() },

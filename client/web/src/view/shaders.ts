@@ -1,10 +1,11 @@
 // Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices. rho is the material's, with
-// TEXTURED that of the texels there (see texture_shader.ts); with COLOURED it is multiplied by the colour interpolated between vertices.
+// TEXTURED that of the texels there (see texture_shader.ts); with COLOURED it is multiplied by the colour interpolated between vertices. With
+// TRANSLUCENT, tau (H + ambient) of the other side is added, of which tau H is interpolated between vertices.
 
 import { TEXTURE_FRAGMENT, TEXTURE_VERTEX } from "./texture_shader";
 
 /** Parts of the shaders that are left out unless they are defined. */
-export type ShaderPart = "TEXTURED" | "COLOURED";
+export type ShaderPart = "TEXTURED" | "COLOURED" | "TRANSLUCENT";
 
 export const VERTEX = `
 precision highp float;
@@ -24,6 +25,12 @@ flat out float through;
 in vec3 vertexColour;
 out vec3 colourThere;
 #endif
+#ifdef TRANSLUCENT
+uniform sampler2D transmittances;
+in vec3 transmitted;
+out vec3 transmittedThere;
+flat out vec3 transmittance;
+#endif
 ${TEXTURE_VERTEX}
 void main() {
   int material = int(value.w + 0.5);
@@ -37,6 +44,10 @@ void main() {
 #endif
 #ifdef COLOURED
   colourThere = vertexColour;
+#endif
+#ifdef TRANSLUCENT
+  transmittedThere = transmitted;
+  transmittance = texelFetch(transmittances, at, 0).rgb;
 #endif
   irradiance = value.rgb;
   centre = gl_VertexID % 9 == 0 ? 1.0 : 0.0;
@@ -62,14 +73,18 @@ flat in float through;
 #ifdef COLOURED
 in vec3 colourThere;
 #endif
+#ifdef TRANSLUCENT
+in vec3 transmittedThere;
+flat in vec3 transmittance;
+#endif
 out vec4 pixel;
 ${TEXTURE_FRAGMENT}
 
-// Bayer's matrix of 4 x 4: of each such square of pixels, a pane leaves the share that light passes.
+// Bayer's matrix of 4 x 4: of each such square of pixels, a pane or a cut-out leaves the share that light passes.
 const float thresholds[16] = float[](0.0, 8.0, 2.0, 10.0, 12.0, 4.0, 14.0, 6.0, 3.0, 11.0, 1.0, 9.0, 15.0, 7.0, 13.0, 5.0);
-bool passes() {
+bool passes(float share) {
   ivec2 at = ivec2(gl_FragCoord.xy) % 4;
-  return through > (thresholds[4 * at.y + at.x] + 0.5) / 16.0;
+  return share > (thresholds[4 * at.y + at.x] + 0.5) / 16.0;
 }
 
 vec3 toned(vec3 x) {
@@ -88,18 +103,25 @@ float place(float h) {
 }
 void main() {
 #ifdef TEXTURED
-  vec3 rho = reflectanceThere();
+  vec4 there = surfaceThere();
+  float passing = through + (1.0 - there.a) * (1.0 - through);  // also where the image has holes
+  vec3 rho = there.rgb;
 #else
+  float passing = through;
   vec3 rho = reflectance;
 #endif
 #ifdef COLOURED
   rho *= colourThere;
 #endif
-  if (passes()) discard;  // so that through < 1 from here on
+  if (passes(passing)) discard;  // so that through < 1 from here on
   vec3 h = irradiance + ambient;
+  vec3 radiosity = emission + rho * h;
+#ifdef TRANSLUCENT
+  radiosity += transmittedThere + transmittance * ambient;
+#endif
   vec3 colour;
   if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;
-  else colour = srgb(toned(exposure * (emission + rho * h) / (1.0 - through)));  // what is left of a pane has all its light
+  else colour = srgb(toned(exposure * radiosity / (1.0 - through)));  // what is left of a pane has all its light
   if (outlines) {
     float line = 1.0 - smoothstep(0.0, 1.2, centre / fwidth(centre));
     float bright = dot(colour, vec3(0.299, 0.587, 0.114));

@@ -4,7 +4,7 @@ import * as THREE from "three";
 import type { Change } from "../mirror/change";
 import { SLOT_INDICES, SLOT_VERTICES, type SurfaceChange } from "../mirror/surface";
 
-/** Positions and values of slots as the GPU has them; texture coordinates and colours too if the mesh has them. */
+/** Positions and values of slots as the GPU has them; texture coordinates, colours and transmitted light too if the mesh has them. */
 export class Slots {
   readonly geometry = new THREE.BufferGeometry();
   private room = 4096;
@@ -26,6 +26,7 @@ export class Slots {
     this.write("value", change.values);
     this.writeIfAny("coordinates", 2, change.coordinates);
     this.writeIfAny("vertexColour", 3, change.colours);
+    this.writeIfAny("transmitted", 3, change.transmitted);
     write(this.geometry.index!, change.triangles, SLOT_INDICES);
     this.geometry.setDrawRange(0, change.slotCount * SLOT_INDICES);
   }

@@ -45,16 +45,18 @@ async function floor(isTextured: boolean): Promise<Scene> {
   ]);
 }
 
-// From above and in front of the floor, at its middle; both measured from the middle of the scene.
-const EYE = "0_4_5_0_-2_0";
+/** From above and in front of the floor, at its middle; both measured from the middle of the scene, which is `middle` metres above the floor. */
+const eyeFor = (middle: number) => `0_${6 - middle}_5_0_${-middle}_0`;
 const DISTANCE = Math.hypot(6, 5);
 
 /** Solves a scene and shows it, when `prepare` has had its way with the page. */
-async function show(scene: Scene, prepare: (page: Page) => Promise<unknown> = async () => undefined): Promise<Page> {
-  const { name } = await server.api.solves.createSolve({ parent: scene.name, solve: { spec: { tolerance: 0.01 } } });
+async function show(
+  scene: Scene, prepare: (page: Page) => Promise<unknown> = async () => undefined, middle = 2, tolerance = 0.01,
+): Promise<Page> {
+  const { name } = await server.api.solves.createSolve({ parent: scene.name, solve: { spec: { tolerance } } });
   const page = await openPage(browser, server.url);
   await prepare(page);
-  await page.evaluate((hash) => (location.hash = hash), `${name}?tone=linear&ambient=0&eye=${EYE}`);
+  await page.evaluate((hash) => (location.hash = hash), `${name}?tone=linear&ambient=0&eye=${eyeFor(middle)}`);
   await waitForEnd(page, name);
   return page;
 }
@@ -64,6 +66,17 @@ async function acrossOf(page: Page, x: number): Promise<number> {
   const { width, height } = (await page.locator("#room").boundingBox())!;
   const halfHeight = DISTANCE * Math.tan((20 * Math.PI) / 180);
   return 0.5 + (x / (2 * halfHeight)) * (height / width);
+}
+
+/** Clicks on the floor's middle line, `x` metres right of its middle, and returns what the page says about that place, in the green band. */
+async function readAt(page: Page, x: number): Promise<{ irradiance: number; radiosity: number; text: string }> {
+  const { width, height } = (await page.locator("#room").boundingBox())!;
+  await page.locator("#room").click({ position: { x: (await acrossOf(page, x)) * width, y: height / 2 } });
+  await page.locator("#reading").waitFor();
+  const text = (await page.locator("#reading").textContent())!;
+  const number = / [\d.]+(?:e-?\d+)?, ([\d.]+(?:e-?\d+)?)/;
+  const [irradiance, radiosity] = text.split("\n").slice(0, 2).map((line) => Number(number.exec(line)![1]));
+  return { irradiance, radiosity, text };
 }
 
 /** Linear light of the picture 1 m left and right of the floor's middle. */
@@ -96,11 +109,7 @@ describe("textures on the page", () => {
     expect(Math.abs(textured[1] / mean[1] / (LINEAR[LIGHT] / MEAN) - 1)).toBeLessThan(TOLERANCE);
     expect(await warningsOf(page)).toEqual([]);
 
-    const { width, height } = (await page.locator("#room").boundingBox())!;
-    await page.locator("#room").click({ position: { x: (await acrossOf(page, -1)) * width, y: height / 2 } });
-    await page.locator("#reading").waitFor();
-    const lines = (await page.locator("#reading").textContent())!.split("\n");
-    const [irradiance, radiosity] = lines.slice(0, 2).map((line) => Number(/ ([\d.]+(e-?\d+)?)/.exec(line)![1]));
+    const { irradiance, radiosity } = await readAt(page, -1);
     expect(Math.abs(radiosity / irradiance / LINEAR[DARK] - 1)).toBeLessThan(0.02); // of three digits each
     await Promise.all([page.close(), plain.close()]);
   });
@@ -134,6 +143,84 @@ describe("textures on the page", () => {
     await expect.poll(() => ratioOf(page)).toBeGreaterThan((1 - TOLERANCE) * RATIO);
     await page.selectOption("#show", "irradiance");
     await expect.poll(async () => Math.abs((await ratioOf(page)) - 1)).toBeLessThan(TOLERANCE);
+    await page.close();
+  });
+});
+
+// x, y, z of the corners of squares around the middle of the floor: fronts up, fronts down.
+const facingUp = (half: number, y: number) => [-half, y, -half, -half, y, half, half, y, half, half, y, -half];
+const facingDown = (half: number, y: number) => [-half, y, -half, half, y, -half, half, y, half, -half, y, half];
+
+async function sceneOf(displayName: string, chunk: object): Promise<Scene> {
+  return server.api.createScene([
+    create(CreateSceneRequestSchema, { content: { case: "scene", value: { displayName } } }),
+    create(CreateSceneRequestSchema, { content: { case: "chunk", value: chunk } }),
+  ]);
+}
+
+describe("holes that an image cuts out", () => {
+  /** The floor between a lamp 4 m above it and a red plate 1 m below it; its right half is a hole. */
+  function halfAFloor(): Promise<Scene> {
+    const texels = Array.from({ length: COLUMNS * ROWS }, (_, n) => n % COLUMNS).flatMap((column) => {
+      return column < COLUMNS / 2 ? [LIGHT, LIGHT, LIGHT, 255] : [0, 0, 0, 0];
+    });
+    return sceneOf("half a floor", {
+      materials: [
+        { name: "floor", reflectance: rgb(LINEAR[LIGHT]), texture: { wrapS: Texture_Wrap.CLAMP, wrapT: Texture_Wrap.CLAMP } },
+        { name: "lamp", emission: rgb(10), reflectance: rgb(0) },
+        { name: "plate", emission: { r: 0.1, g: 0, b: 0 }, reflectance: rgb(0) },
+      ],
+      vertexCoordinates: [...facingUp(2, 0), ...facingDown(0.5, 4), ...facingUp(2, -1)],
+      faceCornerCounts: [4, 4, 4],
+      faceMaterials: [0, 1, 2],
+      cornerVertices: Array.from({ length: 12 }, (_, n) => n),
+      images: [{ columns: COLUMNS, rows: ROWS, hasOpacity: true }],
+      texels: Uint8Array.from(texels),
+      textureCoordinates: [0, 0, 0, 1, 1, 1, 1, 0, ...Array<number>(16).fill(0)],
+    });
+  }
+
+  it("show what is behind, and a click there reads it", async () => {
+    const page = await show(await halfAFloor(), undefined, 1.5, 0.1); // shadows of an edge take long
+    const pixel = async (x: number) => pixelAt(page, await acrossOf(page, x), 0.5);
+    await expect.poll(async () => (await pixel(1))[1]).toBeLessThan(2);
+    expect((await pixel(1))[0]).toBeGreaterThan(50);
+    const [r, g, b] = await pixel(-1);
+    expect(Math.min(r, g, b)).toBeGreaterThan(50);
+    await expect.poll(async () => (await readAt(page, 1)).text).toContain("plate");
+    await expect.poll(async () => (await readAt(page, -1)).text).toContain("floor");
+    await page.close();
+  });
+});
+
+describe("a translucent screen", () => {
+  const TAU = 0.5;
+  const BELOW = 4;
+
+  /** The floor, which reflects nothing, above a lamp: its upper side gets no light but what comes through. */
+  function screen(): Promise<Scene> {
+    return sceneOf("a screen", {
+      materials: [
+        { name: "screen", reflectance: rgb(0), diffuseTransmittance: rgb(TAU), twoSided: true },
+        { name: "lamp", emission: rgb(10), reflectance: rgb(0) },
+      ],
+      vertexCoordinates: [...facingUp(2, 0), ...facingUp(0.5, -BELOW)],
+      faceCornerCounts: [4, 4],
+      faceMaterials: [0, 1],
+      cornerVertices: [0, 1, 2, 3, 4, 5, 6, 7],
+    });
+  }
+
+  it("is as bright as the light that comes through, and reads so", async () => {
+    const page = await show(await screen(), undefined, -BELOW / 2);
+    const { irradiance, radiosity, text } = await readAt(page, -1);
+    expect(text).toContain("screen");
+    expect(irradiance).toBe(0);
+    // Of a small lamp of 1 m2, E cos^4 / (pi d^2) arrives. The lamp's size takes 1 %; a leaf is as wide as it may be at 1 %.
+    const arriving = (10 / Math.PI) * (BELOW ** 2 / (BELOW ** 2 + 1) ** 2);
+    expect(Math.abs(radiosity / (TAU * arriving) - 1)).toBeLessThan(0.1);
+    const [r, g, b] = await pixelAt(page, await acrossOf(page, -1), 0.5);
+    expect(Math.min(r, g, b)).toBeGreaterThan(50);
     await page.close();
   });
 });

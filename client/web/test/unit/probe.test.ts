@@ -28,6 +28,26 @@ function mesh(textureCoordinates: number[] = []): BaseMesh {
   ]);
 }
 
+/** A square card whose image lies on it from left to right, before a floor of the same size. */
+function cardAboveFloor(): BaseMesh {
+  const square = (z: number) => [0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z];
+  const clamp = Texture_Wrap.CLAMP;
+  return new BaseMesh([
+    create(ReadMeshResponseSchema, {
+      cornerCounts: [4, 4],
+      materials: [0, 1],
+      sceneFaces: [0, 1],
+      cornerCoordinates: [...square(1), ...square(0)],
+      neighbours: Array<bigint>(8).fill(0n),
+      sceneMaterials: [
+        { ...grey, name: "card", texture: { wrapS: clamp, wrapT: clamp } },
+        { ...grey, name: "floor", reflectance: { r: 0, g: 0, b: 0 } },
+      ],
+      textureCoordinates: [0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0],
+    }),
+  ]);
+}
+
 /** Both roots in four, the n-th child of irradiance n. */
 function mirrorOf(base: BaseMesh): Mirror {
   const mirror = new Mirror(base.rootCount);
@@ -64,11 +84,22 @@ describe("the probe", () => {
   it("reads the texel there once images have come, and their mean until then", () => {
     const textured = mesh([0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0]);
     textured.materials[0].texture = create(TextureSchema, { wrapS: Texture_Wrap.CLAMP });
-    const image = { columns: 2, rows: 1, texels: Uint8Array.of(0, 0, 0, 200, 100, 50) };
+    const image = { columns: 2, rows: 1, hasOpacity: false, texels: Uint8Array.of(0, 0, 0, 200, 100, 50) };
     const radiosityAt = (x: number, images?: Image[]) => probe(textured, mirror, above(x, 0.8), down, images)!.radiosity;
     expect(radiosityAt(0.1)).toEqual([1, 1, 1]);
     expect(radiosityAt(0.1, [image])).toEqual([0, 0, 0]);
     [200, 100, 50].forEach((byte, band) => expect(radiosityAt(0.9, [image])[band]).toBeCloseTo(3 * LINEAR[byte], 12));
+  });
+
+  it("goes on through holes to what is behind, and reads what is there in part", () => {
+    const cutOut = cardAboveFloor();
+    const image = { columns: 4, rows: 1, hasOpacity: true, texels: Uint8Array.from([0, 7, 128, 255].flatMap((opacity) => [200, 200, 200, opacity])) };
+    const materialAt = (x: number, images?: Image[]) =>
+      probe(cutOut, new Mirror(2), { x: x - 0.5, y: 0, z: 5 }, down, images)!.material;
+    expect([0.1, 0.3, 0.6, 0.9].map((x) => materialAt(x, [image]))).toEqual(["floor", "floor", "card", "card"]);
+    expect(materialAt(0.1)).toBe("card"); // until the image has come
+    const { radiosity } = probe(cutOut, mirrorOf(cutOut), { x: 0.2 - 0.5, y: 0.2 - 0.5, z: 5 }, down, [image])!;
+    expect(radiosity).toEqual([0, 0, 0]); // the floor's
   });
 
   it("sees no backs, and nothing beside", () => {

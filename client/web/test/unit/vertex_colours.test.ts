@@ -1,5 +1,5 @@
 import { create } from "@bufbuild/protobuf";
-import type { BufferGeometry } from "three";
+import { BufferAttribute, type BufferGeometry } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { ReadMeshResponseSchema, Texture_Wrap, TextureSchema } from "../../src/gen/alvor/v1/scene_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
@@ -151,7 +151,7 @@ describe("the shaders", () => {
 
   it.each([
     [["COLOURED"], "reflectance"],
-    [["COLOURED", "TEXTURED"], "reflectanceThere()"],
+    [["COLOURED", "TEXTURED"], "there.rgb"],
   ])("multiply the reflectance by them with %j", (defined, reflectance) => {
     expect(compiled(VERTEX, defined)).toContain("in vec3 vertexColour;\nout vec3 colourThere;");
     expect(compiled(FRAGMENT, defined)).toContain("in vec3 colourThere;");
@@ -185,7 +185,7 @@ describe("the probe of a coloured surface", () => {
         cornerColors: ofSquare.flat(),
       }),
     ]);
-    const images = [{ columns: 1, rows: 1, texels: Uint8Array.of(200, 100, 50) }];
+    const images = [{ columns: 1, rows: 1, hasOpacity: false, texels: Uint8Array.of(200, 100, 50) }];
     const { radiosity } = probe(mesh, flushed(mesh, irradiance).mirror, above(0.2, 0.9), down, images)!;
     expectNear(radiosity, [LINEAR[200] * 0.2 * 4, LINEAR[100] * 0.9 * 2, LINEAR[50] * 0.7 * 1]);
   });
@@ -261,6 +261,15 @@ describe("the GLB of a coloured surface", () => {
       expectNear(written._RADIOSITY.subarray(at, at + 3), radiosity);
       expectNear(written.COLOR_0.subarray(at, at + 3), radiosity.map((x) => Math.min(1, EXPOSURE * x)));
     }
+  });
+
+  it("has light that comes through in its radiosity", async () => {
+    const drawn = drawnOf(meshOf(square, []), [1, 1, 1]);
+    const transmitted = Float32Array.from({ length: 3 * drawn.getAttribute("value").count }, (_, n) => n % 3);
+    drawn.setAttribute("transmitted", new BufferAttribute(transmitted, 3));
+    const written = await attributesOf(await glbOf(drawn, [0, 0, 0], MATERIALS, EXPOSURE, false));
+    expect(Object.keys(written).sort()).toEqual(["COLOR_0", "POSITION", "_IRRADIANCE", "_RADIOSITY"]);
+    expectNear(written._RADIOSITY.subarray(0, 3), REFLECTANCE.map((x, band) => EMISSION[band] + x + band));
   });
 
   it("is as ever without colours", async () => {
