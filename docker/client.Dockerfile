@@ -12,7 +12,7 @@ FROM debian:bookworm-slim
 RUN apt-get update -qq && \
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
       libassimp5 libcairo2 libembree3-3 libgrpc++1.51 libopenexr-3-1-30 libopenmesh1 libpng16-16 libprotobuf32 libseccomp2 libspdlog1.10 libsqlite3-0 \
-      libssl3 libtbb12 libzstd1 && \
+      libssl3 libtbb12 libwebp7 libzstd1 && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
     echo 'alvor:x:10001:10001::/out:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 /out

@@ -22,7 +22,7 @@ FROM debian:bookworm-slim
 RUN apt-get update -qq && \
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
       libassimp5 libembree3-3 libgrpc++1.51 libopenexr-3-1-30 libopenmesh1 libprometheus-cpp-pull1.0 libprotobuf32 libseccomp2 libspdlog1.10 \
-      libsqlite3-0 libssl3 libtbb12 libzstd1 && \
+      libsqlite3-0 libssl3 libtbb12 libwebp7 libzstd1 && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
     echo 'alvor:x:10001:10001::/var/lib/alvor:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 -m 700 /var/lib/alvor && install -d -o 10001 -g 10001 -m 750 /run/alvor

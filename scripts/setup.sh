@@ -8,7 +8,8 @@ compile=(
   libgrpc++-dev libprotobuf-dev protobuf-compiler protobuf-compiler-grpc
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
   libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libboost-dev
-  libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev libopenexr-dev libcairo2-dev nlohmann-json3-dev libseccomp-dev
+  libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev libwebp-dev libopenexr-dev libcairo2-dev
+  nlohmann-json3-dev libseccomp-dev
 )
 page=(protobuf-compiler libprotobuf-dev)
 # Node.js may come from elsewhere, with npm inside.

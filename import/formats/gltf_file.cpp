@@ -190,14 +190,17 @@ void ask_for(const json& element, SceneFiles& files) {
   if (!uri.empty() && !is_data_uri(uri)) files.find(decoded_uri(uri));
 }
 
-/// Asks for the images that give materials a colour, see colour_images().
+/// Asks for the images that give materials a colour, see colour_textures().
 void ask_for_images(const json& gltf, SceneFiles& files) {
   const json* const materials = member(gltf, "materials");
   if (!materials || !materials->is_array()) return;
   const auto ask_for_texture = [&](const json* texture_use) {
     const json* const texture = texture_use ? element_of(gltf, "textures", *texture_use, "index") : nullptr;
-    const json* const image = texture ? element_of(gltf, "images", *texture, "source") : nullptr;
-    if (image) ask_for(*image, files);
+    if (!texture) return;
+    const json* const extensions = member(*texture, "extensions");
+    const json* const webp = extensions ? member(*extensions, "EXT_texture_webp") : nullptr;
+    for (const json* const shown : {webp, texture})
+      if (const json* const image = shown ? element_of(gltf, "images", *shown, "source") : nullptr) ask_for(*image, files);
   };
   for (const json& material : *materials) {
     const json* const surface = member(material, "pbrMetallicRoughness");
@@ -224,25 +227,56 @@ void ask_for_files(const json& gltf, SceneFiles& files) {
     for (const json& profile : *profiles) ask_for(profile, files);
 }
 
-/// Returns the images that give materials a colour. Others (bump maps, roughness) may be missing.
-std::set<int> colour_images(const tinygltf::Model& model) {
-  std::set<int> images;
+/// Returns the textures that give materials a colour. Images of others (bump maps, roughness) may be missing.
+std::set<int> colour_textures(const tinygltf::Model& model) {
+  std::set<int> textures;
   for (const tinygltf::Material& material : model.materials)
     for (const int texture : textures_of(material))
-      if (texture >= 0 && texture < static_cast<int>(model.textures.size()))
-        images.insert(model.textures[static_cast<std::size_t>(texture)].source);
-  return images;
+      if (texture >= 0 && texture < static_cast<int>(model.textures.size())) textures.insert(texture);
+  return textures;
+}
+
+/// Reads an image from its file, if it has one and was not read before. Returns whether there is such an image. Throws
+/// MissingFileError.
+bool read_image(tinygltf::Model& model, int number, SceneFiles& files, ByteBudget& budget) {
+  if (number < 0 || number >= static_cast<int>(model.images.size())) return false;
+  tinygltf::Image& image = model.images[static_cast<std::size_t>(number)];
+  if (image.bufferView >= 0 || image.uri.empty() || !image.image.empty()) return true;
+  const std::string place = "image " + std::to_string(number);
+  const std::string& bytes = file_of_uri(files, image.uri, place);
+  budget.spend(bytes.size(), place);
+  image.image.assign(bytes.begin(), bytes.end());
+  return true;
+}
+
+/// Reads the images that a texture may show, see images_of(). Throws MissingFileError if all of them are missing: one is enough.
+void read_images_of(const tinygltf::Texture& texture, tinygltf::Model& model, SceneFiles& files, ByteBudget& budget) {
+  std::optional<MissingFileError> first_missing;
+  bool is_one_here = false;
+  for (const int number : images_of(texture)) try {
+      if (read_image(model, number, files, budget)) is_one_here = true;
+    } catch (const MissingFileError& error) {
+      if (!first_missing) first_missing = error;
+    }
+  if (first_missing && !is_one_here) throw *first_missing;
 }
 
 void read_images(tinygltf::Model& model, SceneFiles& files, ByteBudget& budget) {
-  for (const int i : colour_images(model)) {
-    if (i < 0 || i >= static_cast<int>(model.images.size())) continue;
-    tinygltf::Image& image = model.images[static_cast<std::size_t>(i)];
-    if (image.bufferView >= 0 || image.uri.empty() || !image.image.empty()) continue;
-    const std::string place = "image " + std::to_string(i);
-    const std::string& bytes = file_of_uri(files, image.uri, place);
-    budget.spend(bytes.size(), place);
-    image.image.assign(bytes.begin(), bytes.end());
+  for (const int texture : colour_textures(model))
+    read_images_of(model.textures[static_cast<std::size_t>(texture)], model, files, budget);
+}
+
+/// Gives all images in data URIs the media type of plain bytes, as tinygltf does not know image/webp. What an image is, its bytes
+/// tell.
+void rename_media_types(json& gltf) {
+  constexpr std::string_view image_type = "data:image/", encoding = ";base64";
+  const auto images = gltf.find("images");
+  if (images == gltf.end() || !images->is_array()) return;
+  for (json& image : *images) {
+    if (!image.is_object()) continue;
+    const std::string uri = uri_of(image), header = uri.substr(0, uri.find(','));
+    if (header.starts_with(image_type) && header.ends_with(encoding))
+      image["uri"] = "data:application/octet-stream;base64" + uri.substr(header.size());
   }
 }
 
@@ -252,6 +286,7 @@ tinygltf::Model load_gltf(SceneFiles& files) {
   const Container container = container_of(files.bytes());
   json gltf = parse(container.text);
   ask_for_files(gltf, files);
+  rename_media_types(gltf);
   ByteBudget budget;
   Buffers buffers(gltf, container.binary, files, budget);
   tinygltf::TinyGLTF loader;

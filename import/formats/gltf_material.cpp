@@ -19,18 +19,24 @@ const T* element(const std::vector<T>& list, int index) {
   return index >= 0 && static_cast<std::size_t>(index) < list.size() ? &list[static_cast<std::size_t>(index)] : nullptr;
 }
 
-const tinygltf::Image* image_of(const tinygltf::Model& model, int texture) {
-  const tinygltf::Texture* found = element(model.textures, texture);
-  return found ? element(model.images, found->source) : nullptr;
+/// Returns the images that a texture may show, see images_of().
+std::vector<const tinygltf::Image*> images_in(const tinygltf::Model& model, int texture) {
+  std::vector<const tinygltf::Image*> images;
+  if (const tinygltf::Texture* const found = element(model.textures, texture))
+    for (const int number : images_of(*found))
+      if (const tinygltf::Image* const image = element(model.images, number)) images.push_back(image);
+  return images;
 }
 
 std::span<const unsigned char> encoded_bytes(const tinygltf::Model& model, const tinygltf::Image& image) {
   return image.bufferView >= 0 ? bytes_of_view(model, image.bufferView) : std::span(image.image);
 }
 
-std::string name_of(const tinygltf::Image* image, int texture) {
-  if (image && !image->name.empty()) return image->name;
-  if (image && !image->uri.empty()) return image->uri;
+/// Returns the name of the first image that a texture may show, or else the texture's number.
+std::string name_of(const tinygltf::Model& model, int texture) {
+  const auto images = images_in(model, texture);
+  if (!images.empty() && !images.front()->name.empty()) return images.front()->name;
+  if (!images.empty() && !images.front()->uri.empty()) return images.front()->uri;
   return std::to_string(texture);
 }
 
@@ -53,10 +59,14 @@ void read_numbers(const tinygltf::Value& object, const char* name, double (&numb
     if (const tinygltf::Value& number = object.Get(name).Get(i); number.IsNumber()) numbers[i] = number.GetNumberAsDouble();
 }
 
+/// Returns the number of an element that an object has as `name`; -1 if there is none.
+int index_in(const tinygltf::Value& object, const char* name) {
+  return static_cast<int>(std::clamp(number_in(object, name, -1), -1.0, 1e9));
+}
+
 /// Returns the number of the texture that an extension uses as `name`; -1 if there is none.
 int texture_in(const tinygltf::Value& extension, const char* name) {
-  if (!extension.IsObject() || !extension.Has(name)) return -1;
-  return static_cast<int>(std::clamp(number_in(extension.Get(name), "index", -1), -1.0, 1e9));
+  return extension.IsObject() && extension.Has(name) ? index_in(extension.Get(name), "index") : -1;
 }
 
 GltfTextureMap map_of(const tinygltf::TextureInfo& texture) {
@@ -125,12 +135,20 @@ class MaterialReader {
   }
 
   std::optional<MeanTexel> mean_of(int texture, const AlphaUse& alpha) const {
-    const tinygltf::Image* const image = image_of(model_, texture);
-    return image ? mean_texel(encoded_bytes(model_, *image), alpha) : std::nullopt;
+    for (const tinygltf::Image* const image : images_in(model_, texture))
+      if (auto mean = mean_texel(encoded_bytes(model_, *image), alpha)) return mean;
+    return std::nullopt;
+  }
+
+  /// Returns the first image of a texture that can be decoded; null if there is none.
+  std::shared_ptr<const ColourImage> colours_of(int texture, const AlphaUse& alpha) {
+    for (const tinygltf::Image* const image : images_in(model_, texture))
+      if (auto colours = images_.decoded(key_of(model_, *image), encoded_bytes(model_, *image), alpha)) return colours;
+    return nullptr;
   }
 
   std::string place_of(int texture, const std::string& material) const {
-    return "material '" + material + "': texture '" + name_of(image_of(model_, texture), texture) + "'";
+    return "material '" + material + "': texture '" + name_of(model_, texture) + "'";
   }
 
   /// Sets the reflectance of a material and cuts out its holes, by place if it has a texture. Returns the share of the surface
@@ -140,9 +158,8 @@ class MaterialReader {
     const Rgb factor = rgb_of(source.pbrMetallicRoughness.baseColorFactor);
     const AlphaUse alpha = alpha_use_of(source);
     const bool is_clear = transmission_of(source) > 0;  // has one tint; only its holes count by place
-    const tinygltf::Image* const image = image_of(model_, texture);
-    const bool is_read = image && (!alpha.is_ignored() || (!is_clear && !factor.is_zero()));
-    const auto colours = is_read ? images_.decoded(key_of(model_, *image), encoded_bytes(model_, *image), alpha) : nullptr;
+    const bool is_read = !alpha.is_ignored() || (!is_clear && !factor.is_zero());
+    const auto colours = is_read ? colours_of(texture, alpha) : nullptr;
     if (!colours || (is_clear && !colours->has_opacity)) {
       const Average mean = averaged(factor, texture, alpha, material.name);
       material.reflectance = mean.colour;
@@ -200,6 +217,14 @@ std::vector<int> textures_of(const tinygltf::Material& material) {
     for (const char* const name : {transmission_texture, transmission_colour_texture})
       textures.push_back(texture_in(found->second, name));
   return textures;
+}
+
+std::vector<int> images_of(const tinygltf::Texture& texture) {
+  std::vector<int> images;
+  if (const auto found = texture.extensions.find("EXT_texture_webp"); found != texture.extensions.end())
+    images.push_back(index_in(found->second, "source"));
+  images.push_back(texture.source);
+  return images;
 }
 
 // Offset * rotation * scale. The rotation turns as in three.js and the Khronos sample viewer, by which the Khronos test model

@@ -8,6 +8,7 @@
 namespace alvor_tinygltf {
 class Model;
 struct Material;
+struct Texture;
 }  // namespace alvor_tinygltf
 namespace tinygltf = alvor_tinygltf;
 
@@ -21,6 +22,10 @@ double transmission_of(const tinygltf::Material& material);
 
 /// Returns the numbers of the textures that read_gltf_materials() reads for a material. Some may not be in the file.
 std::vector<int> textures_of(const tinygltf::Material& material);
+
+/// Returns the numbers of the images that a texture may show, the preferred one first: that of EXT_texture_webp, then its own
+/// source. read_gltf_materials() takes the first that can be decoded. Some may not be in the file.
+std::vector<int> images_of(const tinygltf::Texture& texture);
 
 /// Maps texture coordinates of a glTF file to points of a texture: chooses a set of coordinates and applies
 /// KHR_texture_transform.

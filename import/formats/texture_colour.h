@@ -1,5 +1,5 @@
 #pragma once
-// Decodes images of textures, and replaces textures by their mean colour and opacity where only these count.
+// Turns image files into colours and opacities of textures, and replaces textures by their means where only these count.
 
 #include "meshing/texture.h"
 #include "solution/rgb.h"
@@ -35,17 +35,17 @@ struct MeanTexel {
   double level = 1;  ///< of its values as they are, mean over bands: for images that hold no colours
 };
 
-/// Returns the means of the pixels of an encoded image (PNG, JPEG, ...), converted from sRGB to linear. Returns nothing if the
+/// Returns the means of the pixels of an image file (see decode_image()), converted from sRGB to linear. Returns nothing if the
 /// image cannot be decoded.
 std::optional<MeanTexel> mean_texel(std::span<const unsigned char> encoded, const AlphaUse& alpha = {});
 /// Returns the means of a file's bytes; nothing if there are none.
 std::optional<MeanTexel> mean_texel(const std::string* encoded, const AlphaUse& alpha = {});
 
-/// Returns the colours of an encoded image, those of 16 bits cut to 8. The image has opacity where its alpha, used so, makes any
+/// Returns the colours of an image file, those of 16 bits cut to 8. The image has opacity where its alpha, used so, makes any
 /// texel less than opaque. Returns nothing if the image cannot be decoded. The result may be larger than ColourImage allows.
 std::optional<ColourImage> decode_colours(std::span<const unsigned char> encoded, const AlphaUse& alpha = {});
 
-/// Returns a white image whose opacity is `factor` times the alpha of an encoded image, or, if that has no alpha, times the mean
+/// Returns a white image whose opacity is `factor` times the alpha of an image file, or, if that has no alpha, times the mean
 /// of its three bands. Otherwise as decode_colours().
 std::optional<ColourImage> decode_opacity(std::span<const unsigned char> encoded, double factor);
 

@@ -2,7 +2,7 @@
 // Includes tinygltf, compiled into this project (tiny_gltf.cpp) in a namespace that no library uses. libdraco, which Assimp
 // loads, exports functions of another version of tinygltf; calls to a shared libtinygltf reached those, which wrote beyond our
 // objects.
-// gltf_file.cpp reads images and buffers outside the JSON; texture_colour.cpp decodes images.
+// gltf_file.cpp reads images and buffers outside the JSON; image_file.cpp decodes images.
 
 #include <fstream>  // for tiny_gltf.h, which leaves it out under TINYGLTF_NO_FS
 #include <nlohmann/json.hpp>

@@ -6,6 +6,7 @@
 #include "server/archive/pieces.h"
 #include "tests/fuzz/input.h"
 #include "tests/import/environment_images.h"
+#include "tests/import/texture_images.h"
 #include "tests/scenes.h"
 
 #include <filesystem>
@@ -108,6 +109,14 @@ void write_environment_seeds(const fs::path& directory) {
           "\x0b" + test::exr_of(image, {"R", "G", "B"}, compression));
 }
 
+/// An image's kind is that of a .png: what it is, its bytes tell.
+void write_texture_seeds(const fs::path& directory) {
+  const test::Texels texels{{188, 0, 0, 255}, {0, 188, 0, 0}, {9, 90, 200, 128}, {255, 255, 255, 1}};
+  write(directory / "5lossless.webp", "\x05" + test::webp(2, texels));
+  write(directory / "5lossy.webp", "\x05" + test::webp(2, texels, {.is_lossless = false}));
+  write(directory / "5flat.webp", "\x05" + test::webp_of_one_colour(64, 64));
+}
+
 void write_seeds(const fs::path& directory, std::span<char*> files) {
   const Scene room = test::coloured_room();
   write(directory / "scene_upload" / "room", upload_of(room));
@@ -133,6 +142,7 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
   write(directory / "watch" / "ordinary", std::string("\1\3\7\0\1\3\5\0\1\3\5\1\0\2\3\5\1\6\0\x09\1\3", 22));
   write_web_seeds(directory / "web");
   write_environment_seeds(directory / "file");
+  write_texture_seeds(directory / "file");
   const std::string kinds[] = {".obj",         ".gltf", ".glb", ".mtl", ".bin", ".png",
                                "solution.glb", ".ply",  ".ies", ".ldt", ".hdr", ".exr"};
   for (char* file : files)

@@ -1,6 +1,7 @@
 // Tests of glTF files in several parts: which parts are read, and which refused.
 
 #include "import/apart/scene_file.h"
+#include "tests/import/texture_images.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -91,6 +92,17 @@ TEST_F(PartsTest, CanBeImages) {
   EXPECT_EQ(read("parts/a b.bin", {{{"uri", "parts/a%20b.bin"}}}), "accepted");
   const nlohmann::json bumps = {{"normalTexture", {{"index", 0}}}};
   EXPECT_EQ(read("parts/a b.bin", {{{"uri", "nowhere.png"}}}, bumps), "accepted");
+}
+
+// The importer may make few system calls, see import/program/sandbox.cpp.
+TEST_F(PartsTest, CanBeWebpWhichTheRestrictedImporterDecodes) {
+  const test::Texels texels(1 << 16, {188, 100, 20, 200});
+  for (const bool is_lossless : {true, false}) {
+    write("wood.webp", test::webp(256, texels, {.is_lossless = is_lossless}));
+    EXPECT_EQ(read("parts/a b.bin", {{{"uri", "wood.webp"}}}), "accepted");
+    const auto warnings = read_scene_file(folder / "scene.gltf").warnings;
+    EXPECT_TRUE(std::ranges::none_of(warnings, [](const std::string& text) { return text.find("cannot be read") != text.npos; }));
+  }
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include "import/base/import_error.h"
 #include "import/formats/colour_images.h"
 #include "import/formats/import_scene.h"
+#include "tests/import/texture_images.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,26 +15,11 @@ namespace alvor {
 namespace {
 
 using Names = std::vector<std::string>;
-using Texel = std::array<std::uint8_t, 4>;  // red, green, blue, alpha
-using Texels = std::vector<Texel>;
+using test::Texels;
+using test::tga;
 
 constexpr double rounding = 1e-9;
-constexpr Texel red{188, 0, 0, 255}, no_red{188, 0, 0, 0};
-
-/// Returns an uncompressed TGA image, its top row first.
-std::string tga(int columns, const Texels& texels, bool has_alpha = true) {
-  const auto byte = [](std::size_t value) { return static_cast<char>(static_cast<unsigned char>(value)); };
-  const std::size_t rows = texels.size() / static_cast<std::size_t>(columns);
-  std::string bytes(12, '\0');
-  bytes[2] = 2;  // colours as they are
-  for (const std::size_t size : {static_cast<std::size_t>(columns), rows}) bytes += {byte(size % 256), byte(size / 256)};
-  bytes += {byte(has_alpha ? 32 : 24), byte(has_alpha ? 0x28 : 0x20)};
-  for (const Texel& texel : texels) {
-    bytes += {byte(texel[2]), byte(texel[1]), byte(texel[0])};
-    if (has_alpha) bytes += byte(texel[3]);
-  }
-  return bytes;
-}
+constexpr test::Texel red{188, 0, 0, 255}, no_red{188, 0, 0, 0};
 
 template <class T>
 std::string bytes_of(const std::vector<T>& numbers) {

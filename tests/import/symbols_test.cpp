@@ -84,6 +84,7 @@ TEST(Symbols, OfSharedLibrariesAreFoundInTheseAndNoOthers) {
                                  Library{"_ZN8OpenMesh", "libOpenMeshCore.so"},
                                  Library{"png_", "libpng16.so"},
                                  Library{"ZSTD_", "libzstd.so"},
+                                 Library{"WebP", "libwebp.so"},
                                  Library{"sqlite3_", "libsqlite3.so"},
                                  Library{"_ZN6google8protobuf", "libprotobuf.so"},
                                  Library{"_ZN3tbb6detail", "libtbb.so"}};

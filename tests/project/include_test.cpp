@@ -57,6 +57,7 @@ const std::map<std::string, std::string> kept_behind{
     {"boost/", "server/web/"},
     {"assimp/", "import/formats/"},
     {"seccomp.h", "import/program/"},
+    {"webp/", "import/formats/image_file.cpp"},
 };
 
 struct Include {

@@ -18,7 +18,7 @@ export class MissingParts extends Error {
 }
 
 // Extensions of files that a scene names and that are no scenes themselves.
-const PARTS = ["mtl", "bin", "png", "jpg", "jpeg", "gif", "bmp", "tga", "txt", "md"];
+const PARTS = ["mtl", "bin", "png", "jpg", "jpeg", "gif", "bmp", "tga", "webp", "txt", "md"];
 // Extensions of scene files that are taken first if several files could be the scene.
 const SCENES = ["obj", "gltf", "glb", "stl", "ply", "fbx", "dae", "3ds"];
 
