@@ -141,6 +141,11 @@ TexturePoint texture_point_at(const BaseMesh& mesh, std::uint32_t root, Uv at) {
   return {static_cast<float>(s), static_cast<float>(t)};
 }
 
+double opacity_at(const BaseMesh& mesh, std::uint32_t root, Uv at) {
+  const Material& material = mesh.material_of(root);
+  return material.has_cutout() ? material.texture->opacity_at(texture_point_at(mesh, root, at)) : 1;
+}
+
 Rgb colour_at(const BaseMesh& mesh, std::uint32_t root, Uv at) {
   const TwoTriangles triangles(mesh.roots()[root]);
   const PlanePoint p = triangles.at(mesh.roots()[root].at(at.u, at.v));

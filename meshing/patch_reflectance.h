@@ -21,6 +21,9 @@ struct PlanePoint {
 /// corner 2. Requires: the root's material has a texture.
 TexturePoint texture_point_at(const BaseMesh& mesh, std::uint32_t root, Uv at);
 
+/// Returns the share of a root patch that is there at (u, v) and no hole, in [0, 1].
+double opacity_at(const BaseMesh& mesh, std::uint32_t root, Uv at);
+
 /// Returns the colour at (u, v) of a root patch, by which its reflectance is multiplied; linear as texture points are.
 Rgb colour_at(const BaseMesh& mesh, std::uint32_t root, Uv at);
 

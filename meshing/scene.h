@@ -38,7 +38,7 @@ struct Material {
   bool has_cutout() const { return texture && texture->image && texture->image->has_opacity; }
   bool is_translucent() const { return !diffuse_transmittance.is_zero(); }
   /// Returns an upper bound on the reflectance of any place, below 1.
-  Rgb largest_reflectance() const { return texture ? reflectance_of_texel(255) * texture->factor : reflectance; }
+  Rgb largest_reflectance() const { return texture && texture->image ? texture->largest_reflectance() : reflectance; }
   /// Returns an upper bound on the share of light that any place scatters, to both sides together; below 1.
   Rgb largest_albedo() const { return largest_reflectance() + diffuse_transmittance; }
 };

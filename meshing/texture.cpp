@@ -2,6 +2,7 @@
 
 #include "solution/srgb.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -57,6 +58,13 @@ std::optional<std::string> fault_in(const ColourImage& image) {
     return "its image of " + size + " texels has " + std::to_string(image.texels.size()) + " bytes, needs " +
            std::to_string(image.byte_count());
   return std::nullopt;
+}
+
+void find_most(ColourImage& image) {
+  image.most = {};
+  for (std::size_t i = 0; i < image.texels.size(); i += image.bytes_a_texel())
+    for (std::size_t band = 0; band < 3; ++band)
+      if (!image.has_opacity || image.texels[i + 3] > 0) image.most[band] = std::max(image.most[band], image.texels[i + band]);
 }
 
 double reflectance_of_texel(std::uint8_t value) {

@@ -3,6 +3,7 @@
 
 #include "solution/rgb.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,6 +22,8 @@ struct ColourImage {
   /// Red, green, blue, and if it has any opacity, of the first texel of the top row, then of the next one.
   std::vector<std::uint8_t> texels;
   bool has_opacity = false;
+  /// No texel but holes has a larger red, green or blue: see find_most().
+  std::array<std::uint8_t, 3> most{255, 255, 255};
 
   std::size_t texel_count() const { return std::size_t{columns} * rows; }
   std::size_t bytes_a_texel() const { return has_opacity ? 4 : 3; }
@@ -29,6 +32,9 @@ struct ColourImage {
     return &texels[bytes_a_texel() * (std::size_t{row} * columns + column)];
   }
 };
+
+/// Sets `most` of an image to its largest values.
+void find_most(ColourImage& image);
 
 /// Returns why an image cannot be used.
 std::optional<std::string> fault_in(const ColourImage& image);
@@ -66,6 +72,11 @@ struct Texture {
   Rgb factor{1, 1, 1};  ///< multiplies the image; in [0, 1]
   Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
 
+  /// Returns an upper bound on the reflectance of any place.
+  Rgb largest_reflectance() const {
+    return factor *
+           Rgb{reflectance_of_texel(image->most[0]), reflectance_of_texel(image->most[1]), reflectance_of_texel(image->most[2])};
+  }
   /// Returns the reflectance at a point, bilinear between the middles of texels, of what is there.
   Rgb reflectance_at(TexturePoint point) const;
   /// Returns the opacity of the texel at a point, in [0, 1].

@@ -88,6 +88,7 @@ void ImageAssembler::add(const v1::GeometryChunk& chunk) {
     image.texels.insert(image.texels.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(taken));
     bytes.remove_prefix(taken);
     if (image.texels.size() < image.byte_count()) return;
+    find_most(image);
   }
 }
 

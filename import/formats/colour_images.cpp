@@ -86,6 +86,7 @@ std::shared_ptr<const ColourImage> ColourImages::made(const std::string& name, c
 std::shared_ptr<const ColourImage> ColourImages::add(Known& entry, ColourImage image) {
   const std::uint32_t columns = image.columns, rows = image.rows;
   while (image.columns > ColourImage::most_columns || image.rows > ColourImage::most_rows) image = halved(image);
+  find_most(image);
   texels_ += image.texel_count();
   entry = {std::make_shared<ColourImage>(std::move(image)), columns, rows};
   keep_within_limit();
@@ -140,6 +141,7 @@ ColourImage halved(const ColourImage& image) {
           image.has_opacity);
       half.texels.insert(half.texels.end(), mean.begin(), mean.begin() + bytes);
     }
+  find_most(half);
   return half;
 }
 

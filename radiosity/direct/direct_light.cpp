@@ -168,6 +168,8 @@ class ShadowBatch {
     if (has_panes_) tints_.resize(rays_.size());
     if constexpr (occlusion)
       budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_, tints_); });
+    for (std::size_t n = 0; has_panes_ && n < rays_.size(); ++n)
+      for (std::size_t o = 0; o < RayPacket::width; ++o) tints_[n][o] = there_[n][o] * tints_[n][o];
   }
 
   /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the light. `round` counts the packets of
@@ -185,7 +187,12 @@ class ShadowBatch {
   }
 
   ShadowAim aim_of(std::size_t r, std::size_t packet) {
-    return {points_[r], scene_.root(receivers_[r].shape.root).normal, {}, rays_[packet], weights_[packet]};
+    if (has_panes_) {
+      there_.resize(rays_.size());
+      there_[packet].fill(1);
+    }
+    return {points_[r],       scene_.root(receivers_[r].shape.root).normal, {}, rays_[packet],
+            weights_[packet], has_panes_ ? &there_[packet] : nullptr};
   }
 
   /// Sets the weights of hidden origins to 0.
@@ -280,7 +287,8 @@ class ShadowBatch {
   std::vector<RayPacket> rays_;
   std::vector<Lanes> weights_;
   std::vector<std::uint16_t> blocked_;
-  std::vector<Visibility::Tints> tints_;  // of each packet; none if there are no panes
+  std::vector<Visibility::Tints> tints_;  // of each packet, with the next; none if there are no panes
+  std::vector<Lanes> there_;              // share of the light that is there where rays end
 };
 
 /// Calls work(batch) for each batch of receivers, in parallel.

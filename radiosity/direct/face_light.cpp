@@ -1,5 +1,6 @@
 #include "radiosity/direct/face_light.h"
 
+#include "meshing/patch_reflectance.h"
 #include "radiosity/form_factors/form_factor.h"
 
 #include <algorithm>
@@ -7,8 +8,8 @@
 
 namespace alvor {
 
-FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission)
-    : LightSource(root, emission, emission.sum() * scene.mesh().roots()[root].area), scene_(scene) {}
+FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission, double cover)
+    : LightSource(root, emission, cover * emission.sum() * scene.mesh().roots()[root].area), scene_(scene) {}
 
 double FaceLight::unblocked(Vec3 at, Vec3 normal) const {
   const auto corners = scene_.corners(root());
@@ -30,6 +31,7 @@ void FaceLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
     rays.direction_z[o] = at(to.origin.z, to.edge_u.z, to.edge_v.z, to.twist.z) - aim.from.z[o];
     rays.t_min[o] = 0;
     rays.t_max[o] = short_of_light;
+    if (aim.there) (*aim.there)[o] = static_cast<float>(opacity_at(scene_.mesh(), root(), target));
   }
   const Float3 &n = aim.normal, &m = to.normal;
   for (std::size_t o = first; o < last; ++o) {

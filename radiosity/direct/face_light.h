@@ -10,8 +10,8 @@ namespace alvor {
 /// that are uniform in the root's coordinates, with the weight cos cos / r2.
 class FaceLight final : public LightSource {
  public:
-  /// `emission` is E of the root patch.
-  FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission);
+  /// `emission` is E of what is there of the root patch, `cover` the share that is.
+  FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission, double cover = 1);
 
   std::uint32_t root() const { return number(); }
   bool may_reach(std::uint32_t receiver) const override { return receiver != root(); }

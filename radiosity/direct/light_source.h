@@ -22,6 +22,8 @@ struct ShadowAim {
   std::array<Uv, RayPacket::width> at;
   RayPacket& rays;
   std::array<float, RayPacket::width>& weights;  ///< light that arrives by each ray if nothing blocks it, see sample_scale()
+  /// Share of the light that is there and no hole where each ray ends: 1, until a light sets it; null in scenes without panes.
+  std::array<float, RayPacket::width>* there = nullptr;
 
   Vec3 start(std::size_t o) const { return {from.x[o], from.y[o], from.z[o]}; }
   Vec3 facing() const { return {normal.x, normal.y, normal.z}; }
@@ -66,8 +68,8 @@ class LightSource {
 
   /// Returns whether the light can reach the front of a root patch at all, as far as one can tell at no cost.
   virtual bool may_reach(std::uint32_t) const { return true; }
-  /// Returns the irradiance at a point of a surface with this unit normal, if nothing blocks it, in multiples of colour(). Local
-  /// units.
+  /// Returns the irradiance at a point of a surface with this unit normal, if nothing blocks it and the light has no holes, in
+  /// multiples of colour(). Local units.
   virtual double unblocked(Vec3 at, Vec3 normal) const = 0;
   /// Sets rays and weights of the lanes [first, last). The mean weight over the unit square, times sample_scale(1), is
   /// unblocked(). A weight is 0 where the light is below the horizon of the surface.

@@ -114,14 +114,13 @@ OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit,
   OwnedLights lights;
   const auto emission_of = emission_by_material(scene.mesh(), unit);
   for (std::vector<std::uint32_t>& roots : lamps_of_faces(scene)) {
-    double area = 0, there = 0;
-    for (const std::uint32_t root : roots) {
-      area += scene.mesh().roots()[root].area;
-      there += cover(root) * scene.mesh().roots()[root].area;
-    }
-    const RelativeLight emission = (there / area) * emission_of[scene.mesh().roots()[roots.front()].material];
-    if (roots.size() == 1) lights.push_back(std::make_unique<FaceLight>(scene, roots.front(), emission));
-    else lights.push_back(std::make_unique<MeshLight>(scene, std::move(roots), emission));
+    std::erase_if(roots, [&](std::uint32_t root) { return cover(root) == 0; });
+    if (roots.empty()) continue;
+    const RelativeLight& emission = emission_of[scene.mesh().roots()[roots.front()].material];
+    double there = 0;  // m2
+    for (const std::uint32_t root : roots) there += cover(root) * scene.mesh().roots()[root].area;
+    if (roots.size() == 1) lights.push_back(std::make_unique<FaceLight>(scene, roots[0], emission, cover(roots[0])));
+    else lights.push_back(std::make_unique<MeshLight>(scene, std::move(roots), emission, there * emission.sum()));
   }
   return lights;
 }

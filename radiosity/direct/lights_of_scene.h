@@ -17,8 +17,8 @@ using OwnedLights = std::vector<std::unique_ptr<const LightSource>>;
 /// Returns the emission of each material of the mesh.
 std::vector<RelativeLight> emission_by_material(const BaseMesh& mesh, const EmissionUnit& unit);
 
-/// Returns a light for each root patch that emits and for each lamp of many such faces (see MeshLight), in the order of the roots.
-/// `cover(root)` returns the share of a root's area that is there and emits; it counts as spread evenly over the light.
+/// Returns a light for each root patch that emits and for each lamp of many such faces (see MeshLight), in the order of the
+/// roots. `cover(root)` returns the share of a root's area that is there and emits.
 OwnedLights lights_of_faces(
     const LocalScene& scene, const EmissionUnit& unit,
     const std::function<double(std::uint32_t root)>& cover = [](std::uint32_t) { return 1.0; });

@@ -1,6 +1,7 @@
 #include "radiosity/direct/mesh_light.h"
 
 #include "meshing/disjoint_sets.h"
+#include "meshing/patch_reflectance.h"
 #include "radiosity/form_factors/form_factor.h"
 
 #include <algorithm>
@@ -33,16 +34,10 @@ bool is_one_lamp(const LocalScene& scene, std::span<const std::uint32_t> roots, 
   return length(high - low) <= largest_lamp;
 }
 
-double area_of_all(const LocalScene& scene, std::span<const std::uint32_t> roots) {
-  double area = 0;
-  for (const std::uint32_t root : roots) area += scene.mesh().roots()[root].area;
-  return area;
-}
-
 }  // namespace
 
-MeshLight::MeshLight(const LocalScene& scene, std::vector<std::uint32_t> roots, const RelativeLight& emission)
-    : LightSource(roots.front(), emission, emission.sum() * area_of_all(scene, roots)), scene_(scene) {
+MeshLight::MeshLight(const LocalScene& scene, std::vector<std::uint32_t> roots, const RelativeLight& emission, double power)
+    : LightSource(roots.front(), emission, power), scene_(scene) {
   const double metres = scene.frame().metres_per_unit;
   for (const std::uint32_t root : roots) {
     const auto corners = scene.corners(root);
@@ -102,6 +97,7 @@ void MeshLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
     // How many times less often the face is chosen than by area.
     const double rarity = face->area / area_ * shares.back() / share;
     aim.set(o, way, short_of_light, rarity * here * there / (squared * squared + 1e-30));
+    if (aim.there) (*aim.there)[o] = static_cast<float>(opacity_at(scene_.mesh(), face->root, at));
   }
 }
 

@@ -16,8 +16,8 @@ namespace alvor {
 /// that are uniform in its coordinates.
 class MeshLight final : public LightSource {
  public:
-  /// `emission` is E of the root patches. Requires: at least one root.
-  MeshLight(const LocalScene& scene, std::vector<std::uint32_t> roots, const RelativeLight& emission);
+  /// `emission` is E of what is there of the root patches, `power` that of all of them. Requires: at least one root.
+  MeshLight(const LocalScene& scene, std::vector<std::uint32_t> roots, const RelativeLight& emission, double power);
 
   double unblocked(Vec3 at, Vec3 normal) const override;
   void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;

@@ -139,6 +139,7 @@ class Planner {
   PlannedFeature occlusion() const {
     if (emission_by_rows_ && census_.lights == 0) return off(sentence(by_rows(), ", so no shadow rays are sent"));
     if (census_.has_distant_light) return on("a distant light shines from beyond all faces");
+    if (census_.has_cut_emitter) return on("a face that emits has holes");
     if (standing_.blocker < mesh_.roots().size())
       return on(sentence("face ", mesh_.roots()[standing_.blocker].input.first, " has lit faces before and behind it, of ",
                          faces(census_.faces)));

@@ -61,6 +61,7 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
     if (root.is_back) continue;
     ++faces;
     emitting_faces += emits;
+    has_cut_emitter |= emits && material.has_cutout();
     panes += material.is_pane();
     two_sided_faces += root.twin != RootPatch::no_twin;
   }

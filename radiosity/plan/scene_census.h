@@ -19,6 +19,7 @@ struct SceneCensus {
   std::size_t lights = 0;                 ///< lights that are not faces and not black
   const Light* coloured_light = nullptr;  ///< the first of these that is not grey; null: all are grey
   bool has_distant_light = false;
+  bool has_cut_emitter = false;  ///< a face that emits has holes
 
   bool is_lit() const { return emitting_faces + lights > 0; }
 };

@@ -141,16 +141,24 @@ ShadowNeeds DirectField::shadow_needs() const {
   return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium), plan_.needs(Feature::panes)};
 }
 
+/// Returns what a leaf keeps from going straight on of its irradiance, sum of bands. What goes on arrives on other leaves.
+double DirectField::stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const {
+  const Rgb kept = Rgb{1, 1, 1} - forests_.material_of(leaf).regular_transmittance;
+  return forests_.cover(leaf) * (kept * irradiance).sum();
+}
+
 /// Adds one light to the light of `receivers`, which are these leaves.
 void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                           std::span<DirectLight> light) {
   const LightSource* const lights[]{&next};
   const bool is_distant = !next.extent();
   if (is_distant)
-    for (std::size_t n = 0; n < leaves.size(); ++n) from_afar_[leaves[n]] -= static_cast<float>(light[n].irradiance.sum());
+    for (std::size_t n = 0; n < leaves.size(); ++n)
+      from_afar_[leaves[n]] -= static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
   add_direct_light(scene_, lights, receivers, options_.seed, budget_, light, shadow_needs());
   if (is_distant)
-    for (std::size_t n = 0; n < leaves.size(); ++n) from_afar_[leaves[n]] += static_cast<float>(light[n].irradiance.sum());
+    for (std::size_t n = 0; n < leaves.size(); ++n)
+      from_afar_[leaves[n]] += static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
 }
 
 void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {

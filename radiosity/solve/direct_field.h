@@ -24,8 +24,8 @@ class DirectField {
   RelativeLight emission_by_rows(std::uint32_t root) const {
     return plan_.emission_by_rows() ? emission_of(root) : RelativeLight{};
   }
-  /// Returns the power that all root patches and lamps emit, and what of distant lights first arrives on leaves (a rough
-  /// estimate of it while light is waiting). Summed over bands, in emission units times m2.
+  /// Returns the power that all root patches and lamps emit, and what of distant lights arrives on leaves and does not go on
+  /// through them (a rough estimate of it while light is waiting). Summed over bands, in emission units times m2.
   double emitted_power() const;
   /// Returns the part of the emitted power whose light has not been added to leaves yet, in emission units times m2.
   double waiting_power() const { return waiting_power_; }
@@ -59,6 +59,7 @@ class DirectField {
   ShadowNeeds shadow_needs() const;
   void add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                std::span<DirectLight> light);
+  double stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const;
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
@@ -78,9 +79,10 @@ class DirectField {
   double near_power_ = 0;                 ///< of faces and lamps
   double power_ = 0, waiting_power_ = 0;  ///< of all lights
   std::vector<DirectLight> light_;
-  std::vector<float> from_afar_;  ///< irradiance from distant lights, sum of bands; empty if there are none
-  std::vector<bool> is_known_;    ///< the leaf has its own light of all lights
-  std::vector<bool> is_lit_;      ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
+  /// Irradiance from distant lights, sum of bands, but for what goes straight on through the leaf; empty if there are none.
+  std::vector<float> from_afar_;
+  std::vector<bool> is_known_;  ///< the leaf has its own light of all lights
+  std::vector<bool> is_lit_;    ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
 };
 
 }  // namespace alvor

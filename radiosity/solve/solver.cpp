@@ -287,7 +287,9 @@ class Run {
     return clock_.elapsed_s() > options_.time_limit_s ? StopReason::time_limit : StopReason::parked;
   }
   StopReason limit_reached() const {
-    return state_.leaf_count() + 3 > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
+    const bool has_translucent = std::ranges::any_of(state_.mesh.materials(), &Material::is_translucent);
+    const std::size_t more = has_translucent ? 6 : 3;  // leaves that a split adds
+    return state_.leaf_count() + more > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
   }
 
   const Plan& plan_;

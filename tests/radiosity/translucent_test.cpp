@@ -3,6 +3,7 @@
 #include "radiosity/plan/plan.h"
 #include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
+#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -167,6 +168,20 @@ TEST(Translucent, MaterialsThatMakeLightAreRefused) {
   glass.regular_transmittance = {0.5, 0.5, 0.5};
   EXPECT_EQ(refused(glass), "material 1 'sheet': reflectance and transmittance are 1.1 together, beyond 1");
   EXPECT_EQ(refused(sheet(0.3, 0.3)), "");
+}
+
+TEST(Translucent, DarkTexturesLeaveRoomForWhatComesThrough) {
+  Scene scene = half_room(1, test::textured(test::checkerboard(4, 10, 100)));
+  test::complete_texture_points(scene);
+  Material& wall = scene.materials[1];
+  wall.two_sided = true;
+  wall.diffuse_transmittance = {0.8, 0.8, 0.8};
+  EXPECT_TRUE(find_fault(scene)) << "its largest texel is not known";
+  ColourImage image = *wall.texture->image;
+  find_most(image);
+  wall.texture->image = std::make_shared<const ColourImage>(std::move(image));
+  EXPECT_FALSE(find_fault(scene));
+  EXPECT_NEAR(wall.largest_reflectance().g, reflectance_of_texel(100), 1e-12);
 }
 
 TEST(Translucent, ColoursAreKnownToThePlan) {
