@@ -176,7 +176,6 @@ void DirectField::show_on_whole_face(NodeIndex leaf) {
   for (const NodeIndex other : leaves) {
     if (is_lit_[other]) continue;
     light_[other] = light_[leaf];
-    if (has_distant_lights_) from_afar_[other] = from_afar_[leaf];
     is_lit_[other] = true;
   }
 }
