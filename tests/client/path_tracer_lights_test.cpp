@@ -78,7 +78,7 @@ TEST(PathTracer, AgreesWithTheSolverInARoomWithAWindowUnderAColouredEnvironment)
     solved += area * widen(leaf.irradiance);
     weight += area;
   }
-  const auto traced = trace_irradiance(PathTracer(scene), points, {.paths = 512, .threads = 2});
+  const auto traced = trace_irradiance(PathTracer(scene), points, {.paths = 1024, .threads = 2});
   Rgb expected;
   double variance = 0;
   for (std::size_t n = 0; n < traced.size(); ++n) {
