@@ -30,7 +30,7 @@ class TextureMean {
   MeanSurface over(std::span<const TexelPoint> polygon, Wrap across, Wrap down) const;
 
  private:
-  /// Of reflectance times opacity in three bands, and of opacity.
+  /// Sums of four values of texels: reflectance times opacity in three bands, and opacity.
   using Sums = std::array<double, 4>;
   /// The running sum along a row at the left side of a texel, and the texel's value: the sum is linear within the texel.
   struct Column {

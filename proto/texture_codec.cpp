@@ -9,7 +9,7 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t most_images = 10'000;
-// Of all images of a scene. While it is solved a texel takes 15 or 20 bytes.
+// Texels of all images of a scene together. While the scene is solved a texel takes 15 or 20 bytes.
 constexpr std::uint64_t most_texels = 1u << 26;
 
 std::string count_of(std::uint64_t count, const char* unit) { return std::to_string(count) + " " + unit; }

@@ -10,7 +10,7 @@
 
 namespace alvor {
 
-/// What decode_image() is to return.
+/// The kind of pixels that decode_image() returns.
 struct WantedPixels {
   std::size_t channels = 4;       ///< 3: red, green and blue; 4: alpha too
   bool may_have_16_bits = false;  ///< if not, samples of 16 bits are cut to 8

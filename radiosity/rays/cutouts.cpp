@@ -8,11 +8,10 @@ namespace alvor {
 
 Cutouts::Cutouts(const BaseMesh& mesh) {
   if (std::ranges::none_of(mesh.materials(), &Material::has_cutout)) return;
-  materials_.assign(mesh.materials().begin(), mesh.materials().end());
   roots_.resize(mesh.roots().size());
   for (std::uint32_t r = 0; r < roots_.size(); ++r) {
     const RootPatch& root = mesh.roots()[r];
-    const Material& material = materials_[root.material];
+    const Material& material = mesh.material_of(r);
     if (!material.has_cutout()) continue;
     Placed& placed = roots_[r].emplace(Placed{&*material.texture, mesh.texture_points(r), root.corner_count == 4, 0, 0});
     if (!placed.is_quad) continue;

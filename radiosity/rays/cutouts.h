@@ -1,5 +1,5 @@
 #pragma once
-// Where rays meet holes in faces.
+// The opacity of a face where a ray hits it.
 
 #include "meshing/base_mesh.h"
 
@@ -17,6 +17,7 @@ inline RgbF straight_through(const RgbF& transmittance, float opacity) {
 }
 
 /// The holes in the faces of a mesh, by root. Takes no memory if no material has any. Immutable; safe from any thread.
+/// Borrows the mesh.
 class Cutouts {
  public:
   explicit Cutouts(const BaseMesh& mesh);
@@ -36,7 +37,6 @@ class Cutouts {
   };
   static float opacity(const Placed& placed, float u, float v);
 
-  std::vector<Material> materials_;  // those of the mesh, which hold the images
   std::vector<std::optional<Placed>> roots_;
 };
 

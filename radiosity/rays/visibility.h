@@ -56,7 +56,7 @@ struct LocalFrame {
 
 /// Embree's scene of all root patches in local coordinates, without the backs of two-sided faces (a hit from behind belongs to
 /// the twin). Rays go on through panes (Material::is_pane), from either side, but where what is there of a pane lets none
-/// through. Immutable; any number of threads may trace at a time.
+/// through. Immutable; any number of threads may trace at a time. Borrows the mesh.
 class Visibility {
  public:
   Visibility(const BaseMesh& mesh, const LocalFrame& frame);

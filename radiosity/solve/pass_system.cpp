@@ -40,8 +40,7 @@ PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.r
 
 void PassSystem::find_patches_behind() {
   const Forests& forests = state_.forests;
-  const auto is_translucent = [](const Material& material) { return material.is_translucent(); };
-  if (std::ranges::none_of(state_.mesh.materials(), is_translucent)) return;
+  if (std::ranges::none_of(state_.mesh.materials(), &Material::is_translucent)) return;
   std::vector<std::uint32_t> patch_of_row(forests.rows().node_count());
   for (std::uint32_t p = 0; p < rows_.size(); ++p) patch_of_row[rows_[p]] = p;
   for (std::size_t p = 0; p < rows_.size(); ++p) {

@@ -135,7 +135,7 @@ TEST(Probe, AShareOfASheetThatIsCutOutCountsAsAPane) {
     if (material.texture) room.texture_points.assign(room.positions.size(), {0.5F, 0.5F});
     return probe(room, point)[0].irradiance;
   };
-  // Of the first sheet 0.4 is there, and lets half of the light through.
+  // The first sheet is there to 0.4, and what is there lets half of the light through.
   Material sheet = cut_out(102), pane{"pane", {}, {0.2, 0.2, 0.2}, true, {0.8, 0.8, 0.8}};
   sheet.two_sided = true;
   sheet.regular_transmittance = {0.5, 0.5, 0.5};

@@ -92,7 +92,7 @@ Scene screen_over_floor(const Material& material, bool from_above) {
   return scene;
 }
 
-// What comes through a screen from above is what comes back from a diffuse one that is lit from below.
+// A translucent screen lit from above sends down as much light as a reflecting screen lit from below.
 TEST(Translucent, ScreensLetAsMuchThroughAsAsDiffuseOnesReflect) {
   const SolveOptions options{.tolerance = 0.01};
   const double through = Solved(screen_over_floor(sheet(0, 0.4), true), options).of_face(0).g,

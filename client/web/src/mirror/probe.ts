@@ -1,4 +1,4 @@
-// What lies where a ray first meets a front that is no hole there.
+// Reads the surface that a ray meets first: its front, at a place that is no hole.
 
 import type { Reading, Vector } from "../messages";
 import { opacityAt, reflectanceAt, type Image } from "../textures/image";
