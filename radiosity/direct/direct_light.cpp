@@ -29,15 +29,15 @@ constexpr double worth_a_closer_look = 0.1;
 
 using Lanes = std::array<float, RayPacket::width>;
 
-/// The shadow rays of a batch of receivers. `dimming`: there is a medium, or panes.
+/// The shadow rays of a batch of receivers. `dimming`: there is a medium, or rays bring a part of their light.
 template <bool occlusion, bool dimming>
 class ShadowBatch {
  public:
   ShadowBatch(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
-              RayBudget& budget, std::span<DirectLight> light, bool has_panes)
+              RayBudget& budget, std::span<DirectLight> light, bool partial)
       : scene_(scene),
         medium_{scene.mesh().absorption()},
-        has_panes_(has_panes),
+        partial_(partial),
         lights_(lights),
         receivers_(receivers),
         seed_(seed),
@@ -165,10 +165,10 @@ class ShadowBatch {
   }
 
   void find_blocked() {
-    if (has_panes_) tints_.resize(rays_.size());
+    if (partial_) tints_.resize(rays_.size());
     if constexpr (occlusion)
       budget_.spend(rays_.size() * RayPacket::width, [&] { scene_.visibility().occlusions(rays_, blocked_, tints_); });
-    for (std::size_t n = 0; has_panes_ && n < rays_.size(); ++n)
+    for (std::size_t n = 0; partial_ && n < rays_.size(); ++n)
       for (std::size_t o = 0; o < RayPacket::width; ++o) tints_[n][o] = there_[n][o] * tints_[n][o];
   }
 
@@ -187,12 +187,12 @@ class ShadowBatch {
   }
 
   ShadowAim aim_of(std::size_t r, std::size_t packet) {
-    if (has_panes_) {
+    if (partial_) {
       there_.resize(rays_.size());
       there_[packet].fill(1);
     }
     return {points_[r],       scene_.root(receivers_[r].shape.root).normal, {}, rays_[packet],
-            weights_[packet], has_panes_ ? &there_[packet] : nullptr};
+            weights_[packet], partial_ ? &there_[packet] : nullptr};
   }
 
   /// Sets the weights of hidden origins to 0.
@@ -208,7 +208,7 @@ class ShadowBatch {
       if (weight == 0) continue;
       fraction.weight[o] += weight;
       const bool is_blocked = blocked_[packet] >> o & 1;
-      const float share = is_blocked ? 0 : has_panes_ ? tints_[packet][o].mean() : 1;
+      const float share = is_blocked ? 0 : partial_ ? tints_[packet][o].mean() : 1;
       fraction.count(share);
       if (is_blocked) continue;
       fraction.visible[o] += share * weight;
@@ -218,7 +218,7 @@ class ShadowBatch {
   /// Returns the share of light that medium and panes let through along ray `o` of a packet.
   Rgb transmittance(std::size_t packet, int o) const {
     const Rgb by_medium = medium_.is_clear() ? Rgb{1, 1, 1} : medium_.transmittance(distance(rays_[packet], o));
-    return has_panes_ ? widen(tints_[packet][o]) * by_medium : by_medium;
+    return partial_ ? widen(tints_[packet][o]) * by_medium : by_medium;
   }
   double distance(const RayPacket& rays, int o) const {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
@@ -276,7 +276,7 @@ class ShadowBatch {
 
   const LocalScene& scene_;
   Medium medium_;
-  bool has_panes_;
+  bool partial_;
   LightSources lights_;
   std::span<const Receiver> receivers_;
   std::uint64_t seed_;
@@ -287,28 +287,28 @@ class ShadowBatch {
   std::vector<RayPacket> rays_;
   std::vector<Lanes> weights_;
   std::vector<std::uint16_t> blocked_;
-  std::vector<Visibility::Tints> tints_;  // of each packet, with the next; none if there are no panes
+  std::vector<Visibility::Tints> tints_;  // of each packet, with the next; none if all rays bring all or nothing
   std::vector<Lanes> there_;              // share of the light that is there where rays end
 };
 
 /// Calls work(batch) for each batch of receivers, in parallel.
 template <bool occlusion, bool dimming, class Work>
-void in_batches(bool has_panes, const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers,
+void in_batches(bool partial, const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers,
                 std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, Work&& work) {
   const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
     const std::size_t first = batch * receivers_per_batch, count = std::min(receivers_per_batch, receivers.size() - first);
     work(ShadowBatch<occlusion, dimming>(scene, lights, receivers.subspan(first, count), seed, budget,
-                                         light.subspan(first, count), has_panes));
+                                         light.subspan(first, count), partial));
   });
 }
 
 /// Calls in_batches with these arguments, in the template instance that computes only what `needs` asks for.
 template <class... Arguments>
 void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
-  const bool dimming = needs.medium || needs.panes;
-  if (needs.occlusion && dimming) return in_batches<true, true>(needs.panes, arguments...);
+  const bool dimming = needs.medium || needs.partial;
+  if (needs.occlusion && dimming) return in_batches<true, true>(needs.partial, arguments...);
   if (needs.occlusion) return in_batches<true, false>(false, arguments...);
   if (dimming) return in_batches<false, true>(false, arguments...);
   in_batches<false, false>(false, arguments...);

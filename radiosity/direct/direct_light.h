@@ -34,7 +34,7 @@ struct Receiver {
 struct ShadowNeeds {
   bool occlusion = true;  ///< false: nothing stands between any receiver and light, so no rays are sent
   bool medium = true;     ///< false: the medium is clear
-  bool panes = true;      ///< false: no face lets light straight through
+  bool partial = true;    ///< false: no face lets light straight through, and all of a light is there
 };
 
 /// Adds to `light` what every one of `lights` brings: its unblocked irradiance (mean over the four quarters of the patch) times

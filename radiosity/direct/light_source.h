@@ -22,7 +22,8 @@ struct ShadowAim {
   std::array<Uv, RayPacket::width> at;
   RayPacket& rays;
   std::array<float, RayPacket::width>& weights;  ///< light that arrives by each ray if nothing blocks it, see sample_scale()
-  /// Share of the light that is there and no hole where each ray ends: 1, until a light sets it; null in scenes without panes.
+  /// Share of its light that each ray brings if nothing blocks it, less than 1 where the light has holes or counts elsewhere: 1,
+  /// until a light sets it. Null if ShadowNeeds::partial is off.
   std::array<float, RayPacket::width>* there = nullptr;
 
   Vec3 start(std::size_t o) const { return {from.x[o], from.y[o], from.z[o]}; }
@@ -76,6 +77,8 @@ class LightSource {
   virtual void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const = 0;
   /// Returns the factor from a weight to irradiance, in multiples of colour(), if the light was chosen with `probability`.
   virtual double sample_scale(double probability) const = 0;
+  /// Returns whether a ray that nothing blocks may bring less than its weight for a reason other than a face on its way.
+  virtual bool has_partial_rays() const { return false; }
   /// Returns nothing if the light comes from outside of the scene.
   virtual std::optional<LightExtent> extent() const = 0;
 

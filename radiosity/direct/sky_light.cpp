@@ -58,26 +58,28 @@ void DomeLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
   }
 }
 
-ExitLight::ExitLight(const LocalScene&, std::uint32_t number, std::shared_ptr<const DistantRadiance> radiance,
+ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, std::shared_ptr<const DistantRadiance> radiance,
                      const RelativeLight& colour, double power, std::shared_ptr<const SkyExits> exits, std::size_t which)
     : LightSource(number, colour, power),
       radiance_(std::move(radiance)),
       exits_(std::move(exits)),
+      which_(which),
       exit_(exits_->exits[which]),
+      box_(scene),
       zenith_(radiance_->zenith()) {}
 
 /// Returns the irradiance that a point of the exit brings, per area of the exit.
 double ExitLight::brings(Vec3 from, Vec3 at, Vec3 normal) const {
   const Vec3 way = from - at;
   const double squared = std::max(dot(way, way), nearest_look * nearest_look), distance = std::sqrt(squared);
-  const double here = dot(way, normal), there = -dot(way, exit_.inwards);
-  return here > 0 && there > 0 ? here * there / (squared * squared) * radiance_->smooth_radiance(way / distance) : 0;
+  const double here = dot(way, normal), there = std::abs(dot(way, exit_.normal));
+  return here > 0 ? here * there / (squared * squared) * radiance_->smooth_radiance(way / distance) : 0;
 }
 
 /// Returns the part of the exit through which the sky is seen from a point: above the horizontal plane through the point. A
 /// zenith that is not along a side leaves the exit whole, as does light from all directions.
-SkyExit ExitLight::above_horizon(Vec3 at) const {
-  SkyExit part = exit_;
+FlatRectangle ExitLight::above_horizon(Vec3 at) const {
+  FlatRectangle part = exit_;
   if (!zenith_) return part;
   const double height = dot(part.corner - at, *zenith_);
   const auto cut = [&](Vec3& side) {
@@ -94,7 +96,7 @@ SkyExit ExitLight::above_horizon(Vec3 at) const {
 }
 
 double ExitLight::unblocked(Vec3 at, Vec3 normal) const {
-  const SkyExit part = above_horizon(at);
+  const FlatRectangle part = above_horizon(at);
   const double size_u = length(part.side_u), size_v = length(part.side_v);
   if (!(size_u > 0 && size_v > 0)) return 0;
   const auto point = [&](Uv uv) { return part.at(uv.u, uv.v); };
@@ -106,9 +108,11 @@ void ExitLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) c
   for (std::size_t o = first; o < last; ++o) {
     const Uv at = aim.at[o];
     const Vec3 from = aim.start(o);
-    const SkyExit part = above_horizon(from);
+    const FlatRectangle part = above_horizon(from);
     const Vec3 target = part.at(at.u, at.v);
-    aim.set(o, target - from, 1, part.area() * brings(target, from, aim.facing()));
+    const Vec3 direction = normalized(target - from);
+    aim.set(o, box_.way_out(from, direction) * direction, 1, part.area() * brings(target, from, aim.facing()));
+    if (aim.there && !exits_->counts_at(which_, from, direction)) (*aim.there)[o] = 0;
   }
 }
 

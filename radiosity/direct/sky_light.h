@@ -37,7 +37,8 @@ class DomeLight final : public LightSource {
 };
 
 /// The light that a sky or an environment sends through one exit, for closed faces. Unblocked irradiance is the integral over the
-/// exit by Gauss' rule; shadow rays go to points that are uniform by area.
+/// exit by Gauss' rule; shadow rays go through points that are uniform by area, to the scene's bounding box. A ray that counts at
+/// another exit (see SkyExits::counts_at) brings nothing.
 class ExitLight final : public LightSource {
  public:
   /// `power` is that of LightSource.
@@ -49,14 +50,17 @@ class ExitLight final : public LightSource {
   void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override { return 1 / probability; }
   std::optional<LightExtent> extent() const override { return std::nullopt; }
+  bool has_partial_rays() const override { return which_ > 0; }
 
  private:
-  SkyExit above_horizon(Vec3 at) const;
+  FlatRectangle above_horizon(Vec3 at) const;
   double brings(Vec3 from, Vec3 at, Vec3 normal) const;
 
   const std::shared_ptr<const DistantRadiance> radiance_;
   const std::shared_ptr<const SkyExits> exits_;
-  const SkyExit& exit_;
+  const std::size_t which_;
+  const FlatRectangle& exit_;
+  const SceneBox box_;
   const std::optional<Vec3> zenith_;
 };
 

@@ -138,7 +138,8 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
 }
 
 ShadowNeeds DirectField::shadow_needs() const {
-  return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium), plan_.needs(Feature::panes)};
+  const bool has_partial_rays = std::ranges::any_of(lights_, &LightSource::has_partial_rays);
+  return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium), has_partial_rays || plan_.needs(Feature::panes)};
 }
 
 /// Returns what a leaf keeps from going straight on of its irradiance, sum of bands. What goes on arrives on other leaves.

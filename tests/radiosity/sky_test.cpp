@@ -178,33 +178,85 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
   }
 }
 
+/// Solves a black room under a uniform sky of 1000 and returns the mean difference between the floor's irradiance and what the
+/// sky would bring through the open holes, times `transmittance`, as a share of the mean.
+double error_below_holes(Scene scene, const std::vector<std::vector<Vec3>>& holes, const Rgb& transmittance) {
+  scene.lights = {sky_light({})};
+  const BaseMesh mesh(scene);
+  double error = 0, mean = 0;
+  std::size_t compared = 0;
+  for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-4, .max_depth = 5, .max_leaves = 20'000})) {
+    const PatchShape shape = shape_of(mesh, leaf.patch);
+    const RootPatch& root = mesh.roots()[shape.root];
+    const Vec3 centre = centre_of(mesh, shape);
+    if (root.normal.y < 0.9 || length(centre - Vec3{2, 0, 2}) > 3) continue;  // the floor
+    double expected = 0;
+    for (std::vector<Vec3> seen : holes) {
+      if (std::abs(point_to_polygon(centre, root.normal, seen)) < 1e-9) std::ranges::reverse(seen);
+      expected += 1000 * std::abs(point_to_polygon(centre, root.normal, seen));
+    }
+    error += std::abs(leaf.irradiance.r - transmittance.r * expected) + std::abs(leaf.irradiance.b - transmittance.b * expected);
+    mean += expected;
+    ++compared;
+  }
+  EXPECT_GT(compared, 100u);
+  return error / mean;
+}
+
+/// Adds a pane of two triangles, as files have them.
+void add_pane(Scene& scene, const std::vector<Vec3>& corners, const Rgb& transmittance) {
+  const auto number = static_cast<std::uint32_t>(scene.materials.size());
+  scene.materials.push_back({"pane", {}, {}, true, transmittance});
+  test::add_polygon(scene, {corners[0], corners[1], corners[2]}, number);
+  test::add_polygon(scene, {corners[0], corners[2], corners[3]}, number);
+}
+
+/// Adds black ground of 200 m about the room's place, far below it, so that the scene's bounding box is far away.
+void add_landscape(Scene& scene) {
+  test::add_polygon(scene, {{-100, -90, -100}, {-100, -90, 100}, {100, -90, 100}, {100, -90, -100}});
+  test::add_polygon(scene, {{90, -90, 90}, {90, 90, 90}, {91, 90, 90}, {91, -90, 90}});
+}
+
 // A black room with one hole in its roof or wall, filled by a pane: the floor gets the light that the sky would send it through
 // the open hole (its form factor times the sky's irradiance), times the pane's transmittance.
 TEST(SkyThroughAPane, BringsTheSkyComponentTimesItsTransmittance) {
   for (const bool is_roof : {true, false}) {
     std::vector<Vec3> hole;
     Scene scene = room_with_hole(is_roof, hole);
-    const auto number = static_cast<std::uint32_t>(scene.materials.size());
-    scene.materials.push_back({"pane", {}, {}, true, {0.8, 0.6, 0.4}});
-    scene.add_polygon(hole, number);
-    scene.lights = {sky_light({})};
-    const BaseMesh mesh(scene);
-    double error = 0, mean = 0;
-    std::size_t compared = 0;
-    for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-4, .max_depth = 5, .max_leaves = 20'000})) {
-      const PatchShape shape = shape_of(mesh, leaf.patch);
-      const RootPatch& root = mesh.roots()[shape.root];
-      const Vec3 centre = centre_of(mesh, shape);
-      if (root.normal.y < 0.9 || root.material == number) continue;  // the floor
-      std::vector<Vec3> seen = hole;
-      if (std::abs(point_to_polygon(centre, root.normal, seen)) < 1e-9) std::ranges::reverse(seen);
-      const double expected = 1000 * std::abs(point_to_polygon(centre, root.normal, seen));
-      error += std::abs(leaf.irradiance.r - 0.8 * expected) + std::abs(leaf.irradiance.b - 0.4 * expected), mean += expected;
-      ++compared;
-    }
-    EXPECT_GT(compared, 100u);
-    EXPECT_LT(error / mean, 0.015) << is_roof;
+    add_pane(scene, hole, {0.8, 0.6, 0.4});
+    EXPECT_LT(error_below_holes(scene, {hole}, {0.8, 0.6, 0.4}), 0.015) << is_roof;
   }
+}
+
+TEST(SkyThroughAPane, IsAsExactInAWideLandscape) {
+  for (const bool is_roof : {true, false}) {
+    std::vector<Vec3> hole;
+    Scene scene = room_with_hole(is_roof, hole);
+    add_pane(scene, hole, {0.8, 0.6, 0.4});
+    add_landscape(scene);
+    EXPECT_LT(error_below_holes(scene, {hole}, {0.8, 0.6, 0.4}), 0.015) << is_roof;
+  }
+}
+
+// A second, larger pane hangs 0.5 m outside of the window: light crosses both, and each direction counts once.
+TEST(SkyThroughTwoPanes, CountsOnce) {
+  std::vector<Vec3> hole;
+  Scene scene = room_with_hole(false, hole);
+  add_pane(scene, hole, {0.8, 0.6, 0.4});
+  add_pane(scene, {{-4, -2, -0.5}, {8, -2, -0.5}, {8, 40, -0.5}, {-4, 40, -0.5}}, {0.5, 0.5, 0.5});
+  add_landscape(scene);
+  EXPECT_LT(error_below_holes(scene, {hole}, {0.4, 0.3, 0.2}), 0.02);
+}
+
+// The pane fills one half of the hole, and the other half is open: light comes past the pane from exits on the bounding box.
+TEST(SkyBesideAPane, CountsOnce) {
+  std::vector<Vec3> hole;
+  Scene scene = room_with_hole(false, hole);
+  const Vec3 low = 0.5 * (hole[0] + hole[1]), high = 0.5 * (hole[3] + hole[2]);
+  add_pane(scene, {hole[0], low, high, hole[3]}, {1, 1, 1});
+  EXPECT_LT(error_below_holes(scene, {hole}, {1, 1, 1}), 0.015);
+  add_landscape(scene);
+  EXPECT_LT(error_below_holes(scene, {hole}, {1, 1, 1}), 0.05);
 }
 
 // Overcast sky: the integral of radiance times cosine over the part of the window that a point of the floor sees.
