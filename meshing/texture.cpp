@@ -72,7 +72,16 @@ double reflectance_of_texel(std::uint8_t value) {
   return table[value];
 }
 
-MeanSurface mean_surface(const ColourImage& image) {
+double light_of_texel(std::uint8_t value) {
+  static const std::array<double, 256> table = [] {
+    std::array<double, 256> light{};
+    for (std::size_t v = 0; v < light.size(); ++v) light[v] = linear_of_srgb(static_cast<double>(v) / 255);
+    return light;
+  }();
+  return table[value];
+}
+
+MeanSurface mean_surface(const ColourImage& image, double (*of_texel)(std::uint8_t)) {
   std::array<std::array<std::uint64_t, 256>, 3> count{};  // of texels by value, each counted by its opacity
   std::uint64_t there = 0;
   const std::size_t stride = image.bytes_a_texel();
@@ -84,7 +93,7 @@ MeanSurface mean_surface(const ColourImage& image) {
   std::array<double, 3> sum{};
   for (std::size_t band = 0; band < 3; ++band)
     for (std::size_t value = 0; value < 256; ++value)
-      sum[band] += static_cast<double>(count[band][value]) * reflectance_of_texel(static_cast<std::uint8_t>(value));
+      sum[band] += static_cast<double>(count[band][value]) * of_texel(static_cast<std::uint8_t>(value));
   const auto weight = static_cast<double>(there);
   return {there > 0 ? Rgb{sum[0], sum[1], sum[2]} * (1 / weight) : Rgb{},
           weight / (opaque * static_cast<double>(image.texel_count()))};

@@ -42,6 +42,8 @@ std::optional<std::string> fault_in(const ColourImage& image);
 /// Returns the reflectance that a value of an image stands for: the linear value, but for 255 that of 254, which is 0.991. Light
 /// between faces that reflect everything would never fade.
 double reflectance_of_texel(std::uint8_t value);
+/// Returns the share of the brightest light that a value of an image stands for: the linear value.
+double light_of_texel(std::uint8_t value);
 
 /// A surface in the mean over some area.
 struct MeanSurface {
@@ -49,8 +51,9 @@ struct MeanSurface {
   double cover = 1;  ///< share of the area that is there and no hole
 };
 
-/// Returns the mean over all texels.
-MeanSurface mean_surface(const ColourImage& image);
+/// Returns the mean over all texels. `of_texel` is reflectance_of_texel, or light_of_texel for an image of light: then the
+/// result's `reflectance` is light.
+MeanSurface mean_surface(const ColourImage& image, double (*of_texel)(std::uint8_t) = reflectance_of_texel);
 
 /// A place on an image: (0, 0) is its upper left corner and (1, 1) its lower right one, as in glTF.
 struct TexturePoint {

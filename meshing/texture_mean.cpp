@@ -59,11 +59,10 @@ class Crossings {
 
 }  // namespace
 
-TextureMean::TextureMean(const ColourImage& image)
-    : image_(image), mean_(mean_surface(image)), bands_(image.bytes_a_texel()), sum_before_(image.byte_count()) {
+TextureMean::TextureMean(const ColourImage& image, double (*of_texel)(std::uint8_t))
+    : image_(image), mean_(mean_surface(image, of_texel)), bands_(image.bytes_a_texel()), sum_before_(image.byte_count()) {
   for (std::size_t value = 0; value < value_of_byte_.size(); ++value)
-    value_of_byte_[value] =
-        static_cast<std::uint32_t>(std::lround(reflectance_of_texel(static_cast<std::uint8_t>(value)) / unit));
+    value_of_byte_[value] = static_cast<std::uint32_t>(std::lround(of_texel(static_cast<std::uint8_t>(value)) / unit));
   for (std::uint32_t row = 0; row < image.rows; ++row) {
     std::array<std::uint32_t, 4> sum{};
     for (std::uint32_t column = 0; column < image.columns; ++column) {

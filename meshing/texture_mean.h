@@ -21,8 +21,8 @@ class TextureMean {
  public:
   /// Returns how much memory the sums of an image take, bytes: 12 or 16 a texel.
   static std::size_t bytes_for(const ColourImage& image) { return sizeof(std::uint32_t) * image.byte_count(); }
-  /// Requires: !fault_in(image).
-  explicit TextureMean(const ColourImage& image);
+  /// `of_texel` is as for mean_surface(). Requires: !fault_in(image).
+  explicit TextureMean(const ColourImage& image, double (*of_texel)(std::uint8_t) = reflectance_of_texel);
 
   /// Returns the mean over a polygon (by Green's theorem: the integral of a texel row's running sum along the
   /// outline); that of the whole image if its outline crosses more than 65 536 texels; the texel of its first corner if it has no

@@ -3,6 +3,7 @@
 #include "import/base/import_error.h"
 #include "import/base/scene_format.h"
 #include "import/formats/colour_images.h"
+#include "import/formats/emission_textures.h"
 #include "import/formats/placement.h"
 #include "import/formats/see_through.h"
 #include "import/formats/texture_colour.h"
@@ -48,10 +49,10 @@ RgbF linear_of(const aiColor4D& colour) {
   return {band(colour.r), band(colour.g), band(colour.b)};
 }
 
-/// Returns whether a material moves or turns its texture of diffuse colour, which no two formats do alike.
-bool moves_texture(const aiMaterial& source) {
+/// Returns whether a material moves or turns its texture of this type, which no two formats do alike.
+bool moves_texture(const aiMaterial& source, aiTextureType type) {
   aiUVTransform transform;
-  if (source.Get(AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0), transform) != AI_SUCCESS) return false;
+  if (source.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) != AI_SUCCESS) return false;
   return transform.mTranslation != aiVector2D(0, 0) || transform.mScaling != aiVector2D(1, 1) || transform.mRotation != 0;
 }
 
@@ -87,6 +88,7 @@ class AssimpReader {
   SceneFile read() {
     for (const aiMaterial* material : std::span(source_.mMaterials, source_.mNumMaterials)) add_material(*material);
     if (source_.mRootNode) add_tree(*source_.mRootNode);
+    emission_textures_.cut(file_.scene, file_.warnings);
     Unsupported unsupported;
     count_lights(unsupported);
     count_materials(unsupported);
@@ -113,25 +115,53 @@ class AssimpReader {
     Material material{name, {}, grey, two_sided != 0};
     if (!made_up && (has_holes || !cover(source, material)))
       material.reflectance = colour(source, name, AI_MATKEY_COLOR_DIFFUSE, aiTextureType_DIFFUSE, grey);
-    material.emission = emission_of_radiance(colour(source, name, AI_MATKEY_COLOR_EMISSIVE, aiTextureType_EMISSIVE, {}));
+    emit(source, material);
     if (has_holes) leave(material, opacity);
     file_.scene.materials.push_back(std::move(material));
     is_made_up_.push_back(made_up);
   }
 
+  /// Sets the emission of a material, in the mean over its texture.
+  void emit(const aiMaterial& source, Material& material) {
+    aiColor3D found;
+    if (source.Get(AI_MATKEY_COLOR_EMISSIVE, found) == AI_SUCCESS) material.emission = {found.r, found.g, found.b};
+    material.emission = emission_of_radiance(material.emission);
+    aiString texture;
+    if (material.emission.is_zero() || source.GetTexture(aiTextureType_EMISSIVE, 0, &texture) != AI_SUCCESS) return;
+    const auto mean = mean_texel(bytes_of(texture));
+    const std::string place = "material '" + material.name + "': texture '" + texture.C_Str() + "'";
+    if (!mean) file_.warnings.push_back(place + " cannot be read and is left out");
+    if (mean) material.emission = mean->colour * material.emission;
+    const auto image = mean ? images_.decoded(texture.C_Str(), bytes_of(texture)) : nullptr;
+    if (!image || has_equal_texels(*image)) return;
+    if (moves_texture(source, aiTextureType_EMISSIVE)) {
+      file_.warnings.push_back(place + " counts by its mean colour");
+      return;
+    }
+    emission_textures_.set(static_cast<std::uint32_t>(file_.scene.materials.size()), image,
+                           wrap_of(mapping_mode(source, aiTextureType_EMISSIVE, true)),
+                           wrap_of(mapping_mode(source, aiTextureType_EMISSIVE, false)));
+  }
+
+  static int mapping_mode(const aiMaterial& source, aiTextureType type, bool across) {
+    int mode = aiTextureMapMode_Wrap;
+    if (across) source.Get(AI_MATKEY_MAPPINGMODE_U(type, 0), mode);
+    else source.Get(AI_MATKEY_MAPPINGMODE_V(type, 0), mode);
+    return mode;
+  }
+
   /// Gives a material the texture of its diffuse colour. Returns false if it has none that counts by place.
   bool cover(const aiMaterial& source, Material& material) {
     aiString texture;
-    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != AI_SUCCESS || moves_texture(source)) return false;
+    if (source.GetTexture(aiTextureType_DIFFUSE, 0, &texture) != AI_SUCCESS || moves_texture(source, aiTextureType_DIFFUSE))
+      return false;
     const auto image = images_.decoded(texture.C_Str(), bytes_of(texture));
     if (!image) return false;
     aiColor3D found;
     const Rgb factor =
         source.Get(AI_MATKEY_COLOR_DIFFUSE, found) == AI_SUCCESS ? Rgb{found.r, found.g, found.b} : default_reflectance;
-    int across = aiTextureMapMode_Wrap, down = aiTextureMapMode_Wrap;
-    source.Get(AI_MATKEY_MAPPINGMODE_U(aiTextureType_DIFFUSE, 0), across);
-    source.Get(AI_MATKEY_MAPPINGMODE_V(aiTextureType_DIFFUSE, 0), down);
-    images_.cover(material, factor, image, wrap_of(across), wrap_of(down));
+    images_.cover(material, factor, image, wrap_of(mapping_mode(source, aiTextureType_DIFFUSE, true)),
+                  wrap_of(mapping_mode(source, aiTextureType_DIFFUSE, false)));
     return true;
   }
 
@@ -193,7 +223,12 @@ class AssimpReader {
     std::vector<std::uint32_t> polygon;
     std::vector<TexturePoint> points;
     std::vector<RgbF> colours;
-    const aiVector3D* const coordinates = texture_coordinates_of(mesh);
+    std::vector<TexturePoint> light_points;
+    std::uint32_t material = material_of(mesh);
+    const bool has_texture = file_.scene.materials[material].texture.has_value();
+    const aiVector3D* const coordinates = has_texture ? texture_coordinates_of(mesh, aiTextureType_DIFFUSE) : nullptr;
+    const aiVector3D* const on_light =
+        emission_textures_.has(material) ? texture_coordinates_of(mesh, aiTextureType_EMISSIVE) : nullptr;
     const aiColor4D* const colour = colours_of(mesh);
     for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
       if (index >= mesh.mNumVertices)
@@ -203,22 +238,21 @@ class AssimpReader {
       polygon.push_back(first_vertex + index);
       // Assimp counts t from the lower edge of images.
       if (coordinates) points.push_back(texture_point(coordinates[index].x, 1 - coordinates[index].y));
+      if (on_light) light_points.push_back(texture_point(on_light[index].x, 1 - on_light[index].y));
       if (colour) colours.push_back(linear_of(colour[index]));
     }
-    std::uint32_t material = material_of(mesh);
-    if (!coordinates && file_.scene.materials[material].texture) material = bare_materials_.of(file_.scene, material);
+    if (!coordinates && has_texture) material = bare_materials_.of(file_.scene, material);
     add_placed_face(file_.scene, polygon, material, placement, points, colours);
+    if (on_light) emission_textures_.place(file_.scene, light_points, placement);
   }
 
   /// Returns the colours of a mesh's vertices; null if they are none of its surface.
   const aiColor4D* colours_of(const aiMesh& mesh) const { return convention_.shows_vertex_colours ? mesh.mColors[0] : nullptr; }
 
-  /// Returns the texture coordinates of a mesh's vertices; null if its material has no texture, or it no coordinates.
-  const aiVector3D* texture_coordinates_of(const aiMesh& mesh) {
-    const std::uint32_t material = material_of(mesh);
-    if (!file_.scene.materials[material].texture) return nullptr;
+  /// Returns the coordinates of a mesh's vertices on its material's texture of this type; null if there are none.
+  const aiVector3D* texture_coordinates_of(const aiMesh& mesh, aiTextureType type) {
     int set = 0;
-    source_.mMaterials[material]->Get(AI_MATKEY_UVWSRC(aiTextureType_DIFFUSE, 0), set);
+    source_.mMaterials[material_of(mesh)]->Get(AI_MATKEY_UVWSRC(type, 0), set);
     return set >= 0 && set < AI_MAX_NUMBER_OF_TEXTURECOORDS ? mesh.mTextureCoords[set] : nullptr;
   }
 
@@ -252,6 +286,7 @@ class AssimpReader {
   SceneFiles& files_;
   Convention convention_;
   ColourImages images_;
+  EmissionTextures emission_textures_;
   BareMaterials bare_materials_;
   SceneFile file_;
   std::vector<bool> is_made_up_;  // by material: Assimp made it for a file without materials

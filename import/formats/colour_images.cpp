@@ -15,13 +15,6 @@ constexpr std::size_t most_texels = 16'000'000;
 
 std::string size_of(std::uint32_t columns, std::uint32_t rows) { return std::to_string(columns) + " x " + std::to_string(rows); }
 
-bool has_equal_texels(const ColourImage& image) {
-  const std::size_t stride = image.bytes_a_texel();
-  for (std::size_t i = stride; i < image.texels.size(); ++i)
-    if (image.texels[i] != image.texels[i - stride]) return false;
-  return true;
-}
-
 /// Returns a text that differs where two uses of an image's alpha do; none if it is ignored.
 std::string text_of(const AlphaUse& alpha) {
   if (alpha.is_ignored()) return "";
@@ -126,6 +119,13 @@ void ColourImages::append_warnings(std::vector<std::string>& warnings) const {
     if (known.image && known.columns > 0 && known.image->columns != known.columns)
       warnings.push_back("texture '" + key.first + "': " + size_of(known.columns, known.rows) + " texels are averaged to " +
                          size_of(known.image->columns, known.image->rows));
+}
+
+bool has_equal_texels(const ColourImage& image) {
+  const std::size_t stride = image.bytes_a_texel();
+  for (std::size_t i = stride; i < image.texels.size(); ++i)
+    if (image.texels[i] != image.texels[i - stride]) return false;
+  return true;
 }
 
 ColourImage halved(const ColourImage& image) {

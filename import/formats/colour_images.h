@@ -58,6 +58,9 @@ class ColourImages {
   std::size_t texels_ = 0;
 };
 
+/// Returns whether an image has one colour and one opacity.
+bool has_equal_texels(const ColourImage& image);
+
 /// Returns the image of half the columns and rows, rounded up. Its linear values are means of what is there, its opacities means.
 ColourImage halved(const ColourImage& image);
 

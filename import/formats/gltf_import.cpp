@@ -112,7 +112,10 @@ class GltfReader {
     GltfMaterials read = read_gltf_materials(model_, file_.warnings);
     file_.scene.materials = std::move(read.materials);
     texture_maps_ = std::move(read.texture_maps);
+    emission_maps_ = std::move(read.emission_maps);
+    emission_textures_ = std::move(read.emission_textures);
     add_tree(root_nodes());
+    emission_textures_.cut(file_.scene, file_.warnings);
     count_unsupported_materials();
     bare_materials_.append_warnings(file_.scene, file_.warnings);
     unsupported_.append_warnings(file_.warnings);
@@ -218,21 +221,29 @@ class GltfReader {
     if (position == primitive.attributes.end()) throw ImportError(place, "has no POSITION");
     const Vertices vertices = add_vertices(position->second, placement, shared.vertices);
     std::uint32_t material = material_of(primitive, place);
-    const std::vector<TexturePoint>* const points = texture_points_of(primitive, material, vertices.count, shared);
+    const bool has_texture = file_.scene.materials[material].texture.has_value();
+    const std::vector<TexturePoint>* const points =
+        has_texture ? texture_points_of(primitive, texture_maps_[material], vertices.count, shared) : nullptr;
+    const bool has_glow = emission_textures_.has(material);
+    const GltfTextureMap glow_map = has_glow ? emission_maps_[material] : GltfTextureMap();
+    const std::vector<TexturePoint>* const glow_points =
+        has_glow ? texture_points_of(primitive, glow_map, vertices.count, shared) : nullptr;
     const std::vector<RgbF>* const colours = colours_of(primitive, vertices.count, shared);
     const GltfTextureMap map = points ? texture_maps_[material] : GltfTextureMap();
-    if (!points && file_.scene.materials[material].texture) material = bare_materials_.of(file_.scene, material);
+    if (!points && has_texture) material = bare_materials_.of(file_.scene, material);
     for (Triangle triangle : triangles_of(primitive.mode, indices_of(primitive, vertices.count), place)) {
-      std::array<TexturePoint, 3> points_here;
+      std::array<TexturePoint, 3> points_here, glow_here;
       std::array<RgbF, 3> colours_here;
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t vertex = triangle[c];
         triangle[c] = checked(vertex, vertices, place);
         if (points) points_here[c] = map.of((*points)[vertex]);
+        if (glow_points) glow_here[c] = glow_map.of((*glow_points)[vertex]);
         if (colours) colours_here[c] = (*colours)[vertex];
       }
       add_placed_face(file_.scene, triangle, material, placement, std::span(points_here).first(points ? 3 : 0),
                       std::span(colours_here).first(colours ? 3 : 0));
+      if (glow_points) emission_textures_.place(file_.scene, glow_here, placement);
     }
   }
 
@@ -264,11 +275,10 @@ class GltfReader {
     return is_unlit ? nullptr : shared_values(shared.colours, accessor->second, count, read_colours);
   }
 
-  /// Returns the texture coordinates of a primitive's vertices; null if its material has no texture, or it no coordinates.
-  const std::vector<TexturePoint>* texture_points_of(const tinygltf::Primitive& primitive, std::uint32_t material,
+  /// Returns the texture coordinates of a primitive's vertices that a map chooses; null if it has none.
+  const std::vector<TexturePoint>* texture_points_of(const tinygltf::Primitive& primitive, const GltfTextureMap& map,
                                                      std::uint32_t count, Shared& shared) {
-    if (!file_.scene.materials[material].texture) return nullptr;
-    const auto accessor = primitive.attributes.find("TEXCOORD_" + std::to_string(texture_maps_[material].set));
+    const auto accessor = primitive.attributes.find("TEXCOORD_" + std::to_string(map.set));
     if (accessor == primitive.attributes.end()) return nullptr;
     return shared_values(shared.points, accessor->second, count, read_texture_points);
   }
@@ -307,7 +317,8 @@ class GltfReader {
   GltfLuminaires luminaires_;
   Unsupported unsupported_;
   SceneFile file_;
-  std::vector<GltfTextureMap> texture_maps_;  // by material
+  std::vector<GltfTextureMap> texture_maps_, emission_maps_;  // by material
+  EmissionTextures emission_textures_;
   BareMaterials bare_materials_;
   std::optional<std::uint32_t> default_material_;
 };

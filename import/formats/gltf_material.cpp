@@ -110,8 +110,7 @@ class MaterialReader {
   Material read(const tinygltf::Material& source, const std::string& name) {
     Material material{name, {}, {}, source.doubleSided, {}, {}};
     const double opacity = cover(source, material);
-    const Rgb light = emissive_strength(source) * rgb_of(source.emissiveFactor);
-    material.emission = emission_of_radiance(averaged(light, source.emissiveTexture.index, {}, name).colour);
+    emit(source, material);
     const double through = transmission_of(source);
     if (through > 0) let_through(material, through);
     scatter(source, 1 - through, material);
@@ -119,9 +118,23 @@ class MaterialReader {
     return material;
   }
 
+  /// Returns the image by which the emission of a material changes from place to place; null if there is none.
+  std::shared_ptr<const ColourImage> emission_image(const tinygltf::Material& source, const Material& material) {
+    if (material.emission.is_zero()) return nullptr;
+    auto image = colours_of(source.emissiveTexture.index, {});
+    return image && has_equal_texels(*image) ? nullptr : image;
+  }
+  Wrap wrap_s(int texture) const { return wrap_of(sampler_of(texture) ? sampler_of(texture)->wrapS : 0); }
+  Wrap wrap_t(int texture) const { return wrap_of(sampler_of(texture) ? sampler_of(texture)->wrapT : 0); }
+
   void append_warnings() const { images_.append_warnings(warnings_); }
 
  private:
+  const tinygltf::Sampler* sampler_of(int texture) const {
+    const tinygltf::Texture* const found = element(model_.textures, texture);
+    return found ? element(model_.samplers, found->sampler) : nullptr;
+  }
+
   /// The colour and the opacity that a material has in the mean over a texture.
   struct Average {
     Rgb colour;
@@ -165,8 +178,16 @@ class MaterialReader {
       material.reflectance = mean.colour;
       return mean.opacity;
     }
-    const tinygltf::Sampler* const sampler = element(model_.samplers, model_.textures[static_cast<std::size_t>(texture)].sampler);
-    return images_.cover(material, factor, colours, wrap_of(sampler ? sampler->wrapS : 0), wrap_of(sampler ? sampler->wrapT : 0));
+    return images_.cover(material, factor, colours, wrap_s(texture), wrap_t(texture));
+  }
+
+  /// Sets the emission of a material, in the mean over its texture.
+  void emit(const tinygltf::Material& source, Material& material) {
+    const Rgb light = emissive_strength(source) * rgb_of(source.emissiveFactor);
+    const int texture = source.emissiveTexture.index;
+    const auto mean = light.is_zero() || texture < 0 ? std::optional(MeanTexel{}) : mean_of(texture, {});
+    if (!mean) warnings_.push_back(place_of(texture, material.name) + " cannot be read and is left out");
+    material.emission = emission_of_radiance(mean ? light * mean->colour : light);
   }
 
   /// Makes a material translucent as KHR_materials_diffuse_transmission says. `rest` is the share of light that does not go
@@ -240,7 +261,12 @@ GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std:
   for (const tinygltf::Material& source : model.materials) {
     const std::string name = source.name.empty() ? std::to_string(read.materials.size()) : source.name;
     read.texture_maps.push_back(map_of(source.pbrMetallicRoughness.baseColorTexture));
+    read.emission_maps.push_back(map_of(source.emissiveTexture));
     read.materials.push_back(reader.read(source, name));
+    const int texture = source.emissiveTexture.index;
+    if (auto image = reader.emission_image(source, read.materials.back()))
+      read.emission_textures.set(static_cast<std::uint32_t>(read.materials.size() - 1), std::move(image), reader.wrap_s(texture),
+                                 reader.wrap_t(texture));
   }
   reader.append_warnings();
   return read;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "import/formats/emission_textures.h"
 #include "meshing/scene.h"
 
 #include <string>
@@ -37,15 +38,17 @@ struct GltfTextureMap {
 };
 
 struct GltfMaterials {
-  std::vector<Material> materials;           ///< in the order of the model
-  std::vector<GltfTextureMap> texture_maps;  ///< of their textures, by material
+  std::vector<Material> materials;            ///< in the order of the model
+  std::vector<GltfTextureMap> texture_maps;   ///< of their textures, by material
+  std::vector<GltfTextureMap> emission_maps;  ///< of their emissive textures, by material
+  EmissionTextures emission_textures;         ///< those of more than one colour
 };
 
 /// Returns the model's materials. baseColorFactor and its texture become reflectance; emissiveFactor x
 /// KHR_materials_emissive_strength, a radiance, becomes emission. Alpha (BLEND, MASK), by place if a texture has it, and
 /// KHR_materials_transmission let light straight through; KHR_materials_diffuse_transmission scatters it behind the surface.
-/// Textures of emission and of diffuse transmission count by their mean, and so does that of the base colour of clear glass
-/// without holes.
+/// A material's emission is its mean over the emissive texture. Textures of diffuse transmission count by their mean, and so does
+/// that of the base colour of clear glass without holes.
 /// Requires: `model.images` hold encoded bytes.
 GltfMaterials read_gltf_materials(const tinygltf::Model& model, std::vector<std::string>& warnings);
 

@@ -39,25 +39,30 @@ class ObjBuilder {
 
   Scene scene;
 
-  /// Sets where each corner lies on textures. OBJ counts t from the lower edge of images. Faces of which a corner has no texture
-  /// vertex, or one that is not in the file, get the mean of their texture.
+  /// Sets where each corner lies on textures. Faces without texture points get the mean of their texture.
   void place_corners(std::vector<std::string>& warnings) {
     BareMaterials bare;
     scene.texture_points.resize(scene.corners.size());
     for (Face& face : scene.faces) {
       if (!scene.materials[face.material].texture) continue;
-      bool is_whole = true;
-      for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
-        const std::int64_t vertex = texture_vertex_[c];
-        const bool is_there = vertex >= 0 && static_cast<std::size_t>(vertex) < texture_points_.size();
-        is_whole &= is_there;
-        if (!is_there) continue;
-        const TexturePoint point = texture_points_[static_cast<std::size_t>(vertex)];
-        scene.texture_points[c] = {point.s, 1 - point.t};
-      }
-      if (!is_whole) face.material = bare.of(scene, face.material);
+      const std::vector<TexturePoint> points = texture_points_of(face);
+      std::ranges::copy(points, scene.texture_points.begin() + face.first_corner);
+      if (points.empty()) face.material = bare.of(scene, face.material);
     }
     bare.append_warnings(scene, warnings);
+  }
+
+  /// Returns where the corners of a face lie on images; nothing if one has no texture vertex, or one that is not in the file. OBJ
+  /// counts t from the lower edge of images.
+  std::vector<TexturePoint> texture_points_of(const Face& face) const {
+    std::vector<TexturePoint> points;
+    for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
+      const std::int64_t vertex = texture_vertex_[c];
+      if (vertex < 0 || static_cast<std::size_t>(vertex) >= texture_points_.size()) return {};
+      const TexturePoint point = texture_points_[static_cast<std::size_t>(vertex)];
+      points.push_back({point.s, 1 - point.t});
+    }
+    return points;
   }
 
  private:
@@ -155,8 +160,10 @@ SceneFile import_obj(SceneFiles& files) {
   for (const std::string& missing : library.missing()) warnings.push_back("material library '" + missing + "' cannot be read");
   ObjMaterials materials(scene, warnings, library, files);
   materials.fill();
+  materials.place_emission([&](const Face& face) { return builder.texture_points_of(face); });
   builder.place_corners(warnings);
   materials.place_textures();
+  materials.cut_emission();
   return {std::move(scene), std::move(warnings)};
 }
 

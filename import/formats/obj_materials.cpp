@@ -74,6 +74,12 @@ bool lie_alike(const tinyobj::texture_option_t& a, const tinyobj::texture_option
          a.clamp == b.clamp;
 }
 
+/// Returns a point of an image after its options -o and -s.
+TexturePoint moved(TexturePoint point, const tinyobj::texture_option_t& option) {
+  return texture_point(option.scale[0] * point.s + option.origin_offset[0],
+                       1 - (option.scale[1] * (1 - point.t) + option.origin_offset[1]));
+}
+
 double dissolve_of(const tinyobj::material_t& material) { return std::clamp<double>(material.dissolve, 0, 1); }
 
 }  // namespace
@@ -130,18 +136,43 @@ void ObjMaterials::place_textures() {
     if (!found || !scene_.materials[face.material].texture) continue;
     const tinyobj::texture_option_t& option = placing_options(*found);
     for (std::uint32_t c = face.first_corner; c < face.first_corner + face.corner_count; ++c) {
-      TexturePoint& point = scene_.texture_points[c];
-      point = texture_point(option.scale[0] * point.s + option.origin_offset[0],
-                            1 - (option.scale[1] * (1 - point.t) + option.origin_offset[1]));
+      scene_.texture_points[c] = moved(scene_.texture_points[c], option);
     }
+  }
+}
+
+void ObjMaterials::place_emission(const std::function<std::vector<TexturePoint>(const Face&)>& points_of) {
+  for (std::uint32_t f = 0; f < scene_.faces.size(); ++f) {
+    const Face& face = scene_.faces[f];
+    if (!emission_textures_.has(face.material)) continue;
+    std::vector<TexturePoint> points = points_of(face);
+    for (TexturePoint& point : points) point = moved(point, library_.find(scene_.materials[face.material].name)->emissive_texopt);
+    if (!points.empty()) emission_textures_.place(f, std::move(points));
   }
 }
 
 void ObjMaterials::fill(Material& material, const tinyobj::material_t& found) {
   const double opacity = cover(found, material);
-  material.emission = emission_of_radiance(under_texture(rgb_of(found.emission), found.emissive_texname, material));
+  emit(material, found);
   make_translucent(material, diffuse_transmittance_of(found));
   if (opacity < 1) leave(material, opacity);
+}
+
+/// Sets the emission of a material, in the mean over its texture.
+void ObjMaterials::emit(Material& material, const tinyobj::material_t& found) {
+  const std::string& texture = found.emissive_texname;
+  material.emission = emission_of_radiance(rgb_of(found.emission));
+  if (texture.empty() || material.emission.is_zero()) return;
+  const auto mean = mean_texel(bytes_of(texture));
+  if (!mean) {
+    warnings_.push_back(place_of(texture, material) + " cannot be read and is left out");
+    return;
+  }
+  material.emission = mean->colour * material.emission;
+  const auto image = images_.decoded(texture, bytes_of(texture));
+  const Wrap wrap = found.emissive_texopt.clamp ? Wrap::clamp : Wrap::repeat;
+  if (image && !has_equal_texels(*image))
+    emission_textures_.set(static_cast<std::uint32_t>(&material - scene_.materials.data()), image, wrap, wrap);
 }
 
 /// Sets the reflectance of a material and cuts out its holes, by place if it has a texture. Returns the share of the surface that

@@ -3,8 +3,10 @@
 
 #include "import/base/scene_files.h"
 #include "import/formats/colour_images.h"
+#include "import/formats/emission_textures.h"
 #include "import/formats/tiny_obj.h"
 
+#include <functional>
 #include <istream>
 #include <map>
 #include <memory>
@@ -47,9 +49,15 @@ class ObjMaterials {
   /// Moves the texture points of the scene as the options -o and -s of map_Kd say; of map_d where there is no map_Kd. Requires:
   /// all corners have one, or none.
   void place_textures();
+  /// Notes where the faces with emissive textures lie on these. `points_of` returns the texture points of a face's corners, or
+  /// none if they are not known. Requires: all faces have the material that they have in the file.
+  void place_emission(const std::function<std::vector<TexturePoint>(const Face&)>& points_of);
+  /// Cuts the faces whose emission changes from place to place.
+  void cut_emission() { emission_textures_.cut(scene_, warnings_); }
 
  private:
   void fill(Material& material, const tinyobj::material_t& found);
+  void emit(Material& material, const tinyobj::material_t& found);
   const std::string* bytes_of(const std::string& texture);
   Rgb under_texture(const Rgb& factor, const std::string& texture, const Material& material);
   double cover(const tinyobj::material_t& found, Material& material);
@@ -61,6 +69,7 @@ class ObjMaterials {
   const MaterialLibrary& library_;
   SceneFiles& files_;
   ColourImages images_;
+  EmissionTextures emission_textures_;
 };
 
 }  // namespace alvor
