@@ -249,7 +249,7 @@ describe("the page", () => {
     await page.fill("#tolerance", "20");
     await page.setInputFiles("#files", ["room.gltf", ...ROOM_PARTS].map((part) => BLENDER + part));
     await waitForState(page, "Done");
-    expect(await page.locator("#title").textContent()).toBe("room.gltf, 765 faces");
+    expect(await page.locator("#title").textContent()).toBe("room.gltf, 1557 faces");
     expect(await warningsOf(page)).toContain("1 clear material is taken for thin panes, without refraction");
     expect(await lampsOf((await server.api.scenes.listScenes({})).scenes[0].name)).toEqual([Light_Kind.POINT, Light_Kind.SPOT, Light_Kind.DIRECTIONAL]);
     const jpeg = await page.evaluate(async () => {
@@ -282,7 +282,7 @@ describe("the page", () => {
     const session = await page.context().newCDPSession(page);
     const data = { items: [], files: [folder], dragOperationsMask: 1 };
     for (const type of ["dragEnter", "dragOver", "drop"] as const) await session.send("Input.dispatchDragEvent", { type, x: 300, y: 300, data });
-    await page.locator("#title", { hasText: "room.gltf, 765 faces" }).waitFor();
+    await page.locator("#title", { hasText: "room.gltf, 1557 faces" }).waitFor();
     await waitForState(page, "Done");
     await page.close();
     rmSync(folder, { recursive: true });
