@@ -70,12 +70,14 @@ class FaceCutter {
         mean_(image, light_of_texel),
         factor_(ratio(emission, mean_surface(image, light_of_texel).reflectance)) {}
 
-  /// Requires: a point for each corner of the face.
-  void add(std::uint32_t number, std::span<const TexturePoint> points) {
+  /// Adds a face that has an area; returns whether it has. Requires: a point for each corner of the face.
+  bool add(std::uint32_t number, std::span<const TexturePoint> points) {
     const Face& face = scene_.faces[number];
     std::vector<Vec3> polygon;
     for (const std::uint32_t vertex : scene_.corners_of(face)) polygon.push_back(scene_.vertices[vertex]);
-    for (const auto& triangle : clip_ears(polygon, normalized(double_area_vector(polygon)))) {
+    const Vec3 double_area = double_area_vector(polygon);
+    if (!(length(double_area) > 0 && std::isfinite(length(double_area)))) return false;
+    for (const auto& triangle : clip_ears(polygon, normalized(double_area))) {
       std::array<Corner, 3> corners;
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t at = face.first_corner + triangle[c];
@@ -85,6 +87,7 @@ class FaceCutter {
       }
       cells_.push_back(cell(number, corners));
     }
+    return true;
   }
 
   /// Cuts the cells that move most power until little is moved. Returns all of them.
@@ -251,14 +254,16 @@ void EmissionTextures::cut(Scene& scene, std::vector<std::string>& warnings) con
   std::map<std::uint32_t, std::vector<Cell>> cells_of;  // by face
   for (const auto& [material, placed] : placed_of) {
     const auto texture = textures_.find(material);
-    if (texture == textures_.end()) continue;
+    // An emission that is not finite is a fault that is found later.
+    if (texture == textures_.end() || !scene.materials[material].emission.is_finite()) continue;
     FaceCutter cutter(scene, *texture->second.image, texture->second.wrap_s, texture->second.wrap_t,
                       scene.materials[material].emission);
-    for (const std::uint32_t n : placed) cutter.add(faces_[n].face, faces_[n].points);
+    std::ptrdiff_t added = 0;
+    for (const std::uint32_t n : placed) added += cutter.add(faces_[n].face, faces_[n].points);
     std::vector<Cell> cells = cutter.cut();
     const auto faces = std::ranges::count(scene.faces, material, &Face::material);
     const Groups groups = group_by_emission(cells);
-    give_materials(scene, material, groups, static_cast<std::size_t>(faces) == placed.size());
+    give_materials(scene, material, groups, faces == added);
     warnings.push_back("material '" + scene.materials[material].name + "': its emissive texture counts as " +
                        std::to_string(groups.size()) + " even emissions on " + std::to_string(cells.size()) + " triangles");
     for (Cell& cell : cells) cells_of[cell.face].push_back(std::move(cell));
