@@ -38,7 +38,8 @@ void write(const Measurements& measured, const Settings& settings) {
 int main(int count, char** arguments) {
   const Settings settings = read_settings(count, arguments);
   try {
-    write(measure(settings), settings);
+    const Measurements measured = measure(settings);
+    if (!settings.is_trial) write(measured, settings);
   } catch (const std::exception& error) {
     std::cerr << "error_vs_time: " << error.what() << '\n';
     return 1;

@@ -1,5 +1,6 @@
 #include "radiosity/direct/direct_light.h"
 
+#include "radiosity/direct/exact_shadow.h"
 #include "radiosity/direct/quarter_plane.h"
 #include "radiosity/direct/visible_fraction.h"
 #include "radiosity/rays/medium.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 
 namespace alvor {
@@ -34,10 +36,11 @@ template <bool occlusion, bool dimming>
 class ShadowBatch {
  public:
   ShadowBatch(const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers, std::uint64_t seed,
-              RayBudget& budget, std::span<DirectLight> light, bool partial)
+              RayBudget& budget, std::span<DirectLight> light, const ShadowNeeds& needs)
       : scene_(scene),
         medium_{scene.mesh().absorption()},
-        partial_(partial),
+        partial_(needs.partial),
+        blockers_(needs.medium ? nullptr : needs.blockers),
         lights_(lights),
         receivers_(receivers),
         seed_(seed),
@@ -73,6 +76,7 @@ class ShadowBatch {
     std::uint32_t light;
     std::array<double, 4> unblocked;  // by quarter, see LightSource::unblocked
     VisibleFraction fraction;
+    ExactView view;  // if known, no rays are sent
     double mean_unblocked() const { return (unblocked[0] + unblocked[1] + unblocked[2] + unblocked[3]) / 4; }
   };
   struct Sphere {
@@ -115,8 +119,10 @@ class ShadowBatch {
     for (const Lit& lit : lit_) add(lit);
   }
   void trace_looked_at() {
-    std::vector<std::size_t> some(lit_.size());
-    for (std::size_t k = 0; k < some.size(); ++k) some[k] = k;
+    if (blockers_) look_exactly();
+    std::vector<std::size_t> some;
+    for (std::size_t k = 0; k < lit_.size(); ++k)
+      if (lit_[k].view.kind == ExactView::Kind::unknown) some.push_back(k);
     trace(some, 0, 1);
     const std::vector<double> brightness = brightness_of_receivers();
     std::erase_if(some, [&](std::size_t k) {
@@ -125,18 +131,39 @@ class ShadowBatch {
     trace(some, 1, packets_when_mixed);
     for (Lit& lit : lit_) lit.fraction.finish();
   }
+  /// Finds without rays what receivers see of flat lights that few faces may hide.
+  void look_exactly() {
+    ExactShadow shadow(*blockers_);
+    for (Lit& lit : lit_) {
+      const auto polygon = lights_[lit.light]->polygon();
+      if (polygon.empty()) continue;
+      const Receiver& receiver = receivers_[lit.receiver];
+      lit.view = shadow.view(scene_, receiver.shape, receiver.hidden_origins, points_[lit.receiver], polygon);
+      if (lit.view.kind == ExactView::Kind::clear) lit.fraction = VisibleFraction::all();
+    }
+  }
+  /// Returns the mean of a shadowed view over the origins that are not hidden.
+  double mean_of(const Lit& lit) const {
+    const int count = origins_per_patch - std::popcount(receivers_[lit.receiver].hidden_origins);
+    double sum = 0;
+    for (const float seen : lit.view.at_origin) sum += seen;
+    return sum / std::max(1, count);
+  }
   double unblocked(const Lit& lit) const { return lit.mean_unblocked() * lights_[lit.light]->colour().mean(); }
   /// Returns each receiver's irradiance by the first packets, emission units, mean over bands.
   std::vector<double> brightness_of_receivers() {
     std::vector<double> brightness(receivers_.size());
     for (Lit& lit : lit_) {
       lit.fraction.finish();
-      brightness[lit.receiver] += unblocked(lit) * lit.fraction.value();
+      const bool is_shadowed = lit.view.kind == ExactView::Kind::shadowed;
+      brightness[lit.receiver] +=
+          is_shadowed ? mean_of(lit) * lights_[lit.light]->colour().mean() : unblocked(lit) * lit.fraction.value();
     }
     return brightness;
   }
 
   void add(const Lit& lit) const {
+    if (lit.view.kind == ExactView::Kind::shadowed) return add_view(lit);
     DirectLight& light = light_[lit.receiver];
     const RelativeLight& colour = lights_[lit.light]->colour();
     const double mean = lit.mean_unblocked(), visible = mean * lit.fraction.value();
@@ -149,6 +176,17 @@ class ShadowBatch {
       light.at_origin[o] += static_cast<float>(scale * unblocked.at_origin(o) * lit.fraction.value(o));
     light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());
     light.origin_variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.origin_variance());
+  }
+
+  void add_view(const Lit& lit) const {
+    DirectLight& light = light_[lit.receiver];
+    const RelativeLight& colour = lights_[lit.light]->colour();
+    const double mean = mean_of(lit);
+    light.irradiance += mean * colour;
+    for (int o = 0; o < origins_per_patch; ++o) {
+      const bool is_hidden = receivers_[lit.receiver].hidden_origins >> o & 1;
+      light.at_origin[o] += static_cast<float>(colour.mean() * (is_hidden ? mean : lit.view.at_origin[o]));
+    }
   }
 
   void trace(std::span<const std::size_t> lit, std::uint32_t first_round, std::uint32_t rounds) {
@@ -277,6 +315,7 @@ class ShadowBatch {
   const LocalScene& scene_;
   Medium medium_;
   bool partial_;
+  const BlockerTree* blockers_;
   LightSources lights_;
   std::span<const Receiver> receivers_;
   std::uint64_t seed_;
@@ -293,14 +332,14 @@ class ShadowBatch {
 
 /// Calls work(batch) for each batch of receivers, in parallel.
 template <bool occlusion, bool dimming, class Work>
-void in_batches(bool partial, const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers,
+void in_batches(const ShadowNeeds& needs, const LocalScene& scene, LightSources lights, std::span<const Receiver> receivers,
                 std::uint64_t seed, RayBudget& budget, std::span<DirectLight> light, Work&& work) {
   const std::size_t batches = (receivers.size() + receivers_per_batch - 1) / receivers_per_batch;
   tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t batch) {
     if (budget.is_out()) return;
     const std::size_t first = batch * receivers_per_batch, count = std::min(receivers_per_batch, receivers.size() - first);
     work(ShadowBatch<occlusion, dimming>(scene, lights, receivers.subspan(first, count), seed, budget,
-                                         light.subspan(first, count), partial));
+                                         light.subspan(first, count), needs));
   });
 }
 
@@ -308,10 +347,10 @@ void in_batches(bool partial, const LocalScene& scene, LightSources lights, std:
 template <class... Arguments>
 void in_batches_for(ShadowNeeds needs, Arguments&&... arguments) {
   const bool dimming = needs.medium || needs.partial;
-  if (needs.occlusion && dimming) return in_batches<true, true>(needs.partial, arguments...);
-  if (needs.occlusion) return in_batches<true, false>(false, arguments...);
-  if (dimming) return in_batches<false, true>(false, arguments...);
-  in_batches<false, false>(false, arguments...);
+  if (needs.occlusion && dimming) return in_batches<true, true>(needs, arguments...);
+  if (needs.occlusion) return in_batches<true, false>(needs, arguments...);
+  if (dimming) return in_batches<false, true>(needs, arguments...);
+  in_batches<false, false>(needs, arguments...);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 // Light that arrives straight from lights.
 
+#include "radiosity/direct/blocker_tree.h"
 #include "radiosity/direct/light_source.h"
 #include "radiosity/direct/light_tree.h"
 #include "radiosity/rays/local_scene.h"
@@ -32,9 +33,10 @@ struct Receiver {
 
 /// Which effects on the way from light to receiver are computed. An effect that is off takes no time.
 struct ShadowNeeds {
-  bool occlusion = true;  ///< false: nothing stands between any receiver and light, so no rays are sent
-  bool medium = true;     ///< false: the medium is clear
-  bool partial = true;    ///< false: no face lets light straight through, and all of a light is there
+  bool occlusion = true;                  ///< false: nothing stands between any receiver and light, so no rays are sent
+  bool medium = true;                     ///< false: the medium is clear
+  bool partial = true;                    ///< false: no face lets light straight through, and all of a light is there
+  const BlockerTree* blockers = nullptr;  ///< the scene's; null: shadows are found by rays alone
 };
 
 /// Adds to `light` what every one of `lights` brings: its unblocked irradiance (mean over the four quarters of the patch) times

@@ -56,4 +56,9 @@ std::optional<LightExtent> FaceLight::extent() const {
   return extent;
 }
 
+std::span<const Vec3> FaceLight::polygon() const {
+  if (scene_.mesh().material_of(root()).has_cutout()) return {};
+  return scene_.corners(root());
+}
+
 }  // namespace alvor

@@ -19,6 +19,7 @@ class FaceLight final : public LightSource {
   void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const override;
   double sample_scale(double probability) const override;
   std::optional<LightExtent> extent() const override;
+  std::span<const Vec3> polygon() const override;
 
  private:
   const LocalScene& scene_;

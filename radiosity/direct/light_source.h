@@ -77,6 +77,9 @@ class LightSource {
   virtual void aim(const ShadowAim& aim, std::size_t first, std::size_t last) const = 0;
   /// Returns the factor from a weight to irradiance, in multiples of colour(), if the light was chosen with `probability`.
   virtual double sample_scale(double probability) const = 0;
+  /// Returns the corners of a light that is a convex planar polygon of even emission without holes, counter-clockwise as seen
+  /// from its front; none for other lights. Its irradiance is then the form factor to what is visible of it. Local units.
+  virtual std::span<const Vec3> polygon() const { return {}; }
   /// Returns whether a ray that nothing blocks may bring less than its weight for a reason other than a face on its way.
   virtual bool has_partial_rays() const { return false; }
   /// Returns nothing if the light comes from outside of the scene.

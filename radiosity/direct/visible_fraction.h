@@ -23,6 +23,7 @@ struct VisibleFraction {
     VisibleFraction fraction;
     fraction.weight.fill(1);
     fraction.visible.fill(1);
+    fraction.arriving = double(origins_per_patch) * Rgb{1, 1, 1};
     fraction.count(1);
     fraction.finish();
     return fraction;

@@ -20,15 +20,20 @@ constexpr double same_plane = 1e-9;
 constexpr double straight = 1e-9;
 
 /// A polygon as the list of its welded vertices. Empty after it was joined to another.
-using Ring = std::vector<std::uint32_t>;
+using Corners = std::vector<std::uint32_t>;
+struct Ring : Corners {
+  std::uint32_t root = 0;
+};
 
 /// Joins neighbouring coplanar polygons into convex ones.
 class Joining {
  public:
-  explicit Joining(const BaseMesh& mesh) {
-    for (const RootPatch& root : mesh.roots()) {
-      if (root.is_back) continue;
+  Joining(const BaseMesh& mesh, const std::function<bool(std::uint32_t root)>& counts) {
+    for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
+      const RootPatch& root = mesh.roots()[r];
+      if (root.is_back || !counts(r)) continue;
       Ring ring;
+      ring.root = r;
       for (int c = 0; c < root.corner_count; ++c) {
         position_.emplace(root.vertex[c], root.corners[c]);
         ring.push_back(root.vertex[c]);
@@ -78,6 +83,7 @@ class Joining {
     if (dot(normal(a), normal(b)) < 0) return std::nullopt;
     const std::size_t start = static_cast<std::size_t>(std::ranges::find(b, a[c]) - b.begin());
     Ring both;
+    both.root = a.root;
     for (std::size_t k = 0; k < a.size(); ++k) both.push_back(a[(c + 1 + k) % a.size()]);
     for (std::size_t k = 1; k + 1 < b.size(); ++k) both.push_back(b[(start + k) % b.size()]);
     drop_straight_corners(both);
@@ -117,12 +123,21 @@ bool Box::touches(const Box& o) const {
          o.low.z <= high.z;
 }
 
-Blockers::Blockers(const BaseMesh& mesh) {
-  Joining joining(mesh);
+std::vector<JoinedFace> joined_faces(const BaseMesh& mesh, const std::function<bool(std::uint32_t root)>& counts) {
+  Joining joining(mesh, counts);
+  std::vector<JoinedFace> faces;
   for (const Ring& ring : joining.join()) {
-    ConvexPolygon& polygon = polygons_.emplace_back();
-    for (const std::uint32_t v : ring) polygon.add(joining.at(v));
-    boxes_.push_back(Box::of(polygon.corners()));
+    JoinedFace& face = faces.emplace_back();
+    face.root = ring.root;
+    for (const std::uint32_t v : ring) face.corners.push_back(joining.at(v));
+  }
+  return faces;
+}
+
+Blockers::Blockers(const BaseMesh& mesh) {
+  for (const JoinedFace& face : joined_faces(mesh)) {
+    polygons_.emplace_back(face.corners);
+    boxes_.push_back(Box::of(polygons_.back().corners()));
   }
 }
 

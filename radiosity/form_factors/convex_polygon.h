@@ -60,6 +60,15 @@ Plane plane_of(std::span<const Vec3> polygon);
 /// Returns whether no corner turns the wrong way. Requires: planar.
 bool is_convex(std::span<const Vec3> polygon);
 
+/// Returns whether no corner is lower than `slack` under the plane.
+inline bool lies_above(std::span<const Vec3> polygon, const Plane& plane, double slack) {
+  return std::ranges::all_of(polygon, [&](const Vec3& corner) { return plane.height(corner) >= -slack; });
+}
+/// Returns whether no corner is higher than `slack` over the plane.
+inline bool lies_below(std::span<const Vec3> polygon, const Plane& plane, double slack) {
+  return std::ranges::all_of(polygon, [&](const Vec3& corner) { return plane.height(corner) <= slack; });
+}
+
 /// Returns the part of the polygon at heights >= 0 (Sutherland & Hodgman 1974). It has at most one corner more than the polygon.
 ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane);
 

@@ -2,6 +2,7 @@
 
 #include "radiosity/form_factors/form_factor.h"
 #include "radiosity/form_factors/gauss.h"
+#include "radiosity/form_factors/shadow_cone.h"
 
 #include <array>
 #include <cassert>
@@ -15,21 +16,12 @@ namespace {
 // Share of the size of two polygons: a corner closer to a plane than that lies in it. Chosen; half and double give the same
 // solutions (docs/design/constants.md).
 constexpr double flat_slack = 1e-12;
-// Squared sine of the angle between two directions that count as one: flat_slack squared.
-constexpr double no_angle = 1e-24;
 
 double size_of(const ConvexPolygon& a, const ConvexPolygon& b) {
   double size = 0;
   for (const ConvexPolygon* polygon : {&a, &b})
     for (const Vec3& corner : polygon->corners()) size = std::max(size, length(corner - a.corners()[0]));
   return size;
-}
-
-bool lies_above(const ConvexPolygon& polygon, const Plane& plane, double slack) {
-  return std::ranges::all_of(polygon.corners(), [&](const Vec3& corner) { return plane.height(corner) >= -slack; });
-}
-bool lies_below(const ConvexPolygon& polygon, const Plane& plane, double slack) {
-  return std::ranges::all_of(polygon.corners(), [&](const Vec3& corner) { return plane.height(corner) <= slack; });
 }
 
 /// Appends the planes of the convex hull's sides that hold an edge of `edges` and a corner of `corners`, with the hull above
@@ -43,8 +35,9 @@ void add_sides(const ConvexPolygon& edges, const ConvexPolygon& corners, double 
       const double scale = length(across);
       if (scale <= slack * length(along)) continue;
       Plane side{across / scale, dot(across / scale, a)};
-      if (lies_below(edges, side, slack) && lies_below(corners, side, slack)) side = {-side.normal, -side.offset};
-      if (lies_above(edges, side, slack) && lies_above(corners, side, slack)) sides.push_back(side);
+      if (lies_below(edges.corners(), side, slack) && lies_below(corners.corners(), side, slack))
+        side = {-side.normal, -side.offset};
+      if (lies_above(edges.corners(), side, slack) && lies_above(corners.corners(), side, slack)) sides.push_back(side);
     }
   }
 }
@@ -53,62 +46,19 @@ void add_sides(const ConvexPolygon& edges, const ConvexPolygon& corners, double 
 bool does_not_part(const ConvexPolygon& blocker, const ConvexPolygon& from, const ConvexPolygon& to) {
   const Vec3 normal = area_vector(blocker.corners());
   const Plane above{normal, dot(normal, blocker.corners()[0])}, below{-normal, -above.offset};
-  return (lies_above(from, above, 0) && lies_above(to, above, 0)) || (lies_above(from, below, 0) && lies_above(to, below, 0));
+  return (lies_above(from.corners(), above, 0) && lies_above(to.corners(), above, 0)) ||
+         (lies_above(from.corners(), below, 0) && lies_above(to.corners(), below, 0));
 }
 
 /// Returns the part of the polygon above all `sides`; empty if it reaches above one of them by no more than `slack`.
 ConvexPolygon part_inside(const ConvexPolygon& polygon, std::span<const Plane> sides, double slack) {
   ConvexPolygon inside = polygon;
   for (const Plane& side : sides) {
-    if (inside.is_empty() || lies_below(inside, side, slack)) return {};
-    if (!lies_above(inside, side, 0)) inside = part_above(inside, side);
+    if (inside.is_empty() || lies_below(inside.corners(), side, slack)) return {};
+    if (!lies_above(inside.corners(), side, 0)) inside = part_above(inside, side);
   }
   return inside;
 }
-
-/// The shadow of a blocker, seen from a point: the cone of the rays from the point through the blocker.
-class Shadow {
- public:
-  Shadow(Vec3 point, const ConvexPolygon& blocker) {
-    const auto corners = blocker.corners();
-    const double height = dot(area_vector(corners), corners[0] - point);
-    if (height == 0) return;
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      const Vec3 here = corners[c] - point, next = corners[(c + 1) % corners.size()] - point, across = cross(here, next);
-      if (dot(across, across) <= no_angle * dot(here, here) * dot(next, next))
-        continue;  // two corners that rounding put in one place
-      const Vec3 inward = height > 0 ? across : -across;
-      sides_[count_++] = {inward, dot(inward, point)};
-    }
-  }
-
-  bool covers(const ConvexPolygon& piece) const {
-    return count_ > 0 &&
-           std::all_of(sides_.begin(), sides_.begin() + count_, [&](const Plane& side) { return lies_above(piece, side, 0); });
-  }
-
-  /// Appends to `lit` the parts of `piece` that lie outside the cone.
-  void cut_from(const ConvexPolygon& piece, std::vector<ConvexPolygon>& lit) const {
-    if (count_ == 0 || misses(piece)) {
-      lit.push_back(piece);
-      return;
-    }
-    ConvexPolygon rest = piece;
-    for (int s = 0; s < count_ && !rest.is_empty(); ++s) {
-      const Plane outside{-sides_[s].normal, -sides_[s].offset};
-      if (ConvexPolygon cut = part_above(rest, outside); !cut.is_empty()) lit.push_back(cut);
-      rest = part_above(rest, sides_[s]);
-    }
-  }
-
- private:
-  bool misses(const ConvexPolygon& piece) const {
-    return std::any_of(sides_.begin(), sides_.begin() + count_, [&](const Plane& side) { return lies_below(piece, side, 0); });
-  }
-
-  std::array<Plane, ConvexPolygon::capacity> sides_;  // the cone lies above all of these planes
-  int count_ = 0;
-};
 
 /// A triangle of the surface that is integrated over.
 struct Cell {
@@ -136,7 +86,7 @@ std::vector<ConvexPolygon> cut_at_events(const ConvexPolygon& from, const Convex
         const Plane plane{normal, dot(normal, corner)}, other{-plane.normal, -plane.offset};
         next.clear();
         for (const ConvexPolygon& cell : cells) {
-          if (lies_above(cell, plane, slack) || lies_below(cell, plane, slack)) {
+          if (lies_above(cell.corners(), plane, slack) || lies_below(cell.corners(), plane, slack)) {
             next.push_back(cell);
             continue;
           }
@@ -230,7 +180,7 @@ Obstruction::Obstruction(const ConvexPolygon& from, const ConvexPolygon& to, std
   const double slack = flat_slack * size_of(from, to);
   std::vector<Plane> sides{plane_of(from.corners()), plane_of(to.corners())};
   for (const ConvexPolygon* blocker : blockers) {
-    if (lies_below(*blocker, sides[0], slack) || lies_below(*blocker, sides[1], slack)) continue;
+    if (lies_below(blocker->corners(), sides[0], slack) || lies_below(blocker->corners(), sides[1], slack)) continue;
     if (does_not_part(*blocker, from, to)) continue;
     if (sides.size() == 2) {
       add_sides(from, to, slack, sides);
@@ -240,8 +190,9 @@ Obstruction::Obstruction(const ConvexPolygon& from, const ConvexPolygon& to, std
     if (inside.is_empty()) continue;
     parts_.push_back(inside);
     // Both polygons and the blocker are convex, so if no corner sees a corner, no point sees a point.
-    is_total_ =
-        is_total_ || std::ranges::all_of(from.corners(), [&](const Vec3& corner) { return Shadow(corner, inside).covers(to); });
+    is_total_ = is_total_ || std::ranges::all_of(from.corners(), [&](const Vec3& corner) {
+                  return ShadowCone(corner, inside.corners()).covers(to);
+                });
   }
 }
 
@@ -249,7 +200,7 @@ double point_to_visible(Vec3 point, Vec3 normal, const ConvexPolygon& to, std::s
   thread_local std::vector<ConvexPolygon> lit, next;
   lit.assign(1, to);
   for (const ConvexPolygon& blocker : blockers) {
-    const Shadow shadow(point, blocker);
+    const ShadowCone shadow(point, blocker.corners());
     next.clear();
     for (const ConvexPolygon& piece : lit) shadow.cut_from(piece, next);
     lit.swap(next);

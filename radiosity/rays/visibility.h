@@ -52,6 +52,7 @@ struct LocalFrame {
   Vec3 centre;
   double metres_per_unit = 1;
   Vec3 to_local(Vec3 p) const { return (p - centre) / metres_per_unit; }
+  Vec3 to_metres(Vec3 p) const { return centre + metres_per_unit * p; }
 };
 
 /// Embree's scene of all root patches in local coordinates, without the backs of two-sided faces (a hit from behind belongs to

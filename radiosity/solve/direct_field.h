@@ -35,6 +35,9 @@ class DirectField {
   /// Returns the share of the area of faces that light may reach which shows no direct light yet.
   double unlit_fraction() const;
 
+  /// Tells the estimated nRMSE of the pass before, by which add_new() decides how to find shadows: exactly if it is small.
+  /// Without this call, shadows are found by rays.
+  void heed_error(double error_so_far);
   /// Adds direct light to the leaves whose rows are traced. Up to twelve lights reach all of these leaves, one light after the
   /// other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
   /// where the ray budget is out.
@@ -75,6 +78,8 @@ class DirectField {
   std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first
   std::vector<const LightSource*> tree_lights_;  ///< the others
   std::unique_ptr<LightTree> light_tree_;        ///< null if there are no others
+  std::unique_ptr<BlockerTree> blockers_;        ///< null until shadows are exact
+  bool is_exact_ = false;
   bool has_distant_lights_ = false;
   double near_power_ = 0;                 ///< of faces and lamps
   double power_ = 0, waiting_power_ = 0;  ///< of all lights

@@ -75,6 +75,7 @@ class Pass {
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   double squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
+  double misfit_at_origins(NodeIndex row, const LightByLeaf& radiosity) const;
   bool rows_tell_what_is_lost() const;
   Rgb taken_up(const TransportRow& row) const;
 

@@ -158,6 +158,7 @@ class Run {
   /// Traces rows and adds direct light, in the first pass part by part, so that all of the scene soon shows some light. Returns
   /// false if it was stopped.
   bool light() {
+    state_.direct.heed_error(is_.error.total());
     bool is_more = true;
     while (is_more && !must_stop()) {
       is_more = pass_->trace_rows([this] { save_if_due(); }, is_.passes == 0 ? RowsToTrace::a_part : RowsToTrace::all);

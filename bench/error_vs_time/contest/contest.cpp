@@ -30,7 +30,8 @@ TruthSummary summary_of(const Truth& truth) {
 std::string line_of(const MeasuredRun& run) {
   std::string line = run.scene + ' ' + std::string(text(run.contender)) + ' ' + figure(run.setting) + " threads " +
                      std::to_string(run.threads) + " seed " + std::to_string(run.seed) + ": " + plain(run.cpu_s) +
-                     " CPU s, nRMSE " + percent(run.nrmse.value);
+                     " CPU s, nRMSE " + percent(run.nrmse.value) + ", " + std::to_string(run.leaves) + " leaves, " +
+                     std::to_string(run.rays) + " rays";
   if (run.estimated == run.estimated) line += ", estimated " + percent(run.estimated);
   return line + (run.is_done ? "" : ", out of time");
 }
@@ -41,6 +42,7 @@ class Rounds {
       : arena_(arena), settings_(settings), announce_(announce), runs_(runs) {}
 
   void run() {
+    if (settings_.is_trial) return solve_by_tolerance(Contender::alvor, arena_.settings.tolerances, 1);
     for (const int threads : {1, 2}) solve_by_tolerance(Contender::alvor, arena_.settings.tolerances, threads);
     for (const Contender strategy : strategies) solve_by_tolerance(strategy, arena_.settings.strategy_tolerances, 1);
     for (const int cells : arena_.settings.fixed_mesh_cells)

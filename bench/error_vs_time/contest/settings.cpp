@@ -31,6 +31,7 @@ struct Wishes {
   std::vector<std::string> only;
   std::size_t points = 0;
   std::uint64_t truth_paths = 0;
+  std::vector<double> tolerances;
   bool quick = false;
 };
 
@@ -48,7 +49,9 @@ void apply(const Wishes& wishes, Settings& settings) {
   const auto is_unwanted = [&](const SceneSettings& scene) { return std::ranges::count(wishes.only, scene.name) == 0; };
   if (!wishes.only.empty()) std::erase_if(settings.scenes, is_unwanted);
   if (wishes.quick) make_quick(settings);
+  settings.is_trial = !wishes.tolerances.empty();
   for (SceneSettings& scene : settings.scenes) {
+    if (settings.is_trial) scene.tolerances = wishes.tolerances;
     if (wishes.points > 0) scene.truth_points = wishes.points;
     if (wishes.truth_paths > 0) scene.truth_paths = wishes.truth_paths;
   }
@@ -65,6 +68,8 @@ void add_options(CLI::App& app, Settings& settings, Wishes& wishes) {
   app.add_option("--time-limit", settings.time_limit_s, "Seconds that one solve may take (20)")->check(CLI::PositiveNumber);
   app.add_option("--long-run", settings.long_run_s, "Runs of more seconds are not repeated (6)")->check(CLI::PositiveNumber);
   app.add_option("--truth", settings.truth_folder, "Where truths are kept for the next run (out/error_vs_time/truth)");
+  app.add_option("--tolerances", wishes.tolerances, "Only solves by auto at these tolerances on one thread; writes nothing")
+      ->check(CLI::Range(1e-6, 1.0));
   app.add_flag("--quick", wishes.quick, "One seed, few points and paths, no tight tolerances");
 }
 

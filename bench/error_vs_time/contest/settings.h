@@ -27,6 +27,7 @@ struct Settings {
   double fixed_mesh_limit_s = 90;  ///< limit for one run of textbook shooting, which is not repeated
   double long_run_s = 6;           ///< runs that take longer are not repeated with other seeds
   std::uint64_t truth_seed = 20'000;
+  bool is_trial = false;  ///< only solves by auto on one thread, and no page
 };
 
 /// Returns the settings that the command line asks for. Ends the program after --help and on errors.

@@ -1,0 +1,87 @@
+#include "radiosity/direct/exact_shadow.h"
+
+#include "radiosity/form_factors/form_factor.h"
+#include "radiosity/form_factors/shadow_cone.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+// Most parts of a light that a point looks at. Chosen; eight blockers rarely leave more than twenty.
+constexpr std::size_t most_parts = 64;
+// Share of a light that rounding leaves where the edges of two shadows meet: no light may leak into a closed room. Chosen.
+constexpr double rounding = 1e-9;
+// Form factor below which it is worth finding out whether it is rounding.
+constexpr double small = 1e-6;
+
+}  // namespace
+
+bool ExactShadow::begin(const BlockerTree::Flat& patch, const BlockerTree::Flat& light) {
+  normal_ = patch.normal;
+  lamp_ = {light.normal, dot(light.normal, light.corners[0])};
+  above_ = part_above(ConvexPolygon(light.corners), {patch.normal, dot(patch.normal, patch.corners[0])});
+  blockers_.clear();
+  if (above_.is_empty()) return true;
+  tree_.find_between(patch, {above_.corners(), light.normal}, most_blockers, found_);
+  if (!found_.is_complete) return false;
+  clipped_.clear();
+  clipped_.reserve(found_.polygons.size());
+  for (const auto& polygon : found_.polygons) add_part_before_light(polygon);
+  return true;
+}
+
+// A shadow cone goes on behind its blocker and before it. What lies behind the light would therefore darken it.
+void ExactShadow::add_part_before_light(std::span<const Vec3> blocker) {
+  if (lies_above(blocker, lamp_, 0)) {
+    blockers_.push_back(blocker);
+    return;
+  }
+  const ConvexPolygon before = part_above(ConvexPolygon(blocker), lamp_);
+  if (before.is_empty()) return;
+  clipped_.push_back(before);
+  blockers_.push_back(clipped_.back().corners());
+}
+
+std::optional<double> ExactShadow::visible_from(Vec3 point) {
+  if (above_.is_empty() || lamp_.height(point) <= 0) return 0;
+  lit_.assign(1, above_);
+  for (const auto& blocker : blockers_) {
+    const ShadowCone shadow(point, blocker);
+    next_.clear();
+    for (const ConvexPolygon& piece : lit_) shadow.cut_from(piece, next_);
+    lit_.swap(next_);
+    if (lit_.empty()) return 0;
+    if (lit_.size() > most_parts) return std::nullopt;
+  }
+  double sum = 0;
+  for (const ConvexPolygon& piece : lit_) sum += point_to_polygon_above(point, normal_, piece.corners());
+  if (sum < small && sum < rounding * point_to_polygon_above(point, normal_, above_.corners())) return 0;
+  return std::clamp(sum, 0.0, 1.0);
+}
+
+// Points lie above the patch as origins of rays do, so that faces in its plane hide nothing.
+ExactView ExactShadow::view(const LocalScene& scene, const PatchShape& patch, std::uint16_t hidden_origins,
+                            const PatchPoints& origins, std::span<const Vec3> light) {
+  const RootPatch& root = scene.mesh().roots()[patch.root];
+  const Vec3 lift = double(ray_offset) * root.normal;
+  auto corners = corners_of(scene.mesh(), patch);
+  for (Vec3& corner : corners) corner = scene.frame().to_local(corner) + lift;
+  const auto count = static_cast<std::size_t>(patch.corner_count);
+  if (!begin({std::span(corners).first(count), root.normal}, {light, normalized(area_vector(light))})) return {};
+  if (is_clear()) return {ExactView::Kind::clear, {}};
+  ExactView view{ExactView::Kind::shadowed, {}};
+  for (int o = 0; o < origins_per_patch; ++o) {
+    if (hidden_origins >> o & 1) continue;
+    const Uv middle = patch.child(o >> 2).child(o & 3).centre();
+    const Vec3 at = hidden_origins != 0 ? Vec3{origins.x[o], origins.y[o], origins.z[o]}
+                                        : scene.frame().to_local(root.at(middle.u, middle.v)) + lift;
+    const auto seen = visible_from(at);
+    if (!seen) return {};
+    view.at_origin[static_cast<std::size_t>(o)] = static_cast<float>(*seen);
+  }
+  return view;
+}
+
+}  // namespace alvor

@@ -1,0 +1,248 @@
+// Exact shadows of flat lights, beside closed forms and beside shadow rays.
+
+#include "radiosity/direct/exact_shadow.h"
+
+#include "radiosity/direct/direct_light.h"
+#include "radiosity/direct/face_light.h"
+#include "radiosity/form_factors/form_factor.h"
+#include "tests/radiosity/solved.h"
+#include "tests/random/dice.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace alvor {
+namespace {
+
+/// Returns a floor (face 0) of 4 x 4 m at height 0 and a lamp (face 1) of 1 m2 two metres above its middle.
+Scene floor_and_lamp() {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0)};
+  test::add_polygon(scene, {{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}});
+  test::add_polygon(scene, {{-0.5, 2, -0.5}, {0.5, 2, -0.5}, {0.5, 2, 0.5}, {-0.5, 2, 0.5}}, 1);
+  return scene;
+}
+
+/// A root of a mesh looks at another root, past all others.
+class View {
+ public:
+  explicit View(const Scene& scene) : mesh_(scene), local_(mesh_), tree_(local_), shadow_(tree_) {}
+
+  bool begin(std::uint32_t patch, std::uint32_t light) {
+    return shadow_.begin({local_.corners(patch), mesh_.roots()[patch].normal},
+                         {local_.corners(light), mesh_.roots()[light].normal});
+  }
+  double visible_from(Vec3 metres) { return shadow_.visible_from(local_.frame().to_local(metres)).value(); }
+  ExactShadow& shadow() { return shadow_; }
+  const BaseMesh& mesh() const { return mesh_; }
+  const LocalScene& local() const { return local_; }
+
+ private:
+  BaseMesh mesh_;
+  LocalScene local_;
+  BlockerTree tree_;
+  ExactShadow shadow_;
+};
+
+TEST(ExactShadow, IsClearWhereNothingStandsBetween) {
+  Scene scene = floor_and_lamp();
+  test::add_box(scene, {1.5, 0, 1.5}, {1.9, 0.1, 1.9}, false);                 // beside all ways from the near half of the floor
+  test::add_polygon(scene, {{-3, 3, -3}, {3, 3, -3}, {3, 3, 3}, {-3, 3, 3}});  // behind the lamp
+  scene.vertices[2] = {-0.5, 0, 2}, scene.vertices[3] = {-0.5, 0, -2};         // a narrow floor
+  View view(scene);
+  ASSERT_TRUE(view.begin(0, 1));
+  EXPECT_TRUE(view.shadow().is_clear());
+}
+
+TEST(ExactShadow, OfAScreenOverHalfTheLampLeavesTheOtherHalf) {
+  Scene scene = floor_and_lamp();
+  test::add_polygon(scene, {{0, 1.5, -5}, {5, 1.5, -5}, {5, 1.5, 5}, {0, 1.5, 5}});
+  View view(scene);
+  ASSERT_TRUE(view.begin(0, 1));
+  const Vec3 half[] = {{-0.5, 2, -0.5}, {0, 2, -0.5}, {0, 2, 0.5}, {-0.5, 2, 0.5}};
+  EXPECT_NEAR(view.visible_from({0, 0, 0.3}), point_to_polygon({0, 0, 0.3}, {0, 1, 0}, half), 1e-12);
+  EXPECT_EQ(view.visible_from({1.9, 0, 0}), 0);
+}
+
+TEST(ExactShadow, OfASolidIsThatOfItsOutline) {
+  Scene box = floor_and_lamp(), lid = floor_and_lamp();
+  test::add_box(box, {-0.2, 1.0, -0.2}, {0.1, 1.3, 0.3}, false);
+  test::add_polygon(lid, {{-0.2, 1.0, -0.2}, {0.1, 1.0, -0.2}, {0.1, 1.0, 0.3}, {-0.2, 1.0, 0.3}});
+  View by_box(box), by_lid(lid);
+  ASSERT_TRUE(by_box.begin(0, 1) && by_lid.begin(0, 1));
+  // From below the middle of the box only its lower side is seen.
+  EXPECT_NEAR(by_box.visible_from({-0.05, 0, 0.05}), by_lid.visible_from({-0.05, 0, 0.05}), 1e-12);
+  EXPECT_LT(by_box.visible_from({1.5, 0, 0.05}), by_lid.visible_from({1.5, 0, 0.05}));  // from the side, one more
+}
+
+TEST(ExactShadow, OfWhatReachesBehindTheLampIsThatOfThePartBefore) {
+  Scene through = floor_and_lamp(), before = floor_and_lamp();
+  test::add_polygon(through, {{0.2, 1.5, -5}, {0.2, 1.5, 5}, {0.2, 4, 5}, {0.2, 4, -5}});
+  test::add_polygon(before, {{0.2, 1.5, -5}, {0.2, 1.5, 5}, {0.2, 2, 5}, {0.2, 2, -5}});
+  View first(through), second(before);
+  ASSERT_TRUE(first.begin(0, 1) && second.begin(0, 1));
+  EXPECT_NEAR(first.visible_from({-1, 0, 0}), second.visible_from({-1, 0, 0}), 1e-9);
+}
+
+TEST(ExactShadow, IsUnknownBehindAPaneAndBehindManyFaces) {
+  Scene pane = floor_and_lamp(), blades = floor_and_lamp();
+  pane.materials.push_back(test::grey(0, 0));
+  pane.materials.back().regular_transmittance = {0.5, 0.5, 0.5};
+  test::add_polygon(pane, {{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}}, 2);
+  for (int n = 0; n < 20; ++n) {
+    const double x = -0.5 + 0.05 * n;
+    test::add_polygon(blades, {{x, 1, -1}, {x, 1, 1}, {x, 1.2, 1}, {x, 1.2, -1}});
+  }
+  EXPECT_FALSE(View(pane).begin(0, 1));
+  EXPECT_FALSE(View(blades).begin(0, 1));
+}
+
+TEST(ExactShadow, SendsNoRays) {
+  Scene scene = floor_and_lamp();
+  test::add_box(scene, {-0.2, 1.0, -0.2}, {0.1, 1.3, 0.3}, false);
+  const BaseMesh mesh(scene);
+  const LocalScene local(mesh);
+  const BlockerTree tree(local);
+  RayBudget budget([] { return false; });
+  const FaceLight lamp(local, 1, {1, 1, 1});
+  const LightSource* const lights[]{&lamp};
+  const Receiver floor{PatchId::root(0), shape_of(mesh, PatchId::root(0)), 0};
+  DirectLight exact, by_rays;
+  add_direct_light(local, lights, {&floor, 1}, 1, budget, {&exact, 1}, {.medium = false, .partial = false, .blockers = &tree});
+  EXPECT_EQ(budget.rays(), 0u);
+  EXPECT_EQ(exact.variance, 0);
+  add_direct_light(local, lights, {&floor, 1}, 1, budget, {&by_rays, 1}, {.medium = false, .partial = false});
+  EXPECT_NEAR(exact.irradiance.g, by_rays.irradiance.g, 5 * std::sqrt(by_rays.variance));
+}
+
+/// Adds a quad of random place and size, which may be very thin, or touch the planes x = 0 or y = 0.
+void add_random_quad(Scene& scene, test::Dice& dice, std::uint32_t material) {
+  const auto place = [&] { return dice.happens(0.2) ? 0 : dice.between(-1, 1); };
+  const Vec3 at{place(), place(), place()};
+  Vec3 u{dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1)};
+  Vec3 v{dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1)};
+  if (dice.happens(0.5)) u = {dice.magnitude(1e-3, 1), 0, 0}, v = {0, dice.happens(0.5) ? dice.magnitude(1e-3, 1) : 0, 0};
+  if (v == Vec3{}) v = {0, 0, dice.magnitude(1e-3, 1)};
+  test::add_polygon(scene, {at, at + u, at + u + v, at + v}, material);
+}
+
+/// Returns a scene with two patches that look at each other or not, boxes that may cross, touch or hold them, and loose quads.
+Scene random_blockers(test::Dice& dice) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0)};
+  add_random_quad(scene, dice, 0);
+  add_random_quad(scene, dice, 1);
+  for (std::uint32_t n = dice.below(4); n > 0; --n) {
+    const Vec3 low{dice.between(-1, 1), dice.happens(0.3) ? 0 : dice.between(-1, 1), dice.between(-1, 1)};
+    test::add_box(scene, low, low + Vec3{dice.magnitude(1e-2, 1), dice.magnitude(1e-2, 1), dice.magnitude(1e-2, 1)}, false);
+  }
+  for (std::uint32_t n = dice.below(4); n > 0; --n) add_random_quad(scene, dice, 0);
+  return scene;
+}
+
+/// Sets `mean` and `variance` to what `rounds` rays from each point find of root 1.
+void look_by_rays(const LocalScene& scene, const PatchPoints& points, std::uint32_t rounds, std::array<double, 16>& mean,
+                  std::array<double, 16>& variance) {
+  const FaceLight light(scene, 1, {1, 1, 1});
+  std::vector<RayPacket> rays(rounds);
+  std::vector<std::array<float, RayPacket::width>> weights(rounds);
+  std::vector<std::uint16_t> blocked(rounds);
+  RandomStream random(7, PatchId::root(0));
+  for (std::uint32_t n = 0; n < rounds; ++n) {
+    ShadowAim aim{points, scene.root(0).normal, {}, rays[n], weights[n]};
+    for (Uv& at : aim.at) at = {random.next(), random.next()};
+    light.aim(aim, 0, RayPacket::width);
+  }
+  scene.visibility().occlusions(rays, blocked);
+  for (std::size_t o = 0; o < mean.size(); ++o) {
+    double sum = 0, squares = 0;
+    for (std::uint32_t n = 0; n < rounds; ++n) {
+      const double found = (blocked[n] >> o & 1) ? 0 : light.sample_scale(1) * weights[n][o];
+      sum += found, squares += found * found;
+    }
+    mean[o] = sum / rounds;
+    variance[o] = (squares / rounds - mean[o] * mean[o]) / (rounds - 1);
+  }
+}
+
+/// Returns the middles of the strata of root 0, above it as origins of rays are.
+PatchPoints middles_of_strata(const LocalScene& scene) {
+  const RootPatch& root = scene.mesh().roots()[0];
+  PatchPoints points;
+  for (int o = 0; o < origins_per_patch; ++o) {
+    const Uv middle = shape_of(scene.mesh(), PatchId::root(0)).child(o >> 2).child(o & 3).centre();
+    const Vec3 at = scene.frame().to_local(root.at(middle.u, middle.v)) + double(ray_offset) * root.normal;
+    points.x[o] = static_cast<float>(at.x), points.y[o] = static_cast<float>(at.y), points.z[o] = static_cast<float>(at.z);
+  }
+  return points;
+}
+
+/// Returns how many of a root's strata the view and rays from the same points disagree on by more than six standard deviations.
+int disagreements(const LocalScene& scene, const PatchPoints& points, const ExactView& seen, std::uint32_t rounds) {
+  std::array<double, 16> mean, variance;
+  look_by_rays(scene, points, rounds, mean, variance);
+  int count = 0;
+  for (std::size_t o = 0; o < mean.size(); ++o) {
+    // A part that no ray met leaves no variance; six of `rounds` rays might have missed it.
+    const double unseen = variance[o] == 0 ? 6.0 / rounds : 0;
+    count += std::abs(seen.at_origin[o] - mean[o]) > 6 * std::sqrt(variance[o]) + unseen + 1e-5;
+  }
+  return count;
+}
+
+// Close before a light few rays bring most of the irradiance, so that their variance is found too small: many more rays decide.
+TEST(ExactShadow, AgreesWithRaysOnRandomPairs) {
+  test::Dice dice(3);
+  int shadowed = 0;
+  for (int n = 0; n < 5000; ++n) {
+    View view(random_blockers(dice));
+    if (view.mesh().roots().size() < 3 || view.mesh().roots()[1].material != 1) continue;
+    const PatchPoints points = middles_of_strata(view.local());
+    const ExactView seen =
+        view.shadow().view(view.local(), shape_of(view.mesh(), PatchId::root(0)), 0, points, view.local().corners(1));
+    if (seen.kind != ExactView::Kind::shadowed) continue;
+    ++shadowed;
+    for (const float at_origin : seen.at_origin) ASSERT_TRUE(at_origin >= 0 && at_origin <= 1) << "scene " << n;
+    if (disagreements(view.local(), points, seen, 256) == 0) continue;
+    EXPECT_EQ(disagreements(view.local(), points, seen, 1 << 16), 0) << "scene " << n;
+  }
+  EXPECT_GT(shadowed, 700);
+}
+
+/// Returns a room that emits all over with two books in it, black and side by side at a distance of `gap`. Face 9 is the side of
+/// the first that looks at the second, beyond which it stands out by 3 cm, to z = 0.5.
+constexpr double gap = 0.002, thickness = 0.028, edge = 0.47;
+Scene books_in_a_furnace() {
+  Scene scene;
+  scene.materials = {test::grey(1, 0), test::grey(0, 0)};
+  test::add_box(scene, {-1, -1, -1}, {2, 2, 2}, true);
+  const std::array<std::uint32_t, 6> black{1, 1, 1, 1, 1, 1};
+  test::add_box(scene, {0.4, 0.3, 0.3}, {0.42, 0.5, 0.5}, false, black);
+  test::add_box(scene, {0.42 + gap, 0.3, 0.3}, {0.42 + gap + thickness, 0.5, edge}, false, black);
+  return scene;
+}
+
+// A half plane that is parallel to a surface covers (1 - sin a) / 2 of its hemisphere, a being the elevation of its edge from the
+// normal. Before the second book that is the edge of its far side. Four samples in a plane cannot tell this step from a slope.
+TEST(Misfit, OfAStripBesideADarkGapIsFound) {
+  const BaseMesh mesh(books_in_a_furnace());
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    double squares = 0, area = 0;
+    for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 0.003, .seed = seed})) {
+      if (leaf.patch.root_face() != 9) continue;
+      const PatchShape shape = shape_of(mesh, leaf.patch);
+      const Vec3 at = centre_of(mesh, shape);
+      if (at.z < 0.4 || at.y < 0.35 || at.y > 0.45) continue;  // light comes in at the other edges of the gap, too
+      const double d = at.z - edge, height = d < 0 ? gap : gap + thickness;
+      const double expected = (1 + d / std::sqrt(d * d + height * height)) / 2;
+      squares += area_of(mesh, shape) * std::pow(leaf.irradiance.g - expected, 2);
+      area += area_of(mesh, shape);
+    }
+    EXPECT_LT(std::sqrt(squares / area), 0.12) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace alvor
