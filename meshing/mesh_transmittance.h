@@ -20,6 +20,12 @@ class MeshTransmittance {
   /// Returns the share of light, per band, that goes straight on at the point (1-u-v) a + u b + v c of a triangle, from either
   /// side: all of it at a hole, and zero unless the triangle is of a pane.
   Rgb at(std::uint32_t triangle, double u, double v) const;
+  /// Returns whether a ray that meets the back of this triangle is dimmed there: it is of a pane that has no triangles for its
+  /// other side. Holes alone do not make a pane: from behind, one-sided cards are not seen.
+  bool dims_from_behind(std::uint32_t triangle) const {
+    const Material* const material = pane(triangle);
+    return material && !material->two_sided && !material->regular_transmittance.is_zero();
+  }
   /// Returns the share of the surface at that point that is there and not cut out, in [0, 1].
   double opacity_at(std::uint32_t triangle, double u, double v) const;
 

@@ -6,20 +6,32 @@ Stage::Stage(const DisplayMesh& mesh)
     : mesh_(mesh), caster_(mesh.positions, mesh.triangles), radiosity_(mesh), transmittance_(mesh) {}
 
 std::optional<Seen> Stage::look(Vec3 origin, Vec3 direction) const {
-  auto hit = caster_.cast_front(origin, direction);
+  if (transmittance_.has_panes()) return look_through_panes(origin, direction);
+  const auto hit = caster_.cast_front(origin, direction);
   if (!hit) return std::nullopt;
-  Seen seen{hit->triangle, hit->u, hit->v};
+  return Seen{hit->triangle, hit->u, hit->v};
+}
+
+std::optional<Seen> Stage::look_through_panes(Vec3 origin, Vec3 direction) const {
+  std::optional<Seen> last;
+  RgbF tint{1, 1, 1}, before;
   std::vector<std::uint32_t> passed;
   while (passed.size() < TriangleCaster::most_passed) {
-    const Rgb through = transmittance_.at(seen.triangle, seen.u, seen.v);
-    if (through.is_zero()) break;
-    passed.push_back(seen.triangle);
-    hit = caster_.cast_front(origin, direction, passed);
-    if (!hit && radiosity(seen).is_zero()) return std::nullopt;
+    const auto hit = caster_.cast(origin, direction, passed);
     if (!hit) break;
-    seen = {hit->triangle, hit->u, hit->v, seen.tint * narrow(through), radiosity(seen)};
+    passed.push_back(hit->triangle);
+    const Rgb through = transmittance_.at(hit->triangle, hit->u, hit->v);
+    if (dot(area_vector(hit->triangle), direction) < 0) {
+      last = Seen{hit->triangle, hit->u, hit->v, tint, before};
+      if (through.is_zero()) return last;
+      before = radiosity(*last);
+      tint = tint * narrow(through);
+    } else if (transmittance_.dims_from_behind(hit->triangle)) {
+      tint = tint * narrow(through);
+    }
   }
-  return seen;
+  if (last && radiosity(*last).is_zero()) return std::nullopt;
+  return last;
 }
 
 void Stage::glance(const Camera& camera, const std::function<void(const Seen&)>& on_seen) const {

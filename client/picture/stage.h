@@ -27,7 +27,8 @@ class Stage {
   const TriangleCaster& caster() const { return caster_; }
 
   /// Returns the first front side along a ray at a place that lets no light through. If there is none, returns the last pane if
-  /// any of them shines. Back sides are transparent, so that a closed room can be seen from outside.
+  /// any of them shines. Back sides are transparent, so that a closed room can be seen from outside; those of one-sided panes dim
+  /// what lies behind them, as in the solve: a window made as a box is two panes.
   std::optional<Seen> look(Vec3 origin, Vec3 direction) const;
   /// Calls `on_seen` for the points of a coarse picture, the same for any size of the camera's picture: enough for exposure and
   /// scales.
@@ -45,6 +46,7 @@ class Stage {
   double centre_weight(std::uint32_t triangle, Vec3 origin, Vec3 direction) const;
 
  private:
+  std::optional<Seen> look_through_panes(Vec3 origin, Vec3 direction) const;
   Vec3 corner(std::uint32_t triangle, int k) const { return mesh_.positions[mesh_.triangles[triangle][k]]; }
   Vec3 area_vector(std::uint32_t triangle) const;
   RgbF interpolated(const std::vector<RgbF>& values, const Seen& seen) const;

@@ -57,6 +57,29 @@ TEST(Render, PanesAreLookedThroughAndAddTheirOwnLight) {
             (Pixel{srgb_byte(shown.r), srgb_byte(shown.g), srgb_byte(shown.b)}));
 }
 
+// The far side of the window turns its back to the eye.
+TEST(Render, AWindowMadeAsABoxDimsWhatLiesBehindItTwice) {
+  for (const bool two_sided : {false, true}) {
+    DisplayMesh mesh = wall(grey(0.4f));
+    mesh.materials = {{"wall", {}, {0.5, 0.5, 0.5}, false}, {"pane", {}, {}, two_sided, {0.5, 0.25, 1}}};
+    const auto of_wall = static_cast<std::uint32_t>(mesh.triangles.size());
+    const auto dark = [](const Vec3&) { return RgbF{}; };
+    const auto add_front = [&](double z) { add_wall(mesh, {0, 0, z}, {1, 0, 0}, {0, 1, 0}, 1, dark); };
+    const auto add_back = [&](double z) { add_wall(mesh, {0, 0, z}, {0, 1, 0}, {1, 0, 0}, 1, dark); };
+    add_front(0.5);
+    add_back(0.3);
+    if (two_sided) {  // then both sides of both panes have triangles
+      add_back(0.5);
+      add_front(0.3);
+    }
+    mesh.faces = {{{}, 0, of_wall}, {{}, 1, static_cast<std::uint32_t>(mesh.triangles.size()) - of_wall}};
+    const Rgb shown = tone_map({0.25 * 0.4, 0.0625 * 0.4, 0.4});
+    EXPECT_EQ(pixel(render(mesh, fixed(facing_wall())), 32, 34),
+              (Pixel{srgb_byte(shown.r), srgb_byte(shown.g), srgb_byte(shown.b)}))
+        << two_sided;
+  }
+}
+
 // The left half of the card has an opacity, its right half is all there.
 TEST(Render, HolesAreLookedThroughAsTheOpacityOfTheTexelSays) {
   const RgbF behind = grey(0.4f), card{0, 0.1f, 0.3f};
