@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets up the machine, builds everything, proves that what mutexes guard is used under them, runs all tests, those in a browser too, feeds
 # made-up bytes to what reads foreign ones, attacks the server bare and behind nginx, and pulls plugs in containers where it can.
-# The containers mostly wait, so they run beside what comes after CTest; what they say is printed last. Arguments go to CTest.
+# The containers mostly wait, so they run beside what comes after the page's tests; what they say is printed last. Arguments go to CTest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -14,6 +14,8 @@ scripts/build.sh
 scripts/build_page.sh
 step "testing"
 ctest --preset release "$@"
+step "testing the page"
+(cd client/web && npm run --silent test && npm run --silent test:browser)
 
 said=$(mktemp)
 containers=
@@ -29,8 +31,6 @@ step "checking mutexes"
 scripts/thread_safety.sh
 step "feeding made-up bytes"
 scripts/fuzz.sh 20 1
-step "testing the page"
-(cd client/web && npm run --silent test && npm run --silent test:browser)
 step "attacking"
 scripts/hostile.sh
 scripts/hostile.sh --front nginx

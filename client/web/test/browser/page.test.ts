@@ -186,6 +186,7 @@ describe("the page", () => {
     });
     expect(said).toEqual([]);
     await server.api.solves.cancelSolve({ name });
+    await page.unrouteAll({ behavior: "ignoreErrors" }); // an answer may still be held up
     await page.close();
   });
 
