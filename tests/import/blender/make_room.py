@@ -559,4 +559,5 @@ def main():
         render(PICTURE)
 
 
-main()
+if __name__ == "__main__":
+    main()
