@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -26,13 +27,15 @@ struct SurfacePoint {
   friend bool operator==(const SurfacePoint&, const SurfacePoint&) = default;
 };
 
-/// The sum of extrapolated values and normals from the leaves around a smooth vertex.
+/// The sum of extrapolated values, errors and normals from the leaves around a smooth vertex.
 struct CornerSum {
   Rgb irradiance;
   double weight = 0;
+  double squared_errors = 0, leaves = 0;
   Vec3 normal;
 
   Rgb mean() const { return weight > 0 ? irradiance * (1 / weight) : Rgb{}; }
+  double error() const { return leaves > 0 ? std::sqrt(squared_errors / leaves) : 0; }
 };
 
 /// Clamps a linear extrapolation to the range of the neighbourhood, widened by half the range at each end (at a crease it must go
@@ -59,7 +62,8 @@ Vec3 miter(std::span<const Vec3> normals) {
 
 class Triangulation {
  public:
-  Triangulation(const BaseMesh& mesh, std::span<const LeafValue> values) : mesh_(mesh), forest_(mesh), keys_(mesh) {
+  Triangulation(const BaseMesh& mesh, std::span<const LeafValue> values, std::span<const float> errors)
+      : mesh_(mesh), forest_(mesh), keys_(mesh), errors_(errors) {
     forest_.split_down_to(values);
     leaves_.reserve(values.size());
     value_.resize(forest_.node_count());
@@ -115,12 +119,16 @@ class Triangulation {
     return found->second;
   }
 
+  double error_of(std::size_t n) const { return errors_.empty() ? 0 : errors_[n]; }
+
   void gather(std::size_t n) {
     const NodeIndex leaf = leaves_[n];
     const PatchShape shape = forest_.shape(leaf);
     for (const GridPoint& p : outline(shape)) {
       CornerSum& sum = sums_[keys_.smooth(shape.root, p)];
       sum.normal += mesh_.roots()[shape.root].normal;
+      sum.squared_errors += error_of(n) * error_of(n);
+      sum.leaves += 1;
       if (value_[leaf].is_zero()) continue;
       const Vec3 offset = position(shape.root, p) - centre_[leaf];
       const double weight = 1 / dot(offset, offset);
@@ -133,9 +141,10 @@ class Triangulation {
     const PatchShape shape = forest_.shape(leaves_[n]);
     const auto points = outline(shape);
     const NodeIndex behind = forest_.leaf_behind(leaves_[n]);
-    const std::uint32_t centre = add_vertex(
-        shape.root, drawn_centre(shape.root, centre_[leaves_[n]]), mesh_.roots()[shape.root].normal,
-        {value_[leaves_[n]], behind == PatchForest::no_node ? Rgb{} : value_[behind]}, surface_at(shape.root, shape.centre()));
+    const std::uint32_t centre =
+        add_vertex(shape.root, drawn_centre(shape.root, centre_[leaves_[n]]), mesh_.roots()[shape.root].normal,
+                   {value_[leaves_[n]], behind == PatchForest::no_node ? Rgb{} : value_[behind], error_of(n)},
+                   surface_at(shape.root, shape.centre()));
     std::vector<std::uint32_t> ring;
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
@@ -150,7 +159,8 @@ class Triangulation {
     if (added) {
       const CornerSum& sum = sums_[key];
       const Vec3 normal = normalized(sum.normal);
-      found->second = add_vertex(root, drawn_position(root, p, normal), normal, {sum.mean(), irradiance_behind(root, p)}, at);
+      found->second =
+          add_vertex(root, drawn_position(root, p, normal), normal, {sum.mean(), irradiance_behind(root, p), sum.error()}, at);
     }
     return found->second;
   }
@@ -216,11 +226,13 @@ class Triangulation {
     return surface;
   }
 
-  /// The irradiance of both sides of a face at a vertex.
+  /// The irradiance of both sides of a face at a vertex, and the told error of this side's.
   struct BothSides {
     Rgb here, behind;  ///< behind: 0 unless the face is translucent
+    double error = 0;
   };
   std::uint32_t add_vertex(std::uint32_t root, Vec3 position, Vec3 normal, const BothSides& irradiance, const SurfacePoint& at) {
+    if (!errors_.empty()) out_.errors.push_back(static_cast<float>(irradiance.error));
     if (mesh_.has_textures()) out_.texture_points.push_back(at.texture_point);
     out_.positions.push_back(position);
     out_.normals.push_back(normal);
@@ -249,6 +261,7 @@ class Triangulation {
   const BaseMesh& mesh_;
   PatchForest forest_;
   VertexKeys keys_;
+  const std::span<const float> errors_;  // by leaf; empty if none were told
   std::vector<NodeIndex> leaves_;
   const bool has_translucent_ = std::ranges::any_of(mesh_.materials(), &Material::is_translucent);
   std::vector<Rgb> value_;    // by node
@@ -286,6 +299,12 @@ std::vector<const Material*> materials_by_triangle(const DisplayMesh& mesh, Want
 
 }  // namespace
 
+double error_at(const DisplayMesh& mesh, std::uint32_t triangle, double u, double v) {
+  const auto [a, b, c] = mesh.triangles[triangle];
+  const auto squared = [&](std::uint32_t vertex) { return double{mesh.errors[vertex]} * mesh.errors[vertex]; };
+  return std::sqrt(std::max(0.0, (1 - u - v) * squared(a) + u * squared(b) + v * squared(c)));
+}
+
 std::vector<const Material*> panes_of(const DisplayMesh& mesh) {
   return materials_by_triangle(mesh, [](const Material& material) { return material.is_pane(); });
 }
@@ -295,8 +314,8 @@ std::vector<const Material*> textured_of(const DisplayMesh& mesh) {
   return materials_by_triangle(mesh, [](const Material& material) { return material.texture.has_value(); });
 }
 
-DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
-  return Triangulation(mesh, leaves).build();
+DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors) {
+  return Triangulation(mesh, leaves, errors).build();
 }
 
 }  // namespace alvor

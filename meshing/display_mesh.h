@@ -32,6 +32,7 @@ struct DisplayMesh {
   std::vector<RgbF> irradiance;              ///< H, W/m2
   std::vector<RgbF> radiosity;               ///< B = E + rho H + transmitted, W/m2; rho: the material's mean, times the colour
   std::vector<RgbF> transmitted;             ///< tau H of the other side, W/m2; none if no material is translucent
+  std::vector<float> errors;  ///< told error of H: one standard deviation of the mean of the bands, W/m2; none if none were told
   std::vector<TexturePoint> texture_points;  ///< of the vertices; none if no material has a texture
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<FaceTriangles> faces;  ///< whence the triangles come, in their order; none if that is not known
@@ -42,6 +43,10 @@ struct DisplayMesh {
   std::vector<SceneObject> objects;
 };
 
+/// Returns the told error at a point of a triangle, (1 - u - v) of its first vertex, u of its second and v of its third; squares
+/// are interpolated. Requires: !mesh.errors.empty().
+double error_at(const DisplayMesh& mesh, std::uint32_t triangle, double u, double v);
+
 /// Returns the material of each triangle that light goes straight through, null for the others; nothing if there are none, or if
 /// the mesh does not know its faces. The mesh must outlive it.
 std::vector<const Material*> panes_of(const DisplayMesh& mesh);
@@ -51,7 +56,8 @@ std::vector<const Material*> textured_of(const DisplayMesh& mesh);
 /// Triangulates `leaves` (sorted by id, together covering every root of `mesh`), with a vertex at every hanging corner so that no
 /// crack opens. A corner's irradiance is the mean of linear extrapolations from its smooth neighbours, clamped to the range of
 /// their values. Leaves across a crease and leaves of exactly zero irradiance take no part. The two sides of a two-sided face are
-/// drawn 4e-5 of the extent apart, so that a viewer can tell which is in front.
-DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves);
+/// drawn 4e-5 of the extent apart, so that a viewer can tell which is in front. `errors` are the told errors of the leaves, or
+/// none; a corner's is the RMS of those around it.
+DisplayMesh build_display_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors = {});
 
 }  // namespace alvor

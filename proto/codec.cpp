@@ -163,6 +163,8 @@ void encode(const Delta& delta, v1::WatchSolveResponse& message) {
   if (delta.state_hash) message.set_state_hash(*delta.state_hash);
   *message.mutable_leaves() = encode_leaves(delta.values, delta.detail, delta.coding);
   for (const Step& step : delta.steps) *message.add_steps() = encode(step);
+  if (delta.errors) *message.mutable_errors() = encode_errors(*delta.errors);
+  message.set_more_errors(delta.has_more_errors);
 }
 
 std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta) {
@@ -175,6 +177,10 @@ std::optional<Fault> decode(const v1::WatchSolveResponse& message, Delta& delta)
   if (auto fault = decode_leaves(message.leaves(), delta.values)) return Fault{"leaves: " + fault->place, fault->reason};
   if (delta.values.size() > 0) delta.coding = SharedExponent(message.leaves().scale());
   for (const v1::Step& step : message.steps()) delta.steps.push_back(decode(step));
+  delta.has_more_errors = message.more_errors();
+  if (message.has_errors())
+    if (auto fault = decode_errors(message.errors(), delta.errors.emplace()))
+      return Fault{"errors: " + fault->place, fault->reason};
   return std::nullopt;
 }
 

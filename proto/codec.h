@@ -49,7 +49,7 @@ v1::Plan encode(std::span<const PlannedFeature> plan);
 /// Returns the features, without those that this build does not know.
 std::vector<PlannedFeature> decode(const v1::Plan& message);
 
-/// Fills in revisions, patches, irradiance and steps of `message`; leaves its other fields alone.
+/// Fills in revisions, patches, irradiance, errors and steps of `message`; leaves its other fields alone.
 void encode(const Delta& delta, v1::WatchSolveResponse& message);
 /// Sets all fields of `delta` but `next`, which is not sent. Returns a fault if the message contradicts itself; `delta` is then
 /// unspecified.

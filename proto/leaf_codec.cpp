@@ -272,4 +272,27 @@ std::optional<Fault> decode_leaves(const v1::LeafValues& message, std::vector<Le
   return std::nullopt;
 }
 
+v1::LeafErrors encode_errors(const ErrorPage& page) {
+  v1::LeafErrors message;
+  message.set_first_patch(page.first.bits());
+  message.set_scale(page.coding.scale());
+  message.set_count(static_cast<std::uint32_t>(page.codes.size()));
+  message.set_zstd(compressed({page.codes.begin(), page.codes.end()}));
+  return message;
+}
+
+std::optional<Fault> decode_errors(const v1::LeafErrors& message, ErrorPage& page) {
+  page.first = PatchId::from_bits(message.first_patch());
+  if (!page.first.is_valid()) return Fault{"first_patch", std::to_string(message.first_patch()) + " is not a patch"};
+  if (std::abs(message.scale()) > ErrorCoding::farthest_scale) return Fault{"scale", "is not between -200 and 200"};
+  if (message.count() == 0 || message.count() > most_errors_per_frame)
+    return Fault{"count",
+                 std::to_string(message.count()) + " errors, at least 1 and at most " + std::to_string(most_errors_per_frame)};
+  std::string raw(message.count(), '\0');
+  if (!decompress(message.zstd(), raw)) return Fault{"zstd", "is not " + std::to_string(raw.size()) + " bytes compressed"};
+  page.coding = ErrorCoding(message.scale());
+  page.codes.assign(raw.begin(), raw.end());
+  return std::nullopt;
+}
+
 }  // namespace alvor

@@ -1,5 +1,5 @@
-// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Logs that were saved before there
-// were versions begin with the number of their steps, which is never as large as the mark.
+// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Version 3 does not tell errors. Logs
+// that were saved before there were versions begin with the number of their steps, which is never as large as the mark.
 
 #include "solution/solution_log.h"
 
@@ -11,7 +11,7 @@ namespace alvor {
 namespace {
 
 constexpr std::uint64_t mark = 0x676f'6c72'6f76'6c61;  // "alvorlog"
-constexpr std::uint32_t newest_version = 3;
+constexpr std::uint32_t newest_version = 4;
 constexpr std::uint32_t oldest_marked = 3;
 // Version 2 was written before marks were. Version 1, older still, does not have Step::unlit_fraction.
 constexpr std::uint32_t unmarked_versions[] = {2, 1};
@@ -106,6 +106,9 @@ void SolutionLog::save(PlainWriter& out) const {
   out.put_all(leaves_.shown);
   out.put_all(leaves_.display.changed_at);
   out.put_all(leaves_.exact.changed_at);
+  out.put_all(leaves_.error);
+  out.put(std::int32_t{error_coding_.scale()});
+  out.put(errors_revision_);
 }
 
 SolutionLog::SolutionLog(PlainReader& saved) {
@@ -149,12 +152,23 @@ void SolutionLog::load(PlainReader& saved, std::uint32_t version) {
   leaves_.shown = saved.get_all<std::uint32_t>(count, "displayed values");
   leaves_.display.changed_at = saved.get_all<Revision>(count, "revisions");
   leaves_.exact.changed_at = saved.get_all<Revision>(count, "revisions");
+  if (version >= 4) load_errors(saved);
+  else leaves_.error.assign(count, 0);
   check_tiling(leaves_.patch);
   check_revisions(leaves_.display.changed_at, head_);
   check_revisions(leaves_.exact.changed_at, head_);
   for (const RgbF& irradiance : leaves_.irradiance)
     if (!irradiance.is_finite() || irradiance.min() < 0) throw BadBytes("irradiance: is not a finite number >= 0");
   sum_up();
+}
+
+void SolutionLog::load_errors(PlainReader& saved) {
+  leaves_.error = saved.get_all<std::uint8_t>(leaves_.patch.size(), "errors");
+  const auto scale = saved.get<std::int32_t>();
+  if (std::abs(std::int64_t{scale}) > ErrorCoding::farthest_scale) throw BadBytes("scale of errors: cannot be");
+  error_coding_ = ErrorCoding(scale);
+  errors_revision_ = saved.get<std::uint64_t>();
+  if (errors_revision_ > head_) throw BadBytes("revision of errors: beyond the newest");
 }
 
 }  // namespace alvor

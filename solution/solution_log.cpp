@@ -24,7 +24,7 @@ std::size_t blocks_of(std::size_t leaves) { return (leaves + leaves_per_block - 
 
 }  // namespace
 
-void SolutionLog::publish(std::span<const LeafValue> changed, Step step) {
+void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::span<const float> errors) {
   {
     std::scoped_lock hold(lock_);
     assert(head_ < std::numeric_limits<Revision>::max());
@@ -44,6 +44,7 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step) {
         set(places[n], changed[n].irradiance, step.displayed_error, counted_mean);
     if (!is_checked && changed.size() == leaves_.patch.size())
       checked_error_ = step.displayed_error, checked_mean_ = counted_mean;
+    if (!errors.empty()) tell_errors(places, errors);
     step.revision = head_;
     step.step = steps_.size();
     steps_.push_back(step);
@@ -61,6 +62,7 @@ void SolutionLog::split_for(std::span<const LeafValue> changed) {
     next.patch.push_back(patch);
     next.irradiance.push_back(known ? leaves_.irradiance[from] : RgbF{});
     next.shown.push_back(known ? leaves_.shown[from] : 0);
+    next.error.push_back(known ? leaves_.error[from] : 0);
     const auto now = static_cast<Revision>(head_);
     next.display.changed_at.push_back(is_new ? now : leaves_.display.changed_at[from]);
     next.exact.changed_at.push_back(is_new ? now : leaves_.exact.changed_at[from]);
@@ -127,6 +129,13 @@ void SolutionLog::show(std::size_t leaf, std::uint32_t word) {
   note_change(leaves_.display, leaf);
 }
 
+void SolutionLog::tell_errors(std::span<const std::size_t> places, std::span<const float> errors) {
+  assert(errors.size() == places.size());
+  error_coding_ = ErrorCoding::for_errors_up_to(std::ranges::max(errors));
+  for (std::size_t n = 0; n < errors.size(); ++n) leaves_.error[places[n]] = error_coding_.pack(errors[n]);
+  errors_revision_ = head_;
+}
+
 void SolutionLog::note_change(Tier& tier, std::size_t leaf) {
   tier.changed_at[leaf] = tier.newest[leaf / leaves_per_block] = static_cast<Revision>(head_);
 }
@@ -149,12 +158,29 @@ Delta SolutionLog::since(const Cursor& cursor, Detail detail, std::size_t max_va
   delta.from_revision = cursor.base;
   delta.head = head_;
   const bool done = collect(delta, cursor.base, cursor.told, max_values);
-  delta.next = done ? Cursor{.base = goal} : Cursor{cursor.base, goal, delta.values.back().patch.bits()};
+  delta.next = done ? Cursor{.base = goal} : Cursor{cursor.base, goal, delta.values.back().patch.bits(), {}};
+  delta.next.errors = cursor.errors;
   delta.to_revision = done ? goal : cursor.base;
   if (delta.whole()) delta.state_hash = tier(detail).hash.bits();
   delta.steps.assign(steps_.begin() + static_cast<std::ptrdiff_t>(delta.from_revision),
                      steps_.begin() + static_cast<std::ptrdiff_t>(delta.to_revision));
+  if (delta.whole()) collect_errors(cursor.errors, errors_per_page(max_values), delta);
+  delta.has_more_errors = cursor.errors.are_wanted && goal_of(delta.next.errors) > delta.next.errors.base;
   return delta;
+}
+
+void SolutionLog::collect_errors(const ErrorCursor& cursor, std::size_t max_errors, Delta& delta) const {
+  const std::uint64_t goal = goal_of(cursor);
+  if (!cursor.are_wanted || goal <= cursor.base) return;
+  const auto first = std::ranges::upper_bound(leaves_.patch, PatchId::from_bits(cursor.told)) - leaves_.patch.begin();
+  const auto begin = leaves_.error.begin() + first;
+  const std::size_t left = static_cast<std::size_t>(leaves_.error.end() - begin), count = std::min(left, max_errors);
+  const auto last = static_cast<std::size_t>(first) + count - 1;
+  if (count > 0)
+    delta.errors = {
+        leaves_.patch[static_cast<std::size_t>(first)], error_coding_, {begin, begin + static_cast<std::ptrdiff_t>(count)}};
+  delta.next.errors =
+      count == left ? ErrorCursor{true, goal, 0, 0} : ErrorCursor{true, cursor.base, goal, leaves_.patch[last].bits()};
 }
 
 /// Appends changed leaves to `delta`. Returns whether none is left.
@@ -176,6 +202,11 @@ bool SolutionLog::collect(Delta& delta, std::uint64_t base, std::uint64_t told, 
 std::uint64_t SolutionLog::head() const {
   std::scoped_lock hold(lock_);
   return head_;
+}
+
+bool SolutionLog::has_errors_after(const ErrorCursor& cursor) const {
+  std::scoped_lock hold(lock_);
+  return cursor.are_wanted && goal_of(cursor) > cursor.base;
 }
 
 bool SolutionLog::closed() const {

@@ -5,6 +5,7 @@
 #include "solution/plain_bytes.h"
 #include "solution/shared_exponent.h"
 #include "solution/state_hash.h"
+#include "solution/told_error.h"
 
 #include <condition_variable>
 #include <cstddef>
@@ -24,13 +25,26 @@ enum class Detail : std::uint8_t {
   exact,    ///< every change, as float32
 };
 
+/// A reader's position among the told errors of leaves. They are told again for all leaves whenever the solver estimated them, in
+/// rounds of pages like the values.
+struct ErrorCursor {
+  bool are_wanted = false;
+  std::uint64_t base = 0;  ///< the revision whose errors the mirror has; 0: none
+  std::uint64_t goal = 0;  ///< the revision whose errors the current round tells; 0 between rounds
+  std::uint64_t told = 0;  ///< bits of the last id that the current round has told; 0 between rounds
+  friend bool operator==(const ErrorCursor&, const ErrorCursor&) = default;
+};
+
 /// A reader's position in the stream. Changed leaves are sent in rounds, each in the order of patch ids. A round sends all leaves
 /// that changed after `base`; then the mirror is complete up to `goal`, which was the head when the round began.
 struct Cursor {
   std::uint64_t base = 0;  ///< the mirror is complete up to this revision
   std::uint64_t goal = 0;  ///< the goal of the current round; 0 between rounds
   std::uint64_t told = 0;  ///< bits of the last id that the current round has sent; 0 between rounds
+  ErrorCursor errors;
   bool is_inside_round() const { return told != 0; }
+  /// Returns whether a page is missing of values or errors that were begun.
+  bool is_between_pages() const { return told != 0 || errors.told != 0; }
   friend bool operator==(const Cursor&, const Cursor&) = default;
 };
 
@@ -46,11 +60,13 @@ struct Delta {
   Cursor next;                              ///< the position at which the next page starts
   std::vector<LeafValue> values;            ///< ascending, disjoint
   std::vector<Step> steps;                  ///< every step with from_revision < revision <= to_revision
+  std::optional<ErrorPage> errors;          ///< of leaves of the state after this delta; only if whole()
+  bool has_more_errors = false;             ///< errors are left to tell to a mirror that applied the delta
   bool whole() const { return to_revision == head; }
 };
 
 /// Thread-safe: one writer publishes, any number of readers ask. The log keeps the newest value of each leaf and no queue: a slow
-/// reader gets each leaf once, and memory (32 bytes a leaf) depends neither on the number of readers nor on their speed. Each
+/// reader gets each leaf once, and memory (33 bytes a leaf) depends neither on the number of readers nor on their speed. Each
 /// block of leaves knows its newest revision, so that readers skip unchanged blocks.
 class SolutionLog {
  public:
@@ -65,15 +81,18 @@ class SolutionLog {
   /// Makes the next revision. A value for a patch deeper than the log holds splits the ancestor; siblings that this implies, and
   /// that are not in `changed`, inherit the ancestor's value. Fills in `step.revision` and `step.step`. Requires: `changed`
   /// ascends; no patch of it contains another, or a smaller leaf that the log holds; irradiance is finite and not negative.
-  void publish(std::span<const LeafValue> changed, Step step);
+  /// `errors` are the told errors of the patches in `changed` (see ErrorCoding), or nothing if they were not estimated anew.
+  void publish(std::span<const LeafValue> changed, Step step, std::span<const float> errors = {});
   /// Says that no revision will follow. Wakes the listeners.
   void close();
 
   /// Returns at most `max_values` (1 or more) values of the round at `cursor`, or of the next round. Requires: cursor.base <=
-  /// head().
+  /// head(). If the cursor wants errors and the delta is whole(), it holds at most errors_per_page(max_values) of them.
   Delta since(const Cursor& cursor, Detail detail = Detail::exact, std::size_t max_values = unlimited) const;
 
   std::uint64_t head() const;
+  /// Returns whether there are errors that a reader there wants and does not have.
+  bool has_errors_after(const ErrorCursor& cursor) const;
   bool closed() const;
   Step last_step() const;
   std::vector<Step> steps() const;
@@ -101,10 +120,12 @@ class SolutionLog {
     std::vector<PatchId> patch;  ///< ascending
     std::vector<RgbF> irradiance;
     std::vector<std::uint32_t> shown;  ///< displayed values, packed by coding_
+    std::vector<std::uint8_t> error;   ///< told errors, packed by error_coding_; 0 until they are told
     Tier display, exact;
   };
   void load_unmarked(PlainReader& saved);
   void load(PlainReader& saved, std::uint32_t version);
+  void load_errors(PlainReader& saved);
   void split_for(std::span<const LeafValue> changed);
   void make_room_for(std::span<const LeafValue> changed);
   /// Returns whether `irradiance` differs from the held value, or the leaf is new in this revision.
@@ -119,6 +140,9 @@ class SolutionLog {
   LeafValue value(std::size_t leaf, Detail detail) const {
     return {leaves_.patch[leaf], detail == Detail::exact ? leaves_.irradiance[leaf] : coding_.unpack(leaves_.shown[leaf])};
   }
+  void tell_errors(std::span<const std::size_t> places, std::span<const float> errors);
+  void collect_errors(const ErrorCursor& cursor, std::size_t max_errors, Delta& delta) const;
+  std::uint64_t goal_of(const ErrorCursor& cursor) const { return cursor.told != 0 ? cursor.goal : errors_revision_; }
   bool collect(Delta& delta, std::uint64_t base, std::uint64_t told, std::size_t max_values) const;
   void wake_listeners();
 
@@ -127,6 +151,8 @@ class SolutionLog {
   Leaves leaves_;
   SharedExponent coding_{0};
   bool has_coding_ = false;
+  ErrorCoding error_coding_{0};
+  std::uint64_t errors_revision_ = 0;  ///< the newest revision that told errors; 0: none did
   double sum_ = 0;  ///< sum over all leaves of the mean of the bands
   /// At the last look at all leaves, every displayed value was within this error. That still holds while the mean is at least
   /// `checked_mean_`.

@@ -3,6 +3,7 @@
 #include "solution/leaf_merge.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace alvor {
 
@@ -24,6 +25,18 @@ std::optional<std::string> SolutionMirror::apply(const Delta& delta) {
   head_ = delta.head;
   if (delta.state_hash && *delta.state_hash != hash_.bits())
     return "the state at revision " + std::to_string(revision_) + " has another hash than the server's";
+  misses_errors_ = delta.has_more_errors;
+  return delta.errors ? take_errors(*delta.errors) : std::nullopt;
+}
+
+std::optional<std::string> SolutionMirror::take_errors(const ErrorPage& page) {
+  const auto first = std::ranges::lower_bound(patches_, page.first);
+  const auto left = static_cast<std::size_t>(patches_.end() - first);
+  if (!whole() || left == 0 || *first != page.first || page.codes.size() > left)
+    return "it tells errors of leaves that are not there";
+  errors_.resize(patches_.size(), std::numeric_limits<float>::quiet_NaN());
+  std::ranges::transform(page.codes, errors_.begin() + (first - patches_.begin()),
+                         [&](std::uint8_t code) { return page.coding.unpack(code); });
   return std::nullopt;
 }
 
@@ -53,11 +66,13 @@ std::optional<std::string> SolutionMirror::fault_in_patches(const std::vector<Le
 void SolutionMirror::split_for(const std::vector<LeafValue>& values) {
   std::vector<PatchId> patches;
   std::vector<RgbF> irradiance;
+  std::vector<float> errors;
   patches.reserve(patches_.size() + values.size());
   irradiance.reserve(patches_.size() + values.size());
   const auto append = [&](PatchId patch, std::size_t from) {
     patches.push_back(patch);
     irradiance.push_back(from == no_leaf ? RgbF{} : irradiance_[from]);
+    if (!errors_.empty()) errors.push_back(from == no_leaf ? 0 : errors_[from]);
   };
   LeafMerge(
       std::span<const PatchId>(patches_), std::span(values), [&](std::size_t i) { append(patches_[i], i); },
@@ -66,6 +81,7 @@ void SolutionMirror::split_for(const std::vector<LeafValue>& values) {
       .run();
   patches_ = std::move(patches);
   irradiance_ = std::move(irradiance);
+  errors_ = std::move(errors);
   hash_ = {};
   for (std::size_t n = 0; n < patches_.size(); ++n) hash_.add({patches_[n], irradiance_[n]});
 }

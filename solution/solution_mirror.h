@@ -4,6 +4,7 @@
 #include "solution/solution_log.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace alvor {
 class SolutionMirror {
  public:
   /// Applies `delta`, and returns a fault if it cannot be right. If the delta does not fit (a gap, a bad id, a patch coarser than
-  /// held), nothing is changed. If the state after it has another hash than the delta says, the mirror is wrong and must start
-  /// again from nothing.
+  /// held), nothing is changed. If the state after it has another hash than the delta says, or the delta tells errors of leaves
+  /// that are not there, the mirror is wrong and must start again from nothing.
   std::optional<std::string> apply(const Delta& delta);
 
   /// Returns the revision up to which the mirror is complete.
@@ -25,6 +26,10 @@ class SolutionMirror {
   /// Returns all leaves in the order of their ids, with those that splits imply.
   std::vector<LeafValue> leaves() const;
   std::size_t leaf_count() const { return patches_.size(); }
+  /// Returns the told errors of the leaves (see ErrorCoding), by leaf; nothing if none were told. NaN: not told yet.
+  std::span<const float> errors() const { return errors_; }
+  /// Returns whether errors are under way that the mirror does not have.
+  bool misses_errors() const { return misses_errors_; }
   /// Returns every step so far, oldest first.
   const std::vector<Step>& steps() const { return steps_; }
 
@@ -32,9 +37,12 @@ class SolutionMirror {
   std::optional<std::string> fault_in(const Delta& delta) const;
   std::optional<std::string> fault_in_patches(const std::vector<LeafValue>& values) const;
   void split_for(const std::vector<LeafValue>& values);
+  std::optional<std::string> take_errors(const ErrorPage& page);
 
   std::vector<PatchId> patches_;  // ascending
   std::vector<RgbF> irradiance_;
+  std::vector<float> errors_;  // empty until some are told
+  bool misses_errors_ = false;
   StateHash hash_;
   std::vector<Step> steps_;
   std::uint64_t revision_ = 0;

@@ -25,8 +25,8 @@ class BinaryChunk {
     add_view(count * size * sizeof(float), glb::array_buffer);
     for (std::size_t i = 0; i < count; ++i)
       for (const float x : value(i)) append_value(bytes_, x);
-    constexpr const char* types[]{"VEC2", "VEC3", "VEC4"};
-    return add_accessor(count, types[size - 2], glb::float_component);
+    constexpr const char* types[]{"SCALAR", "VEC2", "VEC3", "VEC4"};
+    return add_accessor(count, types[size - 1], glb::float_component);
   }
   std::size_t add_indices(std::span<const std::array<std::uint32_t, 3>> triangles) {
     add_view(triangles.size() * 3 * sizeof(std::uint32_t), glb::element_array_buffer);

@@ -86,6 +86,8 @@ json add_attributes(BinaryChunk& chunk, const DisplayMesh& mesh, const Vec3& ori
   attributes["_RADIOSITY"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.radiosity[i]); });
   if (!mesh.transmitted.empty())
     attributes["_TRANSMITTED"] = chunk.add_vectors(count, [&](std::size_t i) { return float3(mesh.transmitted[i]); });
+  if (!mesh.errors.empty())
+    attributes["_ERROR"] = chunk.add_vectors(count, [&](std::size_t i) { return std::array{mesh.errors[i]}; });
   // glTF defines COLOR_0 as linear: no sRGB encoding here.
   const auto colour = [&](std::size_t i) {
     // Panes are drawn whole or not at all (see unlit_material), so those that are drawn get the colour of the part that is there.
@@ -186,7 +188,7 @@ void append_chunk(std::string& glb, std::uint32_t type, const std::string& bytes
 
 std::string encode_glb(const DisplayMesh& mesh) {
   if (mesh.triangles.empty()) throw SolutionFileError("mesh: has no triangles");
-  const std::size_t vectors = mesh.transmitted.empty() ? 6 : 7;
+  const std::size_t vectors = 6 + std::size_t{!mesh.transmitted.empty()} + std::size_t{!mesh.errors.empty()};
   const std::size_t estimate =
       mesh.positions.size() * vectors * vec3_size + mesh.triangles.size() * vec3_size + mesh.faces.size() * sizeof(FaceTriangles);
   if (estimate > std::numeric_limits<std::uint32_t>::max() - largest_json)

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 namespace alvor {
 namespace {
@@ -128,16 +129,22 @@ Elements elements_of(const json& root, std::string_view binary, std::size_t inde
   return found;
 }
 
+/// Returns the elements of an attribute of the primitive; nothing if there is none.
+std::optional<Elements> attribute(const json& root, std::string_view binary, const char* name, const ElementKind& kind) {
+  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
+  const json& attributes = member(primitive, "attributes", "meshes[0].primitives[0]");
+  if (!attributes.contains(name)) return std::nullopt;
+  return elements_of(root, binary, whole_number(attributes, name, "attributes"), kind);
+}
+
 /// Returns one attribute of the primitive as vectors of T{x, y, z}, moved by `offset`.
 template <class T>
 std::vector<T> read_vectors(const json& root, std::string_view binary, const char* name, const T& offset) {
-  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
-  const json& attributes = member(primitive, "attributes", "meshes[0].primitives[0]");
-  const std::size_t accessor = whole_number(attributes, name, "attributes");
-  const Elements elements = elements_of(root, binary, accessor, {"VEC3", float_component, vec3_size});
-  std::vector<T> vectors(elements.count);
-  for (std::size_t i = 0; i < elements.count; ++i)
-    vectors[i] = offset + T{elements.at<float>(i, 0), elements.at<float>(i, 1), elements.at<float>(i, 2)};
+  const auto elements = attribute(root, binary, name, {"VEC3", float_component, vec3_size});
+  if (!elements) fail("attributes", std::string("no '") + name + "'");
+  std::vector<T> vectors(elements->count);
+  for (std::size_t i = 0; i < elements->count; ++i)
+    vectors[i] = offset + T{elements->at<float>(i, 0), elements->at<float>(i, 1), elements->at<float>(i, 2)};
   return vectors;
 }
 
@@ -146,6 +153,14 @@ std::vector<RgbF> read_vectors_if_there(const json& root, std::string_view binar
   const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
   if (!member(primitive, "attributes", "meshes[0].primitives[0]").contains(name)) return {};
   return read_vectors<RgbF>(root, binary, name, {});
+}
+
+/// Returns one attribute of the primitive as numbers; nothing if there is none.
+std::vector<float> read_numbers_if_there(const json& root, std::string_view binary, const char* name) {
+  std::vector<float> numbers;
+  const auto elements = attribute(root, binary, name, {"SCALAR", float_component, sizeof(float)});
+  for (std::size_t i = 0; elements && i < elements->count; ++i) numbers.push_back(elements->at<float>(i));
+  return numbers;
 }
 
 std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::string_view binary) {
@@ -166,12 +181,10 @@ std::vector<std::array<std::uint32_t, 3>> read_triangles(const json& root, std::
 }
 
 std::vector<TexturePoint> read_texture_points(const json& root, std::string_view binary) {
-  const json& primitive = element(element(root, "meshes", 0), "primitives", 0);
-  const json& attributes = member(primitive, "attributes", "meshes[0].primitives[0]");
-  const std::size_t accessor = whole_number(attributes, "TEXCOORD_0", "attributes");
-  const Elements elements = elements_of(root, binary, accessor, {"VEC2", float_component, 2 * sizeof(float)});
+  const auto elements = attribute(root, binary, "TEXCOORD_0", {"VEC2", float_component, 2 * sizeof(float)});
+  if (!elements) fail("attributes", "no 'TEXCOORD_0'");
   std::vector<TexturePoint> points;
-  for (std::size_t i = 0; i < elements.count; ++i) points.push_back({elements.at<float>(i, 0), elements.at<float>(i, 1)});
+  for (std::size_t i = 0; i < elements->count; ++i) points.push_back({elements->at<float>(i, 0), elements->at<float>(i, 1)});
   return points;
 }
 
@@ -241,6 +254,7 @@ DisplayMesh decode_glb(std::string_view bytes) {
   mesh.irradiance = read_vectors<RgbF>(root, chunks.binary, "_IRRADIANCE", {});
   mesh.radiosity = read_vectors<RgbF>(root, chunks.binary, "_RADIOSITY", {});
   mesh.transmitted = read_vectors_if_there(root, chunks.binary, "_TRANSMITTED");
+  mesh.errors = read_numbers_if_there(root, chunks.binary, "_ERROR");
   mesh.triangles = read_triangles(root, chunks.binary);
   return mesh;
 }

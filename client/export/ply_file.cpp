@@ -22,6 +22,7 @@ constexpr std::string_view vertex_properties =
     "property float irradiance_r\nproperty float irradiance_g\nproperty float irradiance_b\n"
     "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+constexpr std::string_view error_property = "property float error\n";
 constexpr std::string_view face_properties = "property list uchar int vertex_indices\n";
 // The face of the scene on which a triangle lies, the second of two triangles joined into a quad or -1, and the material.
 constexpr std::string_view source_properties = "property int scene_face\nproperty int second_scene_face\nproperty int material\n";
@@ -47,6 +48,7 @@ std::string header(const DisplayMesh& mesh) {
   for (const auto& material : json_of_all(std::span(mesh.materials), longest_header / 4)) comment(material_comment, material);
   for (const auto& object : json_of_all(std::span(mesh.objects), longest_header / 4)) comment(object_comment, object);
   text.append(vertex_element).append(std::to_string(mesh.positions.size())).append("\n").append(vertex_properties);
+  if (!mesh.errors.empty()) text.append(error_property);
   text.append(face_element).append(std::to_string(mesh.triangles.size())).append("\n").append(face_properties);
   if (!mesh.faces.empty()) text.append(source_properties);
   return text.append(last_line);
@@ -144,7 +146,11 @@ std::size_t take_count(std::string_view& text) {
 
 struct Counts {
   std::size_t vertices = 0, faces = 0;
-  bool has_sources = false;
+  bool has_errors = false, has_sources = false;
+
+  std::size_t bytes() const {
+    return vertices * (vertex_size + (has_errors ? sizeof(float) : 0)) + faces * (face_size + (has_sources ? source_size : 0));
+  }
 };
 
 Counts counts_of(std::string_view text) {
@@ -153,6 +159,8 @@ Counts counts_of(std::string_view text) {
   take(text, vertex_element);
   counts.vertices = take_count(text);
   take(text, vertex_properties);
+  counts.has_errors = text.starts_with(error_property);
+  if (counts.has_errors) take(text, error_property);
   take(text, face_element);
   counts.faces = take_count(text);
   take(text, face_properties);
@@ -162,7 +170,8 @@ Counts counts_of(std::string_view text) {
   return counts;
 }
 
-void read_vertices(Reader& reader, std::size_t count, DisplayMesh& mesh) {
+void read_vertices(Reader& reader, const Counts& counts, DisplayMesh& mesh) {
+  const std::size_t count = counts.vertices;
   mesh.positions.resize(count);
   mesh.normals.resize(count);
   mesh.irradiance.resize(count);
@@ -173,6 +182,7 @@ void read_vertices(Reader& reader, std::size_t count, DisplayMesh& mesh) {
     mesh.irradiance[i] = reader.next_rgb();
     mesh.radiosity[i] = reader.next_rgb();
     reader.skip(3);
+    if (counts.has_errors) mesh.errors.push_back(reader.next<float>());
   }
 }
 
@@ -218,13 +228,15 @@ std::string encode_ply(const DisplayMesh& mesh) {
   if (mesh.positions.size() > std::numeric_limits<std::int32_t>::max()) fail("mesh", "has 2^31 vertices or more");
   const double exposure = automatic_exposure(mesh);
   std::string bytes = header(mesh);
-  bytes.reserve(bytes.size() + mesh.positions.size() * vertex_size + mesh.triangles.size() * (face_size + source_size));
+  bytes.reserve(bytes.size() + mesh.positions.size() * (vertex_size + sizeof(float)) +
+                mesh.triangles.size() * (face_size + source_size));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     append_xyz<double>(bytes, mesh.positions[i]);
     append_xyz<float>(bytes, mesh.normals[i]);
     append_rgb(bytes, mesh.irradiance[i]);
     append_rgb(bytes, mesh.radiosity[i]);
     append_colour(bytes, tone_map(exposure * widen(mesh.radiosity[i])));
+    if (!mesh.errors.empty()) append_value(bytes, mesh.errors[i]);
   }
   SourceOfTriangles source(mesh.faces);
   for (const auto& triangle : mesh.triangles) {
@@ -239,9 +251,7 @@ std::string encode_ply(const DisplayMesh& mesh) {
 DisplayMesh decode_ply(std::string_view bytes) {
   Parts parts = parts_of(bytes);
   const Counts counts = counts_of(parts.header);
-  const std::size_t bytes_of_face = face_size + (counts.has_sources ? source_size : 0);
-  if (parts.body.size() != counts.vertices * vertex_size + counts.faces * bytes_of_face)
-    fail("body", "the size is not that of the vertices and faces the header counts");
+  if (parts.body.size() != counts.bytes()) fail("body", "the size is not that of the vertices and faces the header counts");
   DisplayMesh mesh;
   mesh.up = parts.up;
   mesh.quantity = parts.quantity;
@@ -249,7 +259,7 @@ DisplayMesh decode_ply(std::string_view bytes) {
   mesh.materials = std::move(parts.materials);
   mesh.objects = std::move(parts.objects);
   Reader reader(parts.body);
-  read_vertices(reader, counts.vertices, mesh);
+  read_vertices(reader, counts, mesh);
   read_faces(reader, counts, mesh);
   return mesh;
 }

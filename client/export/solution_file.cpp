@@ -33,15 +33,19 @@ bool is_place(const Vec3& p) {
 void check_vertices(const DisplayMesh& mesh) {
   const std::size_t count = mesh.positions.size();
   const bool has_all_points = mesh.texture_points.empty() || mesh.texture_points.size() == count;
+  const bool has_all_errors = mesh.errors.empty() || mesh.errors.size() == count;
   const bool has_all_transmitted = mesh.transmitted.empty() || mesh.transmitted.size() == count;
   if (mesh.normals.size() != count || mesh.irradiance.size() != count || mesh.radiosity.size() != count || !has_all_points ||
-      !has_all_transmitted)
+      !has_all_transmitted || !has_all_errors)
     throw SolutionFileError("vertices: positions, normals and values are not equally many");
   for (std::size_t i = 0; i < count; ++i) {
     const bool values = mesh.irradiance[i].is_finite() && mesh.radiosity[i].is_finite();
     if (!values || !is_place(mesh.positions[i]) || !is_place(mesh.normals[i]))
       throw SolutionFileError("vertex " + std::to_string(i) + ": not finite, or beyond 1e10 m");
   }
+  for (std::size_t i = 0; i < mesh.errors.size(); ++i)
+    if (!(std::isfinite(mesh.errors[i]) && mesh.errors[i] >= 0))
+      throw SolutionFileError("vertex " + std::to_string(i) + ": its error is negative or not finite");
   for (std::size_t i = 0; i < mesh.transmitted.size(); ++i)
     if (!(mesh.transmitted[i].is_finite() && mesh.transmitted[i].min() >= 0))
       throw SolutionFileError("vertex " + std::to_string(i) + ": the light that comes through it is negative or not finite");

@@ -16,9 +16,10 @@ struct SolutionFileError : std::runtime_error {
 };
 
 /// Writes a solution; the extension chooses the format. .glb has float attributes _RADIOSITY and _IRRADIANCE, W/m2, and
-/// _TRANSMITTED if a material is translucent (see DisplayMesh), a tone-mapped COLOR_0 under an unlit material, positions relative
-/// to the node's translation, and a rotated node if the solution is z-up. .ply (binary little endian) has the values as vertex
-/// properties. The file appears whole or not at all. Throws SolutionFileError.
+/// _TRANSMITTED if a material is translucent, _ERROR if errors were told (see DisplayMesh), a tone-mapped COLOR_0 under an unlit
+/// material, positions relative to the node's translation, and a rotated node if the solution is z-up. .ply (binary little
+/// endian) has the values as vertex properties, `error` among them. The file appears whole or not at all. Throws
+/// SolutionFileError.
 void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh);
 
 /// Reads a file that write_solution_file wrote. Throws SolutionFileError, also for any other GLB or PLY.

@@ -7,11 +7,15 @@
 namespace alvor {
 namespace {
 
+double value_at(const Stage& stage, const Seen& seen, const FalseColour& options) {
+  if (options.shown == Shown::error) return stage.error(seen);
+  return value_of(stage.irradiance(seen), options.band, stage.mesh().quantity);
+}
+
 ColourScale scale_for(const Stage& stage, const Camera& camera, const FalseColour& options) {
   if (options.scale) return *options.scale;
   std::vector<double> values;
-  stage.glance(
-      camera, [&](const Seen& seen) { values.push_back(value_of(stage.irradiance(seen), options.band, stage.mesh().quantity)); });
+  stage.glance(camera, [&](const Seen& seen) { values.push_back(value_at(stage, seen, options)); });
   return automatic_scale(std::move(values), options.logarithmic);
 }
 
@@ -23,10 +27,10 @@ void note(std::atomic<bool>& flag) {
 }  // namespace
 
 Colouring::Colouring(const Stage& stage, const Camera& camera, const FalseColour& options)
-    : stage_(stage), band_(options.band), scale_(scale_for(stage, camera, options)) {}
+    : stage_(stage), options_(options), scale_(scale_for(stage, camera, options)) {}
 
 Rgb Colouring::colour(const Seen& seen) const {
-  const double value = value_of(stage_.irradiance(seen), band_, stage_.mesh().quantity);
+  const double value = value_at(stage_, seen, options_);
   if (value < scale_.low) note(below_);
   if (value > scale_.high) note(above_);
   return colour_map(scale_.position(value));

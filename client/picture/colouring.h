@@ -23,7 +23,7 @@ class Colouring {
 
  private:
   const Stage& stage_;
-  Band band_;
+  const FalseColour options_;
   ColourScale scale_;
   mutable std::atomic<bool> below_ = false, above_ = false;
 };

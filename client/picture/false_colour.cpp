@@ -14,9 +14,10 @@ double value_of(const RgbF& bands, Band band, Quantity quantity) {
   return one_number(widen(bands), quantity);
 }
 
-std::vector<std::string> legend_title(Band band, Quantity quantity) {
+std::vector<std::string> legend_title(const FalseColour& options, Quantity quantity) {
   const std::string unit = irradiance_unit(quantity);
-  switch (band) {
+  if (options.shown == Shown::error) return {"error", unit};
+  switch (options.band) {
     case Band::red: return {"red", unit};
     case Band::green: return {"green", unit};
     case Band::blue: return {"blue", unit};

@@ -114,7 +114,7 @@ Image measured_picture(const Stage& stage, const Camera& camera, const RenderOpt
   const auto colour = [&](const Seen& seen) { return colouring.colour(seen); };
   const Image view = picture_of(stage, camera, options, {colour, 0.1});
   if (!options.false_colour->legend) return view;
-  const std::vector<std::string> title = legend_title(options.false_colour->band, stage.mesh().quantity);
+  const std::vector<std::string> title = legend_title(*options.false_colour, stage.mesh().quantity);
   return with_legend(view, {colouring.scale(), title, colouring.values_below(), colouring.values_above()});
 }
 

@@ -42,6 +42,9 @@ class Stage {
   }
   RgbF irradiance(const Seen& seen) const { return interpolated(mesh_.irradiance, seen); }
 
+  /// Returns the told error of the irradiance, W/m2. Requires: !mesh().errors.empty().
+  double error(const Seen& seen) const { return error_at(mesh_, seen.triangle, seen.u, seen.v); }
+
   /// Returns the weight of the triangle's first vertex where the ray meets its plane: 0 on the leaf's outline, 1 at its centre.
   double centre_weight(std::uint32_t triangle, Vec3 origin, Vec3 direction) const;
 

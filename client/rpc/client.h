@@ -94,6 +94,7 @@ class Client {
     std::string epoch;
     SolutionMirror mirror;
     Detail detail = Detail::exact;
+    bool with_errors = true;       ///< ask for the told errors of leaves
     bool is_inside_round = false;  ///< the mirror equals no revision; the next watch starts from nothing
   };
   /// Follows the solve into `watch.mirror` until it has ended, and returns it. Acknowledges each frame before `on_frame` is

@@ -12,12 +12,13 @@ namespace {
 
 v1::WatchSolveRequest request_for(const std::string& name, Client::Watch& watch) {
   // A mirror in the middle of a round is thrown away: a restarted server may continue from an earlier revision.
-  if (watch.is_inside_round) watch = {.detail = watch.detail};
+  if (watch.is_inside_round) watch = {.detail = watch.detail, .with_errors = watch.with_errors};
   v1::WatchSolveRequest request;
   request.set_name(name);
   request.set_epoch(watch.epoch);
   request.set_base_revision(watch.mirror.revision());
   request.set_detail(encode(watch.detail));
+  request.set_with_errors(watch.with_errors);
   return request;
 }
 

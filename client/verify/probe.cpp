@@ -41,18 +41,20 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 ProbeSample on_nearest_surface(const DisplayMesh& mesh, const TriangleCaster& caster, const MeshRadiosity& radiosity,
                                const ProbePoint& asked) {
-  ProbeSample sample{asked.point, asked.normal, not_a_value, not_a_value, std::numeric_limits<double>::infinity(), nan};
+  ProbeSample sample{asked.point, asked.normal, not_a_value, not_a_value, std::numeric_limits<double>::infinity(), nan, nan};
   const auto hit = caster.nearest(asked.point, normalized(asked.normal));
   if (!hit) return sample;
   sample.distance = hit->distance;
   sample.irradiance = interpolated(mesh, mesh.irradiance, *hit);
   sample.radiosity = narrow(radiosity.at(hit->triangle, hit->u, hit->v));
+  if (!mesh.errors.empty()) sample.error = error_at(mesh, hit->triangle, hit->u, hit->v);
   return sample;
 }
 
 /// Replaces a sample's values from the nearest surface by the light gathered at the point itself.
 void gather_at(ProbeSample& sample, const Gatherer& gatherer, std::uint64_t stream) {
   sample.irradiance = sample.radiosity = not_a_value;
+  sample.error = nan;
   const auto gathered = gatherer.gather(sample.point, normalized(sample.normal), stream);
   sample.place = gathered ? ProbePlace::in_air : ProbePlace::enclosed;
   if (!gathered) return;
@@ -165,11 +167,11 @@ std::vector<ProbePoint> parse_points(std::string_view text, const std::string& n
 std::string samples_csv(std::span<const ProbeSample> samples) {
   std::string text =
       "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b,"
-      "distance,standard_error\n";
+      "distance,standard_error,irradiance_error\n";
   for (const ProbeSample& s : samples) {
     append_numbers(text, {s.point.x, s.point.y, s.point.z, s.normal.x, s.normal.y, s.normal.z});
     append_numbers(text, {s.irradiance.r, s.irradiance.g, s.irradiance.b, s.radiosity.r, s.radiosity.g, s.radiosity.b});
-    append_numbers(text, {s.distance, s.standard_error});
+    append_numbers(text, {s.distance, s.standard_error, s.error});
     text.back() = '\n';
   }
   return text;

@@ -30,6 +30,7 @@ struct ProbeSample {
   RgbF irradiance, radiosity;  ///< no radiosity in air; neither if enclosed
   double distance = 0;         ///< to the nearest surface that faces the same way, metres; infinite if there is none
   double standard_error = 0;   ///< standard error of the bands' mean gathered in air, W/m2; else NaN
+  double error = 0;            ///< told error of the irradiance on a surface (DisplayMesh::errors), W/m2; NaN if none is told
   ProbePlace place = ProbePlace::on_surface;
 };
 

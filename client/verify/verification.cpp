@@ -54,6 +54,21 @@ Standing standing_of(const PathTracer& tracer, const VerifiedPoint& point, PathR
   return point.solution.is_zero() ? Standing::dark : Standing::counts;
 }
 
+std::optional<ToldErrors> told_errors_of(const Verification& verification) {
+  double count = 0, squares = 0, within_one = 0, within_two = 0;
+  for (const VerifiedPoint& point : verification.points) {
+    if (point.standing != Standing::counts) continue;
+    if (std::isnan(point.told)) return std::nullopt;
+    const double told = std::sqrt(point.told * point.told + point.truth.variance_of_band_mean());
+    count += 1;
+    squares += point.told * point.told;
+    within_one += std::abs(point.error()) <= told;
+    within_two += std::abs(point.error()) <= 2 * told;
+  }
+  if (!(verification.errors.mean_truth > 0)) return std::nullopt;
+  return ToldErrors{std::sqrt(squares / count) / verification.errors.mean_truth, within_one / count, within_two / count};
+}
+
 void sum_up(Verification& verification) {
   std::vector<ComparedPoint> compared;
   for (const VerifiedPoint& point : verification.points) {
@@ -64,6 +79,7 @@ void sum_up(Verification& verification) {
     if (point.standing == Standing::counts) compared.push_back(point.compared());
   }
   verification.errors = error_statistics(compared);
+  verification.told = told_errors_of(verification);
 }
 
 void append_numbers(std::string& text, std::initializer_list<double> numbers) {
@@ -87,7 +103,7 @@ Verification verify(const Scene& scene, const DisplayMesh& solution, const Verif
   const std::vector<IrradianceEstimate> truths = trace_irradiance(tracer, points, options.trace);
   Verification verification;
   for (std::size_t n = 0; n < points.size(); ++n) {
-    VerifiedPoint point{points[n], truths[n], widen(samples[n].irradiance)};
+    VerifiedPoint point{points[n], truths[n], widen(samples[n].irradiance), samples[n].error};
     point.standing = standing_of(tracer, point, PathRandom(options.trace.seed, n, look_around_stream));
     verification.points.push_back(point);
   }
@@ -107,12 +123,12 @@ std::vector<VerifiedPoint> worst_points(const Verification& verification, std::s
 std::string verified_csv(std::span<const VerifiedPoint> points) {
   std::string text =
       "x,y,z,nx,ny,nz,truth_r,truth_g,truth_b,standard_error_r,standard_error_g,standard_error_b,solution_r,solution_g,"
-      "solution_b\n";
+      "solution_b,told_error\n";
   for (const VerifiedPoint& p : points) {
     const Rgb mean = p.truth.mean(), variance = p.truth.variance();
     append_numbers(text, {p.at.position.x, p.at.position.y, p.at.position.z, p.at.normal.x, p.at.normal.y, p.at.normal.z});
     append_numbers(text, {mean.r, mean.g, mean.b, std::sqrt(variance.r), std::sqrt(variance.g), std::sqrt(variance.b)});
-    append_numbers(text, {p.solution.r, p.solution.g, p.solution.b});
+    append_numbers(text, {p.solution.r, p.solution.g, p.solution.b, p.told});
     text.back() = '\n';
   }
   return text;

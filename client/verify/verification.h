@@ -5,6 +5,7 @@
 #include "client/verify/irradiance_estimate.h"
 #include "meshing/display_mesh.h"
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ enum class Standing { counts, hidden, dark };
 struct VerifiedPoint {
   SurfacePoint at;
   IrradianceEstimate truth;
-  Rgb solution;  ///< irradiance, W/m2
+  Rgb solution;     ///< irradiance, W/m2
+  double told = 0;  ///< told error of its mean over the bands (DisplayMesh::errors), W/m2; NaN if none is told
   Standing standing = Standing::counts;
 
   ComparedPoint compared() const { return {solution.mean(), truth.mean().mean(), truth.variance_of_band_mean()}; }
@@ -34,6 +36,12 @@ struct VerifiedPoint {
   double certain_error() const;
 };
 
+/// How the errors that a solution tells of itself compare with the truth. The truth's own noise is added to them.
+struct ToldErrors {
+  double nrmse = 0;                       ///< RMS of the told errors over the mean of the true irradiance
+  double within_one = 0, within_two = 0;  ///< share of the points whose error is within so many told errors
+};
+
 struct Verification {
   std::vector<VerifiedPoint> points;  ///< all points that were drawn
   std::size_t hidden = 0;             ///< points under or inside a solid, see PathTracer::is_enclosed
@@ -41,6 +49,7 @@ struct Verification {
   std::size_t dark = 0;               ///< points not hidden where neither paths nor solution have light
   std::uint64_t paths = 0;            ///< paths per point
   ErrorStatistics errors;             ///< over the points that count, neither hidden nor dark
+  std::optional<ToldErrors> told;     ///< over the same points, if the solution tells errors
 };
 
 /// Thrown where a solution cannot belong to the scene. what() is one line, without the file's name.
@@ -55,7 +64,8 @@ Verification verify(const Scene& scene, const DisplayMesh& solution, const Verif
 /// Returns the points with the largest certain error, worst first, of those that count.
 std::vector<VerifiedPoint> worst_points(const Verification& verification, std::size_t count);
 
-/// Returns a CSV text with a header and one line per point: x,y,z,nx,ny,nz,truth_r..b,standard_error_r..b,solution_r..b; W/m2.
+/// Returns a CSV text with a header and one line per point: x,y,z,nx,ny,nz,truth_r..b,standard_error_r..b,solution_r..b,
+/// told_error; W/m2.
 std::string verified_csv(std::span<const VerifiedPoint> points);
 
 }  // namespace alvor

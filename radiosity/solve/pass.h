@@ -44,6 +44,11 @@ class Pass {
   /// Takes the first three steps at once, for callers who do not show what comes in between.
   Exchange& prepare();
 
+  /// Returns the estimated error of each leaf, in the order of SolveState::leaf_values(): one standard deviation of the mean of
+  /// the bands of the irradiance, W/m2. The squares of the local parts of `error`, the estimate, add up over the area to those of
+  /// the leaves; `unshot` and `balance` count as shares of each leaf's irradiance. Nothing before estimate() and after refine().
+  std::vector<float> leaf_errors(const ErrorEstimate& error) const;
+
   // Between begin_exchange() and refine():
 
   Exchange& exchange() { return *exchange_; }
@@ -71,6 +76,7 @@ class Pass {
   bool trace(std::span<const NodeIndex> rows);
   void estimate_rows(ErrorEstimate& error);
   double estimate_leaves(ErrorEstimate& error);
+  void tell_leaves(double share_of_interpolation);
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   double squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const;
@@ -84,6 +90,8 @@ class Pass {
   std::optional<PassSystem> system_;
   std::unique_ptr<Exchange> exchange_;
   std::vector<Candidate> candidates_;
+  std::vector<double> row_squares_;   ///< by patch: mean square error of the rows, emission units squared
+  std::vector<double> leaf_squares_;  ///< by place of the leaf, with the row's part
 };
 
 }  // namespace alvor

@@ -48,6 +48,10 @@ bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Ki
 
 double squared(double x) { return x * x; }
 
+/// Returns by what errors are multiplied that were told as at least 0 each, so that they add up to the sum of errors of either
+/// sign.
+double share_of(double sum, double told) { return told > 0 ? std::max(0.0, sum) / told : 0; }
+
 /// Some leaves of a forest, each with its neighbours, and their centres and values, by node.
 struct Field {
   const PatchForest& forest;
@@ -156,24 +160,32 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   std::vector<double> errors(patches.size());
   tbb::parallel_for(std::size_t{0}, patches.size(),
                     [&](std::size_t p) { errors[p] = patches[p].area * misfit_at_origins(system_->rows()[p], leaving); });
+  row_squares_.resize(patches.size());
+  double told_misfit = 0;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const NodeIndex node = system_->rows()[p];
     const TransportRow& row = state_.rows[node];
     const FieldFit& fit = state_.field.fit(node);
     const double area = patches[p].area, noise = area * fit.variance;
     error.misfit += area * fit.squared_misfit;
+    row_squares_[p] = std::max(0.0, fit.squared_misfit);
     errors[p] = std::max(errors[p], area * misfit_at_centre * fit.window_misfit);
     if (row.crosses_contact()) {
       const RelativeLight direct = state_.direct[system_->leaves_of(p).front()].irradiance;
       const double by_contact = area * squared(contact_error * (state_.field.irradiance(node) + direct).mean());
       errors[p] += by_contact;
       error.misfit += by_contact;
+      row_squares_[p] += by_contact / area;
     }
+    told_misfit += area * row_squares_[p];
     error.sampling += noise;
     const double rays = row.ray_count();
     if (noise > 0 && rays < most_rays_per_row)
       candidates_.push_back({Candidate::Kind::add_rays, node, noise * rays_per_row / (rays + rays_per_row), rays_per_row});
   }
+  const double share = share_of(error.misfit, told_misfit);
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    row_squares_[p] = share * row_squares_[p] + state_.field.fit(system_->rows()[p]).variance;
   add_candidates(Candidate::Kind::split_row, system_->rows(), errors, rays_per_row_split);
 }
 
@@ -219,14 +231,43 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
     const double contrast = squared_contrast(leaf, irradiance[leaf], slope[leaf]);
     errors[n] = forests.leaf_area(leaf) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
   });
+  leaf_squares_.resize(leaves.size());
+  double told_interpolation = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     const double noise = noise_in_display * forests.leaf_area(leaves[n]) * state_.direct[leaves[n]].variance;
     error.interpolation += unseen_detail * errors[n];
     error.sampling += noise;
+    leaf_squares_[n] = unseen_detail * std::max(0.0, errors[n]);
+    told_interpolation += leaf_squares_[n];
     errors[n] = std::max(0.0, errors[n]) + noise;
   }
+  tell_leaves(share_of(error.interpolation, told_interpolation));
   add_candidates(Candidate::Kind::split_leaf, leaves, errors, rays_per_leaf_split);
   return power;
+}
+
+/// Turns `leaf_squares_`, which holds the interpolation's part integrated over each leaf, into mean squares of all local parts.
+void Pass::tell_leaves(double share_of_interpolation) {
+  const auto patches = system_->patches();
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t n = patches[p].first_leaf; n < patches[p].first_leaf + patches[p].leaf_count; ++n) {
+      const NodeIndex leaf = system_->leaves()[n];
+      leaf_squares_[n] = share_of_interpolation * leaf_squares_[n] / state_.forests.leaf_area(leaf) +
+                         noise_in_display * state_.direct[leaf].variance + row_squares_[p];
+    }
+}
+
+std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
+  if (stage_ != Stage::estimated) return {};
+  const double of_all = squared(error.unshot) + squared(error.balance);
+  std::vector<float> errors(leaf_squares_.size());
+  tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t n) {
+    const NodeIndex leaf = system_->leaves()[n];
+    const RelativeLight irradiance = state_.direct[leaf].irradiance + state_.indirect(leaf);
+    const double told = std::sqrt(leaf_squares_[n] + of_all * squared(irradiance.mean()));
+    errors[n] = static_cast<float>(std::min(state_.in_watts_per_m2({told, told, told}).r, 1e37));
+  });
+  return errors;
 }
 
 ErrorEstimate Pass::estimate() {

@@ -227,7 +227,7 @@ class Run {
     step.unlit_fraction = state_.direct.unlit_fraction();
     step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
     if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
-    log_.publish(state_.leaf_values(), step);
+    log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return must_stop(); });

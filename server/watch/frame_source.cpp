@@ -12,7 +12,7 @@ FrameSource::FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, 
     : solve_(std::move(solve)), log_(solve_->log()), epoch_(std::move(epoch)), max_leaves_(max_leaves) {}
 
 bool FrameSource::has_news(const Cursor& cursor) const {
-  return cursor.is_inside_round() || log_->head() > cursor.base || solve_->ended();
+  return cursor.is_inside_round() || log_->head() > cursor.base || log_->has_errors_after(cursor.errors) || solve_->ended();
 }
 
 std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Detail detail) {
@@ -23,8 +23,7 @@ std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Deta
   for (const auto& weak : recent_) {
     const auto frame = weak.lock();
     if (!frame || frame->from != cursor || frame->detail != detail || frame->head != head) continue;
-    const bool is_whole = frame->to_revision == frame->head;
-    if (frame->last == (ended && is_whole)) return frame;
+    if (frame->last == (ended && frame->is_complete)) return frame;
   }
   auto frame = encode_frame(cursor, detail, ended);
   recent_[oldest_++ % recent_.size()] = frame;
@@ -36,11 +35,11 @@ std::shared_ptr<const Frame> FrameSource::encode_frame(const Cursor& cursor, Det
   v1::WatchSolveResponse message;
   message.set_epoch(epoch_);
   encode(delta, message);
-  const bool last = ended && delta.whole();
+  const bool is_complete = delta.whole() && !delta.has_more_errors, last = ended && is_complete;
   message.set_ended(last);
   if (last) *message.mutable_solve() = encode(solve_->describe());
-  return std::make_shared<const Frame>(
-      Frame{grpc::Slice(message.SerializeAsString()), detail, cursor, delta.next, delta.to_revision, delta.head, last});
+  return std::make_shared<const Frame>(Frame{grpc::Slice(message.SerializeAsString()), detail, cursor, delta.next,
+                                             delta.to_revision, delta.head, is_complete, last});
 }
 
 std::shared_ptr<const Frame> FrameSource::closing_frame(const Cursor& cursor, const v1::Closing& closing) const {

@@ -20,7 +20,8 @@ struct Frame {
   Cursor from, next;
   std::uint64_t to_revision = 0;
   std::uint64_t head = 0;
-  bool last = false;  ///< the frame's `ended` is set
+  bool is_complete = false;  ///< nothing that the watcher wants is left at `head`
+  bool last = false;         ///< the frame's `ended` is set
 };
 
 /// Encodes the frames of one solve and shares them between watchers. Thread-safe.

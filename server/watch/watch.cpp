@@ -69,7 +69,7 @@ void Watch::send(Clock::time_point now) {
   sent_revision_ = frame->to_revision;
   const std::chrono::duration<double> by_bytes(static_cast<double>(frame->bytes.size()) / plan_.max_bytes_per_s);
   // The pages of a round are sent without a pause, because a mirror between revisions is of little use.
-  const auto by_rate = frame->next.is_inside_round() ? Clock::duration::zero() : plan_.min_interval;
+  const auto by_rate = frame->next.is_between_pages() ? Clock::duration::zero() : plan_.min_interval;
   next_frame_ = now + std::max(by_rate, std::chrono::duration_cast<Clock::duration>(by_bytes));
   if (frame->last) end_ = grpc::Status::OK;
   write(std::move(frame), now);

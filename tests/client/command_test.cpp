@@ -201,8 +201,8 @@ TEST_F(Command, RenderOptionsThatCannotBeMeantAreUsageErrors) {
   ASSERT_EQ(run("solve " + cornell_box + quick + " -o room.glb").status, 0);
   for (const std::string option :
        {"--false-colour --range 3,1", "--false-colour --range 3", "--false-colour --range 0,1 --log-scale",
-        "--false-colour --band x", "--false-colour --exposure 1", "--band r", "--range 0,1", "--log-scale", "--ambient",
-        "--eye 1,2,3 --target 1,2,3"}) {
+        "--false-colour --band x", "--false-colour --exposure 1", "--false-colour --show error", "--show error --exposure 1",
+        "--show noise", "--band r", "--range 0,1", "--log-scale", "--ambient", "--eye 1,2,3 --target 1,2,3"}) {
     const Ran ran = run("render room.glb -o room.png " + option);
     EXPECT_EQ(ran.status, 2) << option;
     EXPECT_EQ(line_count(ran.err), 1) << ran.err;
@@ -218,6 +218,16 @@ TEST_F(Command, RenderOfASolveWithoutAServerAsksForOne) {
 
 TEST_F(Command, RenderOfASolveOnAnUnreachableServerHasItsOwnStatus) {
   EXPECT_EQ(run("render scenes/a/solves/b -o room.png --server 127.0.0.1:1").status, 4);
+}
+
+TEST_F(Command, ErrorsAreDrawnWhereTheSolutionTellsThem) {
+  ASSERT_EQ(run("solve " + cornell_box + quick + " -o room.glb").status, 0);
+  const std::string size = " --width 240 --height 180";
+  ASSERT_EQ(run("render room.glb -o error.png --show error --log-scale" + size).status, 0);
+  ASSERT_EQ(run("render room.glb -o light.png --show irradiance" + size).status, 0);
+  ASSERT_EQ(run("render room.glb -o colour.png --false-colour" + size).status, 0);
+  EXPECT_EQ(text_of(file("light.png")), text_of(file("colour.png")));
+  EXPECT_NE(text_of(file("light.png")), text_of(file("error.png")));
 }
 
 TEST_F(Command, FalseColourIsSpelledBothWays) {

@@ -170,6 +170,15 @@ TEST(FalseColour, BandsAreShownOneAtATime) {
   }
 }
 
+TEST(FalseColour, ErrorsAreShownOnTheirOwn) {
+  DisplayMesh mesh = wall(grey(2), 4);
+  mesh.errors.assign(mesh.positions.size(), 1);
+  RenderOptions options;
+  options.camera = facing_wall();
+  options.false_colour = FalseColour{Band::mean, ColourScale{0, 4, false}, false, false, Shown::error};
+  EXPECT_EQ(pixel(render(mesh, options), 32, 32), shown(colour_map(0.25)));
+}
+
 TEST(FalseColour, EmittersShowWhatArrivesAtThem) {
   DisplayMesh lamp = wall(grey(50));
   std::ranges::fill(lamp.irradiance, grey(1));

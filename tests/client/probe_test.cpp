@@ -30,6 +30,16 @@ TEST(Probe, InterpolatesWithinTriangles) {
   EXPECT_NEAR(samples[1].radiosity.b, 1 + 0.9 + 2 * 0.05, 1e-5);
 }
 
+TEST(Probe, TellsTheErrorOfTheSolutionOnSurfacesOnly) {
+  DisplayMesh mesh = sloping_floor();
+  const std::vector<ProbePoint> points{{{0.31, 0, 0.77}, {0, 1, 0}}, {{0.31, 0.5, 0.77}, {0, 1, 0}}};
+  EXPECT_TRUE(std::isnan(probe(mesh, points)[0].error));
+  mesh.errors.assign(mesh.positions.size(), 0.125f);
+  const auto samples = probe(mesh, points);
+  EXPECT_NEAR(samples[0].error, 0.125, 1e-6);
+  EXPECT_TRUE(std::isnan(samples[1].error));
+}
+
 TEST(Probe, TakesTheSideOfAThinWallThatFacesTheSameWay) {
   DisplayMesh wall;
   add_wall(wall, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, [](const Vec3&) { return grey(1); });      // faces +z
@@ -215,8 +225,9 @@ TEST(Probe, SaysNanOutsideTheRoom) {
   EXPECT_EQ(samples[0].place, ProbePlace::enclosed);
   EXPECT_EQ(samples[1].place, ProbePlace::in_air);
   EXPECT_EQ(samples_csv(std::span(samples).first(1)),
-            "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b,distance,standard_error\n"
-            "1,3,1,0,-1,0,nan,nan,nan,nan,nan,nan,1,nan\n");
+            "x,y,z,nx,ny,nz,irradiance_r,irradiance_g,irradiance_b,radiosity_r,radiosity_g,radiosity_b,distance,standard_error,"
+            "irradiance_error\n"
+            "1,3,1,0,-1,0,nan,nan,nan,nan,nan,nan,1,nan,nan\n");
 }
 
 /// A points file, removed at the end of the test.

@@ -322,6 +322,21 @@ TEST_P(SolutionFile, ComesBackAsItWas) {
   }
 }
 
+TEST_P(SolutionFile, RemembersToldErrorsAndRefusesThoseThatAreNone) {
+  DisplayMesh mesh = hand_made_room({.leaves_per_side = 1});
+  write_solution_file(path(), mesh);
+  EXPECT_TRUE(read_solution_file(path()).errors.empty());
+  for (std::size_t n = 0; n < mesh.positions.size(); ++n) mesh.errors.push_back(0.25f * static_cast<float>(n));
+  write_solution_file(path(), mesh);
+  const DisplayMesh back = read_solution_file(path());
+  EXPECT_EQ(back.errors, mesh.errors);
+  EXPECT_EQ(back.radiosity, mesh.radiosity);
+  for (const float none : {-1.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    mesh.errors[3] = none;
+    EXPECT_NE(refusal(encoded(mesh)).find("vertex 3: its error"), std::string::npos);
+  }
+}
+
 TEST_P(SolutionFile, KeepsItsDigitsFarFromTheOrigin) {
   const DisplayMesh mesh = hand_made_room({.origin = {4e6, -3e6, 5e6}});  // float32 resolves 0.5 m here
   write_solution_file(path(), mesh);

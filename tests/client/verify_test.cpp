@@ -181,6 +181,10 @@ TEST_F(Verify, AgreesWithTheStoredTruth) {
   EXPECT_GT(json.at("hidden"), 0);  // the floor under the blocks
   EXPECT_EQ(json.at("points").get<int>() + json.at("hidden").get<int>() + json.at("dark").get<int>(), 1500);
   EXPECT_EQ(json.at("worst").size(), 10u);
+  const auto& told = json.at("told");
+  EXPECT_GT(told.at("nrmse").get<double>(), 0.5 * nrmse.at("value").get<double>());
+  EXPECT_GT(told.at("within_one").get<double>(), 0.5);
+  EXPECT_GT(told.at("within_two").get<double>(), 0.88);
 }
 
 TEST_F(Verify, EndsWithFiveIfTheErrorExceedsWhatIsAllowed) {

@@ -46,7 +46,9 @@ void run(fuzz::Input input) {
       std::make_shared<StoredSolve>(1, scenes.add(squares(4), ""), Caller{}, SolveSpec{}, SolveOptions{}, Keeping{});
   Client client;
   WatchPlan plan;
-  plan.detail = input.byte() % 2 ? Detail::display : Detail::exact;
+  const std::uint8_t choice = input.byte();
+  plan.detail = choice % 2 ? Detail::display : Detail::exact;
+  plan.start.errors.are_wanted = choice & 2;
   Watch watch(std::make_shared<FrameSource>(solve, "epoch", 1 + input.byte() % 20), plan, client);
   GrowingLeaves leaves(4, input.byte());
   Watch::Clock::time_point now{};
@@ -54,7 +56,10 @@ void run(fuzz::Input input) {
   for (int step = 0; step < 200 && !input.empty(); ++step) {
     switch (input.byte() % 9) {
       case 0:
-        if (!solve->ended()) solve->log()->publish(leaves.next(), {});
+        if (!solve->ended()) {
+          const std::vector<LeafValue> next = leaves.next();
+          solve->log()->publish(next, {}, std::vector<float>(input.byte() % 2 ? next.size() : 0, 1.0f));
+        }
         break;
       case 1:
       case 2: watch.take_turn(now); break;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 namespace alvor {
@@ -44,6 +45,34 @@ TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
       EXPECT_EQ(state.leaf_values().size(), state.leaf_count());
       expect_tiling(mesh, state.leaf_values());
     }
+  }
+}
+
+TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {
+  const BaseMesh mesh(test::room_with_contacts());
+  RayBudget budget([] { return false; });
+  SolveState state(mesh, {.max_leaves = 20'000}, budget);
+  for (int n = 0; n < 3; ++n) {
+    Pass pass(state);
+    pass.prepare();
+    EXPECT_TRUE(pass.leaf_errors({}).empty()) << "before the estimate";
+    while (pass.unshot_fraction() > 1e-6) pass.exchange().sweep();
+    const ErrorEstimate estimate = pass.estimate();
+    const auto leaves = state.leaf_values();
+    const auto errors = pass.leaf_errors({.unshot = estimate.unshot});
+    ASSERT_EQ(errors.size(), leaves.size());
+    double squares = 0, power = 0, area = 0;
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      const double leaf_area = area_of(mesh, shape_of(mesh, leaves[k].patch));
+      EXPECT_GE(errors[k], 0);
+      if (leaves[k].irradiance.is_zero()) continue;  // under a solid
+      squares += leaf_area * errors[k] * errors[k];
+      power += leaf_area * widen(leaves[k].irradiance).mean();
+      area += leaf_area;
+    }
+    const double told = std::sqrt(squares / area) / (power / area);
+    EXPECT_NEAR(told / std::hypot(estimate.mesh(), estimate.sampling), 1, 0.03) << "pass " << n;
+    if (!pass.refine()) break;
   }
 }
 

@@ -97,5 +97,36 @@ TEST(SharedExponent, IsOffByAFiveHundredthOfTheLargestBandAtMost) {
   }
 }
 
+TEST(LeafCodec, ErrorsComeBackAndAnyBytesAreDecodedOrRefused) {
+  std::mt19937 random(9);
+  ErrorPage page{PatchId::root(7).child(2), ErrorCoding(-12), {}};
+  for (int n = 0; n < 1000; ++n) page.codes.push_back(static_cast<std::uint8_t>(random() % 256));
+  auto message = encode_errors(page);
+  ErrorPage back;
+  ASSERT_FALSE(decode_errors(message, back));
+  EXPECT_EQ(back.first, page.first);
+  EXPECT_EQ(back.coding.scale(), -12);
+  EXPECT_EQ(back.codes, page.codes);
+  const std::string good = message.zstd();
+  for (int n = 0; n < 5'000; ++n) {
+    std::string bytes = good;
+    for (unsigned spoilt = 1 + random() % 4; spoilt > 0; --spoilt) bytes[random() % bytes.size()] = static_cast<char>(random());
+    message.set_zstd(bytes);
+    if (decode_errors(message, back)) continue;
+    ASSERT_EQ(back.codes.size(), 1000u);
+  }
+  for (const std::uint32_t count : {0u, 999u, 1001u, 4'000'000'000u}) {
+    auto wrong = encode_errors(page);
+    wrong.set_count(count);
+    EXPECT_TRUE(decode_errors(wrong, back)) << count;
+  }
+  auto wrong = encode_errors(page);
+  wrong.set_scale(-2'000'000'000);
+  EXPECT_TRUE(decode_errors(wrong, back));
+  wrong = encode_errors(page);
+  wrong.set_first_patch(8);
+  EXPECT_TRUE(decode_errors(wrong, back));
+}
+
 }  // namespace
 }  // namespace alvor

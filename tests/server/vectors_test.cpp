@@ -20,9 +20,10 @@ TEST_P(Vectors, LeadToTheSameLeavesInEveryMirror) {
     ASSERT_EQ(mirror.apply(delta), std::nullopt);
   }
   EXPECT_EQ(vectors::bytes_of(mirror.leaves()), vectors::read(path + ".leaves"));
+  EXPECT_EQ(vectors::bytes_of(mirror.errors()), vectors::read(path + ".errors")) << "none, if there is no such file";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Vectors, testing::Values("display", "exact", "deep", "one_page", "uneven"),
+INSTANTIATE_TEST_SUITE_P(All, Vectors, testing::Values("display", "exact", "deep", "one_page", "uneven", "errors"),
                          [](const auto& vector) { return std::string(vector.param); });
 
 }  // namespace

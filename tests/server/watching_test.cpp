@@ -80,6 +80,24 @@ TEST_F(WatchingTest, SolutionOfManyFramesArrivesWhole) {
   EXPECT_EQ(watch.mirror.leaves(), many);
 }
 
+TEST_F(WatchingTest, ErrorsOfManyLeavesArriveAndOnlyWhereTheyAreWanted) {
+  std::vector<LeafValue> many;
+  std::vector<float> errors;
+  for (std::uint32_t root = 0; root < 400'000; ++root) {
+    many.push_back({PatchId::root(root), {1, 2, 3}});
+    errors.push_back(static_cast<float>(1 + root % 100));
+  }
+  stage.log().publish(many, {}, errors);
+  stage.finish();
+  Client::Watch watch, other{.with_errors = false};
+  client.watch_solve(solve, watch, [](auto&) {});
+  client.watch_solve(solve, other, [](auto&) {});
+  ASSERT_EQ(watch.mirror.errors().size(), many.size());
+  for (std::size_t n = 0; n < many.size(); ++n) ASSERT_NEAR(watch.mirror.errors()[n], errors[n], 0.045 * errors[n]) << n;
+  EXPECT_TRUE(other.mirror.errors().empty());
+  EXPECT_EQ(other.mirror.leaves(), many);
+}
+
 TEST_F(WatchingTest, WatcherThatNeverAcknowledgesGetsTwoFramesAndHoldsNobodyUp) {
   const auto stub = v1::SolveService::NewStub(server.channel());
   grpc::ClientContext context;

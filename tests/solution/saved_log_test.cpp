@@ -56,8 +56,8 @@ void put_steps(Layout& out, int version) {
   }
 }
 
-/// Two leaves of face 0 and face 7, which were published with the steps.
-void put_leaves(Layout& out, const SolutionLog& like) {
+/// Two leaves of face 0 and face 7, which were published with the steps; errors were told with the first.
+void put_leaves(Layout& out, const SolutionLog& like, int version) {
   const auto leaves = like.leaves();
   const SharedExponent coding = SharedExponent::for_values_up_to(4);
   out << std::int32_t{coding.scale()} << u8{1};
@@ -65,6 +65,8 @@ void put_leaves(Layout& out, const SolutionLog& like) {
   out << u64{2} << 1.0f << 2.0f << 4.0f << 0.5f << 0.25f << 0.125f;
   out << u64{2} << coding.pack({1, 2, 4}) << coding.pack({0.5, 0.25, 0.125});
   out << u64{2} << u32{1} << u32{2} << u64{2} << u32{1} << u32{2};
+  const ErrorCoding errors = ErrorCoding::for_errors_up_to(0.5);
+  if (version >= 4) out << u64{2} << errors.pack(0.5) << u8{0} << std::int32_t{errors.scale()} << u64{1};
 }
 
 struct SavedLogTest : testing::Test {
@@ -72,7 +74,7 @@ struct SavedLogTest : testing::Test {
     Step step{.elapsed_s = 0.5, .shots = 10, .rays = 1000, .leaves = 3, .unshot_fraction = 0.25, .estimated_error = 0.125};
     step.unlit_fraction = 0.75;
     step.ambient_irradiance = {1, 2, 3};
-    log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 4}}}, step);
+    log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 4}}}, step, std::vector{0.5f});
     log.publish(std::vector<LeafValue>{{PatchId::root(7), {0.5, 0.25, 0.125}}}, step);
   }
   static std::unique_ptr<SolutionLog> loaded(const Bytes& bytes) {
@@ -83,8 +85,9 @@ struct SavedLogTest : testing::Test {
   }
   static Bytes as_version(int version, const SolutionLog& like) {
     Layout out;
+    if (version >= 3) out << u64{0x676f'6c72'6f76'6c61} << u32(version);
     put_steps(out, version);
-    put_leaves(out, like);
+    put_leaves(out, like, version);
     return out.bytes;
   }
   SolutionLog log;
@@ -93,15 +96,16 @@ struct SavedLogTest : testing::Test {
 TEST_F(SavedLogTest, IsAMarkAVersionAndNumbersOneAfterTheOther) {
   Layout expected;
   for (const char letter : {'a', 'l', 'v', 'o', 'r', 'l', 'o', 'g'}) expected << letter;
-  expected << u32{3};
-  put_steps(expected, 3);
-  put_leaves(expected, log);
+  expected << u32{4};
+  put_steps(expected, 4);
+  put_leaves(expected, log, 4);
   EXPECT_EQ(plain_bytes([&](PlainWriter& out) { log.save(out); }), expected.bytes);
 }
 
 TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
-  for (const int version : {1, 2}) {
+  for (const int version : {1, 2, 3}) {
     const auto again = loaded(as_version(version, log));
+    EXPECT_FALSE(again->has_errors_after({.are_wanted = true})) << version;
     EXPECT_EQ(again->leaves(Detail::exact), log.leaves(Detail::exact)) << version;
     EXPECT_EQ(again->leaves(Detail::display), log.leaves(Detail::display)) << version;
     EXPECT_EQ(again->since({.base = 1}).values, log.since({.base = 1}).values) << version;
@@ -113,7 +117,7 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
 }
 
 TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
-  for (const int version : {1, 2}) {
+  for (const int version : {1, 2, 3}) {
     const Bytes whole = as_version(version, log);
     for (std::size_t size = 0; size < whole.size(); ++size)
       EXPECT_THROW(loaded(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), BadBytes) << size;
@@ -122,13 +126,23 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
 
 TEST_F(SavedLogTest, NewerVersionIsRefusedByItsNumber) {
   Bytes bytes = plain_bytes([&](PlainWriter& out) { log.save(out); });
-  bytes[8] = std::byte{4};
+  bytes[8] = std::byte{5};
   try {
     loaded(bytes);
     FAIL() << "it was read";
   } catch (const BadBytes& fault) {
-    EXPECT_STREQ(fault.what(), "is of version 4, and this program reads versions up to 3");
+    EXPECT_STREQ(fault.what(), "is of version 5, and this program reads versions up to 4");
   }
+}
+
+TEST_F(SavedLogTest, ErrorsComeBack) {
+  const auto again = loaded(plain_bytes([&](PlainWriter& out) { log.save(out); }));
+  const Delta delta = again->since({.errors = {.are_wanted = true}});
+  ASSERT_TRUE(delta.errors);
+  EXPECT_EQ(delta.errors->first, PatchId::root(0));
+  ASSERT_EQ(delta.errors->codes.size(), 2u);
+  EXPECT_NEAR(delta.errors->coding.unpack(delta.errors->codes[0]), 0.5, 0.025);
+  EXPECT_EQ(delta.errors->coding.unpack(delta.errors->codes[1]), 0);
 }
 
 }  // namespace

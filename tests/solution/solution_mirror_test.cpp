@@ -61,7 +61,10 @@ class RandomWriter {
     changed.erase(repeated.begin(), repeated.end());
     Step step;
     step.displayed_error = random_() % 2 ? 0.3 : 0;
-    log.publish(changed, step);
+    std::vector<float> errors;
+    if (random_() % 4 == 0)
+      for (std::size_t n = 0; n < changed.size(); ++n) errors.push_back(float(random_() % 1000));
+    log.publish(changed, step, errors);
   }
 
  private:
@@ -84,7 +87,9 @@ class BadStream {
  public:
   BadStream(const SolutionLog& log, Detail detail, unsigned seed) : log_(log), detail_(detail), random_(seed) {}
   const SolutionMirror& mirror() const { return mirror_; }
-  bool is_up_to_date() const { return mirror_.whole() && mirror_.revision() == log_.head(); }
+  bool is_up_to_date() const {
+    return mirror_.whole() && mirror_.revision() == log_.head() && !log_.has_errors_after(cursor_.errors);
+  }
 
   void read_a_page() {
     const Delta page = next_page();
@@ -96,13 +101,14 @@ class BadStream {
   }
   void finish() {
     is_good_ = true;
+    cursor_ = from_mirror();
     while (!is_up_to_date()) read_a_page();
   }
 
  private:
   bool is_bad_day(unsigned one_in) { return !is_good_ && random_() % one_in == 0; }
   Delta next_page() {
-    if (is_good_ || is_bad_day(10)) cursor_ = cursor_.base == mirror_.revision() ? cursor_ : Cursor{.base = mirror_.revision()};
+    if (is_good_ || is_bad_day(10)) cursor_ = cursor_.base == mirror_.revision() ? cursor_ : from_mirror();
     Delta page = log_.since(cursor_, detail_, 1 + random_() % 9);
     cursor_ = page.next;
     return page;
@@ -111,8 +117,10 @@ class BadStream {
     const bool fits = page.from_revision == mirror_.revision();
     if (!mirror_.apply(page)) return;
     if (fits) mirror_ = {};  // the hash was wrong
-    cursor_ = {.base = mirror_.revision()};
+    cursor_ = from_mirror();
   }
+  /// As a client does that connects again: it asks for all errors anew.
+  Cursor from_mirror() const { return {.base = mirror_.revision(), .errors = {.are_wanted = true}}; }
 
   const SolutionLog& log_;
   Detail detail_;
@@ -136,6 +144,9 @@ TEST(SolutionMirror, WhateverTheStreamDoesEndsEqualToTheLog) {
     }
     stream.finish();
     ASSERT_EQ(stream.mirror().leaves(), log.leaves(detail)) << "seed " << seed;
+    SolutionMirror fresh;
+    ASSERT_FALSE(fresh.apply(log.since({.errors = {.are_wanted = true}}, detail)));
+    ASSERT_TRUE(std::ranges::equal(stream.mirror().errors(), fresh.errors())) << "seed " << seed;
   }
 }
 
@@ -148,6 +159,55 @@ TEST(SolutionMirror, TellsAStateThatIsNotTheServers) {
   const auto fault = mirror.apply(delta);
   ASSERT_TRUE(fault);
   EXPECT_NE(fault->find("hash"), std::string::npos) << *fault;
+}
+
+TEST(SolutionMirror, ErrorsComeInPagesAndSplitsPassThemOn) {
+  SolutionLog log;
+  std::vector<LeafValue> leaves;
+  std::vector<float> errors;
+  for (std::uint32_t n = 0; n < 40; ++n) leaves.push_back({PatchId::root(n), {1, 1, 1}}), errors.push_back(float(n));
+  log.publish(leaves, {}, errors);
+  SolutionMirror mirror;
+  Cursor cursor{.errors = {.are_wanted = true}};
+  const auto read = [&](std::size_t values) {
+    const Delta page = log.since(cursor, Detail::exact, values);
+    EXPECT_EQ(mirror.apply(page), std::nullopt);
+    EXPECT_EQ(mirror.misses_errors(), log.has_errors_after(page.next.errors));
+    cursor = page.next;
+  };
+  for (int n = 0; n < 20; ++n) read(2);
+  EXPECT_EQ(mirror.errors().size(), 40u) << "the last page of values tells the first thirty errors";
+  EXPECT_TRUE(mirror.misses_errors());
+  // Between the pages, the last leaf that was told and one that was not are split.
+  log.publish(std::vector<LeafValue>{{PatchId::root(29).child(2), {2, 2, 2}}, {PatchId::root(35).child(0), {3, 3, 3}}}, {});
+  while (log.has_errors_after(cursor.errors) || !mirror.whole()) read(2);
+  ASSERT_EQ(mirror.errors().size(), 46u);
+  const auto all = mirror.leaves();
+  for (std::size_t n = 0; n < all.size(); ++n)
+    EXPECT_NEAR(mirror.errors()[n], all[n].patch.root_face(), 0.045 * all[n].patch.root_face()) << n;
+}
+
+TEST(SolutionMirror, ErrorsOfLeavesThatAreNotThereAreAFault) {
+  for (const PatchId first : {root.child(1), PatchId::root(3)}) {
+    SolutionMirror mirror;
+    Delta bad = delta(0, 1, {{root, {1, 1, 1}}});
+    bad.errors = {first, ErrorCoding(0), {8}};
+    EXPECT_TRUE(mirror.apply(bad));
+  }
+  SolutionMirror mirror;
+  Delta bad = delta(0, 1, {{root, {1, 1, 1}}});
+  bad.errors = {root, ErrorCoding(0), {8, 8}};
+  EXPECT_TRUE(mirror.apply(bad));
+}
+
+TEST(ErrorCoding, RoundsByLessThanAFifthOfAnOctaveOverNineDigits) {
+  for (const float largest : {1e-20f, 1.0f, 3e30f}) {
+    const ErrorCoding coding = ErrorCoding::for_errors_up_to(largest);
+    for (float error = largest; error > 1e-9f * largest; error *= 0.83f)
+      EXPECT_NEAR(coding.unpack(coding.pack(error)) / error, 1, 0.045) << error;
+    EXPECT_EQ(coding.unpack(coding.pack(0)), 0);
+    EXPECT_GT(coding.unpack(coding.pack(1e-15f * largest)), 0) << "only no error is told as none";
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 // Test vectors that every mirror must apply alike. FILE.frames holds frames, each a length of 32 bits (little-endian) and a
-// WatchSolveResponse; FILE.leaves holds the mirror's leaves afterwards, each an id of 64 bits and three float32, in order.
+// WatchSolveResponse; FILE.leaves holds the mirror's leaves afterwards, each an id of 64 bits and three float32, in order;
+// FILE.errors, where errors were told, those of the leaves as float32.
 
 #include "alvor/v1/solve_service.pb.h"
 #include "solution/leaf_value.h"
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,12 @@ inline std::string bytes_of(const std::vector<LeafValue>& leaves) {
     append(bytes, leaf.patch.bits());
     for (const float band : {leaf.irradiance.r, leaf.irradiance.g, leaf.irradiance.b}) append(bytes, band);
   }
+  return bytes;
+}
+
+inline std::string bytes_of(std::span<const float> errors) {
+  std::string bytes;
+  for (const float error : errors) append(bytes, error);
   return bytes;
 }
 

@@ -21,7 +21,8 @@ void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
 // Writes the solution and the frames, unless nothing was published because the solve failed at once.
 void write_pictures(const OutputOptions& options, const BaseMesh& mesh, const Followed& followed) {
   if (followed.mirror.steps().empty()) return;
-  if (!options.solution.path.empty()) write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves()));
+  if (!options.solution.path.empty())
+    write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves(), followed.mirror.errors()));
   if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
 }
 

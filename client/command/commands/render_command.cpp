@@ -72,6 +72,10 @@ void run_render(const RenderCommand& command) {
   options.false_colour = false_colour_of(command.false_colour, command.size);
   options.wireframe = command.wireframe;
   DisplayMesh mesh = read_from_anywhere(command);
+  if (options.false_colour && options.false_colour->shown == Shown::error && mesh.errors.empty())
+    throw Failure(ExitStatus::bad_scene, command.solution +
+                                             ": tells no errors: it was written by an older version, or its solve was "
+                                             "stopped before its first estimate");
   take_up(command.camera.up, mesh.up);
   options.camera = camera_of(command.camera, mesh, view_size(command.size, options.false_colour));
   warn_of_black_view(mesh, *options.camera);
@@ -101,7 +105,7 @@ void add_picture(CLI::App& command, RenderCommand& options) {
                                              "Stops by which the picture is brighter than with automatic exposure (0)");
   exposure->check(above_up_to(-50, 50));
   command.add_flag("--wireframe", options.wireframe, "Draw the outlines of the leaves");
-  exposure->excludes(add_false_colour_options(command, options.false_colour));
+  add_false_colour_options(command, options.false_colour, *exposure);
 }
 
 }  // namespace

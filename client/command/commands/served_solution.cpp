@@ -22,7 +22,7 @@ State newest_state(Client& client, const std::string& solve) {
   Client::Watch watch;
   std::stop_source enough;
   const auto stop_when_whole = [&](const Client::Watch& now) {
-    if (now.mirror.whole()) enough.request_stop();
+    if (now.mirror.whole() && !now.mirror.misses_errors()) enough.request_stop();
   };
   v1::Solve now = client.watch_solve(solve, watch, stop_when_whole, enough.get_token());
   return {std::move(now), std::move(watch.mirror)};
@@ -37,7 +37,7 @@ void require_published(const State& state, const std::string& solve) {
 // Returns the mesh to draw. Only in a solve that has succeeded does exactly dark mean hidden; before, light may not have arrived
 // yet.
 DisplayMesh mesh_of(const BaseMesh& base, const State& state, bool ambient) {
-  if (!ambient) return solution_mesh(base, state.mirror.leaves());
+  if (!ambient) return solution_mesh(base, state.mirror.leaves(), state.mirror.errors());
   const Snapshot moment = snapshot_of(state.mirror);
   return state.solve.state() == v1::Solve::SUCCEEDED ? shown_mesh(base, moment, moment) : brightened_mesh(base, moment);
 }

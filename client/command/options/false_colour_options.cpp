@@ -30,25 +30,30 @@ void warn_of_no_room(PictureSize size) {
 
 }  // namespace
 
-CLI::Option* add_false_colour_options(CLI::App& command, FalseColourOptions& options) {
+void add_false_colour_options(CLI::App& command, FalseColourOptions& options, CLI::Option& exposure) {
   CLI::Option* wanted = command.add_flag("--false-colour,--false-color", options.wanted,
                                          "Colour surfaces by irradiance, with a legend in W/m2 or lx");
+  CLI::Option* shown =
+      command.add_option("--show", options.shown, "Colour surfaces by irradiance, or by the error that the solution tells of it");
+  shown->type_name("WHAT")->check(CLI::IsMember({"irradiance", "error"}))->excludes(wanted);
+  exposure.excludes(wanted)->excludes(shown);
   command.add_option("--band", options.band, "Band whose irradiance is shown (the mean of all three)")
       ->type_name("BAND")
-      ->check(CLI::IsMember({"r", "g", "b", "mean"}))
-      ->needs(wanted);
+      ->check(CLI::IsMember({"r", "g", "b", "mean"}));
   command
       .add_option("--range", options.range,
                   "Ends of the colour scale, W/m2 or lx (from 0 to a round number that suits the picture)")
-      ->type_name("LOW,HIGH")
-      ->needs(wanted);
-  command.add_flag("--log-scale", options.logarithmic, "Use a logarithmic colour scale")->needs(wanted);
-  return wanted;
+      ->type_name("LOW,HIGH");
+  command.add_flag("--log-scale", options.logarithmic, "Use a logarithmic colour scale");
 }
 
 std::optional<FalseColour> false_colour_of(const FalseColourOptions& options, PictureSize size) {
-  if (!options.wanted) return std::nullopt;
-  FalseColour chosen{bands.at(options.band), std::nullopt, options.logarithmic, legend_fits(size)};
+  if (!options.wanted && options.shown.empty()) {
+    if (options.band == "mean" && options.range.empty() && !options.logarithmic) return std::nullopt;
+    throw Failure(ExitStatus::usage, "--band, --range and --log-scale require --false-colour or --show");
+  }
+  const Shown shown = options.shown == "error" ? Shown::error : Shown::irradiance;
+  FalseColour chosen{bands.at(options.band), std::nullopt, options.logarithmic, legend_fits(size), shown};
   if (!options.range.empty()) chosen.scale = scale_of(options);
   if (!chosen.legend) warn_of_no_room(size);
   return chosen;

@@ -9,8 +9,9 @@
 
 namespace alvor {
 
-/// Returns the solution as it is written to files, without ambient term. Root patches without leaves are dark.
-DisplayMesh solution_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves);
+/// Returns the solution as it is written to files, without ambient term. Root patches without leaves are dark. `errors` are the
+/// told errors of the leaves; if some are NaN, the mesh has none.
+DisplayMesh solution_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors = {});
 
 /// Returns a moment for display: the ambient term is added everywhere except where the final state `last` is exactly dark. Such
 /// leaves are hidden under or inside something, and their light would leak out along the contact line.

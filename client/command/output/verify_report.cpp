@@ -84,7 +84,7 @@ Json json_of(const Scene& scene, const VerifiedPoint& point) {
 
 std::string verify_summary(const Scene& scene, const Verification& verification, const VerifyTimes& times) {
   const ErrorStatistics& errors = verification.errors;
-  const std::vector<std::vector<std::string>> rows{
+  std::vector<std::vector<std::string>> rows{
       {"nRMSE", percent(errors.nrmse.value), interval(errors.nrmse)},
       {"bias", percent(errors.bias.value), interval(errors.bias)},
       {"relative RMS", percent(errors.relative_rms), "over points; nRMSE is relative to the mean"},
@@ -95,6 +95,11 @@ std::string verify_summary(const Scene& scene, const Verification& verification,
       {"hidden", std::to_string(verification.hidden), hidden_note(verification)},
       {"dark", std::to_string(verification.dark), "points more, without light in truth and solution: left out"},
       {"time", seconds(times.elapsed_s), seconds(times.cpu_s) + " of CPUs"}};
+  if (verification.told)
+    rows.insert(rows.begin() + 1,
+                {"told", percent(verification.told->nrmse),
+                 "by the solution of itself; the truth is within one told error at " + percent(verification.told->within_one) +
+                     " of the points, within two at " + percent(verification.told->within_two)});
   return aligned(rows) + "\n" + worst_table(scene, verification);
 }
 
@@ -117,6 +122,10 @@ std::string verify_json(const Scene& scene, const Verification& verification, co
             {"cpu_s", times.cpu_s},
             {"worst", Json::array()},
             {"warnings", std::vector<std::string>(warnings.begin(), warnings.end())}};
+  if (verification.told)
+    json["told"] = {{"nrmse", verification.told->nrmse},
+                    {"within_one", verification.told->within_one},
+                    {"within_two", verification.told->within_two}};
   for (const VerifiedPoint& point : worst_points(verification, worst_shown)) json["worst"].push_back(json_of(scene, point));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -22,6 +22,8 @@ export interface Brightness {
   exposure: number;
   lowIrradiance: number;
   highIrradiance: number;
+  lowError: number;
+  highError: number;
 }
 
 export interface Counters {
@@ -41,6 +43,8 @@ export interface Reading {
   material: string;
   place: Vector;
   irradiance: [number, number, number];
+  /** Told error of the mean of its bands; nothing if none was told. */
+  error?: number;
   radiosity: [number, number, number];
 }
 

@@ -6,6 +6,7 @@ import { Detail, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
 import { brightnessOf } from "./mirror/brightness";
+import { decodeErrors } from "./mirror/errors";
 import { BadFrame, decodeLeaves } from "./mirror/leaves";
 import { Mirror } from "./mirror/mirror";
 import { probe } from "./mirror/probe";
@@ -144,6 +145,7 @@ class Watch {
       baseRevision: this.revision,
       detail: Detail.DISPLAY,
       maxRateHertz: this.rate,
+      withErrors: true,
     };
     let count = 0n;
     for await (const frame of this.api.solves.watchSolve(request, { signal: givenUp.signal })) {
@@ -185,6 +187,10 @@ class Watch {
     this.revision = frame.toRevision;
     if (frame.stateHash !== undefined && frame.stateHash !== this.mirror.stateHash)
       throw new BadFrame("the state has another hash than the server's");
+    if (frame.errors) {
+      this.mirror.takeErrors(decodeErrors(frame.errors));
+      this.isChanged = true;
+    }
     if (frame.steps.length > 0) {
       const { r, g, b } = frame.steps.at(-1)!.ambientIrradiance ?? { r: 0, g: 0, b: 0 };
       this.ambient = [r, g, b];
@@ -210,8 +216,8 @@ class Watch {
     const change = this.surface.flush();
     const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
     this.counters.preparing = performance.now() - began;
-    const { positions, coordinates, colours, values, transmitted, triangles } = change;
-    const parts = [positions, coordinates, colours, values, transmitted, triangles];
+    const { positions, coordinates, colours, values, transmitted, errors, triangles } = change;
+    const parts = [positions, coordinates, colours, values, transmitted, errors, triangles];
     const buffers = parts.flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
     tell({ kind: "change", change, brightness, counters: { ...this.counters } }, buffers);
     void this.showImages(); // not before: the first light needs none

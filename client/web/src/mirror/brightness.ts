@@ -64,6 +64,7 @@ export function brightnessOf(mesh: BaseMesh, mirror: Mirror, ambient: [number, n
   const reflecting = new Histogram();
   const emitting = new Histogram();
   const irradiance = new Histogram();
+  const errors = new Histogram();
   for (let node = 0; node < mirror.nodeCount; ++node) {
     if (mirror.firstChild[node] !== 0) continue;
     const root = mirror.root[node];
@@ -74,16 +75,19 @@ export function brightnessOf(mesh: BaseMesh, mirror: Mirror, ambient: [number, n
     const hg = mirror.rgb[3 * node + 1] + ambient[1];
     const hb = mirror.rgb[3 * node + 2] + ambient[2];
     irradiance.add(luminance(hr, hg, hb), area);
+    errors.add(mirror.errors[node], area);
     const through = mesh.isTranslucent ? transmittedTo(mesh, mirror, node, ambient) : 0;
     const b = luminance(e.r + rho.r * hr, e.g + rho.g * hg, e.b + rho.b * hb) + through;
     (e.r > 0 || e.g > 0 || e.b > 0 ? emitting : reflecting).add(b, area);
   }
   const seen = reflecting.isEmpty ? emitting : reflecting;
-  if (seen.isEmpty) return { exposure: 1, lowIrradiance: 0, highIrradiance: 0 };
+  if (seen.isEmpty) return { exposure: 1, lowIrradiance: 0, highIrradiance: 0, lowError: 0, highError: 0 };
   const high = seen.upperQuantile(BRIGHT_SHARE);
   return {
     exposure: Math.min(MIDDLE / seen.logarithmicMean(DARKEST * high), BRIGHT / high),
     lowIrradiance: irradiance.isEmpty ? 0 : irradiance.upperQuantile(0.98),
     highIrradiance: irradiance.isEmpty ? 0 : irradiance.upperQuantile(0.02),
+    lowError: errors.isEmpty ? 0 : errors.upperQuantile(0.98),
+    highError: errors.isEmpty ? 0 : errors.upperQuantile(0.02),
   };
 }

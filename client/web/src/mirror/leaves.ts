@@ -43,7 +43,7 @@ export function decodeLeaves(values: LeafValues): Leaves {
   return leaves;
 }
 
-function unpack(zstd: Uint8Array, size: number): Uint8Array {
+export function unpack(zstd: Uint8Array, size: number): Uint8Array {
   let raw: Uint8Array;
   try {
     raw = decompress(zstd, new Uint8Array(size));

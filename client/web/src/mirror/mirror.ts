@@ -1,5 +1,6 @@
 // The other end of the stream: a quadtree of leaves for each root patch, built from frames. The same as SolutionMirror of C++.
 
+import type { ErrorPage } from "./errors";
 import { BadFrame, levelOf, MAX_LEVEL, type Leaves } from "./leaves";
 import { StateHash } from "./state_hash";
 
@@ -11,6 +12,7 @@ export interface MirrorListener {
   /** A leaf became four; `first` is the first of them. */
   onSplit(node: number, first: number): void;
   onValue(node: number): void;
+  onError?(node: number): void;
 }
 
 /** Roots come first, in the order of the mesh; the four children of a node are neighbours. */
@@ -20,6 +22,10 @@ export class Mirror {
   root: Uint32Array;
   /** Irradiance of leaves, W/m2, three of each node. */
   rgb: Float32Array;
+  /** Told errors of leaves, W/m2: one standard deviation of the mean of the bands. */
+  errors: Float32Array;
+  /** Some errors were told. */
+  hasErrors = false;
   nodeCount: number;
   leafCount = 0;
   private path: Uint32Array;
@@ -35,6 +41,7 @@ export class Mirror {
     this.root = new Uint32Array(room);
     this.path = new Uint32Array(room);
     this.rgb = new Float32Array(3 * room);
+    this.errors = new Float32Array(room);
     this.known = new Uint8Array(rootCount);
     this.nodeCount = rootCount;
     for (let n = 0; n < rootCount; ++n) {
@@ -68,6 +75,24 @@ export class Mirror {
       this.hash.add(this.root[node], this.path[node], this.rgb, 3 * node);
       this.listener?.onValue(node);
     }
+  }
+
+  /** Requires: the mirror is a state of the solve. Throws BadFrame if there are no such leaves. */
+  takeErrors({ face, path, errors }: ErrorPage): void {
+    this.hasErrors = true;
+    let at = -1; // before the first of them
+    for (let root = face; root < this.rootCount && at < errors.length; ++root) {
+      if (!this.known[root]) continue;
+      for (const node of this.leavesUnder(root)) {
+        if (at < 0 && root === face && this.path[node] === path) at = 0;
+        if (at < 0) continue;
+        if (at === errors.length) return;
+        this.errors[node] = errors[at++];
+        this.listener?.onError?.(node);
+      }
+      if (at < 0) break;
+    }
+    if (at !== errors.length) throw new BadFrame("a frame tells errors of leaves that are not there");
   }
 
   /** The leaf that contains a place of a root: coordinates of the finest patches of its quadtree path. */
@@ -157,6 +182,7 @@ export class Mirror {
       this.root[child] = this.root[node];
       this.path[child] = this.path[node] - 4 * half + (2 * k + 1) * half;
       this.rgb.copyWithin(3 * child, 3 * node, 3 * node + 3);
+      this.errors[child] = this.errors[node];
       this.hash.add(this.root[child], this.path[child], this.rgb, 3 * child);
     }
     this.listener?.onSplit(node, first);
@@ -169,6 +195,7 @@ export class Mirror {
     this.root = grown(this.root, Uint32Array, room);
     this.path = grown(this.path, Uint32Array, room);
     this.rgb = grown(this.rgb, Float32Array, 3 * room);
+    this.errors = grown(this.errors, Float32Array, room);
   }
 }
 

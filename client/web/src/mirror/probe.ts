@@ -33,6 +33,7 @@ export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction:
     material: material.name,
     place: { x: along("x", 0), y: along("y", 1), z: along("z", 2) },
     irradiance,
+    error: mirror.hasErrors ? mirror.errors[node] : undefined,
     radiosity: [e.r + r * irradiance[0] + through[0], e.g + g * irradiance[1] + through[1], e.b + b * irradiance[2] + through[2]],
   };
 }

@@ -23,6 +23,8 @@ export interface SurfaceChange {
   values: Change;
   /** Light of the other side that comes through, r, g, b of each vertex, W/m2; nothing if no root is translucent. */
   transmitted?: Change;
+  /** The told error of each vertex's leaf, W/m2; nothing until some were told. */
+  errors?: Change;
   /** Three vertices of each triangle; of one without area three times the same. */
   triangles: Change<Uint32Array>;
 }
@@ -38,6 +40,7 @@ const TRIANGLE_ROWS = [0, 0, 1];
 const VALUES = 1;
 const POSITIONS = 2;
 const TRANSMITTED = 4;
+const ERRORS = 8;
 
 export class Surface implements MirrorListener {
   private slotCount = 0;
@@ -74,6 +77,10 @@ export class Surface implements MirrorListener {
     for (let k = 0; k < POINTS; ++k) this.dirtyPoints.add(this.smooth.pointOf[POINTS * this.slotOfNode[node] + k], VALUES);
   }
 
+  onError(node: number): void {
+    this.dirtySlots.add(this.slotOfNode[node], ERRORS);
+  }
+
   onSplit(node: number, first: number): void {
     this.reserveNodes(first + 4);
     for (let k = 0; k < 4; ++k) this.placeChild(node, first + k, k);
@@ -103,6 +110,11 @@ export class Surface implements MirrorListener {
       values: collect(those(VALUES), 4 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeValues(slot, out, at)),
       transmitted: this.mesh.isTranslucent
         ? collect(those(TRANSMITTED), 3 * SLOT_VERTICES, Float32Array, (slot, out, at) => this.writeTransmitted(slot, out, at))
+        : undefined,
+      errors: this.mirror.hasErrors
+        ? collect(those(ERRORS), SLOT_VERTICES, Float32Array, (slot, out, at) =>
+            out.fill(this.mirror.errors[this.nodeOfSlot[slot]], at, at + SLOT_VERTICES),
+          )
         : undefined,
       triangles: collect(moved, SLOT_INDICES, Uint32Array, (slot, out, at) => this.writeTriangles(slot, out, at)),
     };
@@ -147,7 +159,7 @@ export class Surface implements MirrorListener {
     this.nodeOfSlot[slot] = node;
     this.slotOfNode[node] = slot;
     for (let k = 0; k < POINTS; ++k) this.link(slot, k);
-    this.dirtySlots.add(slot, VALUES | POSITIONS);
+    this.dirtySlots.add(slot, VALUES | POSITIONS | ERRORS);
   }
 
   /** Sets pointI and pointJ. Corners 0 to 3, then the middles of the edges that begin at them. */

@@ -18,7 +18,7 @@ export function reportOf(steps: readonly Step[]): Blob {
 }
 
 /**
- * Returns the triangles with radiosity and irradiance as float32 attributes, and COLOR_0, exposed radiosity, for viewers that know neither.
+ * Returns the triangles with radiosity, irradiance and its told error as float32 attributes, and COLOR_0, exposed radiosity, for viewers that know neither.
  * Colours of the scene's corners are in the radiosity, and so is light that comes through. `drawn` is measured from `centre`, in the scene's axes; the GLB's are y up.
  */
 export async function glbOf(drawn: BufferGeometry, centre: [number, number, number], materials: Float32Array, exposure: number, isZUp: boolean): Promise<Blob> {
@@ -41,6 +41,7 @@ export async function glbOf(drawn: BufferGeometry, centre: [number, number, numb
   geometry.setAttribute("color", new BufferAttribute(colour, 3));
   geometry.setAttribute("_irradiance", new BufferAttribute(irradiance, 3));
   geometry.setAttribute("_radiosity", new BufferAttribute(radiosity, 3));
+  if (drawn.hasAttribute("error")) geometry.setAttribute("_error", drawn.getAttribute("error"));
   const isLeftOut = (vertex: number) => materials[8 * values.getW(vertex) + 3] > 0.5;  // a pane: see docs/surfaces.md
   geometry.setIndex(trianglesOf(drawn, isLeftOut));
   const mesh = new Mesh(geometry, new MeshBasicMaterial({ vertexColors: true }));

@@ -49,7 +49,7 @@ export function showReading(reading: Reading | null): void {
   const { x, y, z } = reading.place;
   const faces = reading.faces.length > 1 ? `Faces ${reading.faces.join(" and ")}` : `Face ${reading.faces}`;
   byId("reading").textContent = [
-    `${irradianceName()} ${bands(reading.irradiance)} ${irradianceUnit()}`,
+    `${irradianceName()} ${bands(reading.irradiance)}${reading.error === undefined ? "" : ` ± ${round(reading.error)}`} ${irradianceUnit()}`,
     `${radiosityName()} ${bands(reading.radiosity)} ${radiosityUnit()}`,
     `${faces}, level ${reading.level}, ${reading.material}`,
     `at ${bands([x, y, z])} m`,

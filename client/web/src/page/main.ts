@@ -47,7 +47,7 @@ let cameraToCome: number[] | undefined;
 let addressTimer: ReturnType<typeof setTimeout> | undefined;
 let worker: Worker | undefined;
 let nextWorker = makeWorker(); // ready before it is needed
-let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1 };
+let brightness: Brightness = { exposure: 1, lowIrradiance: 0, highIrradiance: 1, lowError: 0, highError: 1 };
 let counters: Counters | undefined;
 let materials = new Float32Array();
 let centre: [number, number, number] = [0, 0, 0];

@@ -13,11 +13,13 @@ export const holdExposure = (held: number) => void (exposure = held);
 
 export function lookOf(brightness: Brightness): Look {
   if (input("automatic").checked) exposure = brightness.exposure;
-  const low = brightness.lowIrradiance;
-  const high = Math.max(brightness.highIrradiance, 1e-30);
+  const isOfErrors = select("show").value === "error";
+  const low = isOfErrors ? brightness.lowError : brightness.lowIrradiance;
+  const high = Math.max(isOfErrors ? brightness.highError : brightness.highIrradiance, 1e-30);
   const logarithmic = select("scale").value === "log";
   return {
-    falseColour: select("show").value === "irradiance",
+    falseColour: select("show").value !== "room",
+    isOfErrors,
     tone: select("tone").value as Tone,
     exposure: exposure * 2 ** input("exposure").valueAsNumber,
     low: logarithmic ? Math.max(low, high * 1e-4) : 0,
@@ -36,7 +38,7 @@ export function draw(room: Room, brightness: Brightness): void {
   const now = lookOf(brightness);
   room.render(now, comparison(), input("split").valueAsNumber);
   byId("legend").hidden = !now.falseColour;
-  if (now.falseColour) showLegend(now.low, now.high, now.logarithmic);
+  if (now.falseColour) showLegend(now);
   byId("compare").hidden = comparison() === "off";
   byId("split-left").textContent = comparison() === "ambient" ? "Without ambient term" : "The moment kept";
   byId("split-right").textContent = comparison() === "ambient" ? "With ambient term" : "Now";

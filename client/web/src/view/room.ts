@@ -14,11 +14,13 @@ export type Tone = "aces" | "reinhard" | "linear";
 
 /** How the surface is shown. */
 export interface Look {
+  /** By false colour: irradiance, or its told error. */
   falseColour: boolean;
+  isOfErrors: boolean;
   tone: Tone;
   /** Factor from radiosity to what the tone curve takes. */
   exposure: number;
-  /** Irradiance of the scale's ends, W/m2. */
+  /** Irradiance or error of the scale's ends, W/m2. */
   low: number;
   high: number;
   logarithmic: boolean;
@@ -103,6 +105,7 @@ export class Room {
     this.slots.take(change);
     this.compile("COLOURED", change.colours !== undefined);
     this.compile("TRANSLUCENT", change.transmitted !== undefined);
+    this.compile("TOLD", change.errors !== undefined);
   }
 
   get slotCount(): number {
@@ -187,6 +190,7 @@ export class Room {
     const { uniforms } = which.material;
     uniforms.ambient.value = !look.ambient ? new THREE.Vector3() : which === this.surface ? this.ambient : this.pinnedAmbient;
     uniforms.falseColour.value = look.falseColour;
+    uniforms.isOfErrors.value = look.isOfErrors;
     uniforms.tone.value = TONES[look.tone];
     uniforms.exposure.value = look.exposure;
     uniforms.scale.value.set(look.low, look.high);
@@ -231,6 +235,7 @@ function newMaterial(): THREE.RawShaderMaterial {
       colours: { value: colourTexture() },
       ambient: { value: new THREE.Vector3() },
       falseColour: { value: false },
+      isOfErrors: { value: false },
       tone: { value: 0 },
       exposure: { value: 1 },
       scale: { value: new THREE.Vector2(0, 1) },

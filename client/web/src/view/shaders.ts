@@ -1,11 +1,12 @@
 // Radiosity B = E + rho (H + ambient) is put together for each pixel, from H interpolated between vertices. rho is the material's, with
 // TEXTURED that of the texels there (see texture_shader.ts); with COLOURED it is multiplied by the colour interpolated between vertices. With
-// TRANSLUCENT, tau (H + ambient) of the other side is added, of which tau H is interpolated between vertices.
+// TRANSLUCENT, tau (H + ambient) of the other side is added, of which tau H is interpolated between vertices. With TOLD, leaves have told
+// errors.
 
 import { TEXTURE_FRAGMENT, TEXTURE_VERTEX } from "./texture_shader";
 
 /** Parts of the shaders that are left out unless they are defined. */
-export type ShaderPart = "TEXTURED" | "COLOURED" | "TRANSLUCENT";
+export type ShaderPart = "TEXTURED" | "COLOURED" | "TRANSLUCENT" | "TOLD";
 
 export const VERTEX = `
 precision highp float;
@@ -31,6 +32,10 @@ in vec3 transmitted;
 out vec3 transmittedThere;
 flat out vec3 transmittance;
 #endif
+#ifdef TOLD
+in float error;
+out float errorThere;
+#endif
 ${TEXTURE_VERTEX}
 void main() {
   int material = int(value.w + 0.5);
@@ -49,6 +54,9 @@ void main() {
   transmittedThere = transmitted;
   transmittance = texelFetch(transmittances, at, 0).rgb;
 #endif
+#ifdef TOLD
+  errorThere = error;
+#endif
   irradiance = value.rgb;
   centre = gl_VertexID % 9 == 0 ? 1.0 : 0.0;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
@@ -60,6 +68,7 @@ precision highp sampler2D;
 uniform sampler2D colours;
 uniform vec3 ambient;
 uniform bool falseColour;
+uniform bool isOfErrors;
 uniform int tone;
 uniform float exposure;
 uniform vec2 scale;
@@ -76,6 +85,11 @@ in vec3 colourThere;
 #ifdef TRANSLUCENT
 in vec3 transmittedThere;
 flat in vec3 transmittance;
+#endif
+#ifdef TOLD
+in float errorThere;
+#else
+const float errorThere = 0.0;
 #endif
 out vec4 pixel;
 ${TEXTURE_FRAGMENT}
@@ -120,7 +134,8 @@ void main() {
   radiosity += transmittedThere + transmittance * ambient;
 #endif
   vec3 colour;
-  if (falseColour) colour = texture(colours, vec2(clamp(place(dot(h, vec3(0.2126, 0.7152, 0.0722))), 0.0, 1.0), 0.5)).rgb;
+  float shown = isOfErrors ? errorThere : dot(h, vec3(0.2126, 0.7152, 0.0722));
+  if (falseColour) colour = texture(colours, vec2(clamp(place(shown), 0.0, 1.0), 0.5)).rgb;
   else colour = srgb(toned(exposure * radiosity / (1.0 - through)));  // what is left of a pane has all its light
   if (outlines) {
     float line = 1.0 - smoothstep(0.0, 1.2, centre / fwidth(centre));

@@ -27,6 +27,7 @@ export class Slots {
     this.writeIfAny("coordinates", 2, change.coordinates);
     this.writeIfAny("vertexColour", 3, change.colours);
     this.writeIfAny("transmitted", 3, change.transmitted);
+    this.writeIfAny("error", 1, change.errors);
     write(this.geometry.index!, change.triangles, SLOT_INDICES);
     this.geometry.setDrawRange(0, change.slotCount * SLOT_INDICES);
   }

@@ -110,11 +110,11 @@ describe("the page", () => {
     await page.locator("#room").click({ position: { x: RED_WALL[0] * box.width, y: RED_WALL[1] * box.height } });
     const reading = page.locator("#reading");
     await reading.waitFor();
-    expect(await reading.textContent()).toMatch(/^Irradiance [\d.]+, [\d.]+, [\d.]+ W\/m²\nRadiosity .*\nFace \d+, level \d+, red/);
+    expect(await reading.textContent()).toMatch(/^Irradiance [\d.]+, [\d.]+, [\d.]+ ± [\d.]+ W\/m²\nRadiosity .*\nFace \d+, level \d+, red/);
     await page.close();
   });
 
-  it("shows irradiance in false colours, with a legend in the unit of the scene", async () => {
+  it("shows irradiance and its error in false colours, with a legend in the unit of the scene", async () => {
     const page = await openPage(browser, server.url);
     await page.setInputFiles("#files", CORNELL);
     await waitForState(page, "Done");
@@ -125,7 +125,13 @@ describe("the page", () => {
     const watts = Number(await top.textContent());
     expect(watts).toBeGreaterThan(0);
     expect(await page.locator("#legend-title").textContent()).toBe("Irradiance, W/m²");
-    expect(await pixelAt(page, ...RED_WALL)).not.toEqual(room);
+    const coloured = await pixelAt(page, ...RED_WALL);
+    expect(coloured).not.toEqual(room);
+    await page.selectOption("#show", "error");
+    await expect.poll(() => page.locator("#legend-title").textContent()).toBe("Error of irradiance, W/m²");
+    expect(Number(await top.textContent())).toBeGreaterThan(0);
+    expect(Number(await top.textContent())).toBeLessThan(watts / 5);
+    expect(await pixelAt(page, ...RED_WALL)).not.toEqual(coloured);
     await page.close();
   });
 

@@ -125,6 +125,6 @@ describe("automatic exposure", () => {
     const dark = mirrorOf(base);
     dark.rgb.fill(0);
     base.materials[1].emission = { $typeName: "alvor.v1.Rgb", r: 0, g: 0, b: 0 };
-    expect(brightnessOf(base, dark, [0, 0, 0])).toEqual({ exposure: 1, lowIrradiance: 0, highIrradiance: 0 });
+    expect(brightnessOf(base, dark, [0, 0, 0])).toEqual({ exposure: 1, lowIrradiance: 0, highIrradiance: 0, lowError: 0, highError: 0 });
   });
 });

@@ -2,6 +2,7 @@ import { readFileSync } from "node:fs";
 import { fromBinary } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { WatchSolveResponseSchema, type WatchSolveResponse } from "../../src/gen/alvor/v1/solve_service_pb";
+import { decodeErrors } from "../../src/mirror/errors";
 import { BadFrame, decodeLeaves } from "../../src/mirror/leaves";
 import { Mirror } from "../../src/mirror/mirror";
 
@@ -31,15 +32,33 @@ function bytesOf(mirror: Mirror): Buffer {
 }
 
 describe("the mirror", () => {
-  it.each(["display", "exact", "deep", "one_page", "uneven"])("holds what the C++ mirror holds after the frames of %s", (name) => {
+  it.each(["display", "exact", "deep", "one_page", "uneven", "errors"])("holds what the C++ mirror holds after the frames of %s", (name) => {
     const mirror = new Mirror(2000);
     const frames = framesOf(name);
     expect(frames.length).toBeGreaterThan(0);
     for (const frame of frames) {
       mirror.apply(decodeLeaves(frame.leaves!));
       if (frame.stateHash !== undefined) expect(mirror.stateHash).toBe(frame.stateHash);
+      if (frame.errors) mirror.takeErrors(decodeErrors(frame.errors));
     }
     expect(bytesOf(mirror).equals(readFileSync(new URL(`${name}.leaves`, VECTORS)))).toBe(true);
+    expect(mirror.hasErrors).toBe(name === "errors");
+    if (name !== "errors") return;
+    const expected = readFileSync(new URL("errors.errors", VECTORS));
+    const told = Array.from({ length: 2000 }, (_, root) => [...mirror.leavesUnder(root)]).flat();
+    expect(told.length).toBeGreaterThan(expected.length / 4); // roots of which nothing was said are leaves here
+    for (let n = 0; n < expected.length / 4; ++n) {
+      const error = expected.readFloatLE(4 * n);
+      expect(Math.abs(mirror.errors[told[n]] - error)).toBeLessThanOrEqual(1e-6 * error);
+    }
+  });
+
+  it("refuses errors of leaves that are not there, and pages that claim too much", () => {
+    const { errors } = framesOf("errors").find((frame) => frame.errors)!;
+    expect(() => new Mirror(2000).takeErrors(decodeErrors(errors!))).toThrow(BadFrame);
+    expect(() => decodeErrors({ ...errors!, count: 2 ** 31 })).toThrow(BadFrame);
+    expect(() => decodeErrors({ ...errors!, zstd: errors!.zstd.subarray(0, 10) })).toThrow(BadFrame);
+    expect(() => decodeErrors({ ...errors!, scale: 1e9 })).toThrow(BadFrame);
   });
 
   it("applies a frame whole or not at all", () => {
