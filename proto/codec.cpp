@@ -99,6 +99,7 @@ v1::Step encode(const Step& step) {
   *message.mutable_ambient_irradiance() = encode(step.ambient_irradiance);
   message.set_displayed_error(step.displayed_error);
   message.set_unlit_fraction(step.unlit_fraction);
+  message.set_area_within(step.area_within);
   return message;
 }
 
@@ -115,6 +116,7 @@ Step decode(const v1::Step& message) {
   step.ambient_irradiance = decode(message.ambient_irradiance());
   step.displayed_error = message.displayed_error();
   step.unlit_fraction = message.unlit_fraction();
+  step.area_within = message.area_within();
   return step;
 }
 

@@ -30,6 +30,7 @@ struct Step {
   /// of the mean irradiance where that is larger.
   double displayed_error = 0;
   double unlit_fraction = 0;  ///< fraction of the area that light may reach whose irradiance is still unknown, published as 0
+  double area_within = 0;     ///< share of the visible area whose told error is within the tolerance, see ErrorByPlace
   Rgb ambient_irradiance;     ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
   friend bool operator==(const Step&, const Step&) = default;
 };

@@ -1,5 +1,6 @@
-// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Version 3 does not tell errors. Logs
-// that were saved before there were versions begin with the number of their steps, which is never as large as the mark.
+// Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Version 3 does not tell errors of
+// leaves nor Step::area_within. Logs that were saved before there were versions begin with the number of their steps, which is
+// never as large as the mark.
 
 #include "solution/solution_log.h"
 
@@ -34,7 +35,8 @@ void check_steps(std::span<const Step> steps) {
     const Step& step = steps[n];
     const bool is_finite = std::isfinite(step.elapsed_s) && std::isfinite(step.unshot_fraction) &&
                            std::isfinite(step.estimated_error) && std::isfinite(step.displayed_error) &&
-                           std::isfinite(step.unlit_fraction) && step.ambient_irradiance.is_finite();
+                           std::isfinite(step.unlit_fraction) && std::isfinite(step.area_within) &&
+                           step.ambient_irradiance.is_finite();
     if (step.revision != n + 1 || step.step != n || !is_finite) throw BadBytes("step " + std::to_string(n) + ": cannot be");
   }
 }
@@ -64,6 +66,7 @@ void put(const Step& step, PlainWriter& out) {
   out.put(step.estimated_error);
   out.put(step.displayed_error);
   out.put(step.unlit_fraction);
+  out.put(step.area_within);
   put(step.ambient_irradiance, out);
 }
 
@@ -79,6 +82,7 @@ Step get_step(PlainReader& in, std::uint32_t version) {
   step.estimated_error = in.get<double>();
   step.displayed_error = in.get<double>();
   if (version >= 2) step.unlit_fraction = in.get<double>();
+  if (version >= 4) step.area_within = in.get<double>();
   step.ambient_irradiance = get_rgb(in);
   return step;
 }

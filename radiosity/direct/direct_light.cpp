@@ -75,9 +75,9 @@ class ShadowBatch {
     std::size_t receiver;
     std::uint32_t light;
     std::array<double, 4> unblocked;  // by quarter, see LightSource::unblocked
+    double mean_unblocked = 0;        // over the visible part of the receiver
     VisibleFraction fraction;
     ExactView view;  // if known, no rays are sent
-    double mean_unblocked() const { return (unblocked[0] + unblocked[1] + unblocked[2] + unblocked[3]) / 4; }
   };
   struct Sphere {
     Vec3 centre;
@@ -107,9 +107,36 @@ class ShadowBatch {
     const LightSource& light = *lights_[l];
     if (!light.may_reach(shape.root) || receivers_[r].hidden_origins == 0xffff) return;
     const Vec3 normal = normal_of(receivers_[r]);
-    Lit lit{r, l, {}, {}};
-    for (int k = 0; k < 4; ++k) lit.unblocked[k] = light.unblocked(local_point(shape.child(k).centre(), shape.root), normal);
-    if (lit.mean_unblocked() > 0) lit_.push_back(lit);
+    Lit lit{r, l, {}, 0, {}, {}};
+    if (receivers_[r].hidden_origins != 0) {
+      find_unblocked_of_visible(lit, normal);
+    } else {
+      for (int k = 0; k < 4; ++k) lit.unblocked[k] = light.unblocked(local_point(shape.child(k).centre(), shape.root), normal);
+      lit.mean_unblocked = (lit.unblocked[0] + lit.unblocked[1] + lit.unblocked[2] + lit.unblocked[3]) / 4;
+    }
+    if (lit.mean_unblocked > 0) lit_.push_back(lit);
+  }
+  /// Sets what a light would bring to the middle of the visible origins in each quarter of a receiver, and to a quarter without
+  /// them the mean of the others: just behind the outline of a lamp that stands on the receiver nothing would arrive.
+  void find_unblocked_of_visible(Lit& lit, Vec3 normal) const {
+    const Receiver& receiver = receivers_[lit.receiver];
+    const PatchShape& shape = receiver.shape;
+    std::array<double, 4> visible{};
+    double sum = 0, count = 0;
+    for (int k = 0; k < 4; ++k) {
+      Vec3 middle;
+      for (int o = 0; o < 4; ++o) {
+        if (receiver.hidden_origins >> (4 * k + o) & 1) continue;
+        middle += local_point(shape.child(k).child(o).centre(), shape.root);
+        visible[k] += 1;
+      }
+      if (visible[k] == 0) continue;
+      lit.unblocked[k] = lights_[lit.light]->unblocked(middle / visible[k], normal);
+      sum += visible[k] * lit.unblocked[k], count += visible[k];
+    }
+    lit.mean_unblocked = sum / count;
+    for (int k = 0; k < 4; ++k)
+      if (visible[k] == 0) lit.unblocked[k] = lit.mean_unblocked;
   }
 
   void add_looked_at() {
@@ -149,7 +176,7 @@ class ShadowBatch {
     for (const float seen : lit.view.at_origin) sum += seen;
     return sum / std::max(1, count);
   }
-  double unblocked(const Lit& lit) const { return lit.mean_unblocked() * lights_[lit.light]->colour().mean(); }
+  double unblocked(const Lit& lit) const { return lit.mean_unblocked * lights_[lit.light]->colour().mean(); }
   /// Returns each receiver's irradiance by the first packets, emission units, mean over bands.
   std::vector<double> brightness_of_receivers() {
     std::vector<double> brightness(receivers_.size());
@@ -166,7 +193,7 @@ class ShadowBatch {
     if (lit.view.kind == ExactView::Kind::shadowed) return add_view(lit);
     DirectLight& light = light_[lit.receiver];
     const RelativeLight& colour = lights_[lit.light]->colour();
-    const double mean = lit.mean_unblocked(), visible = mean * lit.fraction.value();
+    const double mean = lit.mean_unblocked, visible = mean * lit.fraction.value();
     if (visible <= 0) return;
     const RelativeLight arriving = dimming ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
     light.irradiance += arriving;

@@ -86,9 +86,11 @@ void Shooting::transpose_weights() {
   if (std::ranges::all_of(patches_, [](const ShootingPatch& patch) { return patch.row->hit_weight.empty(); })) return;
   entry_weight_.resize(hit_leaf_.size());
   std::vector<std::uint64_t> next(first_entry_.begin(), first_entry_.end() - 1);
-  for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver)
+  for (std::uint32_t receiver = 0; receiver < patches_.size(); ++receiver) {
+    const auto& weight = patches_[receiver].row->hit_weight;
     for (std::uint64_t h = first_hit_[receiver]; h < first_hit_[receiver + 1]; ++h)
-      entry_weight_[next[patch_of_leaf_[hit_leaf_[h]]]++] = patches_[receiver].row->hit_weight[h - first_hit_[receiver]];
+      entry_weight_[next[patch_of_leaf_[hit_leaf_[h]]]++] = weight.empty() ? RgbF{1, 1, 1} : weight[h - first_hit_[receiver]];
+  }
 }
 
 template <class Radiosity>

@@ -21,6 +21,9 @@ enum class FormFactorMethod {
 /// The options of a solve. One mesh with one set of options gives the same bytes each time, for any number of threads.
 struct SolveOptions {
   double tolerance = 0.02;  ///< stop when the estimated nRMSE is at or below this; > 0
+  /// Share of the visible area, in (0, 1], on which the told error must be within the tolerance: if less than 1, the solve stops
+  /// when it is so (see ErrorByPlace), whatever the estimated nRMSE.
+  double area_share = 1;
   int max_depth = 10;       ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
   std::uint64_t max_leaves = 200'000;
   double min_edge_m = 0;  ///< no split makes an edge shorter than this

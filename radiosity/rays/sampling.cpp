@@ -1,9 +1,9 @@
 #include "radiosity/rays/sampling.h"
 
 #include "radiosity/rays/hemicube.h"
+#include "radiosity/rays/unit_disk.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace alvor {
 
@@ -41,19 +41,6 @@ struct Strata {
   }
 };
 
-struct Disk {
-  double x, y;
-};
-/// Maps the unit square to the unit disk, area-preserving and with low distortion (Shirley & Chiu 1997).
-Disk concentric_disk(Uv p) {
-  const double a = 2 * p.u - 1, b = 2 * p.v - 1;
-  if (a == 0 && b == 0) return {0, 0};
-  const double quarter = std::numbers::pi / 4;
-  const bool wide = std::abs(a) > std::abs(b);
-  const double r = wide ? a : b, phi = wide ? quarter * b / a : quarter * (2 - a / b);
-  return {r * std::cos(phi), r * std::sin(phi)};
-}
-
 void set_direction(DirectionSets::Set& set, std::size_t n, Vec3 direction, double weight) {
   set.x[n] = static_cast<float>(direction.x);
   set.y[n] = static_cast<float>(direction.y);
@@ -63,7 +50,7 @@ void set_direction(DirectionSets::Set& set, std::size_t n, Vec3 direction, doubl
 
 void place_on_disk(DirectionSets::Set& set, std::uint64_t scramble) {
   for (std::uint32_t n = 0; n < rays_per_row; ++n) {
-    const Disk d =
+    const DiskPoint d =
         concentric_disk(sobol_point(n, static_cast<std::uint32_t>(scramble), static_cast<std::uint32_t>(scramble >> 32)));
     set_direction(set, n, {d.x, d.y, std::sqrt(std::max(1e-12, 1 - d.x * d.x - d.y * d.y))}, 1);
   }

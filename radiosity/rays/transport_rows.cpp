@@ -47,6 +47,13 @@ void aim(RayPacket& packet, const DirectionSets::Set& set, int origin, const Tur
   }
 }
 
+void aim(RayPacket& packet, std::uint32_t ray, Vec3 direction, const TurnedFrame& frame) {
+  const auto x = static_cast<float>(direction.x), y = static_cast<float>(direction.y), z = static_cast<float>(direction.z);
+  packet.direction_x[ray] = x * frame.s.x + y * frame.t.x + z * frame.n.x;
+  packet.direction_y[ray] = x * frame.s.y + y * frame.t.y + z * frame.n.y;
+  packet.direction_z[ray] = x * frame.s.z + y * frame.t.z + z * frame.n.z;
+}
+
 void start_at(RayPacket& packet, float x, float y, float z) {
   for (int r = 0; r < RayPacket::width; ++r) {
     packet.origin_x[r] = x;
@@ -71,13 +78,15 @@ class RowTracer {
         seed_(seed),
         budget_(budget) {}
 
-  void trace(const PatchShape& shape, PatchId patch, RowSize size, TransportRow& row) {
+  void trace(const PatchShape& shape, PatchId patch, RowSize size, const DirectionGuide* guide, TransportRow& row) {
     RandomStream random(seed_, patch);
     const PatchPoints points = sample_points(scene_, shape, random);
     set_ = &directions_[random.next_below(DirectionSets::set_count)];
     const TurnedFrame frame(scene_.root(shape.root), 2 * std::numbers::pi * random.next());
     choose_origins(size, random);
     if (has_panes_) turn_ = random.next();
+    is_guided_ = guide && !guide->is_none() && size == RowSize::whole;
+    weights_ = set_->weight.data();
     if (size == RowSize::hidden_only && !any_back(points, frame)) {
       row.rays = rays_per_row;
       return;
@@ -85,19 +94,51 @@ class RowTracer {
     for (int n = 0; n < count_; ++n) {
       const int o = origin_[n];
       start_at(packets_[n], points.x[o], points.y[o], points.z[o]);
-      aim(packets_[n], *set_, n, frame);
+      if (!is_guided_) aim(packets_[n], *set_, n, frame);
     }
+    if (is_guided_) aim_by(*guide, TurnedFrame(scene_.root(shape.root), 0), random);
     budget_.spend(static_cast<std::uint64_t>(count_) * rays_per_origin,
                   [&] { scene_.visibility().closest_hits(packets(), std::span(hits_).first(packets().size()), crossings()); });
     if (size == RowSize::hidden_only) return store_hidden(row);
     retrace_slipped_rays(scene_.root(shape.root).normal);
     store(row);
+    if (is_guided_) even_out_quarters(row);
   }
 
  private:
   std::span<const RayPacket> packets() const { return std::span(packets_).first(static_cast<std::size_t>(count_)); }
   std::span<std::vector<Crossing>> crossings() {
     return has_panes_ ? std::span(crossings_).first(static_cast<std::size_t>(count_)) : std::span<std::vector<Crossing>>();
+  }
+
+  /// Aims all rays as the guide says, and sets their weights.
+  void aim_by(const DirectionGuide& guide, const TurnedFrame& frame, RandomStream& random) {
+    const DirectionGuide::Warp warp(guide);
+    const auto scramble_u = random.next_below(~0u), scramble_v = random.next_below(~0u);
+    for (std::uint32_t n = 0; n < rays_per_row; ++n) {
+      const auto drawn = warp.draw(sobol_point(n, scramble_u, scramble_v));
+      aim(packets_[n / rays_per_origin], n % rays_per_origin, drawn.direction, frame);
+      guided_weights_[n] = static_cast<float>(drawn.weight);
+    }
+    weights_ = guided_weights_.data();
+  }
+
+  /// Scales the weights so that those of all rays of a quarter, with the rays that escaped, have the mean 1: how many rays go to
+  /// dense cells is a matter of chance.
+  void even_out_quarters(TransportRow& row) const {
+    std::size_t hit = 0;
+    for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+      double sum = 0, rays = 0;
+      std::size_t hits = 0;
+      for (std::size_t o = 4 * quarter; o < 4 * quarter + 4; ++o) {
+        if (row.origin_hits[o] == TransportRow::not_sampled) continue;
+        hits += row.origin_hits[o];
+        rays += rays_per_origin;
+        for (std::size_t r = 0; r < rays_per_origin; ++r) sum += guided_weights_[o * rays_per_origin + r];
+      }
+      for (const std::size_t last = hit + hits; hit < last; ++hit)
+        row.hit_weight[hit] = static_cast<float>(rays / sum) * row.hit_weight[hit];
+    }
   }
 
   /// Sends one ray from each origin, each in another direction of the hemisphere, and returns whether any meets a back.
@@ -219,7 +260,7 @@ class RowTracer {
     if constexpr (back_sides) store_hits(turned_to_front(p), outcomes, row);
     else store_hits(hits_[p], outcomes, row);
     ended += row.hits.size() - before;
-    if (medium_.is_clear() && !directions_.has_weights() && !has_panes_) return true;
+    if (medium_.is_clear() && !directions_.has_weights() && !has_panes_ && !is_guided_) return true;
     Visibility::Tints tints;
     tints.fill({1, 1, 1});
     if (has_panes_)
@@ -239,7 +280,7 @@ class RowTracer {
   }
   /// Returns the weight of a hit at the distance `t` of a ray, but for panes.
   RgbF weight_at(std::size_t p, std::uint32_t lane, float t) const {
-    return set_->weight[p * rays_per_origin + lane] * narrow(medium_.transmittance(t * scene_.frame().metres_per_unit));
+    return weights_[p * rays_per_origin + lane] * narrow(medium_.transmittance(t * scene_.frame().metres_per_unit));
   }
 
   /// Stores the places where the rays of packet `p` met panes that reflect, absorb or emit.
@@ -316,6 +357,9 @@ class RowTracer {
   RayBudget& budget_;
   // Directions, origins, rays, hits and crossed panes of the row that is being traced:
   const DirectionSets::Set* set_ = nullptr;
+  bool is_guided_ = false;
+  std::array<float, rays_per_row> guided_weights_;
+  const float* weights_ = nullptr;  // of all rays: the set's or guided_weights_
   int count_ = 0;
   std::array<int, origins_per_patch> origin_{};
   std::array<RayPacket, origins_per_patch> packets_;
@@ -335,6 +379,14 @@ Rgb TransportRow::stored_weight() const {
 }
 
 void TransportRow::append(const TransportRow& more) {
+  if (hit_weight.empty() != more.hit_weight.empty() && !hits.empty() && !more.hits.empty()) {  // one of them is guided
+    hit_weight.resize(hits.size(), {1, 1, 1});
+    if (more.hit_weight.empty()) {
+      TransportRow weighted = more;
+      weighted.hit_weight.assign(more.hits.size(), {1, 1, 1});
+      return append(weighted);
+    }
+  }
   std::size_t hit = 0;
   for (std::size_t o = 0; o < more.origin_hits.size(); ++o) {
     const std::uint8_t count = more.origin_hits[o];
@@ -353,14 +405,15 @@ void TransportRow::append(const TransportRow& more) {
 
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
-                                     RayBudget& budget, RowNeeds needs) {
-  assert(shapes.size() == patches.size() && sizes.size() == patches.size());
+                                     RayBudget& budget, RowNeeds needs, std::span<const DirectionGuide* const> guides) {
+  assert(shapes.size() == patches.size() && sizes.size() == patches.size() &&
+         (guides.empty() || guides.size() == patches.size()));
   const auto trace = [&]<bool back_sides, bool places>() {
     std::vector<TransportRow> rows(patches.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, patches.size(), patches_per_batch), [&](const auto& batch) {
       RowTracer<back_sides, places> tracer(scene, directions, seed, budget, needs.panes);
       for (std::size_t p = batch.begin(); p != batch.end() && !budget.is_out(); ++p)
-        tracer.trace(shapes[p], patches[p], sizes[p], rows[p]);
+        tracer.trace(shapes[p], patches[p], sizes[p], guides.empty() ? nullptr : guides[p], rows[p]);
     });
     return rows;
   };

@@ -1,6 +1,7 @@
 #pragma once
 // Transport rows: the stored sampling of a receiver's hemisphere.
 
+#include "radiosity/rays/direction_guide.h"
 #include "radiosity/rays/local_scene.h"
 #include "radiosity/rays/ray_budget.h"
 #include "radiosity/rays/sampling.h"
@@ -18,8 +19,8 @@ namespace alvor {
 /// the weight 1 / ray_count(), times its hit_weight.
 struct TransportRow {
   std::vector<PatchId> hits;  ///< ordered by round of rays, then by origin
-  /// Weight of each hit, per band: the transmittance of the medium and of the panes before it, times 16 delta form factors of a
-  /// hemicube's cell or the form factor of an exact row. Empty: all weights are 1.
+  /// Weight of each hit, per band: the transmittance of the medium and of the panes before it, times the weight of a guided ray,
+  /// 16 delta form factors of a hemicube's cell, or the form factor of an exact row. Empty: all weights are 1.
   std::vector<RgbF> hit_weight;
   /// Number of hits of each origin, origins_per_patch entries per round of rays; `not_sampled` for an origin that is hidden or
   /// that a small row left out. Empty if the row did not come from rays.
@@ -54,12 +55,14 @@ struct RowNeeds {
 };
 
 /// Traces one row for each patch and returns them in the order of `patches`: 256 (or 64) rays from 16 (or 4) stratified origins,
-/// in directions of `directions`. An origin of which more than half of the rays meet backs is hidden (under a box, inside a
-/// solid) and is left out, so that a patch half under a box has the irradiance of its visible half. In a closed scene a ray that
-/// slips through a seam is sent once more, slightly turned, so that rows sum to 1. Rows do not depend on the number of threads.
-/// Returns early where the budget is out. Requires: as many shapes and sizes as patches.
+/// in directions of `directions`, or as a patch's guide says. A guided row's weights are scaled so that each quarter counts for
+/// as many cosine-distributed rays as it sent; rows of closed scenes sum to 1. `guides` are by patch, or none at all; a null or
+/// an empty one guides nothing. An origin of which more than half of the rays meet backs is hidden (under a box, inside a solid)
+/// and is left out, so that a patch half under a box has the irradiance of its visible half. In a closed scene a ray that slips
+/// through a seam is sent once more, slightly turned, so that rows sum to 1. Rows do not depend on the number of threads. Returns
+/// early where the budget is out. Requires: as many shapes and sizes as patches.
 std::vector<TransportRow> trace_rows(const LocalScene& scene, const DirectionSets& directions, std::span<const PatchShape> shapes,
                                      std::span<const PatchId> patches, std::span<const RowSize> sizes, std::uint64_t seed,
-                                     RayBudget& budget, RowNeeds needs = {});
+                                     RayBudget& budget, RowNeeds needs = {}, std::span<const DirectionGuide* const> guides = {});
 
 }  // namespace alvor

@@ -77,12 +77,14 @@ bool Pass::refine() {
   stage_ = Stage::refined;
   const Forests& forests = state_.forests;
   const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
+  const std::vector<Candidate> marked = mark(std::move(candidates_), marked_share);
+  guide_rows(marked);
   const auto shot = exchange_->shot();
   for (std::size_t n = 0; n < shot.size(); ++n) state_.shot[system_->leaves()[n]] = shot[n];
   exchange_.reset();
   system_.reset();
   std::vector<NodeIndex> wanting;
-  for (const Candidate& candidate : mark(std::move(candidates_), marked_share)) {
+  for (const Candidate& candidate : marked) {
     if (candidate.kind == Candidate::Kind::add_rays) wanting.push_back(candidate.patch);
     if (candidate.kind == Candidate::Kind::split_row) state_.split_row(candidate.patch);
     if (candidate.kind == Candidate::Kind::split_leaf) state_.split_leaf(candidate.patch);

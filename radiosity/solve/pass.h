@@ -19,6 +19,12 @@ namespace alvor {
 /// How many of the untraced rows a call of Pass::trace_rows traces.
 enum class RowsToTrace { all, a_part };
 
+/// The told errors of leaves, each relative to the irradiance there, or to a tenth of the mean irradiance where it is darker.
+struct ErrorByPlace {
+  double area_within = 1;  ///< share of the visible area whose error is within the tolerance, in [0, 1]
+  double kept_error = 0;   ///< least error that SolveOptions::area_share of the visible area keeps
+};
+
 /// Takes a state through one pass. The steps are called in the order in which they are declared; trace_rows() and
 /// add_direct_light() may be repeated, and are left out where nothing is new. Each step asserts that the one before was done.
 /// While rows are traced and direct light is added the state may be saved. Used by one thread at a time.
@@ -49,6 +55,13 @@ class Pass {
   /// the leaves; `unshot` and `balance` count as shares of each leaf's irradiance. Nothing before estimate() and after refine().
   std::vector<float> leaf_errors(const ErrorEstimate& error) const;
 
+  // Between estimate() and refine(), with the estimate:
+
+  ErrorByPlace error_by_place(const ErrorEstimate& error) const;
+  /// Drops the candidates for refinement where the told errors are well within the tolerance, and counts those far beyond it for
+  /// less: for SolveOptions::area_share.
+  void refine_only_what_is_not_within(const ErrorEstimate& error);
+
   // Between begin_exchange() and refine():
 
   Exchange& exchange() { return *exchange_; }
@@ -76,10 +89,20 @@ class Pass {
   bool trace(std::span<const NodeIndex> rows);
   void estimate_rows(ErrorEstimate& error);
   double estimate_leaves(ErrorEstimate& error);
+  double visible_area(std::size_t patch) const;
+  std::vector<double> irradiance_of_rows() const;
+  double contact_variation(NodeIndex row, const SmoothNeighbours& neighbours, std::span<const double> irradiance) const;
+  struct PlaceError {
+    double area = 0, irradiance = 0, relative_to = 0;  ///< m2 that are visible and may be lit; emission units
+    double error = 0;                                  ///< see ErrorByPlace
+  };
+  std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
   void tell_leaves(double share_of_interpolation);
+  void guide_rows(std::span<const Candidate> marked);
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
+  void drop_rays_that_do_not_help(double lasting_error);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
-  double squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const;
+  double squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   double misfit_at_origins(NodeIndex row, const LightByLeaf& radiosity) const;
   bool rows_tell_what_is_lost() const;
@@ -90,6 +113,7 @@ class Pass {
   std::optional<PassSystem> system_;
   std::unique_ptr<Exchange> exchange_;
   std::vector<Candidate> candidates_;
+  double lasting_error_ = 0;  ///< squared error of patches that the limits keep from being split, emission units squared times m2
   std::vector<double> row_squares_;   ///< by patch: mean square error of the rows, emission units squared
   std::vector<double> leaf_squares_;  ///< by place of the leaf, with the row's part
 };

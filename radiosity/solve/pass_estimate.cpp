@@ -7,8 +7,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <functional>
 
 namespace alvor {
 
@@ -40,9 +42,13 @@ constexpr double misfit_at_centre = 0.25;
 // squared normal deviations. With 0 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken for detail; with
 // 0.7 half of the gain in the furnished room is lost (docs/error-vs-time.md).
 constexpr double chance_of_origins = 0.35;
-// Share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2 %, rays
-// same, double: error -4 %, rays +55 % (docs/design/constants.md).
+// Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
+// %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
+
+// Share of the squared error that the limits keep from being refined: rays that would remove less are not sent. Removing all of
+// it would make the error a tenth smaller. Chosen.
+constexpr double worth_rays = 0.2;
 
 bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
@@ -148,8 +154,44 @@ bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
 
 void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays) {
   if (!state_.plan.needs(Feature::refinement)) return;
-  for (std::size_t n = 0; n < patches.size(); ++n)
-    if (errors[n] > 0 && may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
+  for (std::size_t n = 0; n < patches.size(); ++n) {
+    if (errors[n] <= 0) continue;
+    if (may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
+    else lasting_error_ += errors[n];
+  }
+}
+
+/// Returns the area of the part of a patch that no solid hides, m2. Faces that light cannot reach count as visible.
+double Pass::visible_area(std::size_t patch) const {
+  const ShootingPatch& of = system_->patches()[patch];
+  return state_.rows.may_be_lit(system_->rows()[patch]) ? of.area * of.row->visible_share() : of.area;
+}
+
+/// Returns the irradiance of each patch, mean over its leaves and over bands, by row node; in emission units.
+std::vector<double> Pass::irradiance_of_rows() const {
+  std::vector<double> irradiance(state_.forests.rows().node_count());
+  for (std::size_t p = 0; p < system_->patches().size(); ++p) {
+    const NodeIndex row = system_->rows()[p];
+    double direct = 0;
+    for (const NodeIndex leaf : system_->leaves_of(p))
+      direct += state_.forests.leaf_area(leaf) * state_.direct[leaf].irradiance.mean();
+    irradiance[row] = state_.field.irradiance(row).mean() + direct / system_->patches()[p].area;
+  }
+  return irradiance;
+}
+
+/// Returns by how much the irradiance may vary over the visible part of a patch that a solid's outline crosses, in emission
+/// units: a share of it, and no more than the irradiance of lit neighbours differs, if one of them lies beside the outline.
+double Pass::contact_variation(NodeIndex row, const SmoothNeighbours& neighbours, std::span<const double> irradiance) const {
+  const double most = contact_error * irradiance[row];
+  double difference = 0;
+  bool is_bounded = false;
+  for (const NodeIndex neighbour : neighbours) {
+    if (state_.rows[neighbour].is_hidden() || irradiance[neighbour] == 0) continue;
+    difference = std::max(difference, std::abs(irradiance[neighbour] - irradiance[row]));
+    is_bounded |= !state_.rows[neighbour].crosses_contact();
+  }
+  return is_bounded ? std::min(most, difference) : most;
 }
 
 /// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2. Adds candidates
@@ -159,23 +201,24 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   const auto leaving = system_->radiosity();
   std::vector<double> errors(patches.size());
   tbb::parallel_for(std::size_t{0}, patches.size(),
-                    [&](std::size_t p) { errors[p] = patches[p].area * misfit_at_origins(system_->rows()[p], leaving); });
+                    [&](std::size_t p) { errors[p] = visible_area(p) * misfit_at_origins(system_->rows()[p], leaving); });
   row_squares_.resize(patches.size());
+  const auto neighbours = state_.forests.row_neighbours(system_->rows());
+  const std::vector<double> irradiance = irradiance_of_rows();
   double told_misfit = 0;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const NodeIndex node = system_->rows()[p];
     const TransportRow& row = state_.rows[node];
     const FieldFit& fit = state_.field.fit(node);
-    const double area = patches[p].area, noise = area * fit.variance;
+    const double area = visible_area(p), noise = area * fit.variance;
     error.misfit += area * fit.squared_misfit;
     row_squares_[p] = std::max(0.0, fit.squared_misfit);
     errors[p] = std::max(errors[p], area * misfit_at_centre * fit.window_misfit);
     if (row.crosses_contact()) {
-      const RelativeLight direct = state_.direct[system_->leaves_of(p).front()].irradiance;
-      const double by_contact = area * squared(contact_error * (state_.field.irradiance(node) + direct).mean());
+      const double by_contact = area * squared(contact_variation(node, neighbours[p], irradiance));
       errors[p] += by_contact;
       error.misfit += by_contact;
-      row_squares_[p] += by_contact / area;
+      row_squares_[p] += area > 0 ? by_contact / area : 0;
     }
     told_misfit += area * row_squares_[p];
     error.sampling += noise;
@@ -189,24 +232,30 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   add_candidates(Candidate::Kind::split_row, system_->rows(), errors, rays_per_row_split);
 }
 
-/// Returns the mean square deviation of the irradiance at a leaf's origins from the leaf's linear slope, less the noise of shadow
-/// rays, at least 0; in emission units squared.
-double Pass::squared_contrast(NodeIndex leaf, const RelativeLight& irradiance, const RelativeSlope& slope) const {
+/// Returns the mean square deviation of the irradiance at a leaf's visible origins from a plane with the leaf's slope through
+/// their mean, less the noise of shadow rays, at least 0; in emission units squared.
+double Pass::squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const {
   const Forests& forests = state_.forests;
   const DirectLight& direct = state_.direct[leaf];
   const NodeIndex row = forests.row_of(leaf);
+  const std::uint16_t hidden = state_.hidden_origins(leaf);
   const PatchShape shape = forests.leaves().shape(leaf);
   const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
-  double squares = 0;
+  double sum = 0, squares = 0;
   for (int k = 0; k < 4; ++k) {
+    if ((hidden >> 4 * k & 0xf) == 0xf) continue;
     const PatchShape quarter = shape.child(k);
     const double by_rows = state_.field.at(row, centre_of(state_.mesh, quarter)).mean();
     for (int o = 0; o < 4; ++o) {
+      if (hidden >> (4 * k + o) & 1) continue;
       const Vec3 offset = centre_of(state_.mesh, quarter.child(o)) - forests.leaf_centres()[leaf];
-      squares += squared(direct.at_origin[4 * k + o] + by_rows - irradiance.mean() - dot(steepest, offset));
+      const double above_plane = direct.at_origin[4 * k + o] + by_rows - dot(steepest, offset);
+      sum += above_plane, squares += squared(above_plane);
     }
   }
-  return std::max(0.0, squares / origins_per_patch - noise_of_origins * direct.origin_variance);
+  const int visible = origins_per_patch - std::popcount(hidden);
+  if (visible == 0) return 0;
+  return std::max(0.0, squares / visible - squared(sum / visible) - noise_of_origins * direct.origin_variance);
 }
 
 /// Adds the errors of leaves to `error`, and candidates that split leaves, as estimate_rows() does for rows. Returns the power
@@ -219,7 +268,7 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
     irradiance[leaves[n]] = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
   });
   double power = 0;
-  for (const NodeIndex leaf : leaves) power += forests.leaf_area(leaf) * irradiance[leaf].mean();
+  for (const NodeIndex leaf : leaves) power += state_.visible_area(leaf) * irradiance[leaf].mean();
   const auto neighbours = forests.leaf_neighbours(leaves);
   const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
   std::vector<RelativeSlope> slope(forests.leaves().node_count());
@@ -228,13 +277,13 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   for_each_leaf(field, [&](std::size_t n) {
     const NodeIndex leaf = leaves[n];
     const double smooth = squared(errors[n]) - noise_in_differences * state_.direct[leaf].variance;
-    const double contrast = squared_contrast(leaf, irradiance[leaf], slope[leaf]);
-    errors[n] = forests.leaf_area(leaf) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
+    const double contrast = squared_contrast(leaf, slope[leaf]);
+    errors[n] = state_.visible_area(leaf) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
   });
   leaf_squares_.resize(leaves.size());
   double told_interpolation = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const double noise = noise_in_display * forests.leaf_area(leaves[n]) * state_.direct[leaves[n]].variance;
+    const double noise = noise_in_display * state_.visible_area(leaves[n]) * state_.direct[leaves[n]].variance;
     error.interpolation += unseen_detail * errors[n];
     error.sampling += noise;
     leaf_squares_[n] = unseen_detail * std::max(0.0, errors[n]);
@@ -252,7 +301,8 @@ void Pass::tell_leaves(double share_of_interpolation) {
   for (std::size_t p = 0; p < patches.size(); ++p)
     for (std::size_t n = patches[p].first_leaf; n < patches[p].first_leaf + patches[p].leaf_count; ++n) {
       const NodeIndex leaf = system_->leaves()[n];
-      leaf_squares_[n] = share_of_interpolation * leaf_squares_[n] / state_.forests.leaf_area(leaf) +
+      const double area = state_.visible_area(leaf);
+      leaf_squares_[n] = (area > 0 ? share_of_interpolation * leaf_squares_[n] / area : 0) +
                          noise_in_display * state_.direct[leaf].variance + row_squares_[p];
     }
 }
@@ -270,24 +320,35 @@ std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
   return errors;
 }
 
+/// Drops the candidates that add rays if the error that would need splits which the limits forbid is beyond the tolerance, and
+/// all of these rays would hardly reduce it.
+void Pass::drop_rays_that_do_not_help(double lasting_error) {
+  if (state_.options.area_share < 1 || lasting_error <= state_.options.tolerance) return;
+  double removable = 0;
+  for (const Candidate& candidate : candidates_)
+    if (!splits(candidate)) removable += candidate.squared_error;
+  if (removable < worth_rays * lasting_error_) std::erase_if(candidates_, std::not_fn(splits));
+}
+
 ErrorEstimate Pass::estimate() {
   assert(stage_ == Stage::exchanging);
   stage_ = Stage::estimated;
   show_smoothly();
   candidates_.clear();
+  lasting_error_ = 0;
   ErrorEstimate error;
   estimate_rows(error);
   const double power = estimate_leaves(error);
   if (power <= 0) return {};
   double area = 0;
   const auto patches = system_->patches();
-  for (std::size_t p = 0; p < patches.size(); ++p)
-    if (!patches[p].row->is_hidden() || !state_.rows.may_be_lit(system_->rows()[p])) area += patches[p].area;
+  for (std::size_t p = 0; p < patches.size(); ++p) area += visible_area(p);
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;
   error.unshot = exchange_->remaining_error();
   if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
+  drop_rays_that_do_not_help(std::sqrt(lasting_error_ / area) / mean);
   return error;
 }
 

@@ -12,9 +12,9 @@
 namespace alvor {
 
 /// Versions of checkpoints, which each checkpoint begins with. Version 1 does not say which leaves have light; since version 3
-/// rows say whether they are closed (TransportRow::is_closed). A solve goes on from the oldest and later ones, and writes the
-/// newest.
-inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 3;
+/// rows say whether they are closed (TransportRow::is_closed); since version 4 there are guides of rays. A solve goes on from the
+/// oldest and later ones, and writes the newest.
+inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 4;
 
 /// Priority among the solves of a process. Worker threads go to the highest first; each solve has at least the thread that called
 /// it.

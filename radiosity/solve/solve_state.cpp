@@ -101,6 +101,7 @@ bool SolveState::split_row(NodeIndex row) {
   for (const NodeIndex parent : split) {
     split_leaf(forests.leaf_node_of(parent));
     field.hand_down(parent);
+    rows.hand_down_guide(parent);
     rows.forget(parent);
   }
   return is_done;
@@ -121,6 +122,7 @@ void SolveState::save(PlainWriter& out) const {
   direct.save_light(out);
   save_at(forests.leaves().leaves(), shot, out);
   rows.save_wanted(out);
+  rows.save_guides(out);
   direct.save_waiting(out);
 }
 
@@ -133,6 +135,7 @@ void SolveState::load(PlainReader& in, std::uint32_t version) {
   direct.load_light(in);
   load_at(forests.leaves().leaves(), shot, in, "shot light", [](const RelativeLight& light) { return light.is_finite(); });
   rows.load_wanted(in);
+  if (version >= 4) rows.load_guides(in);
   direct.load_waiting(in);
 }
 

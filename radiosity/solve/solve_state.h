@@ -8,6 +8,7 @@
 #include "radiosity/solve/traced_rows.h"
 #include "solution/leaf_value.h"
 
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,16 @@ class SolveState {
   std::vector<RelativeLight> shot;  ///< by leaf node: radiosity that shots distributed so far; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
+  /// Returns the origins of a leaf that are hidden (TransportRow::hidden_origins), which only a row of the same place tells.
+  std::uint16_t hidden_origins(NodeIndex leaf) const {
+    const NodeIndex row = forests.row_of(leaf);
+    if (rows[row].is_hidden()) return 0xffff;
+    return forests.rows().id(row) == forests.leaves().id(leaf) ? rows[row].hidden_origins : std::uint16_t{0};
+  }
+  /// Returns the area of the part of a leaf that no solid hides, m2.
+  double visible_area(NodeIndex leaf) const {
+    return forests.leaf_area(leaf) * (1 - std::popcount(hidden_origins(leaf)) / double(origins_per_patch));
+  }
   /// Returns the direct light that a leaf reflects, and that comes through from the leaf behind it.
   RelativeLight scattered_direct_light(NodeIndex leaf) const {
     const RelativeLight reflected = forests.reflectance(leaf) * direct[leaf].irradiance;

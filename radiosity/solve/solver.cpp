@@ -110,6 +110,7 @@ class Run {
     else load();
     const StopReason reason = pass_until_done();
     if (reason == StopReason::parked) save();
+    if (reason == StopReason::time_limit) publish();  // what the pass that was broken off has found
     const double cpu = cpu_s();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
   }
@@ -120,8 +121,9 @@ class Run {
       save_if_due();
       pass_.emplace(state_);
       if (!pass()) return stop_reason();
-      if (is_.error.total() <= options_.tolerance) return converge(StopReason::tolerance);
+      if (error_to_keep() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
+      if (is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
       const bool is_better = gains() && pass_->refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
@@ -135,10 +137,10 @@ class Run {
   /// Returns false if passes that split nothing, but only add rays, no longer reduce the error.
   bool gains() {
     const bool has_split = state_.leaf_count() > is_.leaves_before;
-    if (has_split || is_.error.total() < worth_going_on * is_.lowest_error) {
+    if (has_split || error_to_keep() < worth_going_on * is_.lowest_error) {
       is_.idle_passes = 0;
       is_.leaves_before = state_.leaf_count();
-      is_.lowest_error = is_.error.total();
+      is_.lowest_error = error_to_keep();
     }
     return ++is_.idle_passes <= most_idle_passes;
   }
@@ -150,6 +152,7 @@ class Run {
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
     is_.error = pass_->estimate();
     account();
+    by_place_ = pass_->error_by_place(is_.error);
     publish();
     ++is_.passes;
     return true;
@@ -158,7 +161,7 @@ class Run {
   /// Traces rows and adds direct light, in the first pass part by part, so that all of the scene soon shows some light. Returns
   /// false if it was stopped.
   bool light() {
-    state_.direct.heed_error(is_.error.total());
+    state_.direct.heed_error(error_to_keep());
     bool is_more = true;
     while (is_more && !must_stop()) {
       is_more = pass_->trace_rows([this] { save_if_due(); }, is_.passes == 0 ? RowsToTrace::a_part : RowsToTrace::all);
@@ -225,6 +228,7 @@ class Run {
     step.unshot_fraction = pass_->unshot_fraction();
     step.estimated_error = is_.error.total();
     step.unlit_fraction = state_.direct.unlit_fraction();
+    step.area_within = by_place_.area_within;
     step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
     if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
     log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
@@ -247,6 +251,7 @@ class Run {
     control_.save([&](PlainWriter& out) {
       out.put(newest_checkpoint);
       out.put(now);
+      out.put(by_place_);
       state_.save(out);
     });
   }
@@ -258,7 +263,9 @@ class Run {
       throw BadBytes("is of version " + std::to_string(version) + "; " + std::to_string(oldest_checkpoint) + " to " +
                      std::to_string(newest_checkpoint) + " are known");
     is_ = in.get<Progress>();
-    const double numbers[] = {is_.elapsed_s, is_.cpu_s, is_.traversal_s, is_.error.total(), is_.lowest_error, is_.balance.gap()};
+    if (version >= 4) by_place_ = in.get<ErrorByPlace>();
+    const double numbers[] = {is_.elapsed_s,    is_.cpu_s,         is_.traversal_s,       is_.error.total(),
+                              is_.lowest_error, is_.balance.gap(), by_place_.area_within, by_place_.kept_error};
     if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || is_.elapsed_s < 0)
       throw BadBytes("progress: cannot be");
     state_.load(in, version);
@@ -267,13 +274,17 @@ class Run {
     budget_.add_spent(is_.rays, is_.traversal_s);
   }
 
+  bool is_by_place() const { return options_.area_share < 1; }
+  /// Returns the error that has to be within the tolerance.
+  double error_to_keep() const { return is_by_place() ? by_place_.kept_error : is_.error.total(); }
+
   double cpu_s() const { return is_.cpu_s + cpu_.seconds(); }
 
   bool is_stuck() const { return has_stalled_ && is_.error.unshot > pass_remaining * options_.tolerance; }
   /// Returns whether this pass may be the last and its exchange is cheap. It then goes on to the end, so that all of the light is
   /// smoothed.
   bool may_be_last() const {
-    return options_.strategy == Strategy::automatic && (is_.passes == 0 || is_.error.total() < near_the_end * options_.tolerance);
+    return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
   /// Returns whether to give up even in the middle of an exchange. A request to park does not count: a solve that went on from
   /// the middle of an exchange would go on differently.
@@ -303,6 +314,7 @@ class Run {
   SolveState state_;
   std::optional<Pass> pass_{state_};
   Progress is_;
+  ErrorByPlace by_place_{.area_within = 0, .kept_error = 1};
   bool has_stalled_ = false;  // the last exchange ended before it converged
   double published_at_ = 0, publishing_s_ = 0;
 };

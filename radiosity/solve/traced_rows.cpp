@@ -82,6 +82,7 @@ bool TracedRows::trace(std::span<const NodeIndex> rows) {
   for (std::size_t n = 0; n < rows.size(); ++n) {
     rows_[rows[n]] = std::move(found[n]);
     is_traced_[rows[n]] = true;
+    guides_.erase(rows[n]);
   }
   return true;
 }
@@ -90,18 +91,31 @@ std::vector<TransportRow> TracedRows::traced(std::span<const NodeIndex> rows, st
                                              std::uint64_t seed) {
   std::vector<PatchShape> shapes;
   std::vector<PatchId> patches;
+  std::vector<const DirectionGuide*> guides;
   for (const NodeIndex row : rows) {
     shapes.push_back(forests_.rows().shape(row));
     patches.push_back(forests_.rows().id(row));
+    const auto guide = guides_.find(row);
+    guides.push_back(guide == guides_.end() ? nullptr : &guide->second);
   }
   const RowNeeds needs{plan_.needs(Feature::back_sides), plan_.needs(Feature::panes), plan_.needs(Feature::refinement)};
-  return trace_rows(scene_, directions_, shapes, patches, sizes, seed, budget_, needs);
+  return trace_rows(scene_, directions_, shapes, patches, sizes, seed, budget_, needs, guides);
 }
 
 RowSize TracedRows::size_of(PatchId patch) const {
   if (!carry_light()) return RowSize::hidden_only;
   const double area = forests_.mesh().roots()[patch.root_face()].area;
   return patch.level() == 0 && area < small_area * forests_.area() ? RowSize::small : RowSize::whole;
+}
+
+void TracedRows::guide(NodeIndex row, const DirectionGuide& guide) { guides_[row] = guide; }
+
+void TracedRows::hand_down_guide(NodeIndex split_row) {
+  const auto guide = guides_.find(split_row);
+  if (guide == guides_.end()) return;
+  const DirectionGuide handed_down = guide->second;
+  guides_.erase(guide);
+  for (int k = 0; k < 4; ++k) guides_[forests_.rows().child(split_row, k)] = handed_down;
 }
 
 void TracedRows::want_rays(std::span<const NodeIndex> rows) {
@@ -115,7 +129,10 @@ bool TracedRows::add_wanted_rays() {
   const std::vector<NodeIndex> rows(wanting_.end() - static_cast<std::ptrdiff_t>(count), wanting_.end());
   const auto more = traced(rows, std::vector(count, RowSize::whole), options_.seed + rounds_of_rays_);
   if (budget_.is_out()) return false;
-  for (std::size_t n = 0; n < count; ++n) rows_[rows[n]].append(more[n]);
+  for (std::size_t n = 0; n < count; ++n) {
+    rows_[rows[n]].append(more[n]);
+    guides_.erase(rows[n]);
+  }
   wanting_.resize(wanting_.size() - count);
   return true;
 }
@@ -160,6 +177,27 @@ void TracedRows::load_wanted(PlainReader& in) {
     wanting_.push_back(rows.leaf_at(id));
   }
   rounds_of_rays_ = in.get<std::uint64_t>();
+}
+
+void TracedRows::save_guides(PlainWriter& out) const {
+  std::vector<PatchId> rows;
+  std::vector<DirectionGuide::Codes> codes;
+  for (const auto& [row, guide] : guides_) rows.push_back(forests_.rows().id(row)), codes.push_back(guide.codes());
+  out.put_all(rows);
+  out.put_all(codes);
+}
+
+void TracedRows::load_guides(PlainReader& in) {
+  const PatchForest& rows = forests_.rows();
+  const auto ids = in.get_all<PatchId>();
+  const auto codes = in.get_all<DirectionGuide::Codes>();
+  if (ids.size() != codes.size()) throw BadBytes("guides of rays: cannot be");
+  for (std::size_t n = 0; n < ids.size(); ++n) {
+    if (!ids[n].is_valid() || ids[n].root_face() >= forests_.mesh().roots().size() || rows.id(rows.leaf_at(ids[n])) != ids[n])
+      throw BadBytes("guides of rays: not of this scene");
+    if (std::ranges::count(codes[n], 0) > 0) throw BadBytes("guides of rays: cannot be");
+    guides_[rows.leaf_at(ids[n])] = DirectionGuide(codes[n]);
+  }
 }
 
 }  // namespace alvor

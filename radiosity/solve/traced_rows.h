@@ -5,6 +5,7 @@
 #include "radiosity/rays/transport_rows.h"
 #include "radiosity/solve/forests.h"
 
+#include <map>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,15 @@ class TracedRows {
   /// and is_closed that rays found.
   void make_exact();
 
+  /// Returns whether rays may be guided: they come from rays, and no hemicube says where they go.
+  bool may_be_guided() const {
+    return plan_.needs(Feature::refinement) && options_.form_factors != FormFactorMethod::analytic && !directions_.has_weights();
+  }
+  /// Sets the guide by which the next rays of a row are sent, or of the children of the row if it is split first.
+  void guide(NodeIndex row, const DirectionGuide& guide);
+  /// Lets the children of a row that was split have its guide.
+  void hand_down_guide(NodeIndex split_row);
+
   /// Asks for another round of rays for these rows.
   void want_rays(std::span<const NodeIndex> rows);
   bool want_any() const { return !wanting_.empty(); }
@@ -49,10 +59,13 @@ class TracedRows {
 
   void save_rows(PlainWriter& out) const;
   void save_wanted(PlainWriter& out) const;
+  void save_guides(PlainWriter& out) const;
   /// Reads what save_rows() wrote in a checkpoint of that version. Throws BadBytes.
   void load_rows(PlainReader& in, std::uint32_t version);
   /// Reads what save_wanted() wrote. Throws BadBytes.
   void load_wanted(PlainReader& in);
+  /// Reads what save_guides() wrote. Throws BadBytes.
+  void load_guides(PlainReader& in);
 
   /// Rows that are traced at once. A solve can be interrupted between batches and go on later. Chosen; half and double give the
   /// same solutions (docs/design/constants.md).
@@ -71,6 +84,7 @@ class TracedRows {
   std::vector<TransportRow> rows_;
   std::vector<bool> is_traced_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;
+  std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
   std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
   std::vector<NodeIndex> wanting_;    ///< rows that have not got the rays of the newest round
 };

@@ -184,6 +184,7 @@ SceneRecord decode(const v1::Scene& message) {
 v1::SolveSpec encode(const SolveSpec& spec) {
   v1::SolveSpec message;
   message.set_tolerance(spec.tolerance);
+  message.set_area_share(spec.area_share);
   if (spec.max_depth) message.set_max_depth(*spec.max_depth);
   message.set_max_elements(spec.max_elements);
   message.set_min_edge_meters(spec.min_edge_m);
@@ -200,6 +201,7 @@ v1::SolveSpec encode(const SolveSpec& spec) {
 SolveSpec decode(const v1::SolveSpec& message) {
   SolveSpec spec;
   spec.tolerance = message.tolerance();
+  spec.area_share = message.area_share();
   if (message.has_max_depth()) spec.max_depth = message.max_depth();
   spec.max_elements = message.max_elements();
   spec.min_edge_m = message.min_edge_meters();

@@ -28,6 +28,9 @@ SolveOptions options_of(const SolveSpec& spec, const SolveLimits& limits) {
   if (spec.tolerance != 0 && !(spec.tolerance > 0 && spec.tolerance <= 1))
     refuse("tolerance", spec.tolerance, "is outside (0, 1]");
   if (spec.tolerance != 0) options.tolerance = spec.tolerance;
+  if (spec.area_share != 0 && !(spec.area_share > 0 && spec.area_share <= 1))
+    refuse("area_share", spec.area_share, "is outside (0, 1]");
+  if (spec.area_share != 0) options.area_share = spec.area_share;
 
   options.max_depth = spec.max_depth.value_or(options.max_depth);
   if (options.max_depth < 0 || options.max_depth > PatchId::max_level)
@@ -57,6 +60,7 @@ SolveOptions options_of(const SolveSpec& spec, const SolveLimits& limits) {
 
 SolveSpec effective_spec(SolveSpec spec, const SolveOptions& options) {
   spec.tolerance = options.tolerance;
+  spec.area_share = options.area_share;
   spec.max_depth = options.max_depth;
   spec.max_elements = options.max_leaves;
   spec.threads = options.threads;

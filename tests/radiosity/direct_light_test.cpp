@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -47,6 +48,39 @@ TEST(DirectLight, UnblockedIsExact) {
   EXPECT_EQ(light.variance, 0);
   // The solver evaluates the form factor at four midpoints; that rule errs by about (size / distance)^2 / 10.
   EXPECT_NEAR(light.irradiance.g, emission * exact, 0.1 * 0.05 * 0.05 * emission * exact);
+}
+
+TEST(DirectLight, OnlyTheVisiblePartOfAPatchCounts) {
+  // A lamp stands on the wall x = 0 and shines upwards: the part of the patch below its edge (u < 0.5) is hidden and would see
+  // nothing.
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(emission, 0)};
+  test::add_polygon(scene, {{0, -0.1, 0}, {0, 0.1, 0}, {0, 0.1, 0.1}, {0, -0.1, 0.1}});
+  test::add_polygon(scene, {{0, 0, -1}, {0, 0, 1}, {1, 0, 1}, {1, 0, -1}}, 1);
+  const BaseMesh mesh(scene);
+  ASSERT_GT(mesh.roots()[0].normal.x, 0);
+  const PatchShape shape = shape_of(mesh, PatchId::root(0));
+  std::uint16_t hidden = 0;
+  double exact = 0;
+  for (int o = 0; o < origins_per_patch; ++o) {
+    const Uv middle = shape.child(o >> 2).child(o & 3).centre();
+    const Vec3 at = mesh.roots()[0].at(middle.u, middle.v);
+    if (at.y < 0) hidden |= static_cast<std::uint16_t>(1u << o);
+    else exact += emission * point_to_polygon(at, {1, 0, 0}, mesh.roots()[1].corners) / 8;
+  }
+  ASSERT_EQ(std::popcount(hidden), 8);
+  const LocalScene local(mesh);
+  const FaceLight lamp(local, 1, {emission, emission, emission});
+  const LightSource* const lights[]{&lamp};
+  const Receiver receiver{PatchId::root(0), shape, hidden};
+  for (const bool has_shadows : {false, true}) {
+    RayBudget budget([] { return false; });
+    DirectLight light;
+    add_direct_light(local, lights, {&receiver, 1}, 1, budget, {&light, 1},
+                     {.occlusion = has_shadows, .medium = false, .partial = false});
+    // Two points stand for eight: the form factor bends little over 0.1 m before a lamp of 2 m.
+    EXPECT_NEAR(light.irradiance.g, exact, 0.01 * exact) << has_shadows;
+  }
 }
 
 TEST(DirectLight, FullyBlockedIsZero) { EXPECT_TRUE(light_on_floor(BaseMesh(lamp_and_floor(true))).irradiance.is_zero()); }

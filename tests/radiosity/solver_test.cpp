@@ -134,6 +134,37 @@ TEST(Solver, LimitsAreKeptAndNamed) {
   EXPECT_EQ(solve(mesh, {.tolerance = never, .time_limit_s = 1e-9}, brief, {}).reason, StopReason::time_limit);
 }
 
+TEST(Solver, RaysAreNotAddedWhereOnlySplitsWouldHelp) {
+  const BaseMesh mesh(lit_room());
+  for (const Strategy strategy : {Strategy::automatic, Strategy::sorted}) {
+    SolutionLog deep, shallow;
+    EXPECT_EQ(solve(mesh, {.tolerance = 0.01, .strategy = strategy}, deep, {}).reason, StopReason::tolerance);
+    EXPECT_EQ(solve(mesh, {.tolerance = 0.01, .max_depth = 3, .strategy = strategy}, shallow, {}).reason, StopReason::max_depth);
+    EXPECT_LT(shallow.last_step().rays, deep.last_step().rays);
+  }
+}
+
+TEST(Solver, EndsWhenEnoughOfTheAreaIsWithinTheTolerance) {
+  const BaseMesh mesh(lit_room());
+  constexpr double tolerance = 0.05;
+  SolutionLog most, nearly_all;
+  EXPECT_EQ(solve(mesh, {.tolerance = tolerance, .area_share = 0.8}, most, {}).reason, StopReason::tolerance);
+  EXPECT_GE(most.last_step().area_within, 0.8);
+  EXPECT_EQ(solve(mesh, {.tolerance = tolerance, .area_share = 0.97}, nearly_all, {}).reason, StopReason::tolerance);
+  EXPECT_GE(nearly_all.last_step().area_within, 0.97);
+  EXPECT_GT(nearly_all.last_step().leaves, most.last_step().leaves);
+}
+
+TEST(Solver, WhatWasFoundUntilTheTimeLimitIsShown) {
+  const BaseMesh mesh(lit_room());
+  SolutionLog log;
+  // The limit has passed before the second pass begins, so that nothing but the last publication shows.
+  EXPECT_EQ(solve(mesh, {.tolerance = 1e-9, .time_limit_s = 0.05}, log, {}).reason, StopReason::time_limit);
+  std::uint64_t most_rays = 0;
+  for (const Step& step : log.steps()) most_rays = std::max(most_rays, step.rays);
+  EXPECT_EQ(log.last_step().rays, most_rays);
+}
+
 TEST(Solver, RoomWithoutLightIsBlackAndDone) {
   Scene scene;
   scene.materials = {test::grey(0, 0.6)};

@@ -64,6 +64,59 @@ TEST(TransportRows, HitsFollowTheFormFactorsOfTheFaces) {
   EXPECT_FALSE(hits.contains(0));
 }
 
+/// Traces the row of the floor of a closed room by a guide that sends two thirds of the rays to a part of the hemisphere.
+TransportRow guided_row(const BaseMesh& mesh, std::uint64_t seed) {
+  DirectionGuide::Codes codes;
+  for (std::size_t c = 0; c < DirectionGuide::cells; ++c) codes[c] = c / DirectionGuide::side < 4 ? 240 : 40;
+  const DirectionGuide guide(codes);
+  const DirectionGuide* const guides[]{&guide};
+  const PatchId patch = PatchId::root(0);
+  const PatchShape shape = shape_of(mesh, patch);
+  const RowSize size = RowSize::whole;
+  RayBudget budget([] { return false; });
+  return trace_rows(LocalScene(mesh), DirectionSets(seed), {&shape, 1}, {&patch, 1}, {&size, 1}, seed, budget, {}, guides)[0];
+}
+
+TEST(TransportRows, GuidedRowsOfAClosedRoomSumToOne) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const TransportRow row = guided_row(mesh, seed);
+    ASSERT_EQ(row.hit_weight.size(), row.hits.size());
+    EXPECT_TRUE(row.is_closed);
+    EXPECT_NEAR(row.stored_weight().g, rays_per_row, 1e-3);
+  }
+}
+
+TEST(TransportRows, GuidedRowsAgreeWithOthersOverManySeeds) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  constexpr int seeds = 200;
+  std::map<std::uint32_t, double> guided, squares, unguided;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const TransportRow row = guided_row(mesh, seed);
+    std::map<std::uint32_t, double> seen;
+    for (std::size_t h = 0; h < row.hits.size(); ++h) seen[row.hits[h].root_face()] += double(row.hit_weight[h].g) / rays_per_row;
+    for (const auto& [face, factor] : seen) guided[face] += factor / seeds, squares[face] += factor * factor / seeds;
+    const Traced cosine = trace(mesh, 0, seed);
+    for (const PatchId hit : cosine.rows[0].hits) unguided[hit.root_face()] += 1.0 / (seeds * rays_per_row);
+  }
+  EXPECT_EQ(guided.size(), 5u);
+  for (const auto& [face, factor] : guided) {
+    // The unguided mean errs less: its rays are stratified better.
+    const double standard_error = std::sqrt(2 * std::max(0.0, squares[face] - factor * factor) / seeds);
+    EXPECT_NEAR(factor, unguided[face], 3.5 * standard_error) << "face " << face;
+  }
+}
+
+TEST(TransportRows, GuidedAndOtherRoundsOfRaysAddUp) {
+  const BaseMesh mesh(test::furnace(1, 0.5));
+  for (const bool is_guided_first : {false, true}) {
+    TransportRow row = is_guided_first ? guided_row(mesh, 1) : trace(mesh, 0).rows[0];
+    row.append(is_guided_first ? trace(mesh, 0).rows[0] : guided_row(mesh, 1));
+    ASSERT_EQ(row.hit_weight.size(), row.hits.size());
+    EXPECT_NEAR(row.stored_weight().g, 2 * rays_per_row, 1e-3);
+  }
+}
+
 TEST(TransportRows, SameSeedGivesTheSameRowsAndAnotherSeedOthers) {
   const BaseMesh mesh(test::furnace(1, 0.5));
   const Traced first = trace(mesh, 20, 5), again = trace(mesh, 20, 5), other = trace(mesh, 20, 6);

@@ -237,6 +237,7 @@ TEST(Api, SolvesTellTheSpecThatIsCarriedOut) {
   effective.set_seed(defaults.seed);
   effective.set_form_factors(v1::FORM_FACTORS_NUSSELT);
   effective.set_priority(v1::PRIORITY_NORMAL);
+  effective.set_area_share(1);
   for (const v1::Solve& told : {created, client.get_solve(created.name()), client.list_solves("scenes/-").at(0)}) {
     EXPECT_EQ(told.effective_spec().ShortDebugString(), effective.ShortDebugString());
     EXPECT_EQ(told.spec().ShortDebugString(), asked.ShortDebugString());

@@ -277,6 +277,7 @@ TEST(SolveSpec, ZeroMeansTheDefault) {
 
 TEST(SolveSpec, WhatIsAskedIsEffective) {
   const SolveSpec asked{.tolerance = 0.5,
+                        .area_share = 0.9,
                         .max_depth = 0,
                         .max_elements = 7,
                         .min_edge_m = 0.1,
@@ -317,6 +318,8 @@ TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
       {"solve.spec.tolerance: 2 is outside (0, 1]", [](auto& s) { s.set_tolerance(2); }},
       {"solve.spec.tolerance: -0.5 is outside (0, 1]", [](auto& s) { s.set_tolerance(-0.5); }},
       {"solve.spec.tolerance: nan is outside (0, 1]", [](auto& s) { s.set_tolerance(NAN); }},
+      {"solve.spec.area_share: 1.5 is outside (0, 1]", [](auto& s) { s.set_area_share(1.5); }},
+      {"solve.spec.area_share: nan is outside (0, 1]", [](auto& s) { s.set_area_share(NAN); }},
       {"solve.spec.max_depth: 16 is outside [0, 15]", [](auto& s) { s.set_max_depth(16); }},
       {"solve.spec.max_elements: 101 is more than 100, the limit of this server", [](auto& s) { s.set_max_elements(101); }},
       {"solve.spec.min_edge_meters: -1 is not a finite length >= 0", [](auto& s) { s.set_min_edge_meters(-1); }},

@@ -71,6 +71,7 @@ std::string outcome_json(const Followed& followed, const MeanLight& light, std::
   json["leaves"] = last.leaves;
   json["unshot_fraction"] = last.unshot_fraction;
   json["estimated_error"] = last.estimated_error;
+  json["area_within"] = last.area_within;
   json["unlit_fraction"] = last.unlit_fraction;
   json["mean_irradiance"] = light.irradiance;
   json["irradiance_unit"] = irradiance_unit(light.quantity);
@@ -82,8 +83,12 @@ std::string outcome_json(const Followed& followed, const MeanLight& light, std::
 std::string summary(const Followed& followed, const MeanLight& light) {
   const Step last = last_step(followed);
   const std::string& reason = followed.solve.end_reason();
+  const v1::SolveSpec& spec = followed.solve.effective_spec();
+  const bool is_by_place = spec.area_share() > 0 && spec.area_share() < 1;
+  const std::string by_place =
+      is_by_place ? " (" + percent(spec.tolerance()) + " kept on " + percent(last.area_within) + " of the area)" : "";
   return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
-         seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + ": " +
+         seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + by_place + ": " +
          (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + text_of(light);
 }
 

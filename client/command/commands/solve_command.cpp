@@ -47,7 +47,7 @@ struct SolveCommand {
   std::string format;  ///< format of a scene from stdin
   ServerChoice server;
   OutputOptions outputs;
-  std::optional<double> tolerance;
+  std::optional<double> tolerance, area_share;
   std::optional<int> max_depth;
   std::optional<std::uint64_t> max_elements;
   std::optional<double> time_limit_s;
@@ -66,6 +66,7 @@ struct SolveCommand {
 v1::SolveSpec spec_of(const SolveCommand& command) {
   v1::SolveSpec spec;
   if (command.tolerance) spec.set_tolerance(*command.tolerance);
+  if (command.area_share) spec.set_area_share(*command.area_share);
   if (command.max_depth) spec.set_max_depth(*command.max_depth);
   if (command.max_elements) spec.set_max_elements(*command.max_elements);
   if (command.threads) spec.set_threads(*command.threads);
@@ -142,6 +143,13 @@ void run_solve(const SolveCommand& command) {
 
 void add_limits(CLI::App& command, SolveCommand& options) {
   command.add_option("--tolerance", options.tolerance, "Stop when the estimated relative error is this small (0.02)")
+      ->check(above_up_to(0, 1));
+  command
+      .add_option(
+          "--area-share", options.area_share,
+          "Stop when the told error is within the tolerance on this share of the area, relative to the irradiance there (1: the "
+          "tolerance is that of the RMS error over the whole scene)")
+      ->type_name("SHARE")
       ->check(above_up_to(0, 1));
   command.add_option("--max-depth", options.max_depth, "Most levels of subdivision; 0 means no refinement (10)")
       ->check(CLI::Range(0, 15));

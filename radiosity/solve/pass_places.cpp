@@ -1,0 +1,83 @@
+// Compares the told errors of places with the tolerance.
+
+#include "radiosity/solve/pass.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+// Irradiance, as a share of the mean, below which errors are relative to this instead of the irradiance itself: nobody asks for
+// percents of a dark corner. Chosen.
+constexpr double darkest = 0.1;
+// Share of the tolerance below which a place needs no refinement. Chosen.
+constexpr double resolved = 0.7;
+// Multiple of the tolerance beyond which an error counts no more for marking, so that places that cannot be resolved do not use
+// up the rays of the others. Chosen.
+constexpr double most_counted = 2;
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) const {
+  const auto leaves = system_->leaves();
+  std::vector<PlaceError> places(leaves.size());
+  double power = 0, area = 0;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    places[n].area = state_.rows.may_be_lit(state_.forests.row_of(leaves[n])) ? state_.visible_area(leaves[n]) : 0;
+    places[n].irradiance = (state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n])).mean();
+    power += places[n].area * places[n].irradiance, area += places[n].area;
+  }
+  const double floor = area > 0 ? darkest * power / area : 0, of_all = squared(error.unshot) + squared(error.balance);
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    const double told = std::sqrt(leaf_squares_[n] + of_all * squared(places[n].irradiance));
+    places[n].relative_to = std::max(places[n].irradiance, floor);
+    places[n].error = places[n].relative_to > 0 ? told / places[n].relative_to : 0;
+  }
+  return places;
+}
+
+ErrorByPlace Pass::error_by_place(const ErrorEstimate& error) const {
+  assert(stage_ == Stage::estimated);
+  std::vector<PlaceError> places = place_errors(error);
+  std::ranges::sort(places, {}, &PlaceError::error);
+  double area = 0, so_far = 0;
+  for (const PlaceError& place : places) area += place.area;
+  ErrorByPlace by_place;
+  if (!(area > 0)) return by_place;
+  by_place.area_within = 0;
+  for (const PlaceError& place : places) {
+    const bool is_kept = so_far < state_.options.area_share * area;
+    so_far += place.area;
+    if (place.error <= state_.options.tolerance) by_place.area_within = std::min(1.0, so_far / area);
+    if (is_kept) by_place.kept_error = place.error;
+  }
+  return by_place;
+}
+
+void Pass::refine_only_what_is_not_within(const ErrorEstimate& error) {
+  assert(stage_ == Stage::estimated);
+  const std::vector<PlaceError> places = place_errors(error);
+  const double tolerance = state_.options.tolerance;
+  std::vector<double> by_leaf(state_.forests.leaves().node_count()), by_row(state_.forests.rows().node_count());
+  const auto most = [&](const PlaceError& place) {
+    return place.error > resolved * tolerance ? place.area * squared(most_counted * tolerance * place.relative_to) : 0;
+  };
+  const auto patches = system_->patches();
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    for (std::size_t n = patches[p].first_leaf; n < patches[p].first_leaf + patches[p].leaf_count; ++n) {
+      by_leaf[system_->leaves()[n]] = most(places[n]);
+      by_row[system_->rows()[p]] += most(places[n]);
+    }
+  for (Candidate& candidate : candidates_) {
+    const bool is_leaf = candidate.kind == Candidate::Kind::split_leaf;
+    candidate.squared_error = std::min(candidate.squared_error, (is_leaf ? by_leaf : by_row)[candidate.patch]);
+  }
+  std::erase_if(candidates_, [](const Candidate& candidate) { return candidate.squared_error <= 0; });
+}
+
+}  // namespace alvor
