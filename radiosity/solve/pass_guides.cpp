@@ -52,7 +52,7 @@ void Pass::guide_rows(std::span<const Candidate> marked) {
   for (const Candidate& candidate : marked)
     if (candidate.kind != Candidate::Kind::split_leaf && state_.rows.is_traced(candidate.patch)) rows.push_back(candidate.patch);
   std::ranges::sort(rows);
-  rows.erase(std::ranges::unique(rows).begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   if (rows.empty()) return;
   const LightByLeaf leaving = system_->radiosity();
   const auto neighbours = state_.forests.row_neighbours(rows);
