@@ -110,7 +110,9 @@ class Run {
     else load();
     const StopReason reason = pass_until_done();
     if (reason == StopReason::parked) save();
-    if (reason == StopReason::time_limit) publish();  // what the pass that was broken off has found
+    // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet are shown
+    // with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 % instead of 1.8 %).
+    if (reason == StopReason::time_limit && is_.passes == 0) publish();
     const double cpu = cpu_s();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
   }

@@ -155,16 +155,6 @@ TEST(Solver, EndsWhenEnoughOfTheAreaIsWithinTheTolerance) {
   EXPECT_GT(nearly_all.last_step().leaves, most.last_step().leaves);
 }
 
-TEST(Solver, WhatWasFoundUntilTheTimeLimitIsShown) {
-  const BaseMesh mesh(lit_room());
-  SolutionLog log;
-  // The limit has passed before the second pass begins, so that nothing but the last publication shows.
-  EXPECT_EQ(solve(mesh, {.tolerance = 1e-9, .time_limit_s = 0.05}, log, {}).reason, StopReason::time_limit);
-  std::uint64_t most_rays = 0;
-  for (const Step& step : log.steps()) most_rays = std::max(most_rays, step.rays);
-  EXPECT_EQ(log.last_step().rays, most_rays);
-}
-
 TEST(Solver, RoomWithoutLightIsBlackAndDone) {
   Scene scene;
   scene.materials = {test::grey(0, 0.6)};
