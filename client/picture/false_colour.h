@@ -12,7 +12,7 @@
 namespace alvor {
 
 enum class Band { mean, red, green, blue };
-/// What the colours show: irradiance, or its told error (DisplayMesh::errors), which has no bands.
+/// The quantity that the colours show: irradiance, or its told error (DisplayMesh::errors), which has no bands.
 enum class Shown { irradiance, error };
 
 struct FalseColour {

@@ -96,6 +96,7 @@ class Pass {
     double area = 0, irradiance = 0, relative_to = 0;  ///< m2 that are visible and may be lit; emission units
     double error = 0;                                  ///< see ErrorByPlace
   };
+  double told_error(std::size_t place, const RelativeLight& irradiance, const ErrorEstimate& error) const;
   std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
   void tell_leaves(double share_of_interpolation);
   void guide_rows(std::span<const Candidate> marked);

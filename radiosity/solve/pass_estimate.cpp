@@ -307,14 +307,19 @@ void Pass::tell_leaves(double share_of_interpolation) {
     }
 }
 
+/// Returns the told error of the leaf at a place in the system's list, where this irradiance arrives; in emission units.
+double Pass::told_error(std::size_t place, const RelativeLight& irradiance, const ErrorEstimate& error) const {
+  const double of_all = squared(error.unshot) + squared(error.balance);
+  return std::sqrt(leaf_squares_[place] + of_all * squared(irradiance.mean()));
+}
+
 std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
   if (stage_ != Stage::estimated) return {};
-  const double of_all = squared(error.unshot) + squared(error.balance);
   std::vector<float> errors(leaf_squares_.size());
   tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t n) {
     const NodeIndex leaf = system_->leaves()[n];
     const RelativeLight irradiance = state_.direct[leaf].irradiance + state_.indirect(leaf);
-    const double told = std::sqrt(leaf_squares_[n] + of_all * squared(irradiance.mean()));
+    const double told = told_error(n, irradiance, error);
     errors[n] = static_cast<float>(std::min(state_.in_watts_per_m2({told, told, told}).r, 1e37));
   });
   return errors;

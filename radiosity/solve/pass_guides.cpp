@@ -13,7 +13,7 @@ namespace {
 // A row is guided if that is expected to divide the variance of its rays by at least this. Below, weights cost more memory and
 // time than they save.
 constexpr double least_gain = 3;
-// Of the hits of a neighbouring row one of so many is looked at: eight neighbours tell as much as two whole rows.
+// Every fourth hit of a neighbouring row is used, so that eight neighbours tell as much as two whole rows.
 constexpr std::size_t neighbour_stride = 4;
 
 /// Adds every n-th hit of a row, seen from `from`, to the guide of another row.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace alvor {
 
@@ -29,14 +28,15 @@ std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) con
   double power = 0, area = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     places[n].area = state_.rows.may_be_lit(state_.forests.row_of(leaves[n])) ? state_.visible_area(leaves[n]) : 0;
-    places[n].irradiance = (state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n])).mean();
+    const RelativeLight irradiance = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
+    places[n].irradiance = irradiance.mean();
+    places[n].error = told_error(n, irradiance, error);
     power += places[n].area * places[n].irradiance, area += places[n].area;
   }
-  const double floor = area > 0 ? darkest * power / area : 0, of_all = squared(error.unshot) + squared(error.balance);
-  for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const double told = std::sqrt(leaf_squares_[n] + of_all * squared(places[n].irradiance));
-    places[n].relative_to = std::max(places[n].irradiance, floor);
-    places[n].error = places[n].relative_to > 0 ? told / places[n].relative_to : 0;
+  const double floor = area > 0 ? darkest * power / area : 0;
+  for (PlaceError& place : places) {
+    place.relative_to = std::max(place.irradiance, floor);
+    place.error = place.relative_to > 0 ? place.error / place.relative_to : 0;
   }
   return places;
 }

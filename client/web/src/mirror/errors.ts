@@ -1,4 +1,4 @@
-// What a frame says about the errors of leaves, decoded: docs/frame-format.md.
+// Decodes the errors of leaves in a frame: docs/frame-format.md.
 
 import type { LeafErrors } from "../gen/alvor/v1/solve_service_pb";
 import { BadFrame, unpack } from "./leaves";

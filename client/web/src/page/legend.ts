@@ -1,4 +1,4 @@
-// What the colours of irradiance or of its error mean.
+// Draws the legend of the colours of irradiance or of its error.
 
 import { colourMap } from "../view/colour_map";
 import type { Look } from "../view/room";
