@@ -272,6 +272,7 @@ class ShadowBatch {
       const float weight = weights_[packet][o];
       if (weight == 0) continue;
       fraction.weight[o] += weight;
+      fraction.squared_weight[o] += weight * weight;
       const bool is_blocked = blocked_[packet] >> o & 1;
       const float share = is_blocked ? 0 : partial_ ? tints_[packet][o].mean() : 1;
       fraction.count(share);

@@ -14,6 +14,7 @@ namespace alvor {
 /// panes let through, summed over shadow rays.
 struct VisibleFraction {
   std::array<float, origins_per_patch> weight{}, visible{};
+  std::array<float, origins_per_patch> squared_weight{};
   std::uint32_t rays_per_origin = 0;
   Rgb arriving;               // sum over unblocked rays of weight times transmittance; zero in clear air without panes
   float least = 1, most = 0;  ///< of the shares that rays let through: 0 where blocked, the mean tint of panes, else 1
@@ -23,6 +24,7 @@ struct VisibleFraction {
     VisibleFraction fraction;
     fraction.weight.fill(1);
     fraction.visible.fill(1);
+    fraction.squared_weight.fill(1);
     fraction.arriving = double(origins_per_patch) * Rgb{1, 1, 1};
     fraction.count(1);
     fraction.finish();
@@ -47,19 +49,26 @@ struct VisibleFraction {
   /// Returns the visible share times the mean transmittance of medium and panes, per band.
   Rgb dimmed() const { return all_ > 0 ? arriving * (1 / all_) : Rgb{}; }
   /// Returns the variance of value(): half of that of independent rays that let through `least` or `most`, because the rays are
-  /// stratified.
-  double variance() const { return mixed() ? 0.5 * spread(value()) / (rays_per_origin * origins_per_patch) : 0; }
-  /// Returns the variance of value(o), mean over origins.
+  /// stratified. Rays of different weight count as fewer: (sum of weights)^2 / (sum of their squares) (Kish 1965).
+  double variance() const { return mixed() && all_ > 0 ? 0.5 * spread(value()) * all_squares_ / (all_ * all_) : 0; }
+  /// Returns the variance of value(o), mean over origins, as if the rays of an origin were independent. Where the share of an
+  /// origin is counted, the rays of all count as one more of its own: one ray, or one that outweighs the others, never disagrees
+  /// with itself.
   double origin_variance() const {
     if (!mixed() || rays_per_origin < 2) return 0;
     double sum = 0;
-    for (int o = 0; o < origins_per_patch; ++o) sum += spread(value(o));
-    return sum / origins_per_patch / (rays_per_origin - 1);
+    for (int o = 0; o < origins_per_patch; ++o) {
+      if (weight[o] <= 0) continue;
+      const double rays = double(weight[o]) * weight[o] / squared_weight[o];
+      sum += spread((rays * value(o) + value()) / (rays + 1)) / rays;
+    }
+    return sum / origins_per_patch;
   }
   /// Sums the weights of all origins. value() and what depends on it are valid afterwards.
   void finish() {
-    all_ = all_visible_ = 0;
-    for (int o = 0; o < origins_per_patch; ++o) all_ += weight[o], all_visible_ += visible[o];
+    all_ = all_visible_ = all_squares_ = 0;
+    for (int o = 0; o < origins_per_patch; ++o)
+      all_ += weight[o], all_visible_ += visible[o], all_squares_ += squared_weight[o];
   }
 
  private:
@@ -67,7 +76,7 @@ struct VisibleFraction {
   /// Davis 2000).
   double spread(double mean) const { return std::max(0.0, (mean - least) * (most - mean)); }
 
-  double all_ = 0, all_visible_ = 0;
+  double all_ = 0, all_visible_ = 0, all_squares_ = 0;
 };
 
 }  // namespace alvor

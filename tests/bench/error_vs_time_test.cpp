@@ -80,6 +80,31 @@ TEST(Verdict, SaysWhereTheIntervalDoesNotTell) {
   EXPECT_EQ(keeps({0.025, 0.015, 0.035}, 0.02).verdict, Verdict::missed);
 }
 
+TEST(Verdict, OnTheSlopeIsOfTheFirstAndTheLastPoint) {
+  const std::vector<CurvePoint> steep{{1, 0.1}, {2, 0.08}, {10, 0.01}}, flat{{1, 0.1}, {100, 0.01}};
+  EXPECT_EQ(judge_slope(steep).verdict, Verdict::met);
+  EXPECT_EQ(judge_slope(flat).verdict, Verdict::missed);
+  EXPECT_EQ(judge_slope({}).verdict, Verdict::not_measured);
+}
+
+TEST(Verdict, OnEstimatesNeedsNearlyAllCloseAndNoneFar) {
+  std::vector<double> ratios(19, 1.2);
+  ratios.push_back(0.55);
+  EXPECT_EQ(judge_estimates(ratios).verdict, Verdict::met);
+  ratios.push_back(1.8);  // now 2 of 21 are not close
+  EXPECT_EQ(judge_estimates(ratios).verdict, Verdict::missed);
+  EXPECT_EQ(judge_estimates(std::vector<double>(100, 1.0)).verdict, Verdict::met);
+  std::vector<double> with_one_far(100, 1.0);
+  with_one_far.front() = 2.1;
+  EXPECT_EQ(judge_estimates(with_one_far).verdict, Verdict::missed);
+}
+
+TEST(Verdict, OnToldErrorsBoundsTheShareFromBothSides) {
+  EXPECT_EQ(judge_told_errors(std::vector{0.9, 0.95, 0.99}).verdict, Verdict::met);
+  EXPECT_EQ(judge_told_errors(std::vector{0.85, 0.95}).verdict, Verdict::missed);
+  EXPECT_EQ(judge_told_errors(std::vector{0.95, 1.0}).verdict, Verdict::missed);
+}
+
 TEST(Verdict, IsNotGivenOnWhatWasNotMeasured) {
   for (const Judgement& judgement : judge({}, 0.5, 1.9)) EXPECT_EQ(judgement.verdict, Verdict::not_measured) << judgement.aim;
 }

@@ -2,6 +2,7 @@
 
 #include "radiosity/direct/face_light.h"
 #include "radiosity/form_factors/form_factor.h"
+#include "tests/radiosity/light_rays.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -166,6 +167,42 @@ TEST(DirectLight, VarianceIsTheSpreadOverSeedsUnderManySmallBlockers) {
   const double ratio = predicted_over_actual_deviation(BaseMesh(scene));
   EXPECT_GT(ratio, 0.5);
   EXPECT_LT(ratio, 2);
+}
+
+/// Returns a tube of 2 x 0.02 m that hangs 5 cm above the middle of a floor of 10 cm, and between them screens with slits.
+Scene tube_behind_slits() {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(emission, 0)};
+  test::add_polygon(scene, {{0, 0, 0}, {0, 0, 0.1}, {0.1, 0, 0.1}, {0.1, 0, 0}});
+  test::add_polygon(scene, {{-1, 0.05, 0.04}, {1, 0.05, 0.04}, {1, 0.05, 0.06}, {-1, 0.05, 0.06}}, 1);
+  for (int n = -10; n < 10; ++n)
+    test::add_polygon(scene, {{0.1 * n, 0.04, -1}, {0.1 * n + 0.07, 0.04, -1}, {0.1 * n + 0.07, 0.04, 1}, {0.1 * n, 0.04, 1}});
+  return scene;
+}
+
+TEST(DirectLight, VarianceOfOriginsIsTheSpreadOverSeedsBesideALongLamp) {
+  const BaseMesh mesh(tube_behind_slits());
+  constexpr int seeds = 64;
+  std::array<double, origins_per_patch> sum{}, squares{};
+  double predicted = 0, actual = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const DirectLight light = light_on_floor(mesh, seed);
+    predicted += light.origin_variance / seeds;
+    for (std::size_t o = 0; o < origins_per_patch; ++o)
+      sum[o] += light.at_origin[o], squares[o] += light.at_origin[o] * light.at_origin[o];
+  }
+  for (std::size_t o = 0; o < origins_per_patch; ++o)
+    actual += (squares[o] - sum[o] * sum[o] / seeds) / (seeds - 1) / origins_per_patch;
+  EXPECT_GT(std::sqrt(predicted / actual), 0.5);
+  EXPECT_LT(std::sqrt(predicted / actual), 2);
+}
+
+TEST(FaceLight, RaysToALongLampNearByBringAboutTheSame) {
+  const BaseMesh mesh(tube_behind_slits());
+  const LocalScene scene(mesh);
+  const FaceLight tube(scene, 1, {emission, emission, emission});
+  test::expect_rays_match_formula(scene, tube, 4096, 0.01);
+  EXPECT_GT(test::rays_that_count(scene, tube, 4096), 0.5);
 }
 
 TEST(DirectLight, OriginsAverageToTheIrradianceWhereNothingIsInShadow) {

@@ -31,4 +31,24 @@ inline void expect_rays_match_formula(const LocalScene& scene, const LightSource
   }
 }
 
+/// Returns the share of rays that count where `rounds` rays go from each origin of the first face: (sum of weights)^2 over their
+/// number and the sum of squares, which is 1 if all bring the same; mean over origins.
+inline double rays_that_count(const LocalScene& scene, const LightSource& light, std::uint32_t rounds) {
+  const PatchId floor = PatchId::root(0);
+  RandomStream random(1, floor);
+  const PatchPoints points = sample_points(scene, shape_of(scene.mesh(), floor), random);
+  RayPacket rays;
+  std::array<float, RayPacket::width> weights;
+  std::array<double, RayPacket::width> sum{}, squares{};
+  ShadowAim aim{points, scene.root(0).normal, {}, rays, weights};
+  for (std::uint32_t n = 0; n < rounds; ++n) {
+    aim.at.fill(sobol_point(n, 0, 0));
+    light.aim(aim, 0, RayPacket::width);
+    for (std::size_t o = 0; o < sum.size(); ++o) sum[o] += weights[o], squares[o] += weights[o] * weights[o];
+  }
+  double share = 0;
+  for (std::size_t o = 0; o < sum.size(); ++o) share += sum[o] * sum[o] / (rounds * squares[o]) / RayPacket::width;
+  return share;
+}
+
 }  // namespace alvor::test

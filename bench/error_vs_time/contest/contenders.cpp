@@ -4,6 +4,9 @@
 #include "bench/error_vs_time/contest/stopwatch.h"
 #include "client/verify/irradiance_estimate.h"
 #include "radiosity/solve/solver.h"
+#include "solution/solution_mirror.h"
+
+#include <stdexcept>
 
 namespace alvor::bench {
 
@@ -19,8 +22,19 @@ Strategy strategy_of(Contender contender) {
   }
 }
 
-Confidence error_of(const Arena& arena, std::span<const LeafValue> leaves) {
-  return errors_of(build_display_mesh(arena.mesh, leaves), arena.truth).nrmse;
+/// Writes down what the solution's errors are, and whether those that it tells are true.
+void judge(MeasuredRun& run, const Arena& arena, const DisplayMesh& solution) {
+  const ErrorStatistics errors = errors_of(solution, arena.truth);
+  run.nrmse = errors.nrmse, run.relative_rms = errors.relative_rms;
+  if (!solution.errors.empty()) run.within_two = within_two_told(solution, arena.truth);
+}
+
+DisplayMesh display_of(const BaseMesh& mesh, const SolutionLog& log) {
+  Cursor from_nothing;
+  from_nothing.errors.are_wanted = true;
+  SolutionMirror mirror;
+  if (const auto fault = mirror.apply(log.since(from_nothing))) throw std::logic_error(*fault);
+  return build_display_mesh(mesh, mirror.leaves(), mirror.errors());
 }
 
 }  // namespace
@@ -37,7 +51,7 @@ MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance
   const Step last = log.last_step();
   MeasuredRun run{arena.settings.name, contender, tolerance, threads, seed, outcome.cpu_s, outcome.solve_s};
   run.rays = last.rays, run.leaves = last.leaves, run.estimated = last.estimated_error;
-  run.nrmse = error_of(arena, log.leaves());
+  judge(run, arena, display_of(arena.mesh, log));
   run.is_done = outcome.reason == StopReason::tolerance;
   return run;
 }
@@ -46,7 +60,7 @@ MeasuredRun shoot_with(const Arena& arena, int cells) {
   const FixedMeshSolution solution = shoot_on_fixed_mesh(arena.mesh, {.cells = cells, .time_limit_s = arena.fixed_mesh_limit_s});
   MeasuredRun run{arena.settings.name, Contender::fixed_mesh, double(cells), 1, 1, solution.cpu_s, solution.wall_s};
   run.rays = solution.rays, run.leaves = solution.leaves.size();
-  run.nrmse = error_of(arena, solution.leaves);
+  judge(run, arena, build_display_mesh(arena.mesh, solution.leaves));
   run.is_done = solution.is_done;
   return run;
 }
@@ -61,7 +75,8 @@ MeasuredRun trace_with(const Arena& arena, std::uint64_t paths) {
   MeasuredRun run{arena.settings.name, Contender::path_tracing, double(paths), 1, seed, watch.cpu_s(), watch.wall_s()};
   std::vector<double> estimates;
   for (const IrradianceEstimate& estimate : traced) estimates.push_back(estimate.mean().mean());
-  run.nrmse = errors_of(estimates, arena.truth).nrmse;
+  const ErrorStatistics errors = errors_of(estimates, arena.truth);
+  run.nrmse = errors.nrmse, run.relative_rms = errors.relative_rms;
   return run;
 }
 

@@ -19,13 +19,17 @@ bool belongs(const RunGroup& group, const MeasuredRun& run) {
   return group.contender == run.contender && group.setting == run.setting && group.threads == run.threads;
 }
 
+/// Returns a cell of the table, which is empty if the number is unknown.
+std::string cell(double number) { return ',' + (number == number ? figure(number) : std::string()); }
+
 std::string csv_line(const MeasuredRun& run) {
   std::string line = run.scene + ',' + std::string(text(run.contender)) + ',' + figure(run.setting) + ',' +
                      std::to_string(run.threads) + ',' + std::to_string(run.seed);
   for (const double number : {run.cpu_s, run.wall_s}) line += ',' + figure(number);
   for (const std::uint64_t count : {run.rays, run.leaves}) line += ',' + (count ? std::to_string(count) : std::string());
-  line += ',' + (run.estimated == run.estimated ? figure(run.estimated) : std::string());
-  for (const double number : {run.nrmse.value, run.nrmse.low, run.nrmse.high}) line += ',' + figure(number);
+  for (const double number :
+       {run.estimated, run.nrmse.value, run.nrmse.low, run.nrmse.high, run.relative_rms, run.within_two})
+    line += cell(number);
   return line + (run.is_done ? ",yes\n" : ",no\n");
 }
 
@@ -46,7 +50,7 @@ std::string_view text(Contender contender) {
 
 std::string runs_csv(std::span<const MeasuredRun> runs) {
   std::string csv =
-      "scene,contender,setting,threads,seed,cpu_s,wall_s,rays,leaves,estimated_nrmse,nrmse,nrmse_low,nrmse_high,done\n";
+      "scene,contender,setting,threads,seed,cpu_s,wall_s,rays,leaves,estimated_nrmse,nrmse,nrmse_low,nrmse_high,relative_rms,within_two_told,done\n";
   for (const MeasuredRun& run : runs) csv += csv_line(run);
   return csv;
 }
@@ -59,6 +63,9 @@ Spread RunGroup::wall_s() const {
 }
 Spread RunGroup::nrmse() const {
   return spread_over(*this, [](const MeasuredRun& run) { return run.nrmse.value; });
+}
+Spread RunGroup::relative_rms() const {
+  return spread_over(*this, [](const MeasuredRun& run) { return run.relative_rms; });
 }
 Spread RunGroup::estimated() const {
   return spread_over(*this, [](const MeasuredRun& run) { return run.estimated; });
@@ -91,6 +98,12 @@ std::vector<RunGroup> of(std::span<const RunGroup> groups, Contender contender, 
 std::vector<CurvePoint> error_by_cpu(std::span<const RunGroup> groups) {
   std::vector<CurvePoint> curve;
   for (const RunGroup& group : groups) curve.push_back({group.cpu_s().median, group.nrmse().median});
+  return curve;
+}
+
+std::vector<CurvePoint> relative_error_by_cpu(std::span<const RunGroup> groups) {
+  std::vector<CurvePoint> curve;
+  for (const RunGroup& group : groups) curve.push_back({group.cpu_s().median, group.relative_rms().median});
   return curve;
 }
 

@@ -30,6 +30,8 @@ struct MeasuredRun {
   std::uint64_t rays = 0, leaves = 0;  ///< 0 if not counted
   double estimated = unknown;          ///< nRMSE as estimated by the program itself
   Confidence nrmse;                    ///< against the truth
+  double relative_rms = unknown;       ///< RMS over points of error / truth
+  double within_two = unknown;         ///< share of the points whose error is within two of the told errors
   bool is_done = true;                 ///< false: the time limit ended it
 };
 
@@ -46,6 +48,7 @@ struct RunGroup {
   Spread cpu_s() const;
   Spread wall_s() const;
   Spread nrmse() const;
+  Spread relative_rms() const;
   Spread estimated() const;
   Spread rays() const;
   Spread leaves() const;
@@ -60,5 +63,7 @@ std::vector<RunGroup> of(std::span<const RunGroup> groups, Contender contender, 
 
 /// Returns the medians of CPU time and error, one point per group.
 std::vector<CurvePoint> error_by_cpu(std::span<const RunGroup> groups);
+/// Returns the medians of CPU time and relative RMS error, one point per group.
+std::vector<CurvePoint> relative_error_by_cpu(std::span<const RunGroup> groups);
 
 }  // namespace alvor::bench

@@ -12,7 +12,8 @@ namespace {
 // Noise of the truth is removed from the errors, but a few very wrong points are a matter of chance: with much small furniture,
 // more points are better than more paths. Light through doorways is hard to sample and needs both.
 std::vector<SceneSettings> all_scenes() {
-  const std::vector<double> others{0.05, 0.02}, few{0.1, 0.05, 0.03, 0.02}, more{0.1, 0.05, 0.03, 0.02, 0.015, 0.01};
+  const std::vector<double> others{0.05, 0.02}, few{0.1, 0.05, 0.03, 0.02}, more{0.1, 0.05, 0.03, 0.02, 0.015, 0.01},
+      gaps{0.05, 0.02};
   const std::vector<std::uint64_t> paths{16, 64, 256}, more_paths{16, 64, 256, 1024};
   return {{"cornell_box",
            {0.1, 0.05, 0.03, 0.02, 0.015, 0.01, 0.007, 0.005},
@@ -24,7 +25,11 @@ std::vector<SceneSettings> all_scenes() {
           {"furnished_room", few, others, {8, 16}, paths, 10'000, 3200},
           {"slats_and_boxes", more, others, {4, 8}, paths, 10'000, 3200},
           {"vault", more, others, {8, 16}, paths, 10'000, 3200},
-          {"enfilade", few, others, {8, 16, 32, 64}, more_paths, 4000, 32'000}};
+          {"enfilade", few, others, {8, 16, 32, 64}, more_paths, 4000, 32'000},
+          {"louvred_room", few, others, {8, 16}, paths, 10'000, 12'800},
+          {"gap_panels", gaps, {}, {}, {}, 4000, 8000},
+          {"gap_ceiling", gaps, {}, {}, {}, 4000, 8000},
+          {"gap_lamp", gaps, {}, {}, {}, 4000, 8000}};
 }
 
 struct Wishes {

@@ -36,6 +36,21 @@ Truth traced(const Scene& scene, const SceneSettings& wanted, std::uint64_t seed
   return truth;
 }
 
+/// Returns whether a point counts where `estimate` is held against its truth.
+bool counts(const TruePoint& point, double estimate) {
+  const bool is_dark = point.irradiance == 0 && estimate == 0;
+  return !point.is_hidden && !is_dark;
+}
+
+std::vector<ProbeSample> samples_of(const DisplayMesh& solution, const Truth& truth) {
+  std::vector<ProbePoint> asked;
+  for (const TruePoint& point : truth.points) asked.push_back({point.at.position, point.at.normal});
+  std::vector<ProbeSample> samples = probe_surfaces(solution, asked);
+  if (std::ranges::any_of(samples, [](const ProbeSample& sample) { return std::isinf(sample.distance); }))
+    throw std::runtime_error("a solution has no surface where its scene has one");
+  return samples;
+}
+
 }  // namespace
 
 std::size_t Truth::hidden() const { return static_cast<std::size_t>(std::ranges::count(points, true, &TruePoint::is_hidden)); }
@@ -56,21 +71,28 @@ ErrorStatistics errors_of(std::span<const double> estimates, const Truth& truth)
   std::vector<ComparedPoint> compared;
   for (std::size_t n = 0; n < truth.points.size(); ++n) {
     const TruePoint& point = truth.points[n];
-    const bool is_dark = point.irradiance == 0 && estimates[n] == 0;
-    if (!point.is_hidden && !is_dark) compared.push_back({estimates[n], point.irradiance, point.variance});
+    if (counts(point, estimates[n])) compared.push_back({estimates[n], point.irradiance, point.variance});
   }
   return error_statistics(compared);
 }
 
 ErrorStatistics errors_of(const DisplayMesh& solution, const Truth& truth) {
-  std::vector<ProbePoint> asked;
-  for (const TruePoint& point : truth.points) asked.push_back({point.at.position, point.at.normal});
   std::vector<double> estimates;
-  for (const ProbeSample& sample : probe_surfaces(solution, asked)) {
-    if (std::isinf(sample.distance)) throw std::runtime_error("a solution has no surface where its scene has one");
-    estimates.push_back(widen(sample.irradiance).mean());
-  }
+  for (const ProbeSample& sample : samples_of(solution, truth)) estimates.push_back(widen(sample.irradiance).mean());
   return errors_of(estimates, truth);
+}
+
+double within_two_told(const DisplayMesh& solution, const Truth& truth) {
+  const std::vector<ProbeSample> samples = samples_of(solution, truth);
+  double count = 0, within = 0;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const TruePoint& point = truth.points[n];
+    const double irradiance = widen(samples[n].irradiance).mean();
+    if (!counts(point, irradiance)) continue;
+    count += 1;
+    within += std::abs(irradiance - point.irradiance) <= 2 * std::hypot(samples[n].error, std::sqrt(point.variance));
+  }
+  return within / count;
 }
 
 ErrorStatistics errors_of_itself(const Truth& truth) {

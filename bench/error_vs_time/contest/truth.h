@@ -34,6 +34,10 @@ Truth find_truth(const Scene& scene, const SceneSettings& scene_settings, const 
 /// without light in both. Throws std::runtime_error if the solution has no surface there or a value is not finite.
 ErrorStatistics errors_of(const DisplayMesh& solution, const Truth& truth);
 
+/// Returns the share of the points that count whose error is within two of the solution's told errors, the noise of the truth
+/// added to them. Requires: the solution tells errors.
+double within_two_told(const DisplayMesh& solution, const Truth& truth);
+
 /// Returns the errors of other estimates at the truth's points, in order. Throws std::runtime_error if one is not finite.
 ErrorStatistics errors_of(std::span<const double> estimates, const Truth& truth);
 

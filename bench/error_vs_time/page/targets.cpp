@@ -4,6 +4,8 @@
 #include "bench/error_vs_time/page/comparisons.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 namespace alvor::bench {
 
@@ -13,14 +15,25 @@ constexpr double faster_than_path_tracing = 100, faster_than_fixed_mesh = 30;
 constexpr double tolerance_kept = 0.02;
 constexpr double halved = 1.8;  // speedup with two threads that counts as half the time
 
+constexpr double slope_wanted = -0.8;                                // d log error / d log time
+constexpr double estimate_close = 1.5, estimate_limit = 2, most_close = 0.95;
+constexpr double least_within_two = 0.9, most_within_two = 0.99;     // of the points, where errors are told
+
+enum class ErrorKind { nrmse, relative_rms };
 struct TimeTarget {
   const char* scene;
+  ErrorKind kind;
   double error, yardsticks;
 };
-constexpr TimeTarget time_targets[]{{"cornell_box", 0.01, 0.15}, {"cornell_box", 0.005, 0.6},  {"furnished_room", 0.02, 2},
-                                    {"furnished_room", 0.01, 8}, {"slats_and_boxes", 0.02, 4}, {"enfilade", 0.02, 6},
-                                    {"vault", 0.02, 2}};
+constexpr TimeTarget time_targets[]{
+    {"cornell_box", ErrorKind::nrmse, 0.01, 0.15},        {"cornell_box", ErrorKind::nrmse, 0.005, 0.6},
+    {"cornell_box", ErrorKind::relative_rms, 0.02, 0.12}, {"cornell_box", ErrorKind::relative_rms, 0.01, 0.5},
+    {"furnished_room", ErrorKind::nrmse, 0.02, 2},        {"furnished_room", ErrorKind::nrmse, 0.01, 8},
+    {"louvred_room", ErrorKind::nrmse, 0.05, 6},          {"louvred_room", ErrorKind::nrmse, 0.02, 30},
+    {"slats_and_boxes", ErrorKind::nrmse, 0.02, 4},       {"enfilade", ErrorKind::nrmse, 0.02, 6},
+    {"vault", ErrorKind::nrmse, 0.02, 2}};
 constexpr const char* tolerance_scenes[]{"slats_and_boxes", "vault", "enfilade"};
+constexpr const char* slope_scene = "furnished_room";
 
 const SceneContest* find(std::span<const SceneContest> contests, std::string_view name) {
   const auto found =
@@ -35,10 +48,13 @@ std::string cost_text(const std::optional<Reached>& reached, double yardstick_s)
 }
 
 Judgement judge_time(const SceneContest* held, const TimeTarget& target, double yardstick_s) {
-  Judgement judgement{std::string(target.scene) + ": " + tolerance_percent(target.error) + " within " +
-                      figure(target.yardsticks) + " yardsticks"};
+  const bool is_relative = target.kind == ErrorKind::relative_rms;
+  Judgement judgement{std::string(target.scene) + ": " + tolerance_percent(target.error) +
+                      (is_relative ? " point by point (relative RMS)" : "") + " within " + figure(target.yardsticks) +
+                      " yardsticks"};
   if (!held) return judgement;
-  const auto reached = cost_to_reach(error_by_cpu(of(held->groups, Contender::alvor)), target.error);
+  const auto groups = of(held->groups, Contender::alvor);
+  const auto reached = cost_to_reach(is_relative ? relative_error_by_cpu(groups) : error_by_cpu(groups), target.error);
   judgement.measured = cost_text(reached, yardstick_s);
   judgement.verdict = at_most(reached, target.yardsticks * yardstick_s);
   return judgement;
@@ -96,6 +112,44 @@ ThreadGain gain_over_all(std::span<const SceneContest> contests) {
 
 }  // namespace
 
+Judgement judge_slope(std::span<const CurvePoint> curve) {
+  Judgement judgement{std::string(slope_scene) + ": slope of log error against log time at most " + figure(slope_wanted)};
+  if (curve.size() < 2) return judgement;
+  const CurvePoint &first = curve.front(), &last = curve.back();
+  const double slope = std::log(last.error / first.error) / std::log(last.cost / first.cost);
+  judgement.measured = figure(slope, 2) + ", from " + percent(first.error) + " to " + percent(last.error);
+  judgement.verdict = slope <= slope_wanted ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+Judgement judge_estimates(std::span<const double> ratios) {
+  Judgement judgement{"Estimate over truth within " + figure(estimate_close) + " times in " + tolerance_percent(most_close) +
+                      " of the solves, and never beyond " + figure(estimate_limit) + " times"};
+  if (ratios.empty()) return judgement;
+  const auto within = [&](double factor) {
+    return std::ranges::count_if(ratios, [&](double ratio) { return ratio >= 1 / factor && ratio <= factor; });
+  };
+  const auto count = static_cast<double>(ratios.size());
+  const auto close = within(estimate_close), allowed = within(estimate_limit);
+  judgement.measured = std::to_string(close) + " of " + std::to_string(ratios.size()) + " within " + figure(estimate_close) +
+                       " times, " + std::to_string(ratios.size() - static_cast<std::size_t>(allowed)) + " beyond " +
+                       figure(estimate_limit) + " times";
+  const bool is_met = static_cast<double>(close) >= most_close * count && static_cast<std::size_t>(allowed) == ratios.size();
+  judgement.verdict = is_met ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+Judgement judge_told_errors(std::span<const double> within_two) {
+  Judgement judgement{"Truth within two of the told errors at " + figure(100 * least_within_two) + " to " +
+                      tolerance_percent(most_within_two) + " of the points, in every solve"};
+  if (within_two.empty()) return judgement;
+  const Spread spread = spread_of({within_two.begin(), within_two.end()});
+  judgement.measured = percent(spread);
+  const bool is_met = spread.low >= least_within_two && spread.high <= most_within_two;
+  judgement.verdict = is_met ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
 std::string_view text(Verdict verdict) {
   switch (verdict) {
     case Verdict::met: return "met";
@@ -152,6 +206,17 @@ std::vector<Judgement> judge(std::span<const SceneContest> contests, double yard
   judgements.push_back(judge_path_tracing(cornell));
   judgements.push_back(judge_fixed_mesh(cornell));
   for (const char* name : tolerance_scenes) judgements.push_back(judge_tolerance(find(contests, name), name));
+  const SceneContest* sloped = find(contests, slope_scene);
+  judgements.push_back(judge_slope(sloped ? error_by_cpu(of(sloped->groups, Contender::alvor)) : std::vector<CurvePoint>{}));
+  std::vector<double> ratios, within_two;
+  for (const SceneContest& held : contests) {
+    std::ranges::copy(estimate_ratios(held.runs), std::back_inserter(ratios));
+    for (const MeasuredRun& run : held.runs)
+      if (run.contender == Contender::alvor && run.threads == 1 && run.within_two == run.within_two)
+        within_two.push_back(run.within_two);
+  }
+  judgements.push_back(judge_estimates(ratios));
+  judgements.push_back(judge_told_errors(within_two));
   const ThreadGain gain = gain_over_all(contests);
   judgements.push_back(judge_thread_gain(gain.one_s, gain.two_s, machine_gain));
   return judgements;

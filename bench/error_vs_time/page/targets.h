@@ -26,6 +26,13 @@ Judgement keeps(const Confidence& error, double limit);
 /// larger one ran out of time is a miss.
 Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance);
 
+/// Judges the slope of an error against time from the first to the last point, in log-log.
+Judgement judge_slope(std::span<const CurvePoint> curve);
+/// Judges ratios of estimated over true error, by solve.
+Judgement judge_estimates(std::span<const double> ratios);
+/// Judges which share of the points had errors within two of the told ones, by solve.
+Judgement judge_told_errors(std::span<const double> within_two);
+
 /// Returns the judgements of all targets, in order. `machine_gain` is the median of Measurements::two_threads_faster.
 std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain);
 /// Compares solves with two threads and with one. If even fully parallel work gained too little, a miss is blamed on the machine.
