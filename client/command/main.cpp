@@ -36,6 +36,7 @@ void add_commands(CLI::App& app) {
   add_probe_command(app);
   add_render_command(app);
   add_verify_command(app);
+  add_bake_command(app);
   add_compare_command(app);
   add_explain_command(app);
   add_form_factor_command(app);

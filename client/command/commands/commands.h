@@ -10,6 +10,7 @@ void add_watch_command(CLI::App& app);
 void add_probe_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
+void add_bake_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
 void add_form_factor_command(CLI::App& app);

@@ -1,0 +1,59 @@
+#pragma once
+// Bakes a solution into the textures of a glTF file.
+
+#include "client/bake/gltf_document.h"
+#include "meshing/display_mesh.h"
+#include "meshing/scene.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+/// What is baked. Lightmap: irradiance in textures of their own, which materials multiply by their colour. Unlit: the colours that
+/// a picture of the solution shows, in place of all materials' colours, for viewers that know no lightmaps.
+enum class BakeForm { lightmap, unlit };
+
+/// What the texels of lightmaps hold. Irradiance: E in W/m2 or lx (three.js). Irradiance over pi: the radiance of a white
+/// diffuse surface (Unity, Godot, Blender).
+enum class LightmapUnit { irradiance, irradiance_over_pi };
+
+/// How lightmaps are stored. png: in the GLB, 8 bits sRGB between 0 and a range that is told; exr: half floats in files beside it.
+enum class LightmapFormat { png, exr };
+
+struct BakeOptions {
+  BakeForm form = BakeForm::lightmap;
+  LightmapUnit unit = LightmapUnit::irradiance;
+  LightmapFormat format = LightmapFormat::png;
+  int size = 1024;                         ///< columns and rows of each texture
+  int padding = 2;                         ///< texels around each chart
+  std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
+  std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
+  std::string name = "baked";              ///< of the files beside the GLB: name-0.exr, name-1.exr
+  std::function<void(double)> on_progress = [](double) {};  ///< called with the share that is done, from any thread
+};
+
+struct Baked {
+  std::string glb;
+  struct File {
+    std::string name, bytes;
+  };
+  std::vector<File> beside;  ///< files that the GLB names in its extras
+  std::size_t charts = 0, nodes = 0;
+  int pages = 0;
+  double texels_per_metre = 0, range = 0;
+  double clipped_share = 0;           ///< of the charts' texels, that are brighter than the range
+  std::size_t lit_from_both = 0;      ///< charts whose other side has more than a tenth of the light, which is lost
+  std::vector<std::string> warnings;  ///< a sentence each
+};
+
+/// Adds the light of `solution`, of `scene`, to `document`, which is the file that the scene was read from or document_of() it:
+/// its nodes are the scene's objects, in the order in which they are visited. Everything else stays as it is; each node that shows
+/// a mesh gets a mesh of its own that shares its accessors, but for the new texture coordinates, and vertices that charts had in
+/// common are there more than once. Uses all cores; the result does not depend on their number. Throws BakeError.
+Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options);
+
+}  // namespace alvor

@@ -1,0 +1,39 @@
+#pragma once
+// The meshes that a glTF file's scene shows, with their places, cut into charts.
+
+#include "client/bake/charts.h"
+#include "client/bake/gltf_document.h"
+#include "meshing/placement.h"
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace alvor {
+
+/// A primitive of a mesh that draws triangles.
+struct PrimitiveCharts {
+  std::size_t primitive = 0;  ///< in its mesh
+  std::vector<Vec3> positions;
+  std::vector<MeshTriangle> triangles;  ///< strips and fans taken apart
+  ChartedMesh charts;
+};
+
+/// A node that shows a mesh.
+struct MeshNode {
+  std::size_t node = 0, mesh = 0;
+  Placement placement;     ///< to the scene
+  std::size_t object = 0;  ///< the node's place among the visited ones, which is that of its object in the imported scene
+};
+
+struct PlacedMeshes {
+  std::vector<MeshNode> nodes;
+  std::map<std::size_t, std::vector<PrimitiveCharts>> primitives;  ///< by mesh
+  std::size_t visited = 0;                                         ///< nodes of the scene, with those that show nothing
+};
+
+/// Walks the default scene as the importer does, depth first, and cuts its meshes. Throws BakeError.
+PlacedMeshes placed_meshes(const GltfDocument& document);
+
+}  // namespace alvor

@@ -1,0 +1,82 @@
+#include "client/bake/solved_surface.h"
+
+#include "client/bake/gltf_document.h"
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+
+namespace alvor {
+
+namespace {
+
+// Share of the scene's extent by which welding moves no surface; probes take a point for one of a surface up to there, too.
+constexpr double reach_of_extent = 1e-4;
+
+double longest_side(std::span<const Vec3> points) {
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) low = lower(low, p), high = upper(high, p);
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+std::vector<std::uint32_t> objects_of_faces(std::span<const SceneObject> objects, std::size_t face_count) {
+  std::vector<std::uint32_t> object(face_count, static_cast<std::uint32_t>(objects.size()));
+  for (std::uint32_t o = 0; o < objects.size(); ++o)
+    for (std::uint32_t f = 0; f < objects[o].face_count; ++f) object[objects[o].first_face + f] = o;
+  return object;
+}
+
+}  // namespace
+
+SolvedSurface::SolvedSurface(const DisplayMesh& solution, std::span<const SceneObject> objects, std::size_t face_count)
+    : solution_(solution), radiosity_(solution), parts_(objects.size() + 1) {
+  if (solution.faces.empty()) throw BakeError("solution", "does not know the faces of its scene");
+  for (std::size_t o = 0; o < objects.size(); ++o)
+    if (const auto fault = fault_in(objects, o, face_count)) throw BakeError("object " + std::to_string(o), *fault);
+  reach_ = reach_of_extent * longest_side(solution.positions);
+  const auto object = objects_of_faces(objects, face_count);
+  std::uint32_t next = 0;
+  for (const FaceTriangles& run : solution.faces) {
+    if (run.faces.first >= face_count) throw BakeError("solution", "is of another scene: it has more faces");
+    auto& of = parts_[object[run.faces.first]].triangles;
+    for (std::uint32_t n = 0; n < run.count; ++n) of.push_back(next++);
+  }
+  for (Part& part : parts_) {
+    if (part.triangles.empty()) continue;
+    std::unordered_map<std::uint32_t, std::uint32_t> number;
+    std::vector<Vec3> positions;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const std::uint32_t t : part.triangles) {
+      auto& corners = triangles.emplace_back(solution.triangles[t]);
+      for (std::uint32_t& corner : corners) {
+        const auto [found, is_new] = number.try_emplace(corner, static_cast<std::uint32_t>(positions.size()));
+        if (is_new) positions.push_back(solution.positions[corner]);
+        corner = found->second;
+      }
+    }
+    part.caster = std::make_unique<TriangleCaster>(positions, triangles, Traversal::watertight);
+  }
+}
+
+/// Returns whether a triangle of the solution faces within 60 degrees of `normal` (unit).
+bool SolvedSurface::faces_along(std::uint32_t triangle, Vec3 normal) const {
+  const auto& [a, b, c] = solution_.triangles[triangle];
+  const Vec3 from = solution_.positions[a], twice = cross(solution_.positions[b] - from, solution_.positions[c] - from);
+  return dot(twice, normal) > 0.5 * length(twice);
+}
+
+std::optional<SolvedSurface::Sample> SolvedSurface::at(std::size_t object, Vec3 point, Vec3 normal) const {
+  const Part& part = parts_[object];
+  if (!part.caster) return std::nullopt;
+  auto hit = part.caster->cast_front(point + reach_ * normal, -1.0 * normal);
+  // At the edge of a wall the ray runs along the next one, which rounding may put in its way.
+  if (!hit || hit->distance > 2 * reach_ || !faces_along(part.triangles[hit->triangle], normal)) hit = part.caster->nearest(point, normal);
+  if (!hit) return std::nullopt;
+  const std::uint32_t triangle = part.triangles[hit->triangle];
+  const auto& [a, b, c] = solution_.triangles[triangle];
+  const Rgb irradiance = (1 - hit->u - hit->v) * widen(solution_.irradiance[a]) + hit->u * widen(solution_.irradiance[b]) +
+                         hit->v * widen(solution_.irradiance[c]);
+  return Sample{irradiance, radiosity_.of_what_is_there(triangle, hit->u, hit->v)};
+}
+
+}  // namespace alvor

@@ -1,0 +1,48 @@
+#pragma once
+// Reads a solution at points of the objects of its scene.
+
+#include "meshing/display_mesh.h"
+#include "meshing/mesh_radiosity.h"
+#include "meshing/scene.h"
+#include "radiosity/rays/triangle_caster.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// The surfaces of a solution by object, so that what lies on a surface is never taken for it. Immutable; safe from any thread.
+/// Borrows the solution.
+class SolvedSurface {
+ public:
+  struct Sample {
+    Rgb irradiance, radiosity;  ///< W/m2
+  };
+
+  /// Sorts the triangles of `solution` by the object that their faces belong to. Objects are numbered as in `objects`; the faces
+  /// of no object are the last one, number objects.size(). Throws BakeError if the solution does not know its faces or they are
+  /// not within `face_count`.
+  SolvedSurface(const DisplayMesh& solution, std::span<const SceneObject> objects, std::size_t face_count);
+
+  std::size_t object_count() const { return parts_.size(); }
+  /// Returns the solution where the side of an object's surface that faces along `normal` (unit) passes through `point`; where it
+  /// does not, as the scene was welded, at the nearest place that faces within 60 degrees. Nothing if the object has none.
+  std::optional<Sample> at(std::size_t object, Vec3 point, Vec3 normal) const;
+
+ private:
+  struct Part {
+    std::vector<std::uint32_t> triangles;  // of the solution
+    std::unique_ptr<TriangleCaster> caster;
+  };
+  bool faces_along(std::uint32_t triangle, Vec3 normal) const;
+
+  const DisplayMesh& solution_;
+  MeshRadiosity radiosity_;
+  double reach_ = 0;  // metres: how far before and behind a point its surface is looked for
+  std::vector<Part> parts_;
+};
+
+}  // namespace alvor

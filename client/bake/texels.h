@@ -1,0 +1,63 @@
+#pragma once
+// The texels of charts: which point of a surface each stands for, and what was solved there.
+
+#include "client/bake/chart_pages.h"
+#include "client/bake/charts.h"
+#include "client/bake/solved_surface.h"
+#include "meshing/placement.h"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// A square image of light, rows from the top.
+struct LightPage {
+  explicit LightPage(int side)
+      : size(side), texels(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)), is_set(texels.size()) {}
+  int size;
+  std::vector<RgbF> texels;
+  std::vector<std::uint8_t> is_set;  ///< whether a chart gave the texel its value
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x);
+  }
+};
+
+/// A chart of a mesh that a node places in the scene.
+struct PlacedChart {
+  std::span<const Vec3> positions;  ///< of the mesh
+  std::span<const MeshTriangle> triangles;
+  const Chart* chart = nullptr;
+  Placement placement;
+  std::size_t object = 0;
+  bool may_show_back = false;  ///< the material has two sides
+};
+
+/// Returns a chart's size on the surface.
+ChartSize size_of(const PlacedChart& chart);
+/// Returns the place of a point of the mesh on a chart's page, in texels from the page's upper left corner.
+std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place, int padding, const Vec3& at);
+
+/// What is written to the texels.
+using TexelValue = std::function<Rgb(const SolvedSurface::Sample&)>;
+
+/// The side of a chart that its texels show.
+struct ShownSide {
+  bool is_back = false;
+  bool loses_light = false;  ///< the other side has more than a tenth of this one's light
+};
+/// Returns the side of a chart with more light, which is the front if the material has one side.
+ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface);
+
+/// Sets all texels of a chart's rectangle: those within the chart to the mean of four points, those at its edge to the point that
+/// they stand for, those around it to the nearest point of the chart. Writes only within the rectangle.
+void fill(LightPage& page, const PlacedChart& chart, const ChartPlace& place, int padding, bool shows_back,
+          const SolvedSurface& surface, const TexelValue& value);
+
+/// Gives each texel that is not set the mean of its set neighbours, `times` times, so that smaller mip levels stay clean.
+void spread(LightPage& page, int times);
+
+}  // namespace alvor

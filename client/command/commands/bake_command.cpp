@@ -1,0 +1,214 @@
+// alvor bake SCENE -o BAKED.glb: solves a scene and writes it with its light in textures.
+
+#include "client/bake/bake.h"
+#include "client/bake/scene_document.h"
+#include "client/command/commands/commands.h"
+#include "client/command/commands/interrupt.h"
+#include "client/command/options/absorption_option.h"
+#include "client/command/options/input_file.h"
+#include "client/command/options/light_options.h"
+#include "client/command/options/option_checks.h"
+#include "client/command/options/translucent_option.h"
+#include "client/command/options/up_option.h"
+#include "client/command/output/display.h"
+#include "client/command/output/failure.h"
+#include "client/command/output/files.h"
+#include "client/command/output/notes.h"
+#include "client/command/output/numbers.h"
+#include "client/command/output/output_file.h"
+#include "client/command/output/status_line.h"
+#include "import/base/scene_format.h"
+#include "import/base/whole_file.h"
+#include "proto/codec.h"
+#include "radiosity/solve/solver.h"
+#include "solution/solution_mirror.h"
+
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::string_view glb_formats[]{"glb"};
+const FileKind baked_kind{"a baked scene", glb_formats, false, false};
+
+const std::map<std::string, BakeForm> forms{{"lightmap", BakeForm::lightmap}, {"unlit", BakeForm::unlit}};
+const std::map<std::string, LightmapFormat> formats{{"png", LightmapFormat::png}, {"exr", LightmapFormat::exr}};
+const std::map<std::string, LightmapUnit> conventions{{"three", LightmapUnit::irradiance},
+                                                      {"godot", LightmapUnit::irradiance_over_pi},
+                                                      {"unity", LightmapUnit::irradiance_over_pi}};
+
+struct BakeCommand {
+  std::filesystem::path scene, solution;  ///< an empty solution: the scene is solved
+  std::string format;                     ///< format of a scene from stdin
+  OutputFile output;
+  std::string form = "lightmap", lightmap_format = "png", convention = "three";
+  BakeOptions bake;
+  SolveOptions solve;
+  std::string absorption;  ///< three numbers; empty: none
+  LightOptions light;
+  std::vector<std::string> translucent;  ///< MATERIAL=T
+  std::string up;                        ///< "y" or "z"; empty: as the file says
+};
+
+Scene read_given(const BakeCommand& command, const RawScene& bytes) {
+  SceneImport import;
+  take_light_options(command.light, import);
+  take_translucent(command.translucent, import.options);
+  if (is_axis(command.up)) import.options.set_up_axis(encode(command.up == "z" ? UpAxis::z : UpAxis::y));
+  SceneFile file = read_scene_content(
+      {name_of(command.scene), bytes.bytes, lower_case_extension(bytes.file), bytes.folder}, import);
+  take_absorption(command.absorption, file.scene);
+  warn(file.warnings);
+  return std::move(file.scene);
+}
+
+/// Solves a scene and shows how far it is.
+DisplayMesh solved(const BakeCommand& command, const Scene& scene) {
+  const BaseMesh mesh(scene);
+  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": all faces are degenerate");
+  const Interrupt interrupt;
+  SolutionLog log;
+  StatusLine line;
+  const auto show = [&](const Step& step) {
+    line.show("solving: estimated error " + percent(step.estimated_error) + ", " + std::to_string(step.leaves) + " leaves");
+  };
+  const auto handle = log.listen([&] {
+    if (line.due()) show(log.last_step());
+  });
+  const SolveOutcome outcome = solve(mesh, command.solve, log, interrupt.token());
+  log.forget(handle);
+  show(log.last_step());
+  if (outcome.reason == StopReason::cancelled) throw Failure(ExitStatus::failed, "the bake was cancelled");
+  if (outcome.reason != StopReason::tolerance)
+    warn(std::array{"the solve ended before its tolerance: " + std::string(text(outcome.reason)) + ", estimated error " +
+                    percent(log.last_step().estimated_error)});
+  return solution_mesh(mesh, log.leaves());
+}
+
+GltfDocument document_of(const RawScene& bytes, const Scene& scene) {
+  const std::string extension = lower_case_extension(bytes.file);
+  if (extension != ".glb" && extension != ".gltf") return document_of(scene);
+  return GltfDocument(bytes.bytes, [&](const std::string& name) { return read_beside(bytes.folder, name); });
+}
+
+Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scene, const DisplayMesh& solution) {
+  BakeOptions options = command.bake;
+  options.form = forms.at(command.form);
+  options.format = formats.at(command.lightmap_format);
+  options.unit = conventions.at(command.convention);
+  options.name = command.output.path.stem().string();
+  StatusLine line;
+  std::mutex mutex;
+  options.on_progress = [&](double share) {
+    const std::unique_lock lock(mutex, std::try_to_lock);
+    if (lock && line.on_terminal() && (line.due() || share == 1)) line.show(progress_bar(share) + " " + percent(share) + " of the texels");
+  };
+  try {
+    return bake(document_of(bytes, scene), scene, solution, options);
+  } catch (const BakeError& error) {
+    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": " + error.what());
+  }
+}
+
+/// Writes the files beside the GLB first, so that a GLB that is there has what it names.
+void write(const BakeCommand& command, const Baked& baked) {
+  for (const Baked::File& file : baked.beside) {
+    const auto path = command.output.path.parent_path() / file.name;
+    write_whole_file(path, file.bytes);
+    notes() << "wrote " << path.string() << '\n';
+  }
+  write_output(command.output.path, baked.glb);
+  if (!is_stream(command.output.path)) notes() << "wrote " << command.output.path.string() << '\n';
+}
+
+std::string summary_of(const BakeCommand& command, const Baked& baked) {
+  std::string text = std::to_string(baked.nodes) + " meshes in " + std::to_string(baked.charts) + " charts on " +
+                     std::to_string(baked.pages) + (baked.pages == 1 ? " texture" : " textures") + " of " +
+                     std::to_string(command.bake.size) + " x " + std::to_string(command.bake.size) + ", " +
+                     shortest(baked.texels_per_metre) + " texels per metre";
+  if (baked.range > 0)
+    text += "; brightest value " + shortest(baked.range) + ", " + percent(baked.clipped_share) + " of the texels are brighter";
+  return text + '\n';
+}
+
+void run_bake(const BakeCommand& command) {
+  require_inputs({{InputKind::scene, command.scene}}, command.format);
+  require_output(command.output, baked_kind, "--output");
+  if (is_stream(command.output.path) && command.lightmap_format == "exr")
+    throw Failure(ExitStatus::usage, "--output: lightmaps in EXR are files beside the scene, so it cannot go to stdout");
+  reserve_stdout_for({command.output.path});
+  const RawScene bytes = scene_bytes(command.scene, command.format);
+  const Scene scene = read_given(command, bytes);
+  const DisplayMesh solution =
+      command.solution.empty() ? solved(command, scene) : read_solution(command.solution, {});
+  const Baked result = baked(command, bytes, scene, solution);
+  if (result.lit_from_both > 0)
+    warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
+                    " charts are lit from both sides; the texture shows the brighter one"});
+  write(command, result);
+  notes() << summary_of(command, result);
+}
+
+void add_solve_options(CLI::App& command, BakeCommand& options) {
+  command.add_option("--solution", options.solution, "Bake this solution of the scene (.glb of alvor solve) instead of solving it")
+      ->type_name("SOLUTION");
+  command.add_option("--tolerance", options.solve.tolerance, "Solve until the estimated relative error is this small (0.02)")
+      ->check(above_up_to(0, 1));
+  command.add_option("--max-elements", options.solve.max_leaves, "Stop refining at this many leaves (200000)")->check(whole_from(1));
+  command.add_option("--time-limit", options.solve.time_limit_s, "Stop solving after this many seconds")->check(above_up_to(0, 1e9));
+  command.add_option("--threads", options.solve.threads, "Worker threads of the solve (as many as the machine has)")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--seed", options.solve.seed, "The same seed gives the same solution (1)")->check(whole_from(0));
+  add_absorption_option(command, options.absorption);
+  add_light_options(command, options.light);
+  add_translucent_option(command, options.translucent);
+  add_up_option(command, options.up);
+}
+
+void add_texture_options(CLI::App& command, BakeCommand& options) {
+  command
+      .add_option("--as", options.form,
+                  "lightmap: irradiance in textures of their own, on texture coordinates of their own; unlit: the colours of a "
+                  "picture of the solution, for every viewer (lightmap)")
+      ->check(CLI::IsMember(forms));
+  command
+      .add_option("--lightmap-format", options.lightmap_format,
+                  "png: in the GLB, 8 bits sRGB up to a range that MOZ_lightmap tells as its intensity; exr: half floats in files "
+                  "beside the GLB (png)")
+      ->check(CLI::IsMember(formats));
+  command
+      .add_option("--convention", options.convention,
+                  "What a texel holds. three: irradiance E, as lightMap of three.js; godot, unity: E / pi, the radiance of a white "
+                  "surface, as those engines multiply by the colour (three)")
+      ->check(CLI::IsMember(conventions));
+  command.add_option("--size", options.bake.size, "Columns and rows of each texture (1024)")->check(CLI::Range(16, 8192));
+  command
+      .add_option("--texels-per-metre", options.bake.texels_per_metre,
+                  "Texels per metre, on as many textures as it takes, up to 64 (as many as fit one texture)")
+      ->check(above_up_to(0, 1e6));
+  command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (2)")->check(CLI::Range(0, 64));
+  command
+      .add_option("--range", options.bake.range,
+                  "Brightest value of a lightmap in PNG, W/m2 or lx (so that 0.2 % of the texels are brighter)")
+      ->check(above_up_to(0, 1e30));
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& app) {
+  const auto options = std::make_shared<BakeCommand>();
+  CLI::App& command = *app.add_subcommand("bake", "Solve a scene and write it with its light in textures");
+  command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
+  add_format_option(command, options->format);
+  add_output_option(command, options->output, baked_kind, "Scene to write: .glb; - is stdout")->required()->type_name("BAKED.glb");
+  add_texture_options(command, *options);
+  add_solve_options(command, *options);
+  command.callback([options] { run_bake(*options); });
+}
+
+}  // namespace alvor

@@ -1,0 +1,437 @@
+// Tests of charts, their places on textures, and baked files.
+
+#include "client/bake/bake.h"
+#include "client/bake/chart_pages.h"
+#include "client/bake/charts.h"
+#include "client/bake/scene_document.h"
+#include "client/bake/solved_surface.h"
+#include "client/picture/png_file.h"
+#include "import/apart/scene_file.h"
+#include "import/base/bytes.h"
+#include "radiosity/solve/solver.h"
+#include "solution/srgb.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace alvor {
+namespace {
+
+using nlohmann::json;
+
+/// A mesh of triangles alone.
+struct Mesh {
+  std::vector<Vec3> positions;
+  std::vector<MeshTriangle> triangles;
+};
+
+Mesh mesh_of(const Scene& scene) {
+  Mesh mesh{scene.vertices, {}};
+  for (const Face& face : scene.faces) {
+    const auto corners = scene.corners_of(face);
+    for (std::size_t c = 2; c < corners.size(); ++c) mesh.triangles.push_back({corners[0], corners[c - 1], corners[c]});
+  }
+  return mesh;
+}
+
+Mesh globe() {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5)};
+  test::add_globe(scene, {0, 0, 0}, 1, 3, 0);
+  return mesh_of(scene);
+}
+
+/// A ramp that winds twice about an axis: seen from above it lies over itself, and no edge of it is sharp.
+Mesh spiral_ramp() {
+  Mesh mesh;
+  constexpr int steps = 96;
+  for (int n = 0; n <= steps; ++n) {
+    const double angle = 4 * std::numbers::pi * n / steps;
+    for (const double radius : {1.0, 2.0}) mesh.positions.push_back({radius * std::cos(angle), 0.1 * angle, -radius * std::sin(angle)});
+  }
+  for (std::uint32_t n = 0; n < steps; ++n) {
+    mesh.triangles.push_back({2 * n, 2 * n + 1, 2 * n + 3});
+    mesh.triangles.push_back({2 * n, 2 * n + 3, 2 * n + 2});
+  }
+  return mesh;
+}
+
+double area_of(const std::array<std::array<double, 2>, 3>& t) {
+  return ((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0])) / 2;
+}
+
+/// Returns how many triangles of a chart cover a point of its plane.
+int cover(const Mesh& mesh, const Chart& chart, const std::array<double, 2>& p) {
+  int count = 0;
+  for (const std::uint32_t t : chart.triangles) {
+    std::array<std::array<double, 2>, 3> flat;
+    for (std::size_t c = 0; c < 3; ++c) flat[c] = on_chart(chart, mesh.positions[mesh.triangles[t][c]]);
+    const double whole = area_of(flat);
+    bool is_inside = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      auto part = flat;
+      part[c] = p;
+      is_inside = is_inside && area_of(part) / whole > 1e-9;
+    }
+    count += is_inside;
+  }
+  return count;
+}
+
+void expect_charts_are_sound(const Mesh& mesh) {
+  const ChartedMesh charted = cut_into_charts(mesh.positions, mesh.triangles);
+  std::vector<int> seen(mesh.triangles.size());
+  for (std::size_t c = 0; c < charted.charts.size(); ++c) {
+    const Chart& chart = charted.charts[c];
+    EXPECT_NEAR(dot(chart.u, chart.v), 0, 1e-9);
+    for (const std::uint32_t t : chart.triangles) {
+      ++seen[t];
+      std::array<std::array<double, 2>, 3> flat;
+      for (std::size_t k = 0; k < 3; ++k) {
+        flat[k] = on_chart(chart, mesh.positions[mesh.triangles[t][k]]);
+        EXPECT_GE(flat[k][0], -1e-9);
+        EXPECT_LE(flat[k][0], chart.wide + 1e-9);
+        EXPECT_GE(flat[k][1], -1e-9);
+        EXPECT_LE(flat[k][1], chart.high + 1e-9);
+        EXPECT_EQ(charted.vertex_chart[charted.triangles[t][k]], c);
+        EXPECT_EQ(charted.source[charted.triangles[t][k]], mesh.triangles[t][k]);
+      }
+      const auto& [a, b, d] = mesh.triangles[t];
+      const double area = length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[d] - mesh.positions[a])) / 2;
+      EXPECT_GT(area_of(flat), 0.7 * area) << "triangle " << t;
+    }
+    for (int n = 0; n < 400; ++n)
+      EXPECT_LE(cover(mesh, chart, {chart.wide * (n % 20 + 0.517) / 20, chart.high * (n / 20 + 0.483) / 20}), 1) << "chart " << c;
+  }
+  EXPECT_TRUE(std::ranges::all_of(seen, [](int times) { return times == 1; }));
+}
+
+TEST(Charts, OfABoxAreItsSides) {
+  const Mesh box = mesh_of(test::furnace(1, 0.5));
+  expect_charts_are_sound(box);
+  EXPECT_EQ(cut_into_charts(box.positions, box.triangles).charts.size(), 6u);
+}
+
+TEST(Charts, OfAGlobeShrinkNoTriangleMuch) {
+  expect_charts_are_sound(globe());
+  const Mesh mesh = globe();
+  EXPECT_LE(cut_into_charts(mesh.positions, mesh.triangles).charts.size(), 40u);
+}
+
+TEST(Charts, OfASpiralRampDoNotLieOverThemselves) { expect_charts_are_sound(spiral_ramp()); }
+
+TEST(Charts, LeaveOutTrianglesWithoutArea) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
+  const std::vector<MeshTriangle> triangles{{0, 1, 2}, {0, 1, 3}, {0, 0, 0}};
+  const ChartedMesh charted = cut_into_charts(positions, triangles);
+  EXPECT_EQ(charted.charts.size(), 1u);
+  EXPECT_EQ(charted.chart_of[1], ChartedMesh::no_chart);
+  EXPECT_EQ(charted.chart_of[2], ChartedMesh::no_chart);
+  EXPECT_TRUE(cut_into_charts({}, {}).charts.empty());
+}
+
+std::vector<ChartSize> many_sizes() {
+  std::vector<ChartSize> sizes;
+  for (int n = 0; n < 300; ++n) sizes.push_back({0.05 + 0.01 * (n * 37 % 101), 0.03 + 0.02 * (n * 53 % 89)});
+  sizes.push_back({0, 0});
+  return sizes;
+}
+
+void expect_no_overlap(const ChartPages& pages, std::size_t charts) {
+  ASSERT_EQ(pages.places.size(), charts);
+  std::set<std::array<int, 3>> taken;
+  for (const ChartPlace& place : pages.places) {
+    ASSERT_GE(place.x, 0);
+    ASSERT_GE(place.y, 0);
+    ASSERT_LE(place.x + place.wide, pages.size);
+    ASSERT_LE(place.y + place.high, pages.size);
+    ASSERT_LT(place.page, pages.count);
+    for (int y = 0; y < place.high; ++y)
+      for (int x = 0; x < place.wide; ++x) ASSERT_TRUE(taken.insert({place.page, place.x + x, place.y + y}).second);
+  }
+}
+
+TEST(ChartPages, HoldEachChartOnceAndFillThePage) {
+  const auto sizes = many_sizes();
+  const auto pages = place_charts(sizes, {.size = 512});
+  ASSERT_TRUE(pages);
+  EXPECT_EQ(pages->count, 1);
+  expect_no_overlap(*pages, sizes.size());
+  double used = 0;
+  for (const ChartPlace& place : pages->places) used += double(place.wide) * place.high;
+  EXPECT_GT(used, 0.6 * 512 * 512);
+}
+
+TEST(ChartPages, AreAsManyAsADensityTakesOrNone) {
+  const auto sizes = many_sizes();
+  const auto pages = place_charts(sizes, {.size = 256, .texels_per_metre = 100});
+  ASSERT_TRUE(pages);
+  EXPECT_GT(pages->count, 1);
+  expect_no_overlap(*pages, sizes.size());
+  EXPECT_FALSE(place_charts(sizes, {.size = 256, .texels_per_metre = 1000}));  // one chart alone is larger than a page
+  EXPECT_FALSE(place_charts(sizes, {.size = 256, .texels_per_metre = 100, .most_pages = 1}));
+}
+
+DisplayMesh solved(const Scene& scene, double tolerance = 0.03) {
+  const BaseMesh mesh(scene);
+  SolutionLog log;
+  solve(mesh, {.tolerance = tolerance}, log, {});
+  return build_display_mesh(mesh, log.leaves());
+}
+
+/// A baked file, read again.
+class BakedFile {
+ public:
+  BakedFile(const Scene& scene, const DisplayMesh& solution, const BakeOptions& options = {})
+      : BakedFile(document_of(scene), scene, solution, options) {}
+  BakedFile(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options = {})
+      : baked(bake(std::move(document), scene, solution, options)),
+        file(baked.glb, [](const std::string&) { return std::nullopt; }) {
+    for (const json& image : file.root()["images"]) {
+      // The views of a document can be read as accessors of bytes.
+      const json& view = file.element("bufferViews", image["bufferView"]);
+      const std::size_t accessor =
+          file.append("accessors", {{"bufferView", image["bufferView"]}, {"componentType", 5121}, {"type", "SCALAR"}, {"count", view["byteLength"]}});
+      images.push_back(decode_png(file.read(accessor).bytes, 8192, 8192));
+    }
+  }
+
+  const json& primitive(std::size_t node, std::size_t which = 0) const {
+    return file.element("meshes", file.element("nodes", node)["mesh"])["primitives"][which];
+  }
+  std::vector<std::array<float, 2>> points(const json& primitive, const std::string& set = "TEXCOORD_1") const {
+    const DenseElements elements = file.read(primitive["attributes"][set]);
+    std::vector<std::array<float, 2>> points;
+    for (std::size_t n = 0; n < elements.count; ++n)
+      points.push_back({value_at<float>(elements.at(n), 0), value_at<float>(elements.at(n), 4)});
+    return points;
+  }
+  std::vector<std::uint32_t> indices(const json& primitive) const {
+    if (primitive.contains("indices")) return file.read_indices(primitive["indices"]);
+    std::vector<std::uint32_t> all(points(primitive).size());
+    for (std::uint32_t n = 0; n < all.size(); ++n) all[n] = n;
+    return all;
+  }
+  /// Returns the mean of the bands of the light at a place of the texture of a primitive, filtered as viewers do.
+  double light(const json& primitive, double s, double t) const {
+    const json& lightmap = file.element("materials", primitive["material"])["extensions"]["MOZ_lightmap"];
+    const Image& image = images[file.element("textures", lightmap["index"])["source"]];
+    const double x = s * image.width - 0.5, y = t * image.height - 0.5;
+    const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+    double sum = 0;
+    for (int dy = 0; dy < 2; ++dy)
+      for (int dx = 0; dx < 2; ++dx) {
+        const auto column = static_cast<std::size_t>(std::clamp(left + dx, 0, image.width - 1)),
+                   row = static_cast<std::size_t>(std::clamp(top + dy, 0, image.height - 1));
+        const double weight = (dx ? x - left : 1 - (x - left)) * (dy ? y - top : 1 - (y - top));
+        for (std::size_t band = 0; band < 3; ++band)
+          sum += weight / 3 * linear_of_srgb(image.rgb[3 * (row * static_cast<std::size_t>(image.width) + column) + band] / 255.0);
+      }
+    return sum * lightmap["intensity"].get<double>();
+  }
+
+  Baked baked;
+  GltfDocument file;
+  std::vector<Image> images;
+};
+
+/// A white room with a lamp and a grey globe in it: creases, and smooth seams between the charts of the globe.
+Scene room_with_globe() {
+  Scene scene = test::coloured_room();
+  test::add_globe(scene, {2, 1, 2}, 0.6, 3, 0);
+  return scene;
+}
+
+TEST(Bake, TexelsHoldTheSolutionEverywhere) {
+  const Scene scene = room_with_globe();
+  const DisplayMesh solution = solved(scene);
+  const SolvedSurface surface(solution, scene.objects, scene.faces.size());
+  const BakedFile baked(scene, solution);
+  double squares = 0, count = 0, sum = 0;
+  for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
+    const json& primitive = baked.primitive(0, p);
+    const auto positions = baked.file.read_positions(primitive["attributes"]["POSITION"]);
+    const auto points = baked.points(primitive);
+    const auto indices = baked.indices(primitive);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      const auto at = [&](std::size_t c) {
+        const auto& [x, y, z] = positions[indices[i + c]];
+        return Vec3{x, y, z};
+      };
+      const Vec3 twice = cross(at(1) - at(0), at(2) - at(0)), normal = normalized(twice);
+      for (const auto& [u, v] : {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5), std::pair(0.0, 0.4),
+                                 std::pair(0.37, 0.0)}) {
+        const auto sample = surface.at(0, (1 - u - v) * at(0) + u * at(1) + v * at(2), normal);
+        ASSERT_TRUE(sample);
+        const auto mix = [&](std::size_t k) {
+          return (1 - u - v) * points[indices[i]][k] + u * points[indices[i + 1]][k] + v * points[indices[i + 2]][k];
+        };
+        const double light = baked.light(primitive, mix(0), mix(1)), area = length(twice);
+        if (sample->irradiance.mean() > baked.baked.range) continue;
+        squares += area * std::pow(light - sample->irradiance.mean(), 2);
+        sum += area * sample->irradiance.mean(), count += area;
+      }
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / count) / (sum / count), 0.02);
+}
+
+TEST(Bake, BothSidesOfASmoothSeamAgree) {
+  // The globe hangs free, so that no shadow's edge runs along it.
+  Scene scene;
+  scene.materials = {test::grey(0, 0.7), test::grey(10, 0)};
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true, {0, 0, 0, 1, 0, 0});
+  test::add_globe(scene, {0.9, 0.8, 1.1}, 0.4, 4, 0);
+  const DisplayMesh solution = solved(scene);
+  const SolvedSurface surface(solution, scene.objects, scene.faces.size());
+  const BakedFile baked(scene, solution);
+  int seams = 0;
+  for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
+    const json& primitive = baked.primitive(0, p);
+    const auto positions = baked.file.read_positions(primitive["attributes"]["POSITION"]);
+    const auto points = baked.points(primitive);
+    const auto indices = baked.indices(primitive);
+    struct Side {
+      std::array<float, 2> from, to;
+      Vec3 normal;
+    };
+    std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, std::vector<Side>> edges;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      const auto at = [&](std::size_t c) {
+        const auto& [x, y, z] = positions[indices[i + c]];
+        return Vec3{x, y, z};
+      };
+      const Vec3 normal = normalized(cross(at(1) - at(0), at(2) - at(0)));
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::uint32_t a = indices[i + c], b = indices[i + (c + 1) % 3];
+        if (positions[b] < positions[a]) std::swap(a, b);
+        edges[{positions[a], positions[b]}].push_back({points[a], points[b], normal});
+      }
+    }
+    for (const auto& [edge, sides] : edges) {
+      if (sides.size() != 2 || sides[0].from == sides[1].from || dot(sides[0].normal, sides[1].normal) < 0.9) continue;
+      ++seams;
+      for (const double share : {0.1, 0.5, 0.9}) {
+        std::array<double, 2> light, truth;
+        for (std::size_t s = 0; s < 2; ++s) {
+          const auto along = [&](std::size_t k) { return std::lerp(double(edge.first[k]), double(edge.second[k]), share); };
+          truth[s] = surface.at(0, {along(0), along(1), along(2)}, sides[s].normal).value().irradiance.mean();
+          light[s] = baked.light(primitive, std::lerp(sides[s].from[0], sides[s].to[0], share),
+                                 std::lerp(sides[s].from[1], sides[s].to[1], share));
+        }
+        EXPECT_NEAR(light[0], light[1], std::abs(truth[0] - truth[1]) + 0.02 * light[1]);
+      }
+    }
+  }
+  EXPECT_GT(seams, 20);
+}
+
+TEST(Bake, NoLightLeaksThroughAThinWall) {
+  // Two rooms with a wall of a millimetre between them, and light in one.
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(10, 0)};
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true, {0, 0, 0, 1, 0, 0});
+  test::add_box(scene, {2.001, 0, 0}, {4, 2, 2}, true);
+  const auto faces = static_cast<std::uint32_t>(scene.faces.size());
+  scene.objects = {{"lit", std::nullopt, {}, 0, faces / 2}, {"dark", std::nullopt, {}, faces / 2, faces / 2}};
+  const BakedFile baked(scene, solved(scene));
+  for (const auto& [s, t] : baked.points(baked.primitive(1))) EXPECT_EQ(baked.light(baked.primitive(1), s, t), 0);
+  for (const auto& [s, t] : baked.points(baked.primitive(0))) EXPECT_GT(baked.light(baked.primitive(0), s, t), 0);
+}
+
+/// Returns a file in which two nodes show one mesh, a square, under a lamp; the second is mirrored and scaled.
+GltfDocument two_squares() {
+  Scene square;
+  square.materials = {test::grey(0, 0.5)};
+  square.materials[0].name = "paint";
+  test::add_polygon(square, {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}});
+  test::add_polygon(square, {{-5, 3, -5}, {5, 3, -5}, {5, 3, 5}, {-5, 3, 5}}, 1);
+  square.materials.push_back(test::grey(5, 0));
+  square.objects = {{"near", std::nullopt, {}, 0, 1}, {"lamp", std::nullopt, {}, 1, 1}};
+  GltfDocument document = document_of(square);
+  json& root = document.root();
+  root["nodes"].push_back({{"name", "far"}, {"mesh", 0}, {"translation", {9, 0, 0}}, {"scale", {-2, 1, 1}}, {"extras", {{"kept", 7}}}});
+  root["scenes"][0]["nodes"].push_back(2);
+  root["meshes"][0]["primitives"][0]["material"] = 0;
+  root["animations"] = json::array();
+  root.erase("animations");
+  root["cameras"] = json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+  return document;
+}
+
+TEST(Bake, InstancesGetPlacesOfTheirOwnAndShareWhatTheyHave) {
+  const std::string glb = two_squares().encode();
+  const SceneFile read = read_scene_content({"squares.glb", glb, ".glb", {}});
+  const BakedFile baked(two_squares(), read.scene, solved(read.scene, 0.3));
+  const json &near = baked.primitive(0), &far = baked.primitive(2);
+  EXPECT_EQ(near["attributes"]["POSITION"], far["attributes"]["POSITION"]);
+  EXPECT_NE(near["attributes"]["TEXCOORD_1"], far["attributes"]["TEXCOORD_1"]);
+  EXPECT_EQ(baked.file.element("nodes", 2)["extras"]["kept"], 7);
+  EXPECT_EQ(baked.file.element("nodes", 2)["name"], "far");
+  EXPECT_EQ(baked.file.root()["cameras"][0]["perspective"]["yfov"], 1);
+  EXPECT_EQ(baked.file.element("materials", near["material"])["name"], "paint");
+  const auto box = [&](const json& primitive) {
+    std::array<float, 4> sides{9, 9, -9, -9};
+    for (const auto& [s, t] : baked.points(primitive))
+      sides = {std::min(sides[0], s), std::min(sides[1], t), std::max(sides[2], s), std::max(sides[3], t)};
+    return sides;
+  };
+  const auto a = box(near), b = box(far);
+  EXPECT_TRUE(a[2] < b[0] || b[2] < a[0] || a[3] < b[1] || b[3] < a[1]) << "their rectangles overlap";
+  const double ratio = std::max(b[2] - b[0], b[3] - b[1]) / std::min(b[2] - b[0], b[3] - b[1]);
+  EXPECT_NEAR(ratio, 2, 0.05) << "the scaled one is as long as it is in the scene";
+}
+
+TEST(Bake, SaysWhatIsWrongWithAFile) {
+  const GltfDocument good = two_squares();
+  const SceneFile read = read_scene_content({"squares.glb", good.encode(), ".glb", {}});
+  const DisplayMesh solution = solved(read.scene, 0.3);
+  const auto expect_refused = [&](const std::function<void(json&)>& harm, const std::string& place) {
+    GltfDocument document = good;
+    harm(document.root());
+    try {
+      bake(std::move(document), read.scene, solution, {});
+      ADD_FAILURE() << "was taken: " << place;
+    } catch (const BakeError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(place + ":")) << error.what();
+    }
+  };
+  expect_refused([](json& root) { root["accessors"][0]["count"] = 1000000; }, "accessor 0");
+  expect_refused([](json& root) { root["accessors"][0]["bufferView"] = 77; }, "bufferViews 77");
+  expect_refused([](json& root) { root["nodes"][0]["mesh"] = 5; }, "meshes 5");
+  expect_refused([](json& root) { root["nodes"][0]["mesh"] = "x"; }, "node 0");
+  expect_refused([](json& root) { root["nodes"][0]["children"] = {0}; }, "node 0");
+  expect_refused([](json& root) { root["scenes"][0]["nodes"] = {0}; }, "file");
+  expect_refused([](json& root) { root["meshes"][0]["primitives"][0].erase("attributes"); }, "mesh 0 primitive 0");
+  expect_refused([](json& root) { root["meshes"][0]["primitives"] = 3; }, "file");
+  EXPECT_THROW(GltfDocument("glTF", [](const std::string&) { return std::nullopt; }), BakeError);
+  EXPECT_THROW(GltfDocument(std::string(1000, '['), [](const std::string&) { return std::nullopt; }), BakeError);
+  EXPECT_THROW(bake(good, read.scene, solution, {.size = 16, .texels_per_metre = 100}), BakeError);
+}
+
+TEST(Bake, UnlitShowsColoursOfThePictureInOneTexture) {
+  const Scene scene = room_with_globe();
+  const BakedFile baked(scene, solved(scene), {.form = BakeForm::unlit});
+  const json& primitive = baked.primitive(0);
+  const json& material = baked.file.element("materials", primitive["material"]);
+  EXPECT_TRUE(material["extensions"].contains("KHR_materials_unlit"));
+  EXPECT_FALSE(primitive["attributes"].contains("COLOR_0"));
+  EXPECT_EQ(baked.images.size(), 1u);
+}
+
+TEST(Bake, WritesHalfFloatsBesideTheFile) {
+  const Scene scene = room_with_globe();
+  const BakedFile baked(scene, solved(scene), {.format = LightmapFormat::exr, .name = "room"});
+  ASSERT_EQ(baked.baked.beside.size(), 1u);
+  EXPECT_EQ(baked.baked.beside[0].name, "room-0.exr");
+  EXPECT_TRUE(baked.baked.beside[0].bytes.starts_with("\x76\x2f\x31\x01"));
+  EXPECT_EQ(baked.file.root()["extras"]["alvor_lightmap"]["files"][0], "room-0.exr");
+}
+
+}  // namespace
+}  // namespace alvor
