@@ -93,7 +93,7 @@ class Baker {
         primitives_.push_back({&node, &primitive, charts_.size()});
         const bool may_show_back = is_two_sided(primitive_of(node.mesh, primitive.primitive), document_);
         for (const Chart& chart : primitive.charts.charts)
-          charts_.push_back({{primitive.positions, primitive.triangles, &chart, to_scene(scene_) * node.placement, node.object,
+          charts_.push_back({{primitive.positions, &primitive.charts, &chart, to_scene(scene_) * node.placement, node.object,
                               may_show_back},
                              {}});
       }
@@ -277,7 +277,7 @@ class Baker {
       std::array<double, 2> at{0.5, 0.5};
       if (const std::uint32_t chart = charts.vertex_chart[vertex]; chart != ChartedMesh::no_chart)
         at = texel_of(charts_[of.first_chart + chart].placed, pages_.places[of.first_chart + chart], pages_.padding,
-                      of.primitive->positions[charts.source[vertex]]);
+                      static_cast<std::uint32_t>(vertex));
       for (const double texel : at) append_value(bytes, static_cast<float>(texel / pages_.size));
     }
     const std::size_t accessor = document_.add_accessor({{"componentType", glb::float_component}, {"type", "VEC2"}}, bytes,

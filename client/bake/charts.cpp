@@ -61,15 +61,15 @@ class Neighbours {
   std::vector<std::uint32_t> first_;                            // in edges_, by triangle and side
 };
 
-using Point = std::array<double, 2>;
+using Point = FlatPoint;
 
-/// Counts cells of a grid whose middles lie within two triangles of a chart.
-bool overlaps_itself(std::span<const std::array<Point, 3>> flat) {
+/// Returns whether the middle of a cell of a grid, `cells` on its longer side, lies within two triangles.
+bool overlaps_itself(std::span<const std::array<Point, 3>> flat, int cells) {
   Point low{1e300, 1e300}, high{-1e300, -1e300};
   for (const auto& triangle : flat)
     for (const Point& p : triangle)
       for (std::size_t k = 0; k < 2; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-  const double cell = std::max(high[0] - low[0], high[1] - low[1]) / overlap_cells;
+  const double cell = std::max(high[0] - low[0], high[1] - low[1]) / cells;
   if (!(cell > 0)) return false;
   const int wide = static_cast<int>((high[0] - low[0]) / cell) + 1, tall = static_cast<int>((high[1] - low[1]) / cell) + 1;
   std::vector<bool> taken(static_cast<std::size_t>(wide) * static_cast<std::size_t>(tall));
@@ -116,7 +116,7 @@ class Cutter {
     for (const std::uint32_t seed : order) {
       if (!is_free(seed)) continue;
       const Chart chart = grown_from(seed, smooth_cosine);
-      if (overlaps_itself(flat(chart))) cut_flat(chart);
+      if (overlaps_itself(flat(chart), overlap_cells)) cut_flat(chart);
     }
     std::erase_if(mesh_.charts, [](const Chart& chart) { return chart.triangles.empty(); });
     for (std::uint32_t c = 0; c < mesh_.charts.size(); ++c) {
@@ -148,11 +148,15 @@ class Cutter {
     return chart;
   }
 
+  Point projected(const Chart& chart, std::uint32_t vertex) const {
+    return {dot(chart.u, positions_[vertex]), dot(chart.v, positions_[vertex])};
+  }
+
   std::vector<std::array<Point, 3>> flat(const Chart& chart) const {
     std::vector<std::array<Point, 3>> points;
     for (const std::uint32_t t : chart.triangles) {
       std::array<Point, 3>& of = points.emplace_back();
-      for (std::size_t c = 0; c < 3; ++c) of[c] = on_chart(chart, positions_[triangles_[t][c]]);
+      for (std::size_t c = 0; c < 3; ++c) of[c] = projected(chart, triangles_[t][c]);
     }
     return points;
   }
@@ -164,7 +168,7 @@ class Cutter {
     for (const std::uint32_t seed : chart.triangles) {
       if (!is_free(seed)) continue;
       const Chart part = grown_from(seed, flat_cosine);
-      if (!overlaps_itself(flat(part))) continue;
+      if (!overlaps_itself(flat(part), overlap_cells)) continue;
       mesh_.charts.back().triangles.clear();
       for (const std::uint32_t t : part.triangles) {
         mesh_.chart_of[t] = ChartedMesh::no_chart;
@@ -199,10 +203,10 @@ class Cutter {
   void measure(Chart& chart, std::span<const std::uint32_t> vertices) const {
     Point low{1e300, 1e300}, high{-1e300, -1e300};
     for (const std::uint32_t vertex : vertices) {
-      const Point p{dot(chart.u, positions_[vertex]), dot(chart.v, positions_[vertex])};
+      const Point p = projected(chart, vertex);
       for (std::size_t k = 0; k < 2; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
     }
-    chart.low_u = low[0], chart.low_v = low[1], chart.wide = high[0] - low[0], chart.high = high[1] - low[1];
+    chart.wide = high[0] - low[0], chart.high = high[1] - low[1];
   }
 
   /// Makes a vertex for each vertex of the mesh and each chart that has it. The first keeps its number.
@@ -224,6 +228,22 @@ class Cutter {
         if (is_new) mesh_.source.push_back(vertex), mesh_.vertex_chart.push_back(chart);
         vertex = copy->second;
       }
+    lay_flat();
+  }
+
+  void lay_flat() {
+    const std::size_t count = mesh_.charts.size();
+    std::vector<Point> low(count, {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
+    mesh_.flat.resize(mesh_.source.size());
+    for (std::size_t v = 0; v < mesh_.source.size(); ++v) {
+      const std::uint32_t chart = mesh_.vertex_chart[v];
+      if (chart == ChartedMesh::no_chart) continue;
+      mesh_.flat[v] = projected(mesh_.charts[chart], mesh_.source[v]);
+      for (std::size_t k = 0; k < 2; ++k) low[chart][k] = std::min(low[chart][k], mesh_.flat[v][k]);
+    }
+    for (std::size_t v = 0; v < mesh_.source.size(); ++v)
+      if (const std::uint32_t chart = mesh_.vertex_chart[v]; chart != ChartedMesh::no_chart)
+        for (std::size_t k = 0; k < 2; ++k) mesh_.flat[v][k] -= low[chart][k];
   }
 
   std::span<const Vec3> positions_;
@@ -234,7 +254,54 @@ class Cutter {
   ChartedMesh mesh_;
 };
 
+double area_of(const std::array<Point, 3>& t) {
+  return ((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) - (t[1][1] - t[0][1]) * (t[2][0] - t[0][0])) / 2;
+}
+
 }  // namespace
+
+std::optional<ChartedMesh> chart_of_points(std::span<const Vec3> positions, std::span<const MeshTriangle> triangles,
+                                           std::span<const std::array<float, 2>> points) {
+  constexpr int cells = 1024;
+  ChartedMesh mesh;
+  mesh.charts.emplace_back();
+  Chart& chart = mesh.charts.front();
+  mesh.chart_of.assign(triangles.size(), ChartedMesh::no_chart);
+  mesh.vertex_chart.assign(positions.size(), ChartedMesh::no_chart);
+  mesh.triangles.assign(triangles.begin(), triangles.end());
+  mesh.source.resize(positions.size());
+  std::iota(mesh.source.begin(), mesh.source.end(), 0u);
+  std::vector<std::array<Point, 3>> flat;
+  Point low{1e300, 1e300}, high{-1e300, -1e300};
+  double area = 0, flat_area = 0;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    const double here = length(cross(positions[b] - positions[a], positions[c] - positions[a])) / 2;
+    if (!(here > 0)) continue;
+    auto& corners = flat.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto& [s, v] = points[triangles[t][k]];
+      if (!std::isfinite(s) || !std::isfinite(v)) return std::nullopt;
+      corners[k] = {s, -v};
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        low[axis] = std::min(low[axis], corners[k][axis]), high[axis] = std::max(high[axis], corners[k][axis]);
+      mesh.vertex_chart[triangles[t][k]] = 0;
+    }
+    if (!(std::abs(area_of(corners)) > 0)) return std::nullopt;
+    area += here, flat_area += std::abs(area_of(corners));
+    chart.triangles.push_back(t);
+    mesh.chart_of[t] = 0;
+  }
+  for (auto& corners : flat)
+    if (area_of(corners) < 0) std::swap(corners[1], corners[2]);  // mirrored halves are common
+  if (chart.triangles.empty() || overlaps_itself(flat, cells)) return std::nullopt;
+  const double scale = std::sqrt(area / flat_area);
+  chart.wide = scale * (high[0] - low[0]), chart.high = scale * (high[1] - low[1]);
+  mesh.flat.resize(positions.size());
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (mesh.vertex_chart[v] == 0) mesh.flat[v] = {scale * (points[v][0] - low[0]), scale * (-points[v][1] - low[1])};
+  return mesh;
+}
 
 bool ChartedMesh::keeps_vertices(std::size_t count) const { return source.size() == count; }
 

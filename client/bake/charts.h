@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,11 +14,15 @@ namespace alvor {
 
 using MeshTriangle = std::array<std::uint32_t, 3>;
 
-/// A piece of a mesh and the plane onto which it is projected.
+/// A place on the plane of a chart, from the lower left corner of the box about the chart, in units of the mesh.
+using FlatPoint = std::array<double, 2>;
+
+/// A piece of a mesh that is laid flat.
 struct Chart {
-  Vec3 u, v;                             ///< unit, orthogonal; u x v points to the front
-  double low_u = 0, low_v = 0;           ///< lower corner of the box about the projected piece, in units of the mesh
-  double wide = 0, high = 0;             ///< sides of that box
+  /// The axes of the plane onto which it is projected: unit, orthogonal, u x v points to the front. Zero: it was laid flat by given
+  /// coordinates.
+  Vec3 u, v;
+  double wide = 0, high = 0;             ///< sides of the box about it, in units of the mesh
   std::vector<std::uint32_t> triangles;  ///< of the mesh
 };
 
@@ -30,6 +35,7 @@ struct ChartedMesh {
   std::vector<std::uint32_t> source;      ///< by vertex: the vertex of the mesh that it copies
   std::vector<MeshTriangle> triangles;    ///< in the order of the mesh's, of the vertices above
   std::vector<std::uint32_t> vertex_chart;  ///< by vertex; no_chart as above
+  std::vector<FlatPoint> flat;              ///< by vertex
 
   /// Returns whether vertices are those of the mesh, so that what it says of them may be shared.
   bool keeps_vertices(std::size_t count) const;
@@ -40,9 +46,10 @@ struct ChartedMesh {
 /// overlaps itself, as that of a spiral ramp does, its triangles become charts of flat faces. Requires: indices are in range.
 ChartedMesh cut_into_charts(std::span<const Vec3> positions, std::span<const MeshTriangle> triangles);
 
-/// Returns a point projected onto a chart's plane, relative to the lower corner of its box.
-inline std::array<double, 2> on_chart(const Chart& chart, const Vec3& at) {
-  return {dot(chart.u, at) - chart.low_u, dot(chart.v, at) - chart.low_v};
-}
+/// Makes one chart of a mesh by texture coordinates that it has: those of its vertices, (0, 0) the upper left corner, as large as
+/// the mesh's area. Nothing if they overlap, or a triangle has no area there, or they are not finite. Requires: indices are in
+/// range; one point for each position.
+std::optional<ChartedMesh> chart_of_points(std::span<const Vec3> positions, std::span<const MeshTriangle> triangles,
+                                           std::span<const std::array<float, 2>> points);
 
 }  // namespace alvor

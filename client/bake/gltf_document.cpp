@@ -244,18 +244,27 @@ DenseElements GltfDocument::read(std::size_t accessor) const {
   return elements;
 }
 
-std::vector<std::array<float, 3>> GltfDocument::read_positions(std::size_t accessor) const {
+template <std::size_t size>
+std::vector<std::array<float, size>> GltfDocument::read_vectors(std::size_t accessor, const char* type) const {
   const DenseElements elements = read(accessor);
   const json& of = element("accessors", accessor);
   const std::string place = place_of("accessor", accessor);
-  if (of.value("type", "") != "VEC3") throw BakeError(place, "holds no positions");
-  const std::size_t type = index_in(of, "componentType", place), size = component_size(type, place);
+  if (of.value("type", "") != type) throw BakeError(place, std::string("is no ") + type);
+  const std::size_t kind = index_in(of, "componentType", place), bytes = component_size(kind, place);
   const bool normalised = of.value("normalized", false);
-  std::vector<std::array<float, 3>> positions(elements.count);
+  std::vector<std::array<float, size>> vectors(elements.count);
   for (std::size_t n = 0; n < elements.count; ++n)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      positions[n][axis] = component(elements.at(n).substr(axis * size, size), type, normalised);
-  return positions;
+    for (std::size_t axis = 0; axis < size; ++axis)
+      vectors[n][axis] = component(elements.at(n).substr(axis * bytes, bytes), kind, normalised);
+  return vectors;
+}
+
+std::vector<std::array<float, 3>> GltfDocument::read_positions(std::size_t accessor) const {
+  return read_vectors<3>(accessor, "VEC3");
+}
+
+std::vector<std::array<float, 2>> GltfDocument::read_points(std::size_t accessor) const {
+  return read_vectors<2>(accessor, "VEC2");
 }
 
 std::vector<std::uint32_t> GltfDocument::read_indices(std::size_t accessor) const {

@@ -53,6 +53,8 @@ class GltfDocument {
   DenseElements read(std::size_t accessor) const;
   /// Returns the elements of a FLOAT or normalised VEC3 accessor. Throws BakeError.
   std::vector<std::array<float, 3>> read_positions(std::size_t accessor) const;
+  /// Returns the elements of a FLOAT or normalised VEC2 accessor. Throws BakeError.
+  std::vector<std::array<float, 2>> read_points(std::size_t accessor) const;
   /// Returns the elements of an unsigned SCALAR accessor. Throws BakeError.
   std::vector<std::uint32_t> read_indices(std::size_t accessor) const;
 
@@ -65,6 +67,8 @@ class GltfDocument {
   std::string encode() const;
 
  private:
+  template <std::size_t size>
+  std::vector<std::array<float, size>> read_vectors(std::size_t accessor, const char* type) const;
   void take_in_buffers(const FileFinder& find, std::optional<std::string_view> chunk);
   void take_in_images(const FileFinder& find);
   std::size_t add_view(std::string_view bytes, std::optional<int> target);

@@ -92,6 +92,15 @@ PrimitiveCharts charts_of(const GltfDocument& document, const json& primitive, s
   if (std::ranges::any_of(indices, [&](std::uint32_t i) { return i >= of.positions.size(); }))
     throw BakeError(place, "a vertex index is out of range");
   of.triangles = triangles_of(index_in(primitive, "mode", place, triangle_list), indices);
+  if (attributes->contains("TEXCOORD_1")) {
+    const auto points = document.read_points(index_in(*attributes, "TEXCOORD_1", place));
+    if (points.size() == of.positions.size()) {
+      if (auto given = chart_of_points(of.positions, of.triangles, points)) {
+        of.charts = *std::move(given);
+        return of;
+      }
+    }
+  }
   of.charts = cut_into_charts(of.positions, of.triangles);
   return of;
 }

@@ -17,7 +17,7 @@ struct PrimitiveCharts {
   std::size_t primitive = 0;  ///< in its mesh
   std::vector<Vec3> positions;
   std::vector<MeshTriangle> triangles;  ///< strips and fans taken apart
-  ChartedMesh charts;
+  ChartedMesh charts;  ///< by the texture coordinates TEXCOORD_1, if it has them and they do not overlap
 };
 
 /// A node that shows a mesh.

@@ -8,7 +8,7 @@ namespace alvor {
 
 namespace {
 
-using Point = std::array<double, 2>;
+using Point = FlatPoint;
 
 /// A place on a triangle: (1-u-v) a + u b + v c.
 struct OnTriangle {
@@ -46,12 +46,24 @@ OnTriangle nearest_on(const std::array<Point, 3>& corners, const Point& p) {
   return found;
 }
 
+/// Returns the corners of a triangle in the scene.
+std::array<Vec3, 3> placed_corners(const PlacedChart& chart, std::uint32_t t) {
+  std::array<Vec3, 3> corners;
+  for (std::size_t c = 0; c < 3; ++c)
+    corners[c] = chart.placement.point(chart.positions[chart.mesh->source[chart.mesh->triangles[t][c]]]);
+  return corners;
+}
+
+/// Returns the point (1-u-v) a + u b + v c of a triangle in the scene.
+Vec3 placed_point(const PlacedChart& chart, std::uint32_t t, double u, double v) {
+  const auto [a, b, c] = placed_corners(chart, t);
+  return (1 - u - v) * a + u * b + v * c;
+}
+
 /// Returns the normal of a triangle's front after it was placed; a placement that mirrors keeps the front the front.
 Vec3 placed_normal(const PlacedChart& chart, std::uint32_t t) {
-  const auto& [a, b, c] = chart.triangles[t];
-  const Vec3 from = chart.placement.point(chart.positions[a]);
-  const Vec3 normal =
-      cross(chart.placement.point(chart.positions[b]) - from, chart.placement.point(chart.positions[c]) - from);
+  const auto [a, b, c] = placed_corners(chart, t);
+  const Vec3 normal = cross(b - a, c - a);
   const double size = length(normal);
   if (!(size > 0)) return {};
   return (chart.placement.mirrors() ? -1 / size : 1 / size) * normal;
@@ -86,7 +98,7 @@ class Filler {
   std::array<Point, 3> flat(std::uint32_t t) const {
     std::array<Point, 3> corners;
     for (std::size_t c = 0; c < 3; ++c)
-      corners[c] = texel_of(chart_, place_, padding_, chart_.positions[chart_.triangles[t][c]]);
+      corners[c] = texel_of(chart_, place_, padding_, chart_.mesh->triangles[t][c]);
     return corners;
   }
 
@@ -121,7 +133,7 @@ class Filler {
     Rgb sum;
     double count = 0;
     const auto add = [&](double u, double v) {
-      if (const auto sample = surface_.at(chart_.object, point(on.triangle, u, v), normal_of(on.triangle)))
+      if (const auto sample = surface_.at(chart_.object, placed_point(chart_, on.triangle, u, v), normal_of(on.triangle)))
         sum += value_(*sample), count += 1;
     };
     if (is_surrounded) {
@@ -133,12 +145,23 @@ class Filler {
           add(u, v);
         }
     } else {
-      add(on.u, on.v);
+      const double inwards = share_inwards(on.triangle);
+      add(std::lerp(on.u, 1.0 / 3, inwards), std::lerp(on.v, 1.0 / 3, inwards));
     }
     if (count == 0) return;
     const std::size_t index = page_.index(place_.x + x, place_.y + y);
     page_.texels[index] = narrow(sum * (1 / count));
     page_.is_set[index] = true;
+  }
+
+  /// Returns the share of the way to a triangle's middle by which points on its edge are moved, about a fiftieth of a texel: on
+  /// the edge itself rounding would decide whether the next face is looked at.
+  double share_inwards(std::uint32_t t) const {
+    constexpr double texels = 0.02, most = 0.1;
+    const auto [a, b, c] = flat(t);
+    double size = 0;
+    for (std::size_t k = 0; k < 2; ++k) size = std::max(size, std::max({a[k], b[k], c[k]}) - std::min({a[k], b[k], c[k]}));
+    return std::min(most, texels / size);
   }
 
   static Point affine(const std::array<Point, 3>& corners, const Point& p) {
@@ -148,10 +171,6 @@ class Filler {
             ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / twice};
   }
 
-  Vec3 point(std::uint32_t t, double u, double v) const {
-    const auto& [a, b, c] = chart_.triangles[t];
-    return chart_.placement.point((1 - u - v) * chart_.positions[a] + u * chart_.positions[b] + v * chart_.positions[c]);
-  }
   Vec3 normal_of(std::uint32_t t) const { return side_ * placed_normal(chart_, t); }
 
   LightPage& page_;
@@ -166,13 +185,24 @@ class Filler {
 
 }  // namespace
 
-ChartSize size_of(const PlacedChart& chart) {
-  return {chart.chart->wide * length(chart.placement.direction(chart.chart->u)),
-          chart.chart->high * length(chart.placement.direction(chart.chart->v))};
+ChartSize size_of(const PlacedChart& placed) {
+  const Chart& chart = *placed.chart;
+  if (!(chart.u == Vec3{}))
+    return {chart.wide * length(placed.placement.direction(chart.u)), chart.high * length(placed.placement.direction(chart.v))};
+  PlacedChart unplaced = placed;
+  unplaced.placement = {};
+  double area = 0, own = 0;
+  for (const std::uint32_t t : chart.triangles) {
+    const auto [a, b, c] = placed_corners(placed, t);
+    const auto [x, y, z] = placed_corners(unplaced, t);
+    area += length(cross(b - a, c - a)), own += length(cross(y - x, z - x));
+  }
+  const double scale = std::sqrt(area / own);
+  return {scale * chart.wide, scale * chart.high};
 }
 
-std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place, int padding, const Vec3& at) {
-  const auto [u, v] = on_chart(*chart.chart, at);
+std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place, int padding, std::uint32_t vertex) {
+  const auto [u, v] = chart.mesh->flat[vertex];
   const auto share = [](double value, double side) { return side > 0 ? std::clamp(value / side, 0.0, 1.0) : 0.5; };
   const auto along = [&](double part, int begin, int texels) { return begin + padding + 0.5 + part * (texels - 2 * padding - 1); };
   // Rows run downwards: v is turned, so that charts are not mirrored.
@@ -187,11 +217,10 @@ ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface) 
   const auto& triangles = chart.chart->triangles;
   const std::size_t step = std::max<std::size_t>(1, triangles.size() / most);
   for (std::size_t n = 0; n < triangles.size(); n += step) {
-    const auto& [a, b, c] = chart.triangles[triangles[n]];
     const Vec3 normal = placed_normal(chart, triangles[n]);
     // Off the middle: the middle of a rectangle is on the diagonal that cuts it.
     for (const auto& [u, v] : {std::pair(0.2, 0.2), std::pair(0.6, 0.2), std::pair(0.2, 0.6)}) {
-      const Vec3 at = chart.placement.point((1 - u - v) * chart.positions[a] + u * chart.positions[b] + v * chart.positions[c]);
+      const Vec3 at = placed_point(chart, triangles[n], u, v);
       if (const auto sample = surface.at(chart.object, at, normal)) front += sample->irradiance.mean();
       if (const auto sample = surface.at(chart.object, at, -1.0 * normal)) back += sample->irradiance.mean();
     }

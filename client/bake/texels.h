@@ -29,7 +29,7 @@ struct LightPage {
 /// A chart of a mesh that a node places in the scene.
 struct PlacedChart {
   std::span<const Vec3> positions;  ///< of the mesh
-  std::span<const MeshTriangle> triangles;
+  const ChartedMesh* mesh = nullptr;
   const Chart* chart = nullptr;
   Placement placement;
   std::size_t object = 0;
@@ -38,8 +38,8 @@ struct PlacedChart {
 
 /// Returns a chart's size on the surface.
 ChartSize size_of(const PlacedChart& chart);
-/// Returns the place of a point of the mesh on a chart's page, in texels from the page's upper left corner.
-std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place, int padding, const Vec3& at);
+/// Returns the place of a vertex of the charted mesh on its chart's page, in texels from the page's upper left corner.
+std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place, int padding, std::uint32_t vertex);
 
 /// What is written to the texels.
 using TexelValue = std::function<Rgb(const SolvedSurface::Sample&)>;

@@ -66,11 +66,11 @@ double area_of(const std::array<std::array<double, 2>, 3>& t) {
 }
 
 /// Returns how many triangles of a chart cover a point of its plane.
-int cover(const Mesh& mesh, const Chart& chart, const std::array<double, 2>& p) {
+int cover(const ChartedMesh& mesh, const Chart& chart, const std::array<double, 2>& p) {
   int count = 0;
   for (const std::uint32_t t : chart.triangles) {
     std::array<std::array<double, 2>, 3> flat;
-    for (std::size_t c = 0; c < 3; ++c) flat[c] = on_chart(chart, mesh.positions[mesh.triangles[t][c]]);
+    for (std::size_t c = 0; c < 3; ++c) flat[c] = mesh.flat[mesh.triangles[t][c]];
     const double whole = area_of(flat);
     bool is_inside = true;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -93,7 +93,7 @@ void expect_charts_are_sound(const Mesh& mesh) {
       ++seen[t];
       std::array<std::array<double, 2>, 3> flat;
       for (std::size_t k = 0; k < 3; ++k) {
-        flat[k] = on_chart(chart, mesh.positions[mesh.triangles[t][k]]);
+        flat[k] = charted.flat[charted.triangles[t][k]];
         EXPECT_GE(flat[k][0], -1e-9);
         EXPECT_LE(flat[k][0], chart.wide + 1e-9);
         EXPECT_GE(flat[k][1], -1e-9);
@@ -106,7 +106,7 @@ void expect_charts_are_sound(const Mesh& mesh) {
       EXPECT_GT(area_of(flat), 0.7 * area) << "triangle " << t;
     }
     for (int n = 0; n < 400; ++n)
-      EXPECT_LE(cover(mesh, chart, {chart.wide * (n % 20 + 0.517) / 20, chart.high * (n / 20 + 0.483) / 20}), 1) << "chart " << c;
+      EXPECT_LE(cover(charted, chart, {chart.wide * (n % 20 + 0.517) / 20, chart.high * (n / 20 + 0.483) / 20}), 1) << "chart " << c;
   }
   EXPECT_TRUE(std::ranges::all_of(seen, [](int times) { return times == 1; }));
 }
@@ -133,6 +133,29 @@ TEST(Charts, LeaveOutTrianglesWithoutArea) {
   EXPECT_EQ(charted.chart_of[1], ChartedMesh::no_chart);
   EXPECT_EQ(charted.chart_of[2], ChartedMesh::no_chart);
   EXPECT_TRUE(cut_into_charts({}, {}).charts.empty());
+}
+
+TEST(Charts, AreThoseOfGivenCoordinatesUnlessTheyOverlap) {
+  const std::vector<Vec3> positions{{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}};
+  const std::vector<MeshTriangle> triangles{{0, 1, 2}, {0, 2, 3}};
+  const std::vector<std::array<float, 2>> points{{0.1F, 0.9F}, {0.5F, 0.9F}, {0.5F, 0.7F}, {0.1F, 0.7F}};
+  const auto charted = chart_of_points(positions, triangles, points);
+  ASSERT_TRUE(charted);
+  ASSERT_EQ(charted->charts.size(), 1u);
+  EXPECT_NEAR(charted->charts[0].wide, 4, 1e-5);
+  EXPECT_NEAR(charted->charts[0].high, 2, 1e-5);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    EXPECT_NEAR(charted->flat[v][0], positions[v].x, 1e-5);
+    EXPECT_NEAR(charted->flat[v][1], positions[v].y, 1e-5);
+  }
+  auto folded = points;
+  folded[3] = {0.5F, 0.85F};  // the second triangle lies over the first
+  EXPECT_FALSE(chart_of_points(positions, triangles, folded));
+  auto one_place = points;
+  one_place[3] = one_place[2];
+  EXPECT_FALSE(chart_of_points(positions, triangles, one_place));
+  folded[0][0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(chart_of_points(positions, triangles, folded));
 }
 
 std::vector<ChartSize> many_sizes() {
