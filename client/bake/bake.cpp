@@ -177,9 +177,18 @@ class Baker {
       for (const RgbF& texel : images_[p].texels)
         for (const float band : {texel.r, texel.g, texel.b}) image.rgb.push_back(srgb_byte(scale * band));
       const std::size_t source = document_.add_png(encode_png(image, "texture"), "light" + number);
-      if (!sampler_) sampler_ = document_.append("samplers", {{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33071}});
+      if (!sampler_) sampler_ = document_.append("samplers", sampler());
       textures_.push_back(document_.append("textures", {{"source", source}, {"sampler", *sampler_}, {"name", "light" + number}}));
     }
+  }
+
+  /// Light is smooth and needs no mip levels, the smallest of which would mix charts; colours of images do.
+  json sampler() const {
+    constexpr int linear = 9729, linear_mipmap_linear = 9987;
+    return {{"magFilter", linear},
+            {"minFilter", options_.form == BakeForm::lightmap ? linear : linear_mipmap_linear},
+            {"wrapS", glb::clamp_to_edge},
+            {"wrapT", glb::clamp_to_edge}};
   }
 
   /// Gives each node a mesh of its own. A primitive whose charts lie on several pages becomes several.
@@ -220,8 +229,10 @@ class Baker {
         primitive["indices"] = indices_of(by_page[page]);
         primitive["mode"] = 4;
       }
-      if (const auto material = material_with_light(original, page, set)) primitive["material"] = *material;
-      if (options_.form == BakeForm::unlit) primitive["attributes"].erase("COLOR_0");
+      if (const auto material = material_with_light(original, page, set)) {
+        primitive["material"] = *material;
+        if (options_.form == BakeForm::unlit) primitive["attributes"].erase("COLOR_0");  // the image has it
+      }
       primitives.push_back(std::move(primitive));
     }
   }
@@ -291,7 +302,7 @@ class Baker {
     return set;
   }
 
-  /// Returns whether the material of a primitive has a texture that lies by a set of coordinates.
+  /// Returns whether the material of a primitive has a texture, other than one of light, that lies by a set of coordinates.
   bool uses_set(const json& primitive, std::size_t set) const {
     if (options_.form == BakeForm::unlit || !primitive.contains("material")) return false;
     const json& material = document_.element("materials", primitive["material"].get<std::size_t>());
@@ -300,8 +311,8 @@ class Baker {
       const json& next = *stack.back();
       stack.pop_back();
       if (next.is_object() && next.contains("texCoord") && next["texCoord"] == set) return true;
-      if (next.is_structured())
-        for (const json& member : next) stack.push_back(&member);
+      for (const auto& [key, member] : next.items())
+        if (member.is_structured() && key != "MOZ_lightmap") stack.push_back(&member);  // light of an earlier bake goes
     }
     return false;
   }
@@ -311,6 +322,8 @@ class Baker {
     if (textures_.empty()) return std::nullopt;
     const std::optional<std::size_t> original =
         primitive.contains("material") ? std::optional(primitive["material"].get<std::size_t>()) : std::nullopt;
+    if (original && options_.form == BakeForm::unlit && shows_what_is_behind(document_.element("materials", *original)))
+      return std::nullopt;
     const auto [known, is_new] = materials_.try_emplace({original.value_or(~std::size_t{0}), page, set}, 0);
     if (!is_new) return known->second;
     json material = original ? document_.element("materials", *original) : json::object();
@@ -328,11 +341,23 @@ class Baker {
     return known->second;
   }
 
+  /// Returns whether one sees through a material where its image or glass says so, which an image of colours cannot show.
+  static bool shows_what_is_behind(const json& material) {
+    const bool has_image = material.contains("pbrMetallicRoughness") && material["pbrMetallicRoughness"].contains("baseColorTexture");
+    const bool has_alpha = material.value("alphaMode", "OPAQUE") != "OPAQUE";
+    const bool is_glass = material.contains("extensions") && material["extensions"].contains("KHR_materials_transmission");
+    return (has_alpha && has_image) || is_glass;
+  }
+
   static json unlit(const json& material, const json& texture) {
     json made{{"pbrMetallicRoughness", {{"baseColorTexture", texture}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
               {"extensions", {{"KHR_materials_unlit", json::object()}}}};
-    for (const char* kept : {"name", "extras", "doubleSided"})
+    for (const char* kept : {"name", "extras", "doubleSided", "alphaMode", "alphaCutoff"})
       if (material.contains(kept)) made[kept] = material[kept];
+    if (made.contains("alphaMode") && material.contains("pbrMetallicRoughness")) {
+      const json factor = material["pbrMetallicRoughness"].value("baseColorFactor", json::array({1, 1, 1, 1}));
+      made["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, factor.at(3)};
+    }
     return made;
   }
 

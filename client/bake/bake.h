@@ -14,7 +14,8 @@
 namespace alvor {
 
 /// What is baked. Lightmap: irradiance in textures of their own, which materials multiply by their colour. Unlit: the colours that
-/// a picture of the solution shows, in place of all materials' colours, for viewers that know no lightmaps.
+/// a picture of the solution shows, in place of the materials' colours, for viewers that know no lightmaps; glass, and what an image
+/// cuts holes into, keep their materials.
 enum class BakeForm { lightmap, unlit };
 
 /// What the texels of lightmaps hold. Irradiance: E in W/m2 or lx (three.js). Irradiance over pi: the radiance of a white
@@ -29,7 +30,7 @@ struct BakeOptions {
   LightmapUnit unit = LightmapUnit::irradiance;
   LightmapFormat format = LightmapFormat::png;
   int size = 1024;                         ///< columns and rows of each texture
-  int padding = 2;                         ///< texels around each chart
+  int padding = 4;                         ///< texels around each chart
   std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
   std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
   std::string name = "baked";              ///< of the files beside the GLB: name-0.exr, name-1.exr

@@ -17,21 +17,27 @@ namespace alvor {
 
 namespace {
 
+// Rectangles begin at multiples of so many texels, so that texels of two smaller mip levels belong to one chart.
+constexpr int cell = 4;
+
 /// Returns the texels of a side: the chart is stretched to a whole number of steps between texels, and has one at each end.
 double texels_of(double metres, double texels_per_metre) { return std::max(1.0, std::round(metres * texels_per_metre)) + 1; }
 
 /// Packs as many of the rectangles as fit one page; returns the others.
 std::vector<stbrp_rect> pack_page(std::vector<stbrp_rect> rectangles, int page, ChartPages& pages) {
   stbrp_context context;
-  std::vector<stbrp_node> nodes(static_cast<std::size_t>(pages.size));
-  stbrp_init_target(&context, pages.size, pages.size, nodes.data(), pages.size);
+  const int cells = pages.size / cell;
+  std::vector<stbrp_node> nodes(static_cast<std::size_t>(cells));
+  stbrp_init_target(&context, cells, cells, nodes.data(), cells);
   stbrp_pack_rects(&context, rectangles.data(), static_cast<int>(rectangles.size()));
   std::vector<stbrp_rect> left;
   for (const stbrp_rect& rectangle : rectangles) {
-    if (rectangle.was_packed)
-      pages.places[static_cast<std::size_t>(rectangle.id)] = {page, int(rectangle.x), int(rectangle.y), int(rectangle.w),
-                                                             int(rectangle.h)};
-    else left.push_back(rectangle);
+    if (!rectangle.was_packed) {
+      left.push_back(rectangle);
+      continue;
+    }
+    ChartPlace& place = pages.places[static_cast<std::size_t>(rectangle.id)];
+    place.page = page, place.x = cell * int(rectangle.x), place.y = cell * int(rectangle.y);
   }
   return left;
 }
@@ -45,9 +51,12 @@ std::optional<ChartPages> placed(std::span<const ChartSize> charts, const ChartP
     const double wide = texels_of(charts[c].wide, texels_per_metre) + 2 * options.padding,
                  high = texels_of(charts[c].high, texels_per_metre) + 2 * options.padding;
     texels += wide * high;
-    if (wide > options.size || high > options.size || texels > double(options.size) * options.size * most_pages) return std::nullopt;
+    const double largest = options.size / cell * cell;
+    if (wide > largest || high > largest || texels > double(options.size) * options.size * most_pages) return std::nullopt;
     stbrp_rect rectangle{};
-    rectangle.id = static_cast<int>(c), rectangle.w = static_cast<stbrp_coord>(wide), rectangle.h = static_cast<stbrp_coord>(high);
+    ChartPlace& place = pages.places[c];
+    place.wide = static_cast<int>(wide), place.high = static_cast<int>(high);
+    rectangle.id = static_cast<int>(c), rectangle.w = (place.wide + cell - 1) / cell, rectangle.h = (place.high + cell - 1) / cell;
     left.push_back(rectangle);
   }
   while (!left.empty()) {

@@ -30,7 +30,7 @@ struct ChartPages {
 
 struct ChartPageOptions {
   int size = 1024;
-  int padding = 2;
+  int padding = 4;  ///< four is enough for two smaller mip levels
   std::optional<double> texels_per_metre;  ///< as many as fit one page if not given
   int most_pages = 64;
 };

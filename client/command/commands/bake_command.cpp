@@ -191,7 +191,7 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
       .add_option("--texels-per-metre", options.bake.texels_per_metre,
                   "Texels per metre, on as many textures as it takes, up to 64 (as many as fit one texture)")
       ->check(above_up_to(0, 1e6));
-  command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (2)")->check(CLI::Range(0, 64));
+  command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (4)")->check(CLI::Range(0, 64));
   command
       .add_option("--range", options.bake.range,
                   "Brightest value of a lightmap in PNG, W/m2 or lx (so that 0.2 % of the texels are brighter)")
