@@ -1,8 +1,10 @@
 #include "client/bake/bake.h"
 
 #include "client/bake/exr_writer.h"
+#include "client/bake/materials.h"
 #include "client/bake/placed_meshes.h"
 #include "client/bake/texels.h"
+#include "client/bake/vertex_bake.h"
 #include "client/picture/png_file.h"
 #include "client/picture/tone_map.h"
 #include "client/picture/units.h"
@@ -41,18 +43,6 @@ struct NodePrimitive {
   std::size_t first_chart;
 };
 
-bool is_two_sided(const json& primitive, const GltfDocument& document) {
-  const auto material = primitive.find("material");
-  if (material == primitive.end() || !is_index(*material)) return false;
-  return document.element("materials", material->get<std::size_t>()).value("doubleSided", false);
-}
-
-/// Returns the map from a document's coordinates to those of the scene that it was made from or read as.
-Placement to_scene(const Scene& scene) {
-  if (scene.up == UpAxis::y) return {};
-  return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};
-}
-
 class Baker {
  public:
   Baker(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options)
@@ -64,13 +54,14 @@ class Baker {
         meshes_(placed_meshes(document_)) {}
 
   Baked bake() {
-    check_objects();
+    check_objects(meshes_, scene_);
     collect_charts();
     place();
     choose_sides();
     fill_pages();
     write_pages();
     write_meshes();
+    if (options_.form == BakeForm::lightmap && !options_.keeps_lights) drop_lights();
     describe();
     baked_.glb = document_.encode();
     baked_.nodes = meshes_.nodes.size();
@@ -79,14 +70,6 @@ class Baker {
   }
 
  private:
-  /// Checks that nodes are the scene's objects. The faces of no object come last.
-  void check_objects() const {
-    const std::size_t objects = scene_.objects.size(), visited = meshes_.visited;
-    if (visited != objects && visited != objects + 1)
-      throw BakeError("file", "its scene shows " + std::to_string(visited) + " nodes, but the solved scene has " +
-                                  std::to_string(objects) + " objects");
-  }
-
   void collect_charts() {
     for (const MeshNode& node : meshes_.nodes)
       for (const PrimitiveCharts& primitive : meshes_.primitives.at(node.mesh)) {
@@ -191,26 +174,15 @@ class Baker {
             {"wrapT", glb::clamp_to_edge}};
   }
 
-  /// Gives each node a mesh of its own. A primitive whose charts lie on several pages becomes several.
   void write_meshes() {
     std::size_t next = 0;
-    for (const MeshNode& node : meshes_.nodes) {
-      json mesh = document_.element("meshes", node.mesh);
-      json primitives = json::array();
-      for (std::size_t p = 0; p < mesh.at("primitives").size(); ++p) {
-        const bool is_baked = next < primitives_.size() && primitives_[next].node == &node && primitives_[next].primitive->primitive == p;
-        if (is_baked) write_primitive(primitives_[next++], primitives);
-        else primitives.push_back(mesh["primitives"][p]);
-      }
-      mesh["primitives"] = std::move(primitives);
-      const std::size_t number = document_.append("meshes", std::move(mesh));
-      document_.root()["nodes"][node.node]["mesh"] = number;
-    }
-    drop_unused_meshes();
+    rewrite_meshes(document_, meshes_, [&](const MeshNode&, const PrimitiveCharts&, const json& primitive) {
+      return written(primitives_[next++], primitive);
+    });
   }
 
-  void write_primitive(const NodePrimitive& of, json& primitives) {
-    const json original = primitive_of(of.node->mesh, of.primitive->primitive);
+  /// Returns a primitive with its texture coordinates, once for each page that its charts lie on.
+  std::vector<json> written(const NodePrimitive& of, const json& original) {
     const ChartedMesh& charts = of.primitive->charts;
     std::vector<std::vector<MeshTriangle>> by_page(images_.size());
     for (std::size_t t = 0; t < charts.triangles.size(); ++t) {
@@ -218,23 +190,25 @@ class Baker {
       const int page = chart == ChartedMesh::no_chart ? 0 : pages_.places[of.first_chart + chart].page;
       by_page[static_cast<std::size_t>(page)].push_back(charts.triangles[t]);
     }
+    const json material = material_of(original, document_);
     json with_points = with_vertices(original, of);
-    const std::size_t set = add_points(with_points, of);
+    const std::size_t set = add_points(with_points, material, of);
+    std::vector<json> primitives;
     for (std::size_t page = 0; page < by_page.size(); ++page) {
       if (by_page[page].empty()) continue;
       json primitive = with_points;
       const bool stays = charts.keeps_vertices(of.primitive->positions.size()) &&
                          by_page[page].size() == of.primitive->triangles.size();
-      if (!stays) {
-        primitive["indices"] = indices_of(by_page[page]);
-        primitive["mode"] = 4;
-      }
-      if (const auto material = material_with_light(original, page, set)) {
-        primitive["material"] = *material;
+      if (!stays) primitive["indices"] = indices_of(by_page[page]), primitive["mode"] = 4;
+      const bool keeps_material =
+          textures_.empty() || (options_.form == BakeForm::unlit && shows_what_is_behind(material));
+      if (!keeps_material) {
+        primitive["material"] = material_with_light(original, page, set);
         if (options_.form == BakeForm::unlit) primitive["attributes"].erase("COLOR_0");  // the image has it
       }
       primitives.push_back(std::move(primitive));
     }
+    return primitives;
   }
 
   std::size_t indices_of(std::span<const MeshTriangle> triangles) {
@@ -281,7 +255,7 @@ class Baker {
   }
 
   /// Adds the texture coordinates of the charts; returns their set. Set 1 if materials do not use it, as engines expect.
-  std::size_t add_points(json& primitive, const NodePrimitive& of) {
+  std::size_t add_points(json& primitive, const json& material, const NodePrimitive& of) {
     const ChartedMesh& charts = of.primitive->charts;
     std::string bytes;
     for (std::size_t vertex = 0; vertex < charts.source.size(); ++vertex) {
@@ -295,93 +269,47 @@ class Baker {
                                                         charts.source.size(), glb::array_buffer);
     json& attributes = primitive["attributes"];
     std::size_t set = 1;
-    while (uses_set(primitive, set)) ++set;
+    while (options_.form == BakeForm::lightmap && uses_set(material, set)) ++set;
     for (std::size_t below = 0; below < set; ++below)  // sets have no gaps
       if (const std::string name = "TEXCOORD_" + std::to_string(below); !attributes.contains(name)) attributes[name] = accessor;
     attributes["TEXCOORD_" + std::to_string(set)] = accessor;
     return set;
   }
 
-  /// Returns whether the material of a primitive has a texture, other than one of light, that lies by a set of coordinates.
-  bool uses_set(const json& primitive, std::size_t set) const {
-    if (options_.form == BakeForm::unlit || !primitive.contains("material")) return false;
-    const json& material = document_.element("materials", primitive["material"].get<std::size_t>());
-    std::vector<const json*> stack{&material};
-    while (!stack.empty()) {
-      const json& next = *stack.back();
-      stack.pop_back();
-      if (next.is_object() && next.contains("texCoord") && next["texCoord"] == set) return true;
-      for (const auto& [key, member] : next.items())
-        if (member.is_structured() && key != "MOZ_lightmap") stack.push_back(&member);  // light of an earlier bake goes
-    }
-    return false;
-  }
-
-  /// Returns a copy of a primitive's material with the light of a page; nothing if it keeps its own.
-  std::optional<std::size_t> material_with_light(const json& primitive, std::size_t page, std::size_t set) {
-    if (textures_.empty()) return std::nullopt;
-    const std::optional<std::size_t> original =
-        primitive.contains("material") ? std::optional(primitive["material"].get<std::size_t>()) : std::nullopt;
-    if (original && options_.form == BakeForm::unlit && shows_what_is_behind(document_.element("materials", *original)))
-      return std::nullopt;
-    const auto [known, is_new] = materials_.try_emplace({original.value_or(~std::size_t{0}), page, set}, 0);
+  /// Returns a copy of a primitive's material with the light of a page.
+  std::size_t material_with_light(const json& primitive, std::size_t page, std::size_t set) {
+    constexpr std::size_t none = ~std::size_t{0};
+    const std::size_t original = index_in(primitive, "material", "primitive", none);
+    const auto [known, is_new] = materials_.try_emplace({original, page, set}, 0);
     if (!is_new) return known->second;
-    json material = original ? document_.element("materials", *original) : json::object();
-    const json texture{{"index", textures_[page]}, {"texCoord", set}};
-    if (options_.form == BakeForm::lightmap) {
-      json light = texture;
-      light["intensity"] = baked_.range;
-      material["extensions"]["MOZ_lightmap"] = std::move(light);
-      use_extension("MOZ_lightmap");
-    } else {
-      material = unlit(material, texture);
-      use_extension("KHR_materials_unlit");
-    }
-    known->second = document_.append("materials", std::move(material));
+    const json material = material_of(primitive, document_), texture{{"index", textures_[page]}, {"texCoord", set}};
+    const bool is_lightmap = options_.form == BakeForm::lightmap;
+    document_.use_extension(is_lightmap ? "MOZ_lightmap" : "KHR_materials_unlit");
+    known->second = document_.append(
+        "materials", is_lightmap ? with_lightmap(material, texture, baked_.range) : unlit(material, {{"baseColorTexture", texture}}));
     return known->second;
   }
 
-  /// Returns whether one sees through a material where its image or glass says so, which an image of colours cannot show.
-  static bool shows_what_is_behind(const json& material) {
-    const bool has_image = material.contains("pbrMetallicRoughness") && material["pbrMetallicRoughness"].contains("baseColorTexture");
-    const bool has_alpha = material.value("alphaMode", "OPAQUE") != "OPAQUE";
-    const bool is_glass = material.contains("extensions") && material["extensions"].contains("KHR_materials_transmission");
-    return (has_alpha && has_image) || is_glass;
-  }
-
-  static json unlit(const json& material, const json& texture) {
-    json made{{"pbrMetallicRoughness", {{"baseColorTexture", texture}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-              {"extensions", {{"KHR_materials_unlit", json::object()}}}};
-    for (const char* kept : {"name", "extras", "doubleSided", "alphaMode", "alphaCutoff"})
-      if (material.contains(kept)) made[kept] = material[kept];
-    if (made.contains("alphaMode") && material.contains("pbrMetallicRoughness")) {
-      const json factor = material["pbrMetallicRoughness"].value("baseColorFactor", json::array({1, 1, 1, 1}));
-      made["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, factor.at(3)};
-    }
-    return made;
-  }
-
-  void use_extension(const char* name) {
-    json& used = document_.root()["extensionsUsed"];
-    if (std::ranges::find(used, name) == used.end()) used.push_back(name);
-  }
-
-  /// Removes the meshes that no node shows any longer.
-  void drop_unused_meshes() {
-    json& meshes = document_.root()["meshes"];
-    std::vector<std::size_t> number(meshes.size(), ~std::size_t{0});
-    json kept = json::array();
-    for (json& node : document_.root()["nodes"]) {
-      if (!node.contains("mesh")) continue;
-      const auto mesh = node["mesh"].get<std::size_t>();
-      if (mesh >= number.size()) throw BakeError("mesh " + std::to_string(mesh), "is not in the file");
-      if (number[mesh] == ~std::size_t{0}) {
-        number[mesh] = kept.size();
-        kept.push_back(meshes[mesh]);
+  /// Removes the lamps, whose light is in the lightmap: viewers would add it once more.
+  void drop_lights() {
+    json& root = document_.root();
+    for (const char* name : {"KHR_lights_punctual", "EXT_lights_ies"}) {
+      const auto drop = [&](json& element) {
+        if (!element.contains("extensions")) return;
+        element["extensions"].erase(name);
+        if (element["extensions"].empty()) element.erase("extensions");
+      };
+      drop(root);
+      for (json& node : root["nodes"]) drop(node);
+      for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+        if (!root.contains(list)) continue;
+        json kept = json::array();
+        for (const json& used : root[list])
+          if (used != name) kept.push_back(used);
+        if (kept.empty()) root.erase(list);
+        else root[list] = std::move(kept);
       }
-      node["mesh"] = number[mesh];
     }
-    meshes = std::move(kept);
   }
 
   /// Says in the file what the light is.
@@ -419,6 +347,7 @@ class Baker {
 
 Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options) {
   try {
+    if (options.form == BakeForm::vertex) return bake_vertices(std::move(document), scene, solution);
     return Baker(std::move(document), scene, solution, options).bake();
   } catch (const nlohmann::json::exception&) {
     throw BakeError("file", "is not as glTF says: a member has another type or is missing");

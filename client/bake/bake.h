@@ -16,7 +16,8 @@ namespace alvor {
 /// What is baked. Lightmap: irradiance in textures of their own, which materials multiply by their colour. Unlit: the colours that
 /// a picture of the solution shows, in place of the materials' colours, for viewers that know no lightmaps; glass, and what an image
 /// cuts holes into, keep their materials.
-enum class BakeForm { lightmap, unlit };
+/// Vertex: such colours at the vertices, see bake_vertices().
+enum class BakeForm { lightmap, unlit, vertex };
 
 /// What the texels of lightmaps hold. Irradiance: E in W/m2 or lx (three.js). Irradiance over pi: the radiance of a white
 /// diffuse surface (Unity, Godot, Blender).
@@ -33,6 +34,7 @@ struct BakeOptions {
   int padding = 4;                         ///< texels around each chart
   std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
   std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
+  bool keeps_lights = false;               ///< a file with lightmaps keeps its lamps, whose light viewers then add once more
   std::string name = "baked";              ///< of the files beside the GLB: name-0.exr, name-1.exr
   std::function<void(double)> on_progress = [](double) {};  ///< called with the share that is done, from any thread
 };

@@ -267,6 +267,13 @@ std::vector<std::array<float, 2>> GltfDocument::read_points(std::size_t accessor
   return read_vectors<2>(accessor, "VEC2");
 }
 
+std::vector<std::array<float, 4>> GltfDocument::read_colours(std::size_t accessor) const {
+  if (element("accessors", accessor).value("type", "") == "VEC4") return read_vectors<4>(accessor, "VEC4");
+  std::vector<std::array<float, 4>> colours;
+  for (const auto& [r, g, b] : read_vectors<3>(accessor, "VEC3")) colours.push_back({r, g, b, 1});
+  return colours;
+}
+
 std::vector<std::uint32_t> GltfDocument::read_indices(std::size_t accessor) const {
   const DenseElements elements = read(accessor);
   if (element("accessors", accessor).value("type", "") != "SCALAR") throw BakeError(place_of("accessor", accessor), "holds no indices");
@@ -303,6 +310,11 @@ std::size_t GltfDocument::add_accessor(json like, std::string_view bytes, std::s
 std::size_t GltfDocument::add_png(std::string_view bytes, const std::string& name) {
   const std::size_t of = add_view(bytes, std::nullopt);
   return append("images", {{"name", name}, {"mimeType", "image/png"}, {"bufferView", of}});
+}
+
+void GltfDocument::use_extension(const char* name) {
+  json& used = root_["extensionsUsed"];
+  if (std::ranges::find(used, name) == used.end()) used.push_back(name);
 }
 
 std::string GltfDocument::encode() const {

@@ -55,6 +55,8 @@ class GltfDocument {
   std::vector<std::array<float, 3>> read_positions(std::size_t accessor) const;
   /// Returns the elements of a FLOAT or normalised VEC2 accessor. Throws BakeError.
   std::vector<std::array<float, 2>> read_points(std::size_t accessor) const;
+  /// Returns the elements of a FLOAT or normalised VEC3 or VEC4 accessor; opacity 1 if it has none. Throws BakeError.
+  std::vector<std::array<float, 4>> read_colours(std::size_t accessor) const;
   /// Returns the elements of an unsigned SCALAR accessor. Throws BakeError.
   std::vector<std::uint32_t> read_indices(std::size_t accessor) const;
 
@@ -62,6 +64,9 @@ class GltfDocument {
   std::size_t add_accessor(nlohmann::json like, std::string_view bytes, std::size_t count, int target);
   /// Appends the bytes of a PNG file as an image; returns its index.
   std::size_t add_png(std::string_view bytes, const std::string& name);
+
+  /// Adds a name to "extensionsUsed", once.
+  void use_extension(const char* name);
 
   /// Returns the bytes of the GLB file. Throws BakeError if it would have 4 GB or more.
   std::string encode() const;

@@ -80,7 +80,19 @@ std::vector<MeshTriangle> triangles_of(std::size_t mode, std::span<const std::ui
   return triangles;
 }
 
-PrimitiveCharts charts_of(const GltfDocument& document, const json& primitive, std::size_t number, const std::string& place) {
+/// Returns a mesh that stays one piece.
+ChartedMesh whole(std::size_t vertices, std::span<const MeshTriangle> triangles) {
+  ChartedMesh mesh;
+  mesh.triangles.assign(triangles.begin(), triangles.end());
+  mesh.chart_of.assign(triangles.size(), 0);
+  mesh.vertex_chart.assign(vertices, 0);
+  mesh.source.resize(vertices);
+  std::iota(mesh.source.begin(), mesh.source.end(), 0u);
+  return mesh;
+}
+
+PrimitiveCharts charts_of(const GltfDocument& document, const json& primitive, std::size_t number, Cutting cutting,
+                          const std::string& place) {
   PrimitiveCharts of;
   of.primitive = number;
   const auto attributes = primitive.find("attributes");
@@ -92,6 +104,10 @@ PrimitiveCharts charts_of(const GltfDocument& document, const json& primitive, s
   if (std::ranges::any_of(indices, [&](std::uint32_t i) { return i >= of.positions.size(); }))
     throw BakeError(place, "a vertex index is out of range");
   of.triangles = triangles_of(index_in(primitive, "mode", place, triangle_list), indices);
+  if (cutting == Cutting::none) {
+    of.charts = whole(of.positions.size(), of.triangles);
+    return of;
+  }
   if (attributes->contains("TEXCOORD_1")) {
     const auto points = document.read_points(index_in(*attributes, "TEXCOORD_1", place));
     if (points.size() == of.positions.size()) {
@@ -105,7 +121,7 @@ PrimitiveCharts charts_of(const GltfDocument& document, const json& primitive, s
   return of;
 }
 
-std::vector<PrimitiveCharts> primitives_of(const GltfDocument& document, std::size_t mesh) {
+std::vector<PrimitiveCharts> primitives_of(const GltfDocument& document, std::size_t mesh, Cutting cutting) {
   std::vector<PrimitiveCharts> primitives;
   const json& of = document.element("meshes", mesh);
   const std::string place = place_of("mesh", mesh);
@@ -114,14 +130,14 @@ std::vector<PrimitiveCharts> primitives_of(const GltfDocument& document, std::si
     const std::string here = place + " primitive " + std::to_string(p);
     const json& primitive = of["primitives"][p];
     if (index_in(primitive, "mode", here, triangle_list) < triangle_list) continue;
-    primitives.push_back(charts_of(document, primitive, p, here));
+    primitives.push_back(charts_of(document, primitive, p, cutting, here));
   }
   return primitives;
 }
 
 }  // namespace
 
-PlacedMeshes placed_meshes(const GltfDocument& document) {
+PlacedMeshes placed_meshes(const GltfDocument& document, Cutting cutting) {
   struct Pending {
     std::size_t node;
     Placement parent;
@@ -143,12 +159,60 @@ PlacedMeshes placed_meshes(const GltfDocument& document) {
     if (node.contains("mesh")) {
       const std::size_t mesh = index_in(node, "mesh", place);
       meshes.nodes.push_back({next.node, mesh, placement, meshes.visited});
-      if (!meshes.primitives.contains(mesh)) meshes.primitives[mesh] = primitives_of(document, mesh);
+      if (!meshes.primitives.contains(mesh)) meshes.primitives[mesh] = primitives_of(document, mesh, cutting);
     }
     ++meshes.visited;
     push(indices_in(node, "children", place), placement);
   }
   return meshes;
+}
+
+Placement to_scene(const Scene& scene) {
+  if (scene.up == UpAxis::y) return {};
+  return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};
+}
+
+void check_objects(const PlacedMeshes& meshes, const Scene& scene) {
+  const std::size_t objects = scene.objects.size(), visited = meshes.visited;
+  if (visited == objects || visited == objects + 1) return;
+  throw BakeError("file", "its scene shows " + std::to_string(visited) + " nodes, but the solved scene has " +
+                              std::to_string(objects) + " objects");
+}
+
+void rewrite_meshes(GltfDocument& document, const PlacedMeshes& meshes, const Rewrite& rewrite) {
+  for (const MeshNode& node : meshes.nodes) {
+    json mesh = document.element("meshes", node.mesh);
+    const auto& triangles = meshes.primitives.at(node.mesh);
+    auto next = triangles.begin();
+    json primitives = json::array();
+    for (std::size_t p = 0; mesh.contains("primitives") && p < mesh["primitives"].size(); ++p) {
+      const json& primitive = mesh["primitives"][p];
+      if (next == triangles.end() || next->primitive != p) {
+        primitives.push_back(primitive);
+        continue;
+      }
+      for (json& made : rewrite(node, *next, primitive)) primitives.push_back(std::move(made));
+      ++next;
+    }
+    mesh["primitives"] = std::move(primitives);
+    const std::size_t number = document.append("meshes", std::move(mesh));
+    document.root()["nodes"][node.node]["mesh"] = number;
+  }
+  constexpr std::size_t none = ~std::size_t{0};
+  json& all = document.root()["meshes"];
+  std::vector<std::size_t> number(all.size(), none);
+  json kept = json::array();
+  for (json& node : document.root()["nodes"]) {
+    if (!node.contains("mesh")) continue;
+    const std::size_t mesh = index_in(node, "mesh", "node");
+    document.element("meshes", mesh);
+    if (number[mesh] == none) {
+      number[mesh] = kept.size();
+      kept.push_back(all[mesh]);
+    }
+    node["mesh"] = number[mesh];
+  }
+  all = std::move(kept);
 }
 
 }  // namespace alvor

@@ -4,8 +4,10 @@
 #include "client/bake/charts.h"
 #include "client/bake/gltf_document.h"
 #include "meshing/placement.h"
+#include "meshing/scene.h"
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -33,7 +35,21 @@ struct PlacedMeshes {
   std::size_t visited = 0;                                         ///< nodes of the scene, with those that show nothing
 };
 
+/// Whether meshes are cut into charts, or each primitive stays one piece, whose `flat` says nothing.
+enum class Cutting { charts, none };
+
 /// Walks the default scene as the importer does, depth first, and cuts its meshes. Throws BakeError.
-PlacedMeshes placed_meshes(const GltfDocument& document);
+PlacedMeshes placed_meshes(const GltfDocument& document, Cutting cutting = Cutting::charts);
+
+/// Returns the map from a document's coordinates to those of the scene that it was made from or read as.
+Placement to_scene(const Scene& scene);
+/// Throws BakeError unless the nodes that are shown are the scene's objects. The faces of no object come last.
+void check_objects(const PlacedMeshes& meshes, const Scene& scene);
+
+/// Returns what a primitive becomes: one primitive, or several.
+using Rewrite = std::function<std::vector<nlohmann::json>(const MeshNode&, const PrimitiveCharts&, const nlohmann::json&)>;
+/// Gives each node a mesh of its own, whose primitives that draw triangles are rewritten, node by node in the order of `meshes`.
+/// Removes the meshes that no node shows any longer. Throws BakeError.
+void rewrite_meshes(GltfDocument& document, const PlacedMeshes& meshes, const Rewrite& rewrite);
 
 }  // namespace alvor

@@ -46,29 +46,6 @@ OnTriangle nearest_on(const std::array<Point, 3>& corners, const Point& p) {
   return found;
 }
 
-/// Returns the corners of a triangle in the scene.
-std::array<Vec3, 3> placed_corners(const PlacedChart& chart, std::uint32_t t) {
-  std::array<Vec3, 3> corners;
-  for (std::size_t c = 0; c < 3; ++c)
-    corners[c] = chart.placement.point(chart.positions[chart.mesh->source[chart.mesh->triangles[t][c]]]);
-  return corners;
-}
-
-/// Returns the point (1-u-v) a + u b + v c of a triangle in the scene.
-Vec3 placed_point(const PlacedChart& chart, std::uint32_t t, double u, double v) {
-  const auto [a, b, c] = placed_corners(chart, t);
-  return (1 - u - v) * a + u * b + v * c;
-}
-
-/// Returns the normal of a triangle's front after it was placed; a placement that mirrors keeps the front the front.
-Vec3 placed_normal(const PlacedChart& chart, std::uint32_t t) {
-  const auto [a, b, c] = placed_corners(chart, t);
-  const Vec3 normal = cross(b - a, c - a);
-  const double size = length(normal);
-  if (!(size > 0)) return {};
-  return (chart.placement.mirrors() ? -1 / size : 1 / size) * normal;
-}
-
 /// Fills the rectangle of one chart.
 class Filler {
  public:
@@ -184,6 +161,26 @@ class Filler {
 };
 
 }  // namespace
+
+std::array<Vec3, 3> placed_corners(const PlacedChart& chart, std::uint32_t t) {
+  std::array<Vec3, 3> corners;
+  for (std::size_t c = 0; c < 3; ++c)
+    corners[c] = chart.placement.point(chart.positions[chart.mesh->source[chart.mesh->triangles[t][c]]]);
+  return corners;
+}
+
+Vec3 placed_point(const PlacedChart& chart, std::uint32_t t, double u, double v) {
+  const auto [a, b, c] = placed_corners(chart, t);
+  return (1 - u - v) * a + u * b + v * c;
+}
+
+Vec3 placed_normal(const PlacedChart& chart, std::uint32_t t) {
+  const auto [a, b, c] = placed_corners(chart, t);
+  const Vec3 normal = cross(b - a, c - a);
+  const double size = length(normal);
+  if (!(size > 0)) return {};
+  return (chart.placement.mirrors() ? -1 / size : 1 / size) * normal;
+}
 
 ChartSize size_of(const PlacedChart& placed) {
   const Chart& chart = *placed.chart;

@@ -36,6 +36,14 @@ struct PlacedChart {
   bool may_show_back = false;  ///< the material has two sides
 };
 
+/// Returns the corners of a triangle in the scene.
+std::array<Vec3, 3> placed_corners(const PlacedChart& chart, std::uint32_t triangle);
+/// Returns the point (1-u-v) a + u b + v c of a triangle in the scene.
+Vec3 placed_point(const PlacedChart& chart, std::uint32_t triangle, double u, double v);
+/// Returns the normal of a triangle's front in the scene, 0 if it has no area there; a placement that mirrors keeps the front the
+/// front.
+Vec3 placed_normal(const PlacedChart& chart, std::uint32_t triangle);
+
 /// Returns a chart's size on the surface.
 ChartSize size_of(const PlacedChart& chart);
 /// Returns the place of a vertex of the charted mesh on its chart's page, in texels from the page's upper left corner.

@@ -6,6 +6,7 @@
 #include "client/bake/scene_document.h"
 #include "client/bake/solved_surface.h"
 #include "client/picture/png_file.h"
+#include "client/picture/tone_map.h"
 #include "import/apart/scene_file.h"
 #include "import/base/bytes.h"
 #include "radiosity/solve/solver.h"
@@ -215,7 +216,7 @@ class BakedFile {
   BakedFile(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options = {})
       : baked(bake(std::move(document), scene, solution, options)),
         file(baked.glb, [](const std::string&) { return std::nullopt; }) {
-    for (const json& image : file.root()["images"]) {
+    for (const json& image : file.root().value("images", json::array())) {
       // The views of a document can be read as accessors of bytes.
       const json& view = file.element("bufferViews", image["bufferView"]);
       const std::size_t accessor =
@@ -383,6 +384,10 @@ GltfDocument two_squares() {
   root["meshes"][0]["primitives"][0]["material"] = 0;
   root["animations"] = json::array();
   root.erase("animations");
+  root["extensions"]["KHR_lights_punctual"]["lights"] = json::array({{{"type", "point"}, {"intensity", 10}}});
+  root["extensionsUsed"] = json::array({"KHR_lights_punctual"});
+  root["nodes"].push_back({{"name", "bulb"}, {"translation", {0, 1, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  root["scenes"][0]["nodes"].push_back(3);
   root["cameras"] = json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
   return document;
 }
@@ -398,6 +403,11 @@ TEST(Bake, InstancesGetPlacesOfTheirOwnAndShareWhatTheyHave) {
   EXPECT_EQ(baked.file.element("nodes", 2)["name"], "far");
   EXPECT_EQ(baked.file.root()["cameras"][0]["perspective"]["yfov"], 1);
   EXPECT_EQ(baked.file.element("materials", near["material"])["name"], "paint");
+  EXPECT_EQ(baked.file.element("nodes", 3)["name"], "bulb");
+  EXPECT_FALSE(baked.file.element("nodes", 3).contains("extensions")) << "its light is in the lightmap";
+  EXPECT_FALSE(baked.file.root().contains("extensions"));
+  const BakedFile with_lights(two_squares(), read.scene, solved(read.scene, 0.3), {.keeps_lights = true});
+  EXPECT_TRUE(with_lights.file.element("nodes", 3).contains("extensions"));
   const auto box = [&](const json& primitive) {
     std::array<float, 4> sides{9, 9, -9, -9};
     for (const auto& [s, t] : baked.points(primitive))
@@ -445,6 +455,30 @@ TEST(Bake, UnlitShowsColoursOfThePictureInOneTexture) {
   EXPECT_TRUE(material["extensions"].contains("KHR_materials_unlit"));
   EXPECT_FALSE(primitive["attributes"].contains("COLOR_0"));
   EXPECT_EQ(baked.images.size(), 1u);
+}
+
+TEST(Bake, ColoursOfVerticesAreThoseOfThePicture) {
+  Scene reflecting = test::furnace(0, 0.5);
+  reflecting.materials = {test::grey(0, 0.5), test::grey(10, 0)};
+  test::add_box(reflecting, {1, 1, 1}, {1.2, 1.2, 1.2}, false, {1, 1, 1, 1, 1, 1});
+  const DisplayMesh solution = solved(reflecting);
+  const BakedFile baked(reflecting, solution, {.form = BakeForm::vertex});
+  const SolvedSurface surface(solution, reflecting.objects, reflecting.faces.size());
+  const double exposure = automatic_exposure(solution);
+  const json &wall = baked.primitive(0, 0), &lamp = baked.primitive(0, 1);
+  const auto positions = baked.file.read_positions(wall["attributes"]["POSITION"]);
+  const auto colours = baked.file.read_colours(wall["attributes"]["COLOR_0"]);
+  const auto normals = baked.file.read_positions(wall["attributes"]["NORMAL"]);
+  ASSERT_EQ(colours.size(), positions.size());
+  for (std::size_t v = 0; v < colours.size(); ++v) {
+    const auto sample = surface.at(0, {positions[v][0], positions[v][1], positions[v][2]}, {normals[v][0], normals[v][1], normals[v][2]});
+    ASSERT_TRUE(sample);
+    // base colour times vertex colour
+    EXPECT_NEAR(0.5 * colours[v][0], tone_map(exposure * sample->radiosity).r, 0.02);
+  }
+  for (const auto& colour : baked.file.read_colours(lamp["attributes"]["COLOR_0"])) EXPECT_GT(colour[0], 0.99F);
+  EXPECT_FALSE(baked.file.element("materials", lamp["material"])["pbrMetallicRoughness"].contains("baseColorFactor"));
+  EXPECT_TRUE(baked.images.empty());
 }
 
 TEST(Bake, WritesHalfFloatsBesideTheFile) {

@@ -36,7 +36,7 @@ namespace {
 constexpr std::string_view glb_formats[]{"glb"};
 const FileKind baked_kind{"a baked scene", glb_formats, false, false};
 
-const std::map<std::string, BakeForm> forms{{"lightmap", BakeForm::lightmap}, {"unlit", BakeForm::unlit}};
+const std::map<std::string, BakeForm> forms{{"lightmap", BakeForm::lightmap}, {"unlit", BakeForm::unlit}, {"vertex", BakeForm::vertex}};
 const std::map<std::string, LightmapFormat> formats{{"png", LightmapFormat::png}, {"exr", LightmapFormat::exr}};
 const std::map<std::string, LightmapUnit> conventions{{"three", LightmapUnit::irradiance},
                                                       {"godot", LightmapUnit::irradiance_over_pi},
@@ -127,6 +127,7 @@ void write(const BakeCommand& command, const Baked& baked) {
 }
 
 std::string summary_of(const BakeCommand& command, const Baked& baked) {
+  if (baked.pages == 0) return std::to_string(baked.nodes) + " meshes with colours at their vertices\n";
   std::string text = std::to_string(baked.nodes) + " meshes in " + std::to_string(baked.charts) + " charts on " +
                      std::to_string(baked.pages) + (baked.pages == 1 ? " texture" : " textures") + " of " +
                      std::to_string(command.bake.size) + " x " + std::to_string(command.bake.size) + ", " +
@@ -149,7 +150,8 @@ void run_bake(const BakeCommand& command) {
   const Baked result = baked(command, bytes, scene, solution);
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
-                    " charts are lit from both sides; the texture shows the brighter one"});
+                    (result.pages > 0 ? " charts" : " primitives") +
+                    " are lit from both sides; the brighter one is shown"});
   write(command, result);
   notes() << summary_of(command, result);
 }
@@ -174,7 +176,7 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
   command
       .add_option("--as", options.form,
                   "lightmap: irradiance in textures of their own, on texture coordinates of their own; unlit: the colours of a "
-                  "picture of the solution, for every viewer (lightmap)")
+                  "picture of the solution, for every viewer; vertex: such colours at the vertices, without textures (lightmap)")
       ->check(CLI::IsMember(forms));
   command
       .add_option("--lightmap-format", options.lightmap_format,
@@ -186,6 +188,8 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
                   "What a texel holds. three: irradiance E, as lightMap of three.js; godot, unity: E / pi, the radiance of a white "
                   "surface, as those engines multiply by the colour (three)")
       ->check(CLI::IsMember(conventions));
+  command.add_flag("--keep-lights", options.bake.keeps_lights,
+                   "Keep the file's lamps beside the lightmap, for things that move; viewers add their light once more");
   command.add_option("--size", options.bake.size, "Columns and rows of each texture (1024)")->check(CLI::Range(16, 8192));
   command
       .add_option("--texels-per-metre", options.bake.texels_per_metre,
