@@ -1,6 +1,7 @@
 // alvor bake SCENE -o BAKED.glb: solves a scene and writes it with its light in textures.
 
 #include "client/bake/bake.h"
+#include "client/bake/probe_grid.h"
 #include "client/bake/scene_document.h"
 #include "client/command/commands/commands.h"
 #include "client/command/commands/interrupt.h"
@@ -23,7 +24,9 @@
 #include "radiosity/solve/solver.h"
 #include "solution/solution_mirror.h"
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -48,6 +51,7 @@ struct BakeCommand {
   OutputFile output;
   std::string form = "lightmap", lightmap_format = "png", convention = "three";
   BakeOptions bake;
+  std::string probes;  ///< NX,NY,NZ; empty: none
   SolveOptions solve;
   std::string absorption;  ///< three numbers; empty: none
   LightOptions light;
@@ -115,6 +119,27 @@ Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scen
   }
 }
 
+/// Returns the numbers of "NX,NY,NZ". Throws Failure (usage).
+ProbeCounts counts_of(const std::string& text) {
+  ProbeCounts counts{};
+  char rest = 0;
+  const int read = std::sscanf(text.c_str(), "%d,%d,%d%c", &counts[0], &counts[1], &counts[2], &rest);
+  const bool are_positive = std::ranges::all_of(counts, [](int count) { return count > 0 && count <= most_probes; });
+  if (read != 3 || !are_positive || double(counts[0]) * counts[1] * counts[2] > most_probes)
+    throw Failure(ExitStatus::usage, "--probes: '" + text + "' is not NX,NY,NZ, three whole numbers of together at most " +
+                                         std::to_string(most_probes) + " probes");
+  return counts;
+}
+
+/// Adds the file of probes beside the GLB.
+void add_probes(const BakeCommand& command, const ProbeCounts& counts, const Scene& scene, const DisplayMesh& solution,
+                Baked& baked) {
+  const auto probes = probe_grid(solution, counts, scene.absorption);
+  baked.beside.push_back({command.output.path.stem().string() + "-probes.json", probes_json(probes, counts, solution.quantity)});
+  const auto enclosed = std::ranges::count(probes, true, &AirProbe::is_enclosed);
+  if (enclosed > 0) notes() << enclosed << " of " << probes.size() << " probes are inside solids or outside the room\n";
+}
+
 /// Writes the files beside the GLB first, so that a GLB that is there has what it names.
 void write(const BakeCommand& command, const Baked& baked) {
   for (const Baked::File& file : baked.beside) {
@@ -142,12 +167,17 @@ void run_bake(const BakeCommand& command) {
   require_output(command.output, baked_kind, "--output");
   if (is_stream(command.output.path) && command.lightmap_format == "exr")
     throw Failure(ExitStatus::usage, "--output: lightmaps in EXR are files beside the scene, so it cannot go to stdout");
+  std::optional<ProbeCounts> counts;
+  if (!command.probes.empty()) counts = counts_of(command.probes);
+  if (is_stream(command.output.path) && counts)
+    throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
   reserve_stdout_for({command.output.path});
   const RawScene bytes = scene_bytes(command.scene, command.format);
   const Scene scene = read_given(command, bytes);
   const DisplayMesh solution =
       command.solution.empty() ? solved(command, scene) : read_solution(command.solution, {});
-  const Baked result = baked(command, bytes, scene, solution);
+  Baked result = baked(command, bytes, scene, solution);
+  if (counts) add_probes(command, *counts, scene, solution, result);
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
                     (result.pages > 0 ? " charts" : " primitives") +
@@ -195,6 +225,10 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
       .add_option("--texels-per-metre", options.bake.texels_per_metre,
                   "Texels per metre, on as many textures as it takes, up to 64 (as many as fit one texture)")
       ->check(above_up_to(0, 1e6));
+  command
+      .add_option("--probes", options.probes,
+                  "Light in the air for things that move: NX,NY,NZ probes in a grid over the scene, in BAKED-probes.json")
+      ->type_name("NX,NY,NZ");
   command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (4)")->check(CLI::Range(0, 64));
   command
       .add_option("--range", options.bake.range,
