@@ -73,7 +73,8 @@ bool overlaps_itself(std::span<const std::array<Point, 3>> flat, int cells) {
   if (!(cell > 0)) return false;
   const int wide = static_cast<int>((high[0] - low[0]) / cell) + 1, tall = static_cast<int>((high[1] - low[1]) / cell) + 1;
   std::vector<bool> taken(static_cast<std::size_t>(wide) * static_cast<std::size_t>(tall));
-  for (const auto& [a, b, c] : flat) {
+  for (const auto& corners : flat) {
+    const Point &a = corners[0], &b = corners[1], &c = corners[2];
     const auto range = [&](std::size_t k, int most) {
       const auto [from, to] = std::minmax({a[k], b[k], c[k]});
       return std::pair(std::max(0, static_cast<int>((from - low[k]) / cell - 0.5)),

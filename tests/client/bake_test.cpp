@@ -290,8 +290,9 @@ TEST(Bake, TexelsHoldTheSolutionEverywhere) {
         return Vec3{x, y, z};
       };
       const Vec3 twice = cross(at(1) - at(0), at(2) - at(0)), normal = normalized(twice);
-      for (const auto& [u, v] : {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5), std::pair(0.0, 0.4),
-                                 std::pair(0.37, 0.0)}) {
+      for (const std::pair<double, double>& place : {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5),
+                                                     std::pair(0.0, 0.4), std::pair(0.37, 0.0)}) {
+        const double u = place.first, v = place.second;
         const auto sample = surface.at(0, (1 - u - v) * at(0) + u * at(1) + v * at(2), normal);
         ASSERT_TRUE(sample);
         const auto mix = [&](std::size_t k) {
