@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 namespace alvor {
 
@@ -47,13 +48,14 @@ class Writer {
     json of{{"name", material.name}, {"pbrMetallicRoughness", pbr}, {"doubleSided", material.two_sided}};
     if (material.has_cutout()) of["alphaMode"] = "MASK";
     if (!material.emission.is_zero()) {
-      const double most = std::max({material.emission.r, material.emission.g, material.emission.b});
-      of["emissiveFactor"] = number_triple(material.emission * (1 / most));
+      const Rgb radiance = material.emission * (1 / std::numbers::pi);  // of a diffuse emitter
+      const double most = std::max({radiance.r, radiance.g, radiance.b});
+      of["emissiveFactor"] = number_triple(radiance * (1 / most));
       if (most > 1) {
         of["extensions"] = {{"KHR_materials_emissive_strength", {{"emissiveStrength", most}}}};
         uses_strength_ = true;
       } else {
-        of["emissiveFactor"] = number_triple(material.emission);
+        of["emissiveFactor"] = number_triple(radiance);
       }
     }
     document_.append("materials", std::move(of));

@@ -340,7 +340,9 @@ TEST(Bake, BothSidesOfASmoothSeamAgree) {
         edges[{positions[a], positions[b]}].push_back({points[a], points[b], normal});
       }
     }
-    for (const auto& [edge, sides] : edges) {
+    for (const auto& edge_and_sides : edges) {
+      const auto& edge = edge_and_sides.first;
+      const auto& sides = edge_and_sides.second;
       if (sides.size() != 2 || sides[0].from == sides[1].from || dot(sides[0].normal, sides[1].normal) < 0.9) continue;
       ++seams;
       for (const double share : {0.1, 0.5, 0.9}) {
@@ -369,6 +371,31 @@ TEST(Bake, NoLightLeaksThroughAThinWall) {
   const BakedFile baked(scene, solved(scene));
   for (const auto& [s, t] : baked.points(baked.primitive(1))) EXPECT_EQ(baked.light(baked.primitive(1), s, t), 0);
   for (const auto& [s, t] : baked.points(baked.primitive(0))) EXPECT_GT(baked.light(baked.primitive(0), s, t), 0);
+}
+
+TEST(SceneDocument, IsReadAsTheSceneThatItWasMadeOf) {
+  Scene scene = test::coloured_room();
+  scene.materials[1].emission = {50, 40, 0.5};
+  scene.materials[1].name = "lamp";
+  scene.materials[2].two_sided = true;
+  scene.objects = {{"shell", std::nullopt, {}, 0, 6}, {"block and lamp", std::nullopt, {}, 6, static_cast<std::uint32_t>(scene.faces.size()) - 6}};
+  const Scene read = read_scene_content({"room.glb", document_of(scene).encode(), ".glb", {}}).scene;
+  ASSERT_EQ(read.objects.size(), scene.objects.size());
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    EXPECT_EQ(read.objects[o].name, scene.objects[o].name);
+    EXPECT_EQ(read.objects[o].face_count, 2 * scene.objects[o].face_count);  // all are quads
+  }
+  ASSERT_EQ(read.materials.size(), scene.materials.size());
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    EXPECT_EQ(read.materials[m].name, scene.materials[m].name);
+    EXPECT_EQ(read.materials[m].two_sided, scene.materials[m].two_sided);
+    for (const auto& [is, was] : {std::pair(read.materials[m].emission, scene.materials[m].emission),
+                                  std::pair(read.materials[m].reflectance, scene.materials[m].reflectance)}) {
+      EXPECT_NEAR(is.r, was.r, 1e-5 * was.r);
+      EXPECT_NEAR(is.g, was.g, 1e-5 * was.g);
+      EXPECT_NEAR(is.b, was.b, 1e-5 * was.b);
+    }
+  }
 }
 
 /// Returns a file in which two nodes show one mesh, a square, under a lamp; the second is mirrored and scaled.
