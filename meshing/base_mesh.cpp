@@ -37,6 +37,15 @@ struct Box {
   double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
 };
 
+/// Returns how many of a quad's sixteen strata lie along u, so that none is much longer than wide.
+int count_strata_along_u(const std::array<Vec3, 4>& p) {
+  constexpr double long_side = 2.5, very_long_side = 8;  // strata of 4 by 4 and of 8 by 2 are equally long at 2, others at 8
+  const double u = length(p[1] - p[0]) + length(p[2] - p[3]), v = length(p[3] - p[0]) + length(p[2] - p[1]);
+  if (u > long_side * v) return u > very_long_side * v ? 16 : 8;
+  if (v > long_side * u) return v > very_long_side * u ? 1 : 2;
+  return 4;
+}
+
 RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, const Piece& piece) {
   RootPatch root;
   root.corner_count = piece[3] == no_corner ? 3 : 4;
@@ -47,6 +56,7 @@ RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, con
   const Vec3 area = double_area_vector(std::span(root.corners).first(root.corner_count));
   root.area = 0.5 * length(area);
   if (root.area > 0) root.normal = normalized(area);
+  if (root.corner_count == 4) root.strata_along_u = count_strata_along_u(root.corners);
   return root;
 }
 
@@ -54,6 +64,7 @@ RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, con
 void turn_round(const RootPatch& front, RootPatch& back) {
   back.corners = front.corners;
   back.vertex = front.vertex;
+  back.strata_along_u = strata_per_patch / front.strata_along_u;
   std::reverse(back.corners.begin() + 1, back.corners.begin() + back.corner_count);
   std::reverse(back.vertex.begin() + 1, back.vertex.begin() + back.corner_count);
 }

@@ -15,6 +15,9 @@
 
 namespace alvor {
 
+/// Number of strata of a patch, each of which holds one origin of rays.
+inline constexpr int strata_per_patch = 16;
+
 /// A triangle or a planar convex quad: one face of the base mesh, and the root of a quadtree.
 struct RootPatch {
   std::array<Vec3, 4> corners;          ///< counter-clockwise; metres; corners[3] unused for a triangle
@@ -24,6 +27,7 @@ struct RootPatch {
   InputFaces input;  ///< the face of the scene it came from, or the two triangles
   Vec3 normal;       ///< unit; points to the front
   double area = 0;   ///< m2
+  int strata_along_u = 4;  ///< see PatchShape
 
   static constexpr std::uint32_t no_twin = ~0u;
   /// The root in the same place that faces the other way: the other side of a two-sided face, or another face with the same

@@ -96,6 +96,25 @@ Uv PatchShape::centre() const {
   return {(first.i + offset) / grid_size, (first.j + offset) / grid_size};
 }
 
+Uv PatchShape::stratum_centre(int o) const {
+  const int k = o >> 2, within = o & 3;
+  if (corner_count == 3 || strata_along_u == 4) return child(k).child(within).centre();
+  const bool is_row = strata_along_u == 16 || strata_along_u == 1;
+  const Uv along = is_row ? Uv{(o + 0.5) / 16, 0.5} : Uv{(2 * k + (within & 1) + 0.5) / 8, ((within >> 1) + 0.5) / 2};
+  return inside(along);
+}
+
+Uv PatchShape::quarter_centre(int k) const {
+  if (corner_count == 3 || strata_along_u == 4) return child(k).centre();
+  return inside({(k + 0.5) / 4, 0.5});
+}
+
+/// Returns the place in the root of a point of the unit square that is given along the long side and across it.
+Uv PatchShape::inside(Uv along) const {
+  const double step = double(size) / grid_size, u = double(first.i) / grid_size, v = double(first.j) / grid_size;
+  return strata_along_u > 4 ? Uv{u + step * along.u, v + step * along.v} : Uv{u + step * along.v, v + step * along.u};
+}
+
 PatchShape PatchShape::child(int k) const {
   const std::int32_t h = size / 2;
   PatchShape c = *this;
@@ -112,7 +131,8 @@ PatchShape PatchShape::child(int k) const {
 }
 
 PatchShape shape_of(const BaseMesh& mesh, PatchId patch) {
-  PatchShape shape{patch.root_face(), mesh.roots()[patch.root_face()].corner_count, {0, 0}, grid_size};
+  const RootPatch& root = mesh.roots()[patch.root_face()];
+  PatchShape shape{patch.root_face(), root.corner_count, {0, 0}, grid_size, root.strata_along_u};
   for (int level = 1; level <= patch.level(); ++level) shape = shape.child(patch.child_index(level));
   return shape;
 }

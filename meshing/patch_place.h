@@ -31,10 +31,21 @@ struct PatchShape {
   int corner_count = 3;
   GridPoint first;        ///< the patch's corner 0
   std::int32_t size = 0;  ///< length of an edge in grid steps; negative for a turned triangle
+  /// Number of strata of a quad along u: 1, 2, 4, 8 or 16. Long quads have more along their long side, so that a leaf 4 mm wide
+  /// and 28 cm long is looked at every 2 cm.
+  std::int32_t strata_along_u = 4;
 
   std::array<GridPoint, 4> corners() const;
   Uv centre() const;
+  /// Returns the middle of stratum `o`. Strata 4 k to 4 k + 3 form quarter k. The strata of a triangle, and of a quad with four
+  /// along u, are the patch's grandchildren; its quarters are its children. Requires: 0 <= o < strata_per_patch.
+  Uv stratum_centre(int o) const;
+  /// Returns the middle of quarter `k`: the mean of its strata's middles.
+  Uv quarter_centre(int k) const;
   PatchShape child(int k) const;
+
+ private:
+  Uv inside(Uv along) const;
 };
 
 PatchShape shape_of(const BaseMesh& mesh, PatchId patch);

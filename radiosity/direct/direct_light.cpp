@@ -111,7 +111,7 @@ class ShadowBatch {
     if (receivers_[r].hidden_origins != 0) {
       find_unblocked_of_visible(lit, normal);
     } else {
-      for (int k = 0; k < 4; ++k) lit.unblocked[k] = light.unblocked(local_point(shape.child(k).centre(), shape.root), normal);
+      for (int k = 0; k < 4; ++k) lit.unblocked[k] = light.unblocked(local_point(shape.quarter_centre(k), shape.root), normal);
       lit.mean_unblocked = (lit.unblocked[0] + lit.unblocked[1] + lit.unblocked[2] + lit.unblocked[3]) / 4;
     }
     if (lit.mean_unblocked > 0) lit_.push_back(lit);
@@ -127,7 +127,7 @@ class ShadowBatch {
       Vec3 middle;
       for (int o = 0; o < 4; ++o) {
         if (receiver.hidden_origins >> (4 * k + o) & 1) continue;
-        middle += local_point(shape.child(k).child(o).centre(), shape.root);
+        middle += local_point(shape.stratum_centre(4 * k + o), shape.root);
         visible[k] += 1;
       }
       if (visible[k] == 0) continue;
@@ -198,7 +198,7 @@ class ShadowBatch {
     const RelativeLight arriving = dimming ? mean * (lit.fraction.dimmed() * colour) : visible * colour;
     light.irradiance += arriving;
     const double per_fraction = arriving.mean() / lit.fraction.value(), scale = per_fraction / mean;
-    const QuarterPlane unblocked(lit.unblocked, scene_.root(receivers_[lit.receiver].shape.root).is_quad);
+    const QuarterPlane unblocked(lit.unblocked, receivers_[lit.receiver].shape);
     for (int o = 0; o < origins_per_patch; ++o)
       light.at_origin[o] += static_cast<float>(scale * unblocked.at_origin(o) * lit.fraction.value(o));
     light.variance += static_cast<float>(per_fraction * per_fraction * lit.fraction.variance());

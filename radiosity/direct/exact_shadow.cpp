@@ -74,7 +74,7 @@ ExactView ExactShadow::view(const LocalScene& scene, const PatchShape& patch, st
   ExactView view{ExactView::Kind::shadowed, {}};
   for (int o = 0; o < origins_per_patch; ++o) {
     if (hidden_origins >> o & 1) continue;
-    const Uv middle = patch.child(o >> 2).child(o & 3).centre();
+    const Uv middle = patch.stratum_centre(o);
     const Vec3 at = hidden_origins != 0 ? Vec3{origins.x[o], origins.y[o], origins.z[o]}
                                         : scene.frame().to_local(root.at(middle.u, middle.v)) + lift;
     const auto seen = visible_from(at);

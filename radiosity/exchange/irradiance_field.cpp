@@ -117,7 +117,7 @@ class Fitter {
     known.edge = std::sqrt(area_of(forest_.mesh(), shape));
     RelativeLight sum;
     for (int k = 0; k < 4; ++k) {
-      const Uv c = shape.child(k).centre();
+      const Uv c = shape.quarter_centre(k);
       known.quarters[k] = {root.at(c.u, c.v), samples[k].irradiance, samples[k].rays};
       known.whole.rays += samples[k].rays;
       known.whole.at += samples[k].rays * known.quarters[k].at;

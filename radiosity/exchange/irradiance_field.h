@@ -11,7 +11,7 @@
 
 namespace alvor {
 
-/// The mean irradiance that the rays of one quarter (a child's place) of a row found.
+/// The mean irradiance that the rays of one quarter of a row (see PatchShape) found.
 struct QuarterSample {
   RelativeLight irradiance;
   double rays = 0;  ///< number of rays, which is the weight of the sample; 0: the quarter is hidden

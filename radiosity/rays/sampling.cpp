@@ -3,6 +3,7 @@
 #include "radiosity/rays/hemicube.h"
 #include "radiosity/rays/unit_disk.h"
 
+#include <bit>
 #include <cmath>
 
 namespace alvor {
@@ -24,22 +25,6 @@ std::uint32_t sobol_second(std::uint32_t n) {
     if (n & 1) result ^= v;
   return result;
 }
-
-/// The middles of the strata of a patch that is its whole root, and the signed distances (`sway`) by which a jitter of 1 moves
-/// them.
-struct Strata {
-  std::array<float, origins_per_patch> u, v, sway;
-  explicit Strata(int corner_count) {
-    const PatchShape whole{0, corner_count, {0, 0}, grid_size};
-    for (int o = 0; o < origins_per_patch; ++o) {
-      const PatchShape stratum = whole.child(o >> 2).child(o & 3);
-      const Uv middle = stratum.centre();
-      u[o] = static_cast<float>(middle.u);
-      v[o] = static_cast<float>(middle.v);
-      sway[o] = static_cast<float>((is_white(o) ? 1.0 : -1.0) * stratum.size / grid_size);
-    }
-  }
-};
 
 void set_direction(DirectionSets::Set& set, std::size_t n, Vec3 direction, double weight) {
   set.x[n] = static_cast<float>(direction.x);
@@ -93,9 +78,29 @@ DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(
   }
 }
 
+Strata::Strata(int corner_count, int along_u) {
+  const PatchShape whole{0, corner_count, {0, 0}, grid_size, along_u};
+  for (int o = 0; o < origins_per_patch; ++o) {
+    const Uv middle = whole.stratum_centre(o);
+    u[o] = static_cast<float>(middle.u);
+    v[o] = static_cast<float>(middle.v);
+    // The inner one of the four parts of a triangle is turned.
+    const bool is_turned = corner_count == 3 && ((o >> 2) == 3) != ((o & 3) == 3);
+    const double sign = is_white(o) != is_turned ? 1 : -1;
+    sway_u[o] = static_cast<float>(sign / along_u);
+    sway_v[o] = static_cast<float>(sign * along_u / origins_per_patch);
+  }
+}
+
+const Strata& Strata::of(const PatchShape& patch) {
+  static const Strata triangle(3, 4);
+  static const std::array<Strata, 5> quad{Strata(4, 1), Strata(4, 2), Strata(4, 4), Strata(4, 8), Strata(4, 16)};
+  if (patch.corner_count == 3) return triangle;
+  return quad[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(patch.strata_along_u)))];
+}
+
 OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
-  static const Strata triangle(3), quad(4);
-  const Strata& strata = patch.corner_count == 3 ? triangle : quad;
+  const Strata& strata = Strata::of(patch);
   // Share of the jitter that keeps a point in its stratum. In a triangle 2/3 + room <= 1 must hold for u + v, so room <= 1/3.
   const double room = patch.corner_count == 3 ? 0.3 : 1;
   const auto size = static_cast<float>(double(patch.size) / grid_size);
@@ -104,8 +109,8 @@ OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
   const auto move_u = static_cast<float>(room * jitter.u), move_v = static_cast<float>(room * jitter.v);
   OriginPlaces places;
   for (int o = 0; o < origins_per_patch; ++o) {
-    places.u[o] = first_u + size * (strata.u[o] + move_u * strata.sway[o]);
-    places.v[o] = first_v + size * (strata.v[o] + move_v * strata.sway[o]);
+    places.u[o] = first_u + size * (strata.u[o] + move_u * strata.sway_u[o]);
+    places.v[o] = first_v + size * (strata.v[o] + move_v * strata.sway_v[o]);
   }
   return places;
 }

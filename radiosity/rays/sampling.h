@@ -13,7 +13,7 @@ namespace alvor {
 /// Numbers of rays and origins. The rays of one origin are one packet. Their directions are stratified 4 x 4 over the
 /// hemisphere's disk; those of all origins of a patch together are stratified 16 x 16 ((0,2)-sequence, Sobol 1967).
 inline constexpr int rays_per_origin = 16;
-inline constexpr int origins_per_patch = 16;
+inline constexpr int origins_per_patch = strata_per_patch;
 inline constexpr int rays_per_row = rays_per_origin * origins_per_patch;
 
 /// Pseudo-random numbers that depend on a seed and a patch only.
@@ -57,11 +57,22 @@ class DirectionSets {
   std::vector<Set> sets_;
 };
 
-/// Returns whether the stratum of `origin` is a white field of the chessboard that the sixteen strata of a patch form. White and
-/// black strata have the same mean position.
+/// Returns whether the stratum of `origin` is white. Two of the four strata of each quarter are white and two are black, in
+/// whatever rows they lie (see PatchShape::stratum_centre), and white and black ones have the same mean position.
 constexpr bool is_white(int origin) { return ((origin ^ origin >> 1) & 1) == 0; }
 
-/// Points in the 16 strata (grandchildren) of a patch, as coordinates (u, v) of its root.
+/// The middles of the strata of a patch that is its whole root, and the signed distances (`sway`) by which a jitter of 1 moves
+/// them.
+struct Strata {
+  std::array<float, origins_per_patch> u, v, sway_u, sway_v;
+  /// Returns the strata of a root with the patch's corners and numbers of strata.
+  static const Strata& of(const PatchShape& patch);
+
+ private:
+  Strata(int corner_count, int along_u);
+};
+
+/// Points in the 16 strata of a patch, as coordinates (u, v) of its root.
 struct OriginPlaces {
   std::array<float, origins_per_patch> u, v;
 };

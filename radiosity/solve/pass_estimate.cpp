@@ -240,15 +240,15 @@ double Pass::squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const 
   const NodeIndex row = forests.row_of(leaf);
   const std::uint16_t hidden = state_.hidden_origins(leaf);
   const PatchShape shape = forests.leaves().shape(leaf);
+  const auto place = [&](Uv at) { return state_.mesh.roots()[shape.root].at(at.u, at.v); };
   const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
   double sum = 0, squares = 0;
   for (int k = 0; k < 4; ++k) {
     if ((hidden >> 4 * k & 0xf) == 0xf) continue;
-    const PatchShape quarter = shape.child(k);
-    const double by_rows = state_.field.at(row, centre_of(state_.mesh, quarter)).mean();
+    const double by_rows = state_.field.at(row, place(shape.quarter_centre(k))).mean();
     for (int o = 0; o < 4; ++o) {
       if (hidden >> (4 * k + o) & 1) continue;
-      const Vec3 offset = centre_of(state_.mesh, quarter.child(o)) - forests.leaf_centres()[leaf];
+      const Vec3 offset = place(shape.stratum_centre(4 * k + o)) - forests.leaf_centres()[leaf];
       const double above_plane = direct.at_origin[4 * k + o] + by_rows - dot(steepest, offset);
       sum += above_plane, squares += squared(above_plane);
     }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 
@@ -36,6 +37,39 @@ TEST(PatchPlace, ChildrenTileTheirParent) {
     double area = 0;
     for (int k = 0; k < 4; ++k) area += area_of(mesh, shape_of(mesh, patch.child(k)));
     EXPECT_NEAR(area, area_of(mesh, shape_of(mesh, patch)), 1e-12);
+  }
+}
+
+TEST(PatchPlace, StrataOfALongQuadLieAlongIt) {
+  Scene scene;
+  scene.materials.emplace_back().two_sided = true;
+  test::add_polygon(scene, {{0, 0, 0}, {0.32, 0, 0}, {0.32, 0.004, 0}, {0, 0.004, 0}});
+  test::add_polygon(scene, {{1, 0, 0}, {1.01, 0, 0}, {1.01, 0.05, 0}, {1, 0.05, 0}});
+  const BaseMesh mesh(scene);
+  ASSERT_EQ(mesh.roots().size(), 4u);
+  for (std::uint32_t root = 0; root < 4; ++root) {
+    const RootPatch& face = mesh.roots()[root];
+    const PatchShape shape = shape_of(mesh, PatchId::root(root));
+    double shortest = 1;
+    Vec3 sum;
+    for (int o = 0; o < strata_per_patch; ++o) {
+      const Uv at = shape.stratum_centre(o);
+      sum += face.at(at.u, at.v);
+      for (int other = 0; other < o; ++other) {
+        const Uv there = shape.stratum_centre(other);
+        shortest = std::min(shortest, length(face.at(at.u, at.v) - face.at(there.u, there.v)));
+      }
+    }
+    const bool is_strip = face.area > 1e-3;  // 32 x 0.4 cm, else 1 x 5 cm
+    EXPECT_NEAR(shortest, is_strip ? 0.02 : 0.005, 1e-9) << "root " << root;
+    EXPECT_NEAR(length(sum / strata_per_patch - face.at(0.5, 0.5)), 0, 1e-12);
+    for (int k = 0; k < 4; ++k) {
+      Uv mean{0, 0};
+      for (int o = 4 * k; o < 4 * k + 4; ++o)
+        mean = {mean.u + shape.stratum_centre(o).u / 4, mean.v + shape.stratum_centre(o).v / 4};
+      EXPECT_NEAR(mean.u, shape.quarter_centre(k).u, 1e-12);
+      EXPECT_NEAR(mean.v, shape.quarter_centre(k).v, 1e-12);
+    }
   }
 }
 

@@ -64,7 +64,7 @@ TEST(DirectLight, OnlyTheVisiblePartOfAPatchCounts) {
   std::uint16_t hidden = 0;
   double exact = 0;
   for (int o = 0; o < origins_per_patch; ++o) {
-    const Uv middle = shape.child(o >> 2).child(o & 3).centre();
+    const Uv middle = shape.stratum_centre(o);
     const Vec3 at = mesh.roots()[0].at(middle.u, middle.v);
     if (at.y < 0) hidden |= static_cast<std::uint16_t>(1u << o);
     else exact += emission * point_to_polygon(at, {1, 0, 0}, mesh.roots()[1].corners) / 8;

@@ -172,7 +172,7 @@ PatchPoints middles_of_strata(const LocalScene& scene) {
   const RootPatch& root = scene.mesh().roots()[0];
   PatchPoints points;
   for (int o = 0; o < origins_per_patch; ++o) {
-    const Uv middle = shape_of(scene.mesh(), PatchId::root(0)).child(o >> 2).child(o & 3).centre();
+    const Uv middle = shape_of(scene.mesh(), PatchId::root(0)).stratum_centre(o);
     const Vec3 at = scene.frame().to_local(root.at(middle.u, middle.v)) + double(ray_offset) * root.normal;
     points.x[o] = static_cast<float>(at.x), points.y[o] = static_cast<float>(at.y), points.z[o] = static_cast<float>(at.z);
   }
