@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double max_intensity = 1e30, max_coordinate = 1e9;
+constexpr double max_intensity = 1e30, max_coordinate = 1e9, max_watts = 1e9;
 // Largest factor by which the radiance of an environment is multiplied. That is at most 1e30, so that irradiance still fits in a
 // float after many reflections.
 constexpr double max_factor = 1e6;
@@ -36,6 +36,8 @@ std::optional<std::string> fault_in_across(const Light& light) {
 std::optional<std::string> fault_in_luminaire(const Light& light) {
   if (!light.web) return "it has no photometric web";
   if (auto fault = fault_in_across(light)) return fault;
+  if (!(light.electrical_watts >= 0 && light.electrical_watts <= max_watts))
+    return sentence("its electrical power", light.electrical_watts, "is outside [0, 1e9] W");
   const LuminousOpening& opening = light.opening;
   for (const double size : {opening.across, opening.along, opening.height})
     if (!(size == 0 || (size >= least_opening && size <= max_coordinate)))
@@ -60,7 +62,7 @@ bool operator==(const Light& a, const Light& b) {
   return is_same_web && is_same_map && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity &&
          a.position == b.position && a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone &&
          a.radius == b.radius && a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening &&
-         a.sky == b.sky;
+         a.electrical_watts == b.electrical_watts && a.sky == b.sky;
 }
 
 SpotCone::SpotCone(const Light& spot)

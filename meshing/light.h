@@ -65,6 +65,7 @@ struct Light {
   /// Luminaire: the web's plane 0 or axis; environment: to the middle of its map. Unit, perpendicular to `direction`.
   Vec3 across{1, 0, 0};
   LuminousOpening opening;                            ///< luminaire
+  double electrical_watts = 0;                        ///< luminaire: power that it draws, W, for reports; 0: not known
   SkyDistribution sky;                                ///< sky
   std::shared_ptr<const EnvironmentMap> environment;  ///< environment: not null; lights may share it
 

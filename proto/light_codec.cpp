@@ -94,6 +94,7 @@ Light decode_light(const v1::Light& message) {
   light.angular_diameter = message.angular_diameter_radians();
   if (message.has_across()) light.across = decode_vector(message.across());
   if (message.has_opening()) light.opening = decode_opening(message.opening());
+  light.electrical_watts = message.electrical_watts();
   if (message.has_sky()) light.sky = decode_sky(message.sky());
   return light;
 }
@@ -114,6 +115,7 @@ v1::Light encode(const Light& light) {
   if (light.kind == LightKind::luminaire || light.kind == LightKind::environment)
     *message.mutable_across() = encode_vector(light.across);
   if (light.kind == LightKind::luminaire) *message.mutable_opening() = encode_opening(light.opening);
+  message.set_electrical_watts(light.electrical_watts);
   if (light.kind == LightKind::sky) *message.mutable_sky() = encode_sky(light.sky);
   return message;
 }

@@ -37,6 +37,7 @@ void add_commands(CLI::App& app) {
   add_render_command(app);
   add_verify_command(app);
   add_bake_command(app);
+  add_report_command(app);
   add_compare_command(app);
   add_explain_command(app);
   add_form_factor_command(app);

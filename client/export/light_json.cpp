@@ -96,6 +96,7 @@ void add_luminaire(std::span<const Light> lights, std::size_t which, json& objec
                        {"across_meters", opening.across},
                        {"along_meters", opening.along},
                        {"height_meters", opening.height}};
+  if (light.electrical_watts > 0) object["electrical_watts"] = light.electrical_watts;
   add_shared(lights, which, &Light::web, "web", json_of_web, object);
 }
 
@@ -104,6 +105,7 @@ void read_luminaire_fields(const json& source, std::span<const Light> before, Li
   const json& opening = source.at("opening");
   light.opening = {value_named<LuminousOpening::Shape>(names_of_shapes, opening.at("shape")), opening.at("across_meters"),
                    opening.at("along_meters"), opening.at("height_meters")};
+  light.electrical_watts = source.value("electrical_watts", 0.0);
   light.web = read_shared(source, before, &Light::web, "web", web_of);
 }
 

@@ -2,6 +2,7 @@
 
 #include "client/export/glb_file.h"
 #include "client/export/ply_file.h"
+#include "import/base/glb_format.h"
 #include "import/base/scene_format.h"
 #include "import/base/whole_file.h"
 
@@ -107,6 +108,13 @@ auto naming(const std::string& name, Work work) {
 void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh) {
   const Format format = format_of(lower_case_extension(path), path.string());
   naming(path.string(), [&] { write_whole_file(path, format.encode(mesh)); });
+}
+
+bool is_solution(std::string_view bytes, const std::string& extension) {
+  constexpr std::size_t longest_ply_header = 1 << 26;
+  if (extension == ".glb") return bytes.substr(0, glb::largest_json).find("\"_IRRADIANCE\"") != bytes.npos;
+  const std::string_view text = bytes.substr(0, longest_ply_header);
+  return extension == ".ply" && text.substr(0, text.find("end_header")).find("property float irradiance_r") != text.npos;
 }
 
 std::string encode_solution(const DisplayMesh& mesh, const std::string& extension) {

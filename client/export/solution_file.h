@@ -25,6 +25,9 @@ void write_solution_file(const std::filesystem::path& path, const DisplayMesh& m
 /// Reads a file that write_solution_file wrote. Throws SolutionFileError, also for any other GLB or PLY.
 DisplayMesh read_solution_file(const std::filesystem::path& path);
 
+/// Returns whether bytes of this extension are meant as a solution: scenes come as GLB and PLY, too. They may have faults.
+bool is_solution(std::string_view bytes, const std::string& extension);
+
 /// Returns the bytes that write_solution_file writes to a file of this extension: ".glb" or ".ply". Throws SolutionFileError.
 std::string encode_solution(const DisplayMesh& mesh, const std::string& extension);
 

@@ -16,8 +16,6 @@ constexpr int margin = 6, bar_width = 10, mark_length = 3, gap = 3;
 constexpr int line_height = 11, title_gap = 5, least_height = 90;
 constexpr double bar_share = 0.76;  ///< height of the bar as a fraction of the picture's
 
-constexpr Colour paper{36, 36, 36}, ink{225, 225, 225};
-
 int pixels_per_dot(int picture_height) { return std::max(1, static_cast<int>(std::lround(picture_height / 384.0))); }
 
 /// Positions of the legend's parts, pixels.
@@ -52,7 +50,7 @@ void draw_bar(Image& image, const PixelBox& bar, const Legend& legend) {
     fill(image, {bar.left, bar.top + row, bar.width, 1}, bytes_of(legend.colours(1 - (row + 0.5) / bar.height)));
 }
 
-void draw_label(Image& image, const Layout& at, const LegendLabel& label) {
+void draw_label(Image& image, const Layout& at, const LegendLabel& label, const Colour& ink) {
   const int middle = at.bar.top + static_cast<int>(std::lround((1 - label.position) * (at.bar.height - at.dot))) + at.dot / 2;
   fill(image, {at.bar.left + at.bar.width, middle - at.dot / 2, at.dot * mark_length, at.dot}, ink);
   draw_text(image, at.text_left, middle - at.dot * letter_height / 2, label.text, at.dot, ink);
@@ -62,11 +60,11 @@ void draw(Image& image, const Legend& legend) {
   const double line = line_height * pixels_per_dot(image.height) / (bar_share * image.height);
   const std::vector<LegendLabel> labels = labels_of(legend, std::min(line, 1.0));
   const Layout at = layout_of(image, legend, labels);
-  fill(image, {at.panel_left, 0, image.width - at.panel_left, image.height}, paper);
+  fill(image, {at.panel_left, 0, image.width - at.panel_left, image.height}, legend.paper);
   for (std::size_t i = 0; i < legend.title.size(); ++i)
-    draw_text(image, at.bar.left, at.title_top + at.dot * line_height * static_cast<int>(i), legend.title[i], at.dot, ink);
+    draw_text(image, at.bar.left, at.title_top + at.dot * line_height * static_cast<int>(i), legend.title[i], at.dot, legend.ink);
   draw_bar(image, at.bar, legend);
-  for (const LegendLabel& label : labels) draw_label(image, at, label);
+  for (const LegendLabel& label : labels) draw_label(image, at, label, legend.ink);
 }
 
 }  // namespace

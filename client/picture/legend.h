@@ -5,6 +5,7 @@
 #include "client/picture/colour_map.h"
 #include "client/picture/colour_scale.h"
 #include "client/picture/png_file.h"
+#include "client/picture/text.h"
 
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct Legend {
   bool values_below = false;       ///< values beyond an end occur; the end's label says so
   bool values_above = false;
   Rgb (*colours)(double position) = colour_map;  ///< colour map of the bar
+  Colour paper{36, 36, 36}, ink{225, 225, 225};
 };
 
 /// A number beside the bar.

@@ -1,6 +1,6 @@
 #include "client/picture/polar_plot.h"
 
-#include <cairo.h>
+#include "client/picture/drawing.h"
 
 #include <cmath>
 #include <cstdio>
@@ -38,7 +38,7 @@ class PolarPlot {
  public:
   explicit PolarPlot(const LuminaireFile& luminaire)
       : luminaire_(luminaire),
-        surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), cairo_surface_destroy),
+        surface_(new_drawing(width, height)),
         cairo_(cairo_create(surface_.get()), cairo_destroy),
         step_(step_of_rings(luminaire.web->greatest())) {
     if (cairo_status(cairo_.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("no memory for a drawing");
@@ -60,7 +60,7 @@ class PolarPlot {
     cairo_set_source_rgb(cairo_.get(), 0.8, 0.2, 0.1);
     draw_curve({1, 0, 0});
     draw_text();
-    return image();
+    return image_of(surface_.get());
   }
 
  private:
@@ -104,22 +104,9 @@ class PolarPlot {
     cairo_move_to(cairo_.get(), x, y);
     cairo_show_text(cairo_.get(), text.c_str());
   }
-  Image image() const {
-    cairo_surface_flush(surface_.get());
-    Image image{width, height, {}};
-    const unsigned char* rows = cairo_image_surface_get_data(surface_.get());
-    const int stride = cairo_image_surface_get_stride(surface_.get());
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const unsigned char* pixel = rows + y * stride + 4 * x;  // blue first
-        image.rgb.insert(image.rgb.end(), {pixel[2], pixel[1], pixel[0]});
-      }
-    return image;
-  }
-
   const LuminaireFile& luminaire_;
-  std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_;
-  std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_;
+  CairoSurface surface_;
+  CairoContext cairo_;
   double step_;  // cd between rings
 };
 

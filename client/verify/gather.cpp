@@ -61,7 +61,7 @@ std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std:
   if (is_enclosed(point, stream)) return std::nullopt;
   const GatheredIrradiance first = from_emitters(point, normal, stream), second = from_lamps(point, normal, stream),
                            third = from_other_surfaces(point, normal, stream);
-  return GatheredIrradiance{first.irradiance + second.irradiance + third.irradiance,
+  return GatheredIrradiance{first.irradiance + second.irradiance + third.irradiance, third.irradiance,
                             std::hypot(first.standard_error, second.standard_error, third.standard_error)};
 }
 
@@ -72,7 +72,6 @@ Rgb Gatherer::through(const TriangleCaster::Hit& hit, Vec3 direction) const {
   return is_seen_by_twin ? Rgb{1, 1, 1} : transmittance_.at(hit.triangle, hit.u, hit.v);
 }
 
-/// Returns the share of light that goes straight from one place to another, per band.
 Rgb Gatherer::passing(Vec3 from, Vec3 to) const {
   return transmittance_between(caster_, from, to, transmittance_.has_panes(),
                                [&](const TriangleCaster::Hit& hit, Vec3 direction) { return through(hit, direction); });
@@ -205,7 +204,7 @@ GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::u
     for (std::uint32_t n = 0; n < rays_per_round; ++n) sum += from_direction(point, cosine_direction(normal, directions[n]));
     estimate.add(sum * (1.0 / rays_per_round));
   }
-  return {estimate.mean(), std::sqrt(estimate.variance_of_band_mean())};
+  return {estimate.mean(), estimate.mean(), std::sqrt(estimate.variance_of_band_mean())};
 }
 
 }  // namespace alvor

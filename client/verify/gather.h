@@ -16,6 +16,7 @@ namespace alvor {
 
 struct GatheredIrradiance {
   Rgb irradiance;             ///< W/m2
+  Rgb from_surfaces;          ///< the part that comes from surfaces that do not emit, W/m2
   double standard_error = 0;  ///< error of irradiance.mean(), W/m2; only from sampling, not from the solution
 };
 
@@ -34,6 +35,9 @@ class Gatherer {
   /// or outside the room.
   std::optional<GatheredIrradiance> gather(Vec3 point, Vec3 normal, std::uint64_t stream) const;
 
+  /// Returns the share of light that goes straight from one place to another past the surfaces, per band.
+  Rgb passing(Vec3 from, Vec3 to) const;
+
  private:
   /// The fraction of a triangle's unblocked light that arrives, by band, and the variance of that estimate.
   struct VisibleShare {
@@ -45,7 +49,6 @@ class Gatherer {
   /// pane is passed: its front, drawn close to it, dims.
   Rgb through(const TriangleCaster::Hit& hit, Vec3 direction) const;
   bool meets_front(std::uint32_t triangle, Vec3 direction) const;
-  Rgb passing(Vec3 from, Vec3 to) const;
   Rgb from_direction(Vec3 point, Vec3 direction) const;
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;
   GatheredIrradiance from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream) const;

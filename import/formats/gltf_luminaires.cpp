@@ -56,6 +56,7 @@ void GltfLuminaires::add(const tinygltf::Node& node, std::size_t index, const Pl
   light.across = normalized(across - dot(across, light.direction) * light.direction);
   light.web = file.web;
   light.opening = file.opening;
+  light.electrical_watts = file.watts;
   scene.lights.push_back(std::move(light));
 }
 

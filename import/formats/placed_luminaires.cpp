@@ -39,6 +39,7 @@ Light hang(const LuminaireFile& file, const v1::PlacedLuminaire& place, UpAxis a
   light.across = normalized(light.across - dot(light.across, light.direction) * light.direction);
   light.web = file.web;
   light.opening = file.opening;
+  light.electrical_watts = file.watts;
   return light;
 }
 

@@ -68,6 +68,7 @@ TEST_P(SolutionFile, RemembersLightsAndWhatItsNumbersMean) {
   Light downlight{"downlight", LightKind::luminaire, {1, 1, 1}, {3, 2, 1}};
   downlight.across = {0, 1, 0};
   downlight.opening = {LuminousOpening::Shape::cylinder, 0.1, 0.2, 0.3};
+  downlight.electrical_watts = 12.5;
   downlight.web =
       std::make_shared<PhotometricWeb>(PhotometricWeb{PhotometricWeb::Axis::aim, {0, 90, 360}, {0, 90}, {1, 2, 3.25, 4, 1, 2}});
   mesh.lights = {bulb, spot, downlight, downlight};

@@ -47,6 +47,7 @@ Scene scene_with_lights() {
   Light downlight{"downlight", LightKind::luminaire, {1, 1, 1}, {3, 2, 1}};
   downlight.across = {0, 1, 0};
   downlight.opening = {LuminousOpening::Shape::box, 0.1, 0.2, 0.3};
+  downlight.electrical_watts = 12.5;
   const PhotometricWeb web{PhotometricWeb::Axis::across, {-90, 0, 90}, {0, 180}, {1, 2, 3, 4, 5, 6}};
   downlight.web = std::make_shared<PhotometricWeb>(web);
   Light other{"other", LightKind::luminaire, {2, 2, 2}};

@@ -4,13 +4,10 @@
 #include "client/bake/probe_grid.h"
 #include "client/bake/scene_document.h"
 #include "client/command/commands/commands.h"
-#include "client/command/commands/interrupt.h"
-#include "client/command/options/absorption_option.h"
+#include "client/command/commands/solve_here.h"
 #include "client/command/options/input_file.h"
-#include "client/command/options/light_options.h"
 #include "client/command/options/option_checks.h"
-#include "client/command/options/translucent_option.h"
-#include "client/command/options/up_option.h"
+#include "client/command/options/scene_options.h"
 #include "client/command/output/display.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
@@ -20,9 +17,6 @@
 #include "client/command/output/status_line.h"
 #include "import/base/scene_format.h"
 #include "import/base/whole_file.h"
-#include "proto/codec.h"
-#include "radiosity/solve/solver.h"
-#include "solution/solution_mirror.h"
 
 #include <algorithm>
 #include <array>
@@ -39,7 +33,8 @@ namespace {
 constexpr std::string_view glb_formats[]{"glb"};
 const FileKind baked_kind{"a baked scene", glb_formats, false, false};
 
-const std::map<std::string, BakeForm> forms{{"lightmap", BakeForm::lightmap}, {"unlit", BakeForm::unlit}, {"vertex", BakeForm::vertex}};
+const std::map<std::string, BakeForm> forms{
+    {"lightmap", BakeForm::lightmap}, {"unlit", BakeForm::unlit}, {"vertex", BakeForm::vertex}};
 const std::map<std::string, LightmapFormat> formats{{"png", LightmapFormat::png}, {"exr", LightmapFormat::exr}};
 const std::map<std::string, LightmapUnit> conventions{{"three", LightmapUnit::irradiance},
                                                       {"godot", LightmapUnit::irradiance_over_pi},
@@ -53,46 +48,8 @@ struct BakeCommand {
   BakeOptions bake;
   std::string probes;  ///< NX,NY,NZ; empty: none
   SolveOptions solve;
-  std::string absorption;  ///< three numbers; empty: none
-  LightOptions light;
-  std::vector<std::string> translucent;  ///< MATERIAL=T
-  std::string up;                        ///< "y" or "z"; empty: as the file says
+  SceneOptions scene_options;
 };
-
-Scene read_given(const BakeCommand& command, const RawScene& bytes) {
-  SceneImport import;
-  take_light_options(command.light, import);
-  take_translucent(command.translucent, import.options);
-  if (is_axis(command.up)) import.options.set_up_axis(encode(command.up == "z" ? UpAxis::z : UpAxis::y));
-  SceneFile file = read_scene_content(
-      {name_of(command.scene), bytes.bytes, lower_case_extension(bytes.file), bytes.folder}, import);
-  take_absorption(command.absorption, file.scene);
-  warn(file.warnings);
-  return std::move(file.scene);
-}
-
-/// Solves a scene and shows how far it is.
-DisplayMesh solved(const BakeCommand& command, const Scene& scene) {
-  const BaseMesh mesh(scene);
-  if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": all faces are degenerate");
-  const Interrupt interrupt;
-  SolutionLog log;
-  StatusLine line;
-  const auto show = [&](const Step& step) {
-    line.show("solving: estimated error " + percent(step.estimated_error) + ", " + std::to_string(step.leaves) + " leaves");
-  };
-  const auto handle = log.listen([&] {
-    if (line.due()) show(log.last_step());
-  });
-  const SolveOutcome outcome = solve(mesh, command.solve, log, interrupt.token());
-  log.forget(handle);
-  show(log.last_step());
-  if (outcome.reason == StopReason::cancelled) throw Failure(ExitStatus::failed, "the bake was cancelled");
-  if (outcome.reason != StopReason::tolerance)
-    warn(std::array{"the solve ended before its tolerance: " + std::string(text(outcome.reason)) + ", estimated error " +
-                    percent(log.last_step().estimated_error)});
-  return solution_mesh(mesh, log.leaves());
-}
 
 GltfDocument document_of(const RawScene& bytes, const Scene& scene) {
   const std::string extension = lower_case_extension(bytes.file);
@@ -110,7 +67,8 @@ Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scen
   std::mutex mutex;
   options.on_progress = [&](double share) {
     const std::unique_lock lock(mutex, std::try_to_lock);
-    if (lock && line.on_terminal() && (line.due() || share == 1)) line.show(progress_bar(share) + " " + percent(share) + " of the texels");
+    if (lock && line.on_terminal() && (line.due() || share == 1))
+      line.show(progress_bar(share) + " " + percent(share) + " of the texels");
   };
   try {
     return bake(document_of(bytes, scene), scene, solution, options);
@@ -173,33 +131,24 @@ void run_bake(const BakeCommand& command) {
     throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
   reserve_stdout_for({command.output.path});
   const RawScene bytes = scene_bytes(command.scene, command.format);
-  const Scene scene = read_given(command, bytes);
+  const Scene scene = read_scene(command.scene_options, bytes, name_of(command.scene));
   const DisplayMesh solution =
-      command.solution.empty() ? solved(command, scene) : read_solution(command.solution, {});
+      command.solution.empty() ? solve_here(scene, command.solve, name_of(command.scene)) : read_solution(command.solution, {});
   Baked result = baked(command, bytes, scene, solution);
   if (counts) add_probes(command, *counts, scene, solution, result);
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
-                    (result.pages > 0 ? " charts" : " primitives") +
-                    " are lit from both sides; the brighter one is shown"});
+                    (result.pages > 0 ? " charts" : " primitives") + " are lit from both sides; the brighter one is shown"});
   write(command, result);
   notes() << summary_of(command, result);
 }
 
 void add_solve_options(CLI::App& command, BakeCommand& options) {
-  command.add_option("--solution", options.solution, "Bake this solution of the scene (.glb of alvor solve) instead of solving it")
+  command
+      .add_option("--solution", options.solution, "Bake this solution of the scene (.glb of alvor solve) instead of solving it")
       ->type_name("SOLUTION");
-  command.add_option("--tolerance", options.solve.tolerance, "Solve until the estimated relative error is this small (0.02)")
-      ->check(above_up_to(0, 1));
-  command.add_option("--max-elements", options.solve.max_leaves, "Stop refining at this many leaves (200000)")->check(whole_from(1));
-  command.add_option("--time-limit", options.solve.time_limit_s, "Stop solving after this many seconds")->check(above_up_to(0, 1e9));
-  command.add_option("--threads", options.solve.threads, "Worker threads of the solve (as many as the machine has)")
-      ->check(CLI::Range(1, 1024));
-  command.add_option("--seed", options.solve.seed, "The same seed gives the same solution (1)")->check(whole_from(0));
-  add_absorption_option(command, options.absorption);
-  add_light_options(command, options.light);
-  add_translucent_option(command, options.translucent);
-  add_up_option(command, options.up);
+  add_solve_limits(command, options.solve);
+  add_scene_options(command, options.scene_options);
 }
 
 void add_texture_options(CLI::App& command, BakeCommand& options) {
@@ -209,14 +158,16 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
                   "picture of the solution, for every viewer; vertex: such colours at the vertices, without textures (lightmap)")
       ->check(CLI::IsMember(forms));
   command
-      .add_option("--lightmap-format", options.lightmap_format,
-                  "png: in the GLB, 8 bits sRGB up to a range that MOZ_lightmap tells as its intensity; exr: half floats in files "
-                  "beside the GLB (png)")
+      .add_option(
+          "--lightmap-format", options.lightmap_format,
+          "png: in the GLB, 8 bits sRGB up to a range that MOZ_lightmap tells as its intensity; exr: half floats in files "
+          "beside the GLB (png)")
       ->check(CLI::IsMember(formats));
   command
-      .add_option("--convention", options.convention,
-                  "What a texel holds. three: irradiance E, as lightMap of three.js; godot, unity: E / pi, the radiance of a white "
-                  "surface, as those engines multiply by the colour (three)")
+      .add_option(
+          "--convention", options.convention,
+          "What a texel holds. three: irradiance E, as lightMap of three.js; godot, unity: E / pi, the radiance of a white "
+          "surface, as those engines multiply by the colour (three)")
       ->check(CLI::IsMember(conventions));
   command.add_flag("--keep-lights", options.bake.keeps_lights,
                    "Keep the file's lamps beside the lightmap, for things that move; viewers add their light once more");
@@ -229,7 +180,8 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
       .add_option("--probes", options.probes,
                   "Light in the air for things that move: NX,NY,NZ probes in a grid over the scene, in BAKED-probes.json")
       ->type_name("NX,NY,NZ");
-  command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (4)")->check(CLI::Range(0, 64));
+  command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (4)")
+      ->check(CLI::Range(0, 64));
   command
       .add_option("--range", options.bake.range,
                   "Brightest value of a lightmap in PNG, W/m2 or lx (so that 0.2 % of the texels are brighter)")
@@ -243,7 +195,9 @@ void add_bake_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("bake", "Solve a scene and write it with its light in textures");
   command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
-  add_output_option(command, options->output, baked_kind, "Scene to write: .glb; - is stdout")->required()->type_name("BAKED.glb");
+  add_output_option(command, options->output, baked_kind, "Scene to write: .glb; - is stdout")
+      ->required()
+      ->type_name("BAKED.glb");
   add_texture_options(command, *options);
   add_solve_options(command, *options);
   command.callback([options] { run_bake(*options); });

@@ -11,6 +11,7 @@ void add_probe_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_bake_command(CLI::App& app);
+void add_report_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
 void add_form_factor_command(CLI::App& app);

@@ -1,6 +1,6 @@
 #include "client/command/commands/outputs.h"
 
-#include "client/command/commands/report.h"
+#include "client/command/commands/solve_outcome.h"
 #include "client/command/output/display.h"
 #include "client/command/output/files.h"
 #include "client/command/output/frames.h"

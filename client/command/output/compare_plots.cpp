@@ -1,11 +1,9 @@
 #include "client/command/output/compare_plots.h"
 
+#include "client/command/output/run_program.h"
 #include "import/base/whole_file.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <string_view>
 
 namespace alvor {
 
@@ -36,34 +34,11 @@ set xrange [1e-5:*]
 plot for [i = 1:5] "compare.csv" every ::1 using (of(word(names, i), $3)):4 with lines lw 2 lc rgb word(colours, i) title word(names, i)
 )";
 
-/// Frees the spawn actions at the end of the scope. The spawn functions return errors by value; a failure shows in the last of
-/// them.
-struct SpawnActions {
-  posix_spawn_file_actions_t actions;
-  SpawnActions() { posix_spawn_file_actions_init(&actions); }
-  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions); }
-  SpawnActions(const SpawnActions&) = delete;
-  SpawnActions& operator=(const SpawnActions&) = delete;
-};
-
-bool run_gnuplot(const std::filesystem::path& folder) {
-  SpawnActions spawn;
-  posix_spawn_file_actions_addchdir_np(&spawn.actions, folder.c_str());
-  for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
-    posix_spawn_file_actions_addopen(&spawn.actions, stream, "/dev/null", O_WRONLY, 0);
-  std::string program = "gnuplot", argument = "compare.gnuplot";
-  char* arguments[]{program.data(), argument.data(), nullptr};
-  pid_t child = 0;
-  if (posix_spawnp(&child, program.c_str(), &spawn.actions, nullptr, arguments, environ) != 0) return false;
-  int status = 0;
-  return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
 }  // namespace
 
 bool draw_compare_plots(const std::filesystem::path& folder) {
   write_whole_file(folder / "compare.gnuplot", script);
-  return run_gnuplot(folder);
+  return run_program(folder, "gnuplot", {"compare.gnuplot"});
 }
 
 }  // namespace alvor

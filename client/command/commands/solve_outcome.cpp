@@ -1,4 +1,4 @@
-#include "client/command/commands/report.h"
+#include "client/command/commands/solve_outcome.h"
 
 #include "client/command/output/numbers.h"
 #include "client/picture/units.h"

@@ -1,0 +1,20 @@
+#pragma once
+// Solves a scene in the process of the command, for commands that need a solution on the way to something else.
+
+#include "meshing/display_mesh.h"
+#include "radiosity/solve/solver.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace alvor {
+
+/// Adds the options for how far a scene is solved.
+void add_solve_limits(CLI::App& command, SolveOptions& options);
+
+/// Solves a scene, which messages call `name`, and shows how far it is. Warns if the solve ends before its tolerance. Throws
+/// Failure if it is cancelled or no face has an area.
+DisplayMesh solve_here(const Scene& scene, const SolveOptions& options, const std::string& name);
+
+}  // namespace alvor

@@ -1,0 +1,302 @@
+#include "client/report/rooms.h"
+
+#include "client/report/pillars.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+
+namespace alvor {
+
+namespace {
+
+constexpr double least_core = 0.2, least_area = 1;     // m2
+constexpr double half_door = 0.65, least_width = 0.8;  // metres
+constexpr double least_share_clear = 0.2;              // of a floor's cells
+constexpr double most_border = 0.15;                   // of the shorter side
+constexpr double least_clear_height = 1.5;             // metres: what is lower is under furniture or a crawl space
+constexpr double height_of_furniture = 1.8;            // metres: a level that is higher above a floor is an upper floor
+constexpr std::uint32_t none = 0xffffffff;
+
+/// Returns the number of each cell's part, counted from 0: parts are connected cells for which `belongs`.
+template <class Belongs>
+std::vector<std::uint32_t> parts_of(const FloorRaster& floor, std::uint32_t& count, Belongs belongs) {
+  std::vector<std::uint32_t> parts(floor.cells.size(), none);
+  std::vector<std::size_t> open;
+  count = 0;
+  for (std::size_t start = 0; start < parts.size(); ++start) {
+    if (parts[start] != none || !belongs(start)) continue;
+    parts[start] = count;
+    open.push_back(start);
+    while (!open.empty()) {
+      const std::size_t cell = open.back();
+      open.pop_back();
+      floor.for_open_neighbours(cell, [&](std::size_t next) {
+        if (parts[next] != none || !belongs(next)) return;
+        parts[next] = count;
+        open.push_back(next);
+      });
+    }
+    ++count;
+  }
+  return parts;
+}
+
+/// Returns whether a cell of a floor lies beside a wall or the floor's end.
+bool is_at_edge(const FloorRaster& floor, std::size_t cell) {
+  int neighbours = 0;
+  floor.for_open_neighbours(cell,
+                            [&](std::size_t next) { neighbours += floor.cells[next].is_floor || floor.cells[next].is_pillar; });
+  return neighbours < 4;
+}
+
+/// The cells of one part of a floor.
+struct Part {
+  std::vector<std::size_t> cells;
+  int first_column = 0, last_column = -1, first_row = 0, last_row = -1;
+};
+
+Part part_of(const PlanRaster& raster, std::vector<std::size_t> cells) {
+  Part part{std::move(cells)};
+  part.first_column = raster.columns, part.first_row = raster.rows;
+  for (const std::size_t cell : part.cells) {
+    part.first_column = std::min(part.first_column, raster.column_of(cell));
+    part.last_column = std::max(part.last_column, raster.column_of(cell));
+    part.first_row = std::min(part.first_row, raster.row_of(cell));
+    part.last_row = std::max(part.last_row, raster.row_of(cell));
+  }
+  return part;
+}
+
+std::vector<Part> collected(const PlanRaster& raster, std::span<const std::uint32_t> numbers, std::uint32_t count) {
+  std::vector<std::vector<std::size_t>> cells(count);
+  for (std::size_t cell = 0; cell < numbers.size(); ++cell)
+    if (numbers[cell] != none) cells[numbers[cell]].push_back(cell);
+  std::vector<Part> parts;
+  for (auto& each : cells) parts.push_back(part_of(raster, std::move(each)));
+  return parts;
+}
+
+/// Returns whether most of a part has something above it.
+bool is_covered(const FloorRaster& floor, const Part& part) {
+  const auto covered = std::ranges::count_if(part.cells, [&](std::size_t cell) { return floor.cells[cell].is_covered; });
+  return 2 * static_cast<std::size_t>(covered) >= part.cells.size();
+}
+
+/// Returns the clear height that a share of a part's cells exceeds.
+double height_of_share(const FloorRaster& floor, const Part& part, double share) {
+  std::vector<float> heights;
+  const bool is_roofed = is_covered(floor, part);
+  for (const std::size_t cell : part.cells)
+    if (!is_roofed || floor.cells[cell].is_covered) heights.push_back(floor.cells[cell].clear_height);
+  const auto place = heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
+  std::ranges::nth_element(heights, place, std::greater{});
+  return *place;
+}
+
+/// Finds the rooms of one level.
+class LevelRooms {
+ public:
+  /// `least_clear`: floors with less room above are none, metres. `needs_ceiling`: nor are those open to the sky.
+  LevelRooms(const FloorRaster& floor, const PlanFrame& frame, double border, double least_clear, bool needs_ceiling)
+      : floor_(floor),
+        raster_(floor.raster),
+        frame_(frame),
+        border_(border),
+        least_clear_(least_clear),
+        needs_ceiling_(needs_ceiling) {}
+
+  /// Appends the rooms of the level that do not stand on those found below.
+  void add_to(std::vector<Room>& rooms) const {
+    std::uint32_t count = 0;
+    const auto numbers = parts_of(floor_, count, [&](std::size_t cell) { return floor_.cells[cell].is_floor; });
+    const std::size_t below = rooms.size();
+    for (const Part& part : collected(raster_, numbers, count))
+      if (is_floor(part, std::span(rooms).first(below))) add_rooms_of(part, rooms);
+  }
+
+ private:
+  double cell_area() const { return raster_.cell_u * raster_.cell_v; }
+
+  bool is_floor(const Part& part, std::span<const Room> below) const {
+    if (static_cast<double>(part.cells.size()) * cell_area() < least_area) return false;
+    if (height_of_share(floor_, part, least_share_clear) < least_clear_) return false;
+    std::size_t on_furniture = 0;
+    for (const std::size_t cell : part.cells) on_furniture += stands_on(cell, below);
+    return 2 * on_furniture < part.cells.size();
+  }
+
+  bool stands_on(std::size_t cell, std::span<const Room> below) const {
+    const double u = raster_.middle_u(raster_.column_of(cell)), v = raster_.middle_v(raster_.row_of(cell));
+    return std::ranges::any_of(below, [&](const Room& room) {
+      return floor_.height - room.floor_height < height_of_furniture && room.cell_at(u, v) != Room::Cell::elsewhere;
+    });
+  }
+
+  /// Returns the shorter side of the rectangle about a part, metres.
+  double shorter_side(const Part& part) const {
+    return std::min((part.last_column - part.first_column + 1) * raster_.cell_u,
+                    (part.last_row - part.first_row + 1) * raster_.cell_v);
+  }
+
+  /// Returns whether each cell is nearer than `reach` to an edge of the floor within the part.
+  std::vector<bool> near_edge(const Part& part, double reach) const {
+    std::vector<bool> is_near(floor_.cells.size());
+    for (const std::size_t cell : part.cells)
+      if (is_at_edge(floor_, cell)) mark_around(cell, reach, is_near);
+    return is_near;
+  }
+
+  /// Marks the cells whose middle is within `reach` of the far side of an edge cell.
+  void mark_around(std::size_t cell, double reach, std::vector<bool>& marked) const {
+    const int column = raster_.column_of(cell), row = raster_.row_of(cell);
+    const int reach_u = static_cast<int>(reach / raster_.cell_u), reach_v = static_cast<int>(reach / raster_.cell_v);
+    const double radius = reach - std::min(raster_.cell_u, raster_.cell_v) / 2;
+    for (int y = std::max(0, row - reach_v); y <= std::min(raster_.rows - 1, row + reach_v); ++y)
+      for (int x = std::max(0, column - reach_u); x <= std::min(raster_.columns - 1, column + reach_u); ++x)
+        if (std::hypot((x - column) * raster_.cell_u, (y - row) * raster_.cell_v) < radius) marked[raster_.index(x, y)] = true;
+  }
+
+  /// Divides a part of the floor at its doors. A room is what is left connected after a strip along the walls, as wide as half a
+  /// door, is taken away, and what of the strip lies near it. Places that are too narrow for that, like corridors, are rooms,
+  /// too.
+  void add_rooms_of(const Part& part, std::vector<Room>& rooms) const {
+    const double reach = std::min(half_door, shorter_side(part) / 4);
+    const std::vector<bool> is_strip = near_edge(part, reach);
+    std::vector<std::uint32_t> owners(floor_.cells.size(), none);
+    std::vector<bool> is_of_part(floor_.cells.size());
+    for (const std::size_t cell : part.cells) is_of_part[cell] = true;
+    std::uint32_t count = 0;
+    const auto take = [&](double least, auto belongs) {
+      std::uint32_t found = 0;
+      const auto numbers = parts_of(floor_, found, belongs);
+      for (const Part& each : collected(raster_, numbers, found)) {
+        if (static_cast<double>(each.cells.size()) * cell_area() < least) continue;
+        for (const std::size_t cell : each.cells) owners[cell] = count;
+        ++count;
+      }
+    };
+    take(least_core, [&](std::size_t cell) { return is_of_part[cell] && !is_strip[cell]; });
+    grow(owners, 1.5 * reach);
+    take(least_area, [&](std::size_t cell) { return is_of_part[cell] && owners[cell] == none; });
+    grow(owners, std::numeric_limits<double>::infinity());
+    for (const Part& owned : collected(raster_, owners, count))
+      if (is_wide_enough(owned) && (!needs_ceiling_ || is_covered(floor_, owned))) rooms.push_back(room_of(owned));
+  }
+
+  /// Returns whether somebody can stand there. The insides of walls whose faces have two sides cannot be told from rooms but by
+  /// their width.
+  bool is_wide_enough(const Part& part) const {
+    const double across = std::min(raster_.columns * raster_.cell_u, raster_.rows * raster_.cell_v);
+    const std::vector<bool> is_near = near_edge(part, std::min(least_width / 2, across / 4));
+    return std::ranges::any_of(part.cells, [&](std::size_t cell) { return !is_near[cell]; });
+  }
+
+  /// Gives each cell of the floor to the room from which it is reached first, within a distance.
+  void grow(std::vector<std::uint32_t>& owners, double most) const {
+    std::vector<std::size_t> edge, next_edge;
+    for (std::size_t cell = 0; cell < owners.size(); ++cell)
+      if (owners[cell] != none) edge.push_back(cell);
+    const double step = std::min(raster_.cell_u, raster_.cell_v);
+    for (double way = 0; !edge.empty() && way < most; way += step, edge.swap(next_edge), next_edge.clear())
+      for (const std::size_t cell : edge)
+        floor_.for_open_neighbours(cell, [&](std::size_t next) {
+          if (owners[next] != none || !floor_.cells[next].is_floor) return;
+          owners[next] = owners[cell];
+          next_edge.push_back(next);
+        });
+  }
+
+  Room room_of(const Part& part) const {
+    const std::vector<bool> is_border = near_edge(part, std::min(border_, most_border * shorter_side(part)));
+    Room room;
+    room.frame = frame_;
+    room.floor_height = floor_.height;
+    room.clear_height = height_of_share(floor_, part, 0.1);  // most of the room may lie under furniture
+    room.area = static_cast<double>(part.cells.size()) * cell_area();
+    room.raster = {raster_.left + part.first_column * raster_.cell_u,
+                   raster_.bottom + part.first_row * raster_.cell_v,
+                   raster_.cell_u,
+                   raster_.cell_v,
+                   part.last_column - part.first_column + 1,
+                   part.last_row - part.first_row + 1};
+    room.cells.assign(room.raster.size(), Room::Cell::elsewhere);
+    std::vector<std::size_t> inner;
+    for (const std::size_t cell : part.cells) {
+      const std::size_t here =
+          room.raster.index(raster_.column_of(cell) - part.first_column, raster_.row_of(cell) - part.first_row);
+      room.cells[here] = is_border[cell] ? Room::Cell::border : Room::Cell::inner;
+      if (!is_border[cell]) inner.push_back(here);
+    }
+    const Part bounds = part_of(room.raster, std::move(inner));
+    room.left = room.raster.left + bounds.first_column * raster_.cell_u;
+    room.bottom = room.raster.bottom + bounds.first_row * raster_.cell_v;
+    room.length = (bounds.last_column - bounds.first_column + 1) * raster_.cell_u;
+    room.width = (bounds.last_row - bounds.first_row + 1) * raster_.cell_v;
+    room.floor_triangle = floor_.cells[part.cells[part.cells.size() / 2]].triangle;
+    return room;
+  }
+
+  const FloorRaster& floor_;
+  const PlanRaster& raster_;
+  const PlanFrame& frame_;
+  const double border_, least_clear_;
+  const bool needs_ceiling_;
+};
+
+double height_of(const DisplayMesh& mesh, const PlanFrame& frame) {
+  double low = 1e300, high = -1e300;
+  for (const Vec3& position : mesh.positions) {
+    low = std::min(low, dot(position, frame.up));
+    high = std::max(high, dot(position, frame.up));
+  }
+  return high - low;
+}
+
+/// Returns the name of the object that a triangle belongs to; nothing if that is not known.
+std::string object_of_triangle(const DisplayMesh& mesh, std::uint32_t triangle) {
+  std::uint64_t end = 0;
+  for (const FaceTriangles& run : mesh.faces) {
+    end += run.count;
+    if (triangle >= end) continue;
+    for (const SceneObject& object : mesh.objects)
+      if (run.faces.first >= object.first_face && run.faces.first - object.first_face < object.face_count) return object.name;
+    break;
+  }
+  return {};
+}
+
+void name_rooms(const DisplayMesh& mesh, std::vector<Room>& rooms) {
+  std::map<std::string, int> times;
+  for (Room& room : rooms) {
+    room.name = object_of_triangle(mesh, room.floor_triangle);
+    ++times[room.name];
+  }
+  std::map<std::string, int> number;
+  for (Room& room : rooms) {
+    const std::string name = room.name;
+    if (name.empty() || times[name] > 1) room.name = (name.empty() ? "Room" : name) + " " + std::to_string(++number[name]);
+  }
+}
+
+}  // namespace
+
+std::vector<Room> rooms_of(const DisplayMesh& mesh, double border) {
+  const TriangleCaster caster(mesh.positions, mesh.triangles, Traversal::watertight);
+  const PlanFrame frame = frame_along_walls(mesh);
+  const double least_clear = std::min(least_clear_height, height_of(mesh, frame) / 2);
+  std::vector<FloorRaster> floors = floor_rasters(mesh, caster, frame);
+  for (FloorRaster& floor : floors) open_pillars(floor);
+  std::vector<Room> rooms;
+  for (const bool needs_ceiling : {true, false})
+    if (rooms.empty())
+      for (const FloorRaster& floor : floors) LevelRooms(floor, frame, border, least_clear, needs_ceiling).add_to(rooms);
+  name_rooms(mesh, rooms);
+  return rooms;
+}
+
+}  // namespace alvor
