@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace alvor {
 
@@ -59,6 +60,9 @@ RootPatch make_root(const Scene& scene, std::span<const std::uint32_t> ring, con
   if (root.corner_count == 4) root.strata_along_u = count_strata_along_u(root.corners);
   return root;
 }
+
+/// Returns a face as one piece. Requires: three or four corners.
+Piece whole(const WeldedFace& face) { return {0, 1, 2, face.ring.size() == 3 ? no_corner : 3}; }
 
 /// Sets the corners of the back to those of the front in reverse order.
 void turn_round(const RootPatch& front, RootPatch& back) {
@@ -160,18 +164,21 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   Box used;
   for (const Face& face : scene.faces)
     for (const std::uint32_t vertex : scene.corners_of(face)) used.add(scene.vertices[vertex]);
-  const auto welded = weld(scene.vertices, std::max(weld_tolerance * used.longest_side(), 1e-300));
+  std::vector<std::uint32_t> welded(scene.vertices.size());
+  if (options.faces_are_roots) std::iota(welded.begin(), welded.end(), 0u);
+  else welded = weld(scene.vertices, std::max(weld_tolerance * used.longest_side(), 1e-300));
   for (std::uint32_t v = 0; v < welded.size(); ++v) report_.welded_vertices += welded[v] != v;
 
   refuse_stopped(options.stop);
   std::vector<WeldedFace> faces = weld_faces(scene, welded);
   refuse_stopped(options.stop);
   report_.degenerate_faces = scene.faces.size() - faces.size();
-  report_.duplicates = leave_out_duplicates(scene, faces);
-  if (options.join_triangles) join_triangle_pairs(scene, faces);
+  if (!options.faces_are_roots) report_.duplicates = leave_out_duplicates(scene, faces);
+  if (options.join_triangles && !options.faces_are_roots) join_triangle_pairs(scene, faces);
   for (const WeldedFace& face : faces) {
     refuse_stopped(options.stop);
-    add_roots(scene, face);
+    if (options.faces_are_roots) add_root(scene, face, whole(face));
+    else add_roots(scene, face);
   }
 
   Box box;
@@ -188,14 +195,16 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   add_backs();
 }
 
+void BaseMesh::add_root(const Scene& scene, const WeldedFace& face, const std::array<std::uint32_t, 4>& piece) {
+  RootPatch root = make_root(scene, face.ring, piece);
+  root.material = face.material;
+  root.input = face.input;
+  if (!is_degenerate(std::span(root.corners).first(root.corner_count))) roots_.push_back(root);
+}
+
 void BaseMesh::add_roots(const Scene& scene, const WeldedFace& face) {
   const std::size_t before = roots_.size();
-  for (const Piece& piece : pieces_of(positions_of(scene, face.ring))) {
-    RootPatch root = make_root(scene, face.ring, piece);
-    root.material = face.material;
-    root.input = face.input;
-    if (!is_degenerate(std::span(root.corners).first(root.corner_count))) roots_.push_back(root);
-  }
+  for (const Piece& piece : pieces_of(positions_of(scene, face.ring))) add_root(scene, face, piece);
   report_.degenerate_faces += roots_.size() == before;
   report_.split_faces += roots_.size() > before + 1;
 }

@@ -24,9 +24,9 @@ struct RootPatch {
   std::array<std::uint32_t, 4> vertex;  ///< the welded vertex at each corner
   int corner_count = 3;                 ///< 3 or 4
   std::uint32_t material = 0;
-  InputFaces input;  ///< the face of the scene it came from, or the two triangles
-  Vec3 normal;       ///< unit; points to the front
-  double area = 0;   ///< m2
+  InputFaces input;        ///< the face of the scene it came from, or the two triangles
+  Vec3 normal;             ///< unit; points to the front
+  double area = 0;         ///< m2
   int strata_along_u = 4;  ///< see PatchShape
 
   static constexpr std::uint32_t no_twin = ~0u;
@@ -68,6 +68,9 @@ struct BuildStopped : std::exception {
 struct BaseMeshOptions {
   /// Joins two triangles that an exporter cut from one quad. Applies only to scenes made of triangles alone.
   bool join_triangles = true;
+  /// Each face becomes one root as it is: the faces are the roots of an earlier mesh without the added backs. They have three or
+  /// four corners, and no two vertices are in one place.
+  bool faces_are_roots = false;
   /// Checked during construction; the constructor throws BuildStopped when it is set.
   std::stop_token stop = {};
 };
@@ -105,6 +108,7 @@ class BaseMesh {
   double extent() const { return extent_; }  ///< longest side of the bounding box, metres; > 0 unless there are no roots
 
  private:
+  void add_root(const Scene& scene, const WeldedFace& face, const std::array<std::uint32_t, 4>& piece);
   void add_roots(const Scene& scene, const WeldedFace& face);
   void find_corner_values(const Scene& scene, std::span<const std::uint32_t> welded, const std::stop_token& stop);
   void pair_back_to_back();

@@ -1,7 +1,9 @@
 #include "client/export/solution_file.h"
 
+#include "client/export/compact_file.h"
 #include "client/export/glb_file.h"
 #include "client/export/ply_file.h"
+#include "client/export/vtu_file.h"
 #include "import/base/glb_format.h"
 #include "import/base/scene_format.h"
 #include "import/base/whole_file.h"
@@ -21,7 +23,16 @@ struct Format {
 Format format_of(const std::string& extension, const std::string& name) {
   if (extension == ".glb") return {encode_glb, decode_glb};
   if (extension == ".ply") return {encode_ply, decode_ply};
-  throw SolutionFileError(name + ": name: a solution file ends in .glb or .ply");
+  if (extension == ".alvor") return {nullptr, decode_compact};
+  if (extension == ".vtu") return {encode_vtu, nullptr};
+  throw SolutionFileError(name + ": name: a solution file ends in .glb, .ply or .alvor");
+}
+
+/// Returns what reads files of this extension. Throws SolutionFileError if nothing does.
+auto decoder_of(const std::string& extension, const std::string& name) {
+  const Format format = format_of(extension, name);
+  if (!format.decode) throw SolutionFileError(name + ": name: " + extension + " files are written, but not read");
+  return format.decode;
 }
 
 constexpr double largest_coordinate = 1e10;  // metres; scenes end at 1e9
@@ -106,29 +117,32 @@ auto naming(const std::string& name, Work work) {
 }  // namespace
 
 void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh) {
-  const Format format = format_of(lower_case_extension(path), path.string());
-  naming(path.string(), [&] { write_whole_file(path, format.encode(mesh)); });
+  naming(path.string(), [&] { write_whole_file(path, encode_solution(mesh, lower_case_extension(path))); });
 }
 
 bool is_solution(std::string_view bytes, const std::string& extension) {
   constexpr std::size_t longest_ply_header = 1 << 26;
   if (extension == ".glb") return bytes.substr(0, glb::largest_json).find("\"_IRRADIANCE\"") != bytes.npos;
   const std::string_view text = bytes.substr(0, longest_ply_header);
+  if (extension == ".alvor") return true;
   return extension == ".ply" && text.substr(0, text.find("end_header")).find("property float irradiance_r") != text.npos;
 }
 
 std::string encode_solution(const DisplayMesh& mesh, const std::string& extension) {
-  return format_of(extension, extension).encode(mesh);
+  const Format format = format_of(extension, extension);
+  if (!format.encode) throw SolutionFileError(extension + ": is written from leaves, not from triangles");
+  return format.encode(mesh);
 }
 
 DisplayMesh read_solution_file(const std::filesystem::path& path) {
-  const Format format = format_of(lower_case_extension(path), path.string());
-  return naming(path.string(), [&] { return checked(format.decode(read_whole_file(path))); });
+  const std::string extension = lower_case_extension(path);
+  (void)decoder_of(extension, path.string());
+  return decode_solution(naming(path.string(), [&] { return read_whole_file(path); }), extension, path.string());
 }
 
 DisplayMesh decode_solution(std::string_view bytes, const std::string& extension, const std::string& name) {
-  const Format format = format_of(extension, name);
-  return naming(name, [&] { return checked(format.decode(bytes)); });
+  const auto decode = decoder_of(extension, name);
+  return naming(name, [&] { return checked(decode(bytes)); });
 }
 
 }  // namespace alvor

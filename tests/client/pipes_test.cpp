@@ -118,9 +118,9 @@ TEST_F(Pipes, FormatsThatNoSuffixTellsMustBeGiven) {
   const std::string scene_formats = "obj, gltf, glb, ply, stl, 3ds, dae, fbx or another that Assimp reads";
   refuse("solve - </dev/null", "-: stdin has no suffix that tells the format: add --format " + scene_formats);
   refuse("explain - --format jpg </dev/null", "--format jpg: a scene is read as " + scene_formats);
-  refuse("render - -o room.png </dev/null", "-: stdin has no suffix that tells the format: add --format glb or ply");
-  refuse("probe - --format obj --points p.csv </dev/null", "--format obj: a solution is read as glb or ply");
-  refuse("solve room.obj -o -", "--output -: no suffix tells the format: add --output-format glb or ply");
+  refuse("render - -o room.png </dev/null", "-: stdin has no suffix that tells the format: add --format glb, ply or alvor");
+  refuse("probe - --format obj --points p.csv </dev/null", "--format obj: a solution is read as glb, ply or alvor");
+  refuse("solve room.obj -o -", "--output -: no suffix tells the format: add --output-format glb, ply, alvor or vtu");
   refuse("solve room.obj --format obj",
          "--format is for scenes and solutions from - (stdin): the name of a file tells its format");
   refuse("solve room.obj -o room.glb --output-format glb",

@@ -72,7 +72,7 @@ TEST_F(Usage, SuffixesOfOtherFormatsAreRefusedBeforeAnyWork) {
     EXPECT_EQ(ran.status, 2) << arguments;
     return ran.err;
   };
-  EXPECT_EQ(refusal("solve missing.obj -o room.jpg"), "alvor: --output room.jpg: a solution file ends in .glb or .ply\n");
+  EXPECT_EQ(refusal("solve missing.obj -o room.jpg"), "alvor: --output room.jpg: a solution file ends in .glb, .ply, .alvor or .vtu\n");
   EXPECT_EQ(refusal("render missing.glb -o picture.glb"), "alvor: --output picture.glb: a picture ends in .png\n");
   EXPECT_EQ(refusal("probe missing.glb --points missing.csv -o values.png"),
             "alvor: --output values.png: a table ends in .csv or .txt\n");

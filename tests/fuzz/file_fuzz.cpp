@@ -1,5 +1,5 @@
-// Fuzzes the files that our own importers read: OBJ, MTL, glTF and GLB with their parts; GLB and PLY of a solution; IES and
-// EULUMDAT; environment maps. The first byte of an input chooses what the others are.
+// Fuzzes the files that our own importers read: OBJ, MTL, glTF and GLB with their parts; GLB, PLY and compact files of a
+// solution; IES and EULUMDAT; environment maps. The first byte of an input chooses what the others are.
 
 #include "client/export/solution_file.h"
 #include "import/base/import_error.h"
@@ -31,9 +31,9 @@ constexpr std::array<SceneKind, 6> scenes{{{"scene.obj", "scene.obj"},
                                            {"room_z_up.mtl", "room_z_up.obj"},
                                            {"room.bin", "room.gltf"},
                                            {"wood.png", "room.obj"}}};
-constexpr std::array<const char*, 2> solutions{".glb", ".ply"};     // numbered after the scenes
-constexpr std::array<const char*, 2> luminaires{".ies", ".ldt"};    // numbered after the solutions
-constexpr std::array<const char*, 2> environments{".hdr", ".exr"};  // numbered after the luminaires
+constexpr std::array<const char*, 3> solutions{".glb", ".ply", ".alvor"};  // numbered after the scenes
+constexpr std::array<const char*, 2> luminaires{".ies", ".ldt"};           // numbered after the solutions
+constexpr std::array<const char*, 2> environments{".hdr", ".exr"};         // numbered after the luminaires
 
 /// Returns the files of Blender's exporters by name. A made-up scene can name them as its parts.
 const std::map<std::string, std::string>& parts() {

@@ -143,8 +143,8 @@ void write_seeds(const fs::path& directory, std::span<char*> files) {
   write_web_seeds(directory / "web");
   write_environment_seeds(directory / "file");
   write_texture_seeds(directory / "file");
-  const std::string kinds[] = {".obj",         ".gltf", ".glb", ".mtl", ".bin", ".png",
-                               "solution.glb", ".ply",  ".ies", ".ldt", ".hdr", ".exr"};
+  const std::string kinds[] = {".obj", ".gltf",  ".glb", ".mtl", ".bin", ".png", "solution.glb",
+                               ".ply", ".alvor", ".ies", ".ldt", ".hdr", ".exr"};
   for (char* file : files)
     for (std::size_t kind = 0; kind < std::size(kinds); ++kind) {
       if (!std::string_view(file).ends_with(kinds[kind])) continue;

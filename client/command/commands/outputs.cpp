@@ -5,6 +5,7 @@
 #include "client/command/output/files.h"
 #include "client/command/output/frames.h"
 #include "client/command/output/notes.h"
+#include "client/export/compact_file.h"
 #include "client/export/solution_file.h"
 
 #include <iostream>
@@ -13,16 +14,17 @@ namespace alvor {
 
 namespace {
 
-void write_solution(const OutputFile& output, const DisplayMesh& mesh) {
-  if (is_stream(output.path)) write_output(output.path, encode_solution(mesh, extension_of(output, solution_kind)));
-  else write_solution_file(output.path, mesh);
+std::string solution_bytes(const std::string& extension, const BaseMesh& mesh, const SolutionMirror& mirror) {
+  if (extension != ".alvor") return encode_solution(solution_mesh(mesh, mirror.leaves(), mirror.errors()), extension);
+  const CoveringLeaves all = covering_leaves(mesh, mirror.leaves(), mirror.errors());
+  return encode_compact(mesh, all.leaves, all.errors);
 }
 
 // Writes the solution and the frames, unless nothing was published because the solve failed at once.
 void write_pictures(const OutputOptions& options, const BaseMesh& mesh, const Followed& followed) {
   if (followed.mirror.steps().empty()) return;
   if (!options.solution.path.empty())
-    write_solution(options.solution, solution_mesh(mesh, followed.mirror.leaves(), followed.mirror.errors()));
+    write_output(options.solution.path, solution_bytes(extension_of(options.solution, solution_kind), mesh, followed.mirror));
   if (!options.frames.empty()) write_frames(options.frames, mesh, followed.snapshots, {.ambient = !options.no_ambient});
 }
 
@@ -46,7 +48,9 @@ std::string unfinished(const v1::Solve& solve) {
 }  // namespace
 
 void add_output_options(CLI::App& command, OutputOptions& options) {
-  add_output_option(command, options.solution, solution_kind, "Write the solution: .glb or .ply")->type_name("SOLUTION");
+  add_output_option(command, options.solution, solution_kind,
+                    "Write the solution: .glb, .ply, .alvor (small) or .vtu (for ParaView)")
+      ->type_name("SOLUTION");
   command.add_option("--report", options.report, "Write one CSV line per published step")->type_name("R.csv");
   command.add_option("--frames", options.frames, "Draw the growing solution as frame_0000.png ... in this folder")
       ->type_name("DIR");

@@ -44,11 +44,11 @@ std::string lower_case(std::string text) {
 std::string extension_of(const std::string& format) { return lower_case(format.starts_with('.') ? format : "." + format); }
 
 std::string formats_of(InputKind kind) {
-  return kind == InputKind::solution ? "glb or ply" : "obj, gltf, glb, ply, stl, 3ds, dae, fbx or another that Assimp reads";
+  return kind == InputKind::solution ? "glb, ply or alvor" : "obj, gltf, glb, ply, stl, 3ds, dae, fbx or another that Assimp reads";
 }
 
 bool is_known(InputKind kind, const std::string& extension) {
-  return kind == InputKind::solution ? extension == ".glb" || extension == ".ply" : is_scene_extension(extension);
+  return kind == InputKind::solution ? extension == ".glb" || extension == ".ply" || extension == ".alvor" : is_scene_extension(extension);
 }
 
 void require_format(InputKind kind, const std::string& format) {

@@ -30,14 +30,17 @@ bool stays_dark(PatchId patch, std::span<const LeafValue> last) {
 
 }  // namespace
 
+CoveringLeaves covering_leaves(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors) {
+  CoveringLeaves all{covering(mesh, leaves), {}};
+  if (errors.empty() || std::ranges::any_of(errors, [](float error) { return std::isnan(error); })) return all;
+  for (std::size_t n = 0; const LeafValue& leaf : all.leaves)  // 0 for the dark leaves that were added
+    all.errors.push_back(n < leaves.size() && leaves[n].patch == leaf.patch ? errors[n++] : 0);
+  return all;
+}
+
 DisplayMesh solution_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors) {
-  const std::vector<LeafValue> all = covering(mesh, leaves);
-  if (errors.empty() || std::ranges::any_of(errors, [](float error) { return std::isnan(error); }))
-    return build_display_mesh(mesh, all);
-  std::vector<float> all_errors;  // 0 for the dark leaves that were added
-  for (std::size_t n = 0; const LeafValue& leaf : all)
-    all_errors.push_back(n < leaves.size() && leaves[n].patch == leaf.patch ? errors[n++] : 0);
-  return build_display_mesh(mesh, all, all_errors);
+  const CoveringLeaves all = covering_leaves(mesh, leaves, errors);
+  return build_display_mesh(mesh, all.leaves, all.errors);
 }
 
 DisplayMesh shown_mesh(const BaseMesh& mesh, const Snapshot& moment, const Snapshot& last) {

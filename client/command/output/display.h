@@ -9,6 +9,15 @@
 
 namespace alvor {
 
+/// Leaves that cover all roots of a mesh, and their told errors or none.
+struct CoveringLeaves {
+  std::vector<LeafValue> leaves;
+  std::vector<float> errors;
+};
+
+/// Returns leaves with a dark one for each root that has none. If some errors are NaN, none are returned.
+CoveringLeaves covering_leaves(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors);
+
 /// Returns the solution as it is written to files, without ambient term. Root patches without leaves are dark. `errors` are the
 /// told errors of the leaves; if some are NaN, the mesh has none.
 DisplayMesh solution_mesh(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors = {});

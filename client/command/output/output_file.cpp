@@ -14,14 +14,17 @@ namespace alvor {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> solution_formats{"glb", "ply"};
+constexpr std::array<std::string_view, 4> solution_formats{"glb", "ply", "alvor", "vtu"};
 constexpr std::array<std::string_view, 1> picture_formats{"png"};
 constexpr std::array<std::string_view, 2> table_formats{"csv", "txt"};
 
 /// Returns the formats, each after `before`: "glb or ply".
 std::string alternatives(const FileKind& kind, const std::string& before) {
   std::string text;
-  for (const std::string_view format : kind.formats) text += (text.empty() ? "" : " or ") + before + std::string(format);
+  for (const std::string_view format : kind.formats) {
+    const char* const between = text.empty() ? "" : format == kind.formats.back() ? " or " : ", ";
+    text += between + before + std::string(format);
+  }
   return text;
 }
 

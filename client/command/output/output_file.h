@@ -21,7 +21,7 @@ struct FileKind {
   bool may_lack_a_suffix;
 };
 
-extern const FileKind solution_kind;  ///< glb, ply
+extern const FileKind solution_kind;  ///< glb, ply, alvor, vtu
 extern const FileKind picture_kind;   ///< png
 extern const FileKind table_kind;     ///< csv, txt
 

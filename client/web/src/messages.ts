@@ -13,6 +13,8 @@ export interface Vector {
 export type ToWorker =
   /** `longestSide`: of textures that the graphics card holds, texels. */
   | { kind: "watch"; origin: string; solve: string; token: string; rate: number; longestSide: number }
+  /** A compact solution file. */
+  | { kind: "open"; file: Blob; longestSide: number }
   /** The last change is on the screen: the next may come. */
   | { kind: "drawn" }
   | { kind: "probe"; origin: Vector; direction: Vector };

@@ -1,7 +1,8 @@
-// Mirrors one solve away from the page's thread: frames are decoded, applied and made ready to be drawn here.
+// Mirrors one solve, or reads one solution, away from the page's thread: it is decoded and made ready to be drawn here.
 
 import { Code, ConnectError } from "@connectrpc/connect";
 import { connect, mayPass, reasonOf, sceneOf, type Api } from "./api";
+import type { ReadMeshResponse } from "./gen/alvor/v1/scene_service_pb";
 import { Detail, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
@@ -11,6 +12,7 @@ import { BadFrame, decodeLeaves } from "./mirror/leaves";
 import { Mirror } from "./mirror/mirror";
 import { probe } from "./mirror/probe";
 import { Surface } from "./mirror/surface";
+import { readSolution } from "./solution_file";
 import type { Image } from "./textures/image";
 import { readImages } from "./textures/reading";
 import { piecesOf, sheetFor, tableOf } from "./textures/sheet";
@@ -23,57 +25,24 @@ const LONGEST_UNSEEN_MS = 250; // a state of many pages is shown in parts
 const LONGEST_WAIT_MS = 5000;
 const LONGEST_SILENCE_MS = 30_000; // there is a bookmark every ten seconds
 
-class Watch {
-  private mesh!: BaseMesh;
-  private mirror!: Mirror;
+/** What is drawn: a mesh, the light on it, and its textures. */
+abstract class Shown {
+  protected mesh!: BaseMesh;
+  protected mirror!: Mirror;
   private surface!: Surface;
   /** Of the mesh's textures, when they have come. */
   private images?: Image[];
   private areImagesAsked = false;
-  private epoch = "";
-  private revision = 0n;
-  private isWhole = true;
-  private ambient: [number, number, number] = [0, 0, 0];
+  protected ambient: [number, number, number] = [0, 0, 0];
   private isDrawn = true;
-  private isChanged = false;
-  private shownAt = 0;
-  private silence?: ReturnType<typeof setTimeout>;
-  private readonly counters: Counters = { revision: 0, bytes: 0, arrived: 0, applying: 0, preparing: 0 };
-  private readonly api: Api;
-  private readonly solve: string;
-  private readonly rate: number;
-  private readonly longestSide: number;
+  protected isChanged = false;
+  protected shownAt = 0;
+  protected readonly counters: Counters = { revision: 0, bytes: 0, arrived: 0, applying: 0, preparing: 0 };
 
-  constructor({ origin, token, solve, rate, longestSide }: Extract<ToWorker, { kind: "watch" }>) {
-    this.api = connect(
-      origin,
-      () => token,
-      (count) => (this.counters.bytes += count),
-    );
-    this.solve = solve;
-    this.rate = rate;
-    this.longestSide = longestSide;
-  }
+  constructor(private readonly longestSide: number) {}
 
-  async run(): Promise<void> {
-    for (let wait = 100, lost = false; ; wait = Math.min(2 * wait, LONGEST_WAIT_MS)) {
-      try {
-        if (!this.mesh) await this.readMesh();
-        const onFirst = () => {
-          this.tellConnected(lost);
-          wait = 100;
-          lost = false;
-        };
-        if (await this.follow(onFirst)) return;
-        lost = true;
-      } catch (error) {
-        if (!this.canTryAgain(error)) throw error;
-        tell({ kind: "connection", state: "lost", reason: reasonOf(error) });
-        lost = true;
-      }
-      await pause(wait);
-    }
-  }
+  abstract run(): Promise<void>;
+  protected abstract readImages(): Promise<Image[]>;
 
   drawn(): void {
     this.isDrawn = true;
@@ -85,22 +54,7 @@ class Watch {
     tell({ kind: "probed", reading });
   }
 
-  private canTryAgain(error: unknown): boolean {
-    if (error instanceof BadFrame) {
-      this.forget();
-      return true;
-    }
-    return mayPass(error);
-  }
-
-  private tellConnected(wasLost: boolean): void {
-    const state = !wasLost ? "connected" : this.revision > 0n ? "resumed" : "begun anew";
-    tell({ kind: "connection", state, reason: `revision ${this.revision}` });
-  }
-
-  private async readMesh(): Promise<void> {
-    const messages = [];
-    for await (const message of this.api.scenes.readMesh({ name: sceneOf(this.solve) })) messages.push(message);
+  protected setMesh(messages: ReadMeshResponse[]): void {
     this.mesh = new BaseMesh(messages);
     this.forget();
     const { centre, extent, isZUp, isPhotometric } = this.mesh;
@@ -118,12 +72,125 @@ class Watch {
     tell({ kind: "mesh", centre, extent, corners, counts, materials, transmittances, isZUp, isPhotometric });
   }
 
-  private forget(): void {
+  protected forget(): void {
     this.surface = new Surface(this.mesh);
     this.mirror = new Mirror(this.mesh.rootCount, this.surface);
     this.surface.attach(this.mirror);
+  }
+
+  protected count(began: number): void {
+    const { counters } = this;
+    counters.arrived = performance.timeOrigin + began;
+    counters.applying = performance.now() - began;
+  }
+
+  /** What changed, once what was sent before is on the screen. */
+  protected show(): void {
+    if (!this.isDrawn || !this.isChanged) return;
+    this.isDrawn = this.isChanged = false;
+    this.shownAt = now();
+    const began = performance.now();
+    const change = this.surface.flush();
+    const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
+    this.counters.preparing = performance.now() - began;
+    const { positions, coordinates, colours, values, transmitted, errors, triangles } = change;
+    const parts = [positions, coordinates, colours, values, transmitted, errors, triangles];
+    const buffers = parts.flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
+    tell({ kind: "change", change, brightness, counters: { ...this.counters } }, buffers);
+    void this.showImages(); // not before: the first light needs none
+  }
+
+  /** Reads the images of the textures, once, and sends them to the page. */
+  private async showImages(): Promise<void> {
+    if (this.areImagesAsked || !this.mesh.hasTextures) return;
+    this.areImagesAsked = true;
+    try {
+      this.images = await this.readImages();
+      await this.sendSheet(this.images);
+    } catch (error) {
+      tell({ kind: "no images", reason: reasonOf(error) });
+    }
+  }
+
+  private async sendSheet(images: Image[]): Promise<void> {
+    const sheet = sheetFor(images, this.longestSide);
+    if (!sheet) throw new Error("the graphics card does not hold so many texels");
+    const table = tableOf(this.mesh.materials, images);
+    tell({ kind: "sheet", sheet, table }, [table.buffer]);
+    for (const piece of piecesOf(images, sheet)) {
+      tell({ kind: "piece", piece }, [piece.texels.buffer]);
+      await pause(0); // for frames that came meanwhile
+    }
+  }
+}
+
+class Watch extends Shown {
+  private epoch = "";
+  private revision = 0n;
+  private isWhole = true;
+  private silence?: ReturnType<typeof setTimeout>;
+  private readonly api: Api;
+  private readonly solve: string;
+  private readonly rate: number;
+
+  constructor({ origin, token, solve, rate, longestSide }: Extract<ToWorker, { kind: "watch" }>) {
+    super(longestSide);
+    this.api = connect(
+      origin,
+      () => token,
+      (count) => (this.counters.bytes += count),
+    );
+    this.solve = solve;
+    this.rate = rate;
+  }
+
+  async run(): Promise<void> {
+    for (let wait = 100, lost = false; ; wait = Math.min(2 * wait, LONGEST_WAIT_MS)) {
+      try {
+        if (!this.mesh) this.setMesh(await this.readMesh());
+        const onFirst = () => {
+          this.tellConnected(lost);
+          wait = 100;
+          lost = false;
+        };
+        if (await this.follow(onFirst)) return;
+        lost = true;
+      } catch (error) {
+        if (!this.canTryAgain(error)) throw error;
+        tell({ kind: "connection", state: "lost", reason: reasonOf(error) });
+        lost = true;
+      }
+      await pause(wait);
+    }
+  }
+
+  protected readImages(): Promise<Image[]> {
+    return readImages(this.api, sceneOf(this.solve));
+  }
+
+  private async readMesh(): Promise<ReadMeshResponse[]> {
+    const messages = [];
+    for await (const message of this.api.scenes.readMesh({ name: sceneOf(this.solve) })) messages.push(message);
+    return messages;
+  }
+
+  protected override forget(): void {
+    super.forget();
     this.revision = 0n;
     this.isWhole = true;
+  }
+
+  private canTryAgain(error: unknown): boolean {
+    if (error instanceof BadFrame) {
+      this.forget();
+      return true;
+    }
+    return mayPass(error);
+  }
+
+  private tellConnected(wasLost: boolean): void {
+    const state = !wasLost ? "connected" : this.revision > 0n ? "resumed" : "begun anew";
+    tell({ kind: "connection", state, reason: `revision ${this.revision}` });
   }
 
   /** Until the solve has ended (true) or the server closes the watch (false). */
@@ -196,65 +263,50 @@ class Watch {
       this.ambient = [r, g, b];
       tell({ kind: "steps", steps: frame.steps, isFirst });
     }
+    this.counters.revision = Number(this.revision);
     this.count(began);
     if (this.isWhole || now() - this.shownAt > LONGEST_UNSEEN_MS) this.show();
   }
+}
 
-  private count(began: number): void {
-    const { counters } = this;
-    counters.revision = Number(this.revision);
-    counters.arrived = performance.timeOrigin + began;
-    counters.applying = performance.now() - began;
+/** A solution that was written to a file. */
+class Opened extends Shown {
+  private readonly file: Blob;
+  private readonly fileImages: Image[] = [];
+
+  constructor({ file, longestSide }: Extract<ToWorker, { kind: "open" }>) {
+    super(longestSide);
+    this.file = file;
   }
 
-  /** What changed, once what was sent before is on the screen. */
-  private show(): void {
-    if (!this.isDrawn || !this.isChanged) return;
-    this.isDrawn = this.isChanged = false;
-    this.shownAt = now();
+  async run(): Promise<void> {
+    const bytes = new Uint8Array(await this.file.arrayBuffer());
     const began = performance.now();
-    const change = this.surface.flush();
-    const brightness = brightnessOf(this.mesh, this.mirror, this.ambient);
-    this.counters.preparing = performance.now() - began;
-    const { positions, coordinates, colours, values, transmitted, errors, triangles } = change;
-    const parts = [positions, coordinates, colours, values, transmitted, errors, triangles];
-    const buffers = parts.flatMap((part) => (part ? [part.ranges.buffer, part.data.buffer] : []));
-    tell({ kind: "change", change, brightness, counters: { ...this.counters } }, buffers);
-    void this.showImages(); // not before: the first light needs none
+    const { mesh, leaves, errors, images } = readSolution(bytes);
+    this.fileImages.push(...images);
+    this.counters.bytes = bytes.length;
+    this.setMesh(mesh);
+    for (const part of leaves) this.mirror.apply(decodeLeaves(part));
+    for (const part of errors) this.mirror.takeErrors(decodeErrors(part));
+    this.count(began);
+    this.isChanged = true;
+    this.show();
+    tell({ kind: "ended" });
   }
 
-  /** Reads the images of the textures, once, and sends them to the page. */
-  private async showImages(): Promise<void> {
-    if (this.areImagesAsked || !this.mesh.hasTextures) return;
-    this.areImagesAsked = true;
-    try {
-      this.images = await readImages(this.api, sceneOf(this.solve));
-      await this.sendSheet(this.images);
-    } catch (error) {
-      tell({ kind: "no images", reason: reasonOf(error) });
-    }
-  }
-
-  private async sendSheet(images: Image[]): Promise<void> {
-    const sheet = sheetFor(images, this.longestSide);
-    if (!sheet) throw new Error("the graphics card does not hold so many texels");
-    const table = tableOf(this.mesh.materials, images);
-    tell({ kind: "sheet", sheet, table }, [table.buffer]);
-    for (const piece of piecesOf(images, sheet)) {
-      tell({ kind: "piece", piece }, [piece.texels.buffer]);
-      await pause(0); // for frames that came meanwhile
-    }
+  protected async readImages(): Promise<Image[]> {
+    return this.fileImages;
   }
 }
 
-let watch: Watch | undefined;
+let shown: Shown | undefined;
 
 onmessage = ({ data }: MessageEvent<ToWorker>) => {
-  if (data.kind === "drawn") watch?.drawn();
-  if (data.kind === "probe") watch?.probe(data);
-  if (data.kind !== "watch") return;
-  watch = new Watch(data);
-  watch.run().catch((error) => {
+  if (data.kind === "drawn") shown?.drawn();
+  if (data.kind === "probe") shown?.probe(data);
+  if (data.kind !== "watch" && data.kind !== "open") return;
+  shown = data.kind === "watch" ? new Watch(data) : new Opened(data);
+  shown.run().catch((error) => {
     const needsToken = ConnectError.from(error).code === Code.Unauthenticated;
     tell({ kind: "refused", reason: reasonOf(error), needsToken });
   });

@@ -7,6 +7,7 @@ import { Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
 import { MissingParts, sendSceneFiles, sendWithoutParts } from "../scene_files";
 import type { Brightness, Counters, FromWorker, ToWorker } from "../messages";
 import { Cameras } from "../view/cameras";
+import { isSolutionFile } from "../solution_file";
 import { Room } from "../view/room";
 import { Chart } from "./chart";
 import { button, byId, input, listItem, save, select } from "./dom";
@@ -102,6 +103,8 @@ async function attempt(action: () => Promise<void>): Promise<void> {
 
 async function open(files: File[]): Promise<void> {
   openedAt = performance.now();
+  const solution = files.find(isSolutionFile);
+  if (solution) return openSolution(solution);
   say(`Sending ${files.map((file) => file.name).join(", ")}`);
   await openSent(() => sendSceneFiles(api, files));
 }
@@ -187,10 +190,28 @@ async function beginSolve(): Promise<void> {
 
 /** Shows a solve that may be running, or have ended. */
 function attach(next: Solve): void {
+  setSolve(next);
+  beginToShow(next.name);
+  send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ, longestSide: room.longestSide });
+}
+
+/** Shows a solution that was written to a file; no server takes part. */
+function openSolution(file: File): void {
+  scene = solve = undefined;
+  framedScene = "";
+  history.pushState(null, "", location.pathname + location.search);
+  byId("title").textContent = file.name;
+  byId("warnings").replaceChildren();
+  for (const id of ["start", "pause", "cancel"]) button(id).disabled = true;
+  say(`Reading ${file.name}`);
+  beginToShow("");
+  send({ kind: "open", file, longestSide: room.longestSide });
+}
+
+function beginToShow(name: string): void {
   worker?.terminate();
   worker = nextWorker;
   nextWorker = makeWorker();
-  setSolve(next);
   beginChart();
   counters = arrivedUnseen = undefined;
   room.begin();
@@ -199,10 +220,9 @@ function attach(next: Solve): void {
   byId("reading").hidden = true;
   allowSaving(false);
   withdrawWarning();
-  Object.assign(measured, structuredClone(nothing), { solve: next.name });
+  Object.assign(measured, structuredClone(nothing), { solve: name });
   worker.onmessage = ({ data }: MessageEvent<FromWorker>) => take(data);
   worker.onerror = () => say("The page has changed on the server: load it again", "bad");
-  send({ kind: "watch", origin: location.origin, solve: next.name, token, rate: RATE_HZ, longestSide: room.longestSide });
   byId("hint").hidden = true;
 }
 
@@ -340,8 +360,8 @@ function take(message: FromWorker): void {
       isZUp = message.isZUp;
       setPhotometric(message.isPhotometric);
       room.setUp(isZUp);
-      if (framedScene !== sceneOf(solve!.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
-      framedScene = sceneOf(solve!.name);
+      if (!solve || framedScene !== sceneOf(solve.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
+      framedScene = solve ? sceneOf(solve.name) : "";
       goToCamera();
       return;
     case "change":
@@ -367,6 +387,7 @@ function take(message: FromWorker): void {
       return showConnection(message.state, message.reason);
     case "ended":
       measured.hasEnded = true;
+      if (!solve) return say("Shown from a file");
       return void attempt(() => update(api.solves.getSolve({ name: solve!.name })));
     case "refused":
       if (message.needsToken) byId("token-label").hidden = false;
