@@ -122,7 +122,7 @@ void write_solution_file(const std::filesystem::path& path, const DisplayMesh& m
 
 bool is_solution(std::string_view bytes, const std::string& extension) {
   constexpr std::size_t longest_ply_header = 1 << 26;
-  if (extension == ".glb") return bytes.substr(0, glb::largest_json).find("\"_IRRADIANCE\"") != bytes.npos;
+  if (extension == ".glb") return bytes.substr(0, glb::largest_json).find("\"_IRRADIANCE\":") != bytes.npos;
   const std::string_view text = bytes.substr(0, longest_ply_header);
   if (extension == ".alvor") return true;
   return extension == ".ply" && text.substr(0, text.find("end_header")).find("property float irradiance_r") != text.npos;

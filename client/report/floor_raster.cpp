@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <span>
 
 namespace alvor {
 
@@ -19,6 +17,7 @@ constexpr int most_cells_of_side = 1024;
 constexpr double wall_height = 1.9;  // metres above the floor: above furniture, below the lintels of doors
 constexpr double share_of_low_rooms = 0.8;
 constexpr double low_wall = 0.3, below_ceiling = 0.1;  // metres: below a window sill; above a window
+constexpr double least_under_roof = 0.9;               // metres: lower places under a roof are no floor
 constexpr double above_floor = 1e-3;                   // metres: where rays begin
 constexpr double upright = 0.999, vertical = 0.1;      // of the part of a unit normal that points up
 
@@ -55,71 +54,79 @@ double main_direction(std::vector<WallDirection> walls) {
   return std::abs(best) > nothing ? best : 0;
 }
 
-/// The horizontal triangles of one level.
-struct Level {
-  double height = 0;
-  double area = 0;
-  std::vector<std::uint32_t> triangles;
+/// A rectangle of the plan.
+struct PlanBox {
+  double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
+
+  void add(double u, double v) {
+    left = std::min(left, u), right = std::max(right, u), bottom = std::min(bottom, v), top = std::max(top, v);
+  }
+  bool is_empty() const { return !(left < right && bottom < top); }
 };
 
-/// Returns the levels of a mesh, from the lowest.
-std::vector<Level> levels_of(const DisplayMesh& mesh, const PlanFrame& frame) {
-  std::vector<std::pair<double, std::uint32_t>> by_height;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3 twice = double_area_of(mesh, mesh.triangles[t]);
-    if (dot(twice, frame.up) > upright * length(twice))
-      by_height.emplace_back(dot(mesh.positions[mesh.triangles[t][0]], frame.up), t);
-  }
-  std::ranges::sort(by_height);
-  std::vector<Level> levels;
-  double first = 0;
-  for (const auto& [height, triangle] : by_height) {
-    if (levels.empty() || height - first > step_height) levels.emplace_back(), first = height;
-    const double area = length(double_area_of(mesh, mesh.triangles[triangle])) / 2;
-    levels.back().height += area * height;
-    levels.back().area += area;
-    levels.back().triangles.push_back(triangle);
-  }
-  for (Level& level : levels) level.height /= level.area;
-  std::erase_if(levels, [](const Level& level) { return !(level.area >= least_level); });
-  return levels;
+PlanBox box_of(const DisplayMesh& mesh, const FloorLevel& level, const PlanFrame& frame) {
+  PlanBox box;
+  for (const std::uint32_t triangle : level.triangles)
+    for (const std::uint32_t vertex : mesh.triangles[triangle])
+      box.add(dot(mesh.positions[vertex], frame.u), dot(mesh.positions[vertex], frame.v));
+  return box;
 }
 
-PlanRaster raster_over(const DisplayMesh& mesh, const Level& level, const PlanFrame& frame) {
-  double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
-  for (const std::uint32_t triangle : level.triangles)
-    for (const std::uint32_t vertex : mesh.triangles[triangle]) {
-      const double u = dot(mesh.positions[vertex], frame.u), v = dot(mesh.positions[vertex], frame.v);
-      left = std::min(left, u), right = std::max(right, u), bottom = std::min(bottom, v), top = std::max(top, v);
-    }
-  const double side = std::max(finest_cell, std::max(right - left, top - bottom) / most_cells_of_side);
-  PlanRaster raster{left, bottom};
-  raster.columns = std::max(1, static_cast<int>(std::lround((right - left) / side)));
-  raster.rows = std::max(1, static_cast<int>(std::lround((top - bottom) / side)));
-  raster.cell_u = (right - left) / raster.columns;
-  raster.cell_v = (top - bottom) / raster.rows;
+/// Returns the part of a level's box that lies under or beside something that is higher: ground far around a house takes no
+/// cells.
+PlanBox built_part(const DisplayMesh& mesh, const FloorLevel& level, const PlanFrame& frame) {
+  constexpr double higher = 0.3, around = 1;  // metres
+  PlanBox built;
+  for (const auto& triangle : mesh.triangles) {
+    const auto is_higher = [&](std::uint32_t vertex) { return dot(mesh.positions[vertex], frame.up) > level.height + higher; };
+    if (!std::ranges::any_of(triangle, is_higher)) continue;
+    for (const std::uint32_t vertex : triangle)
+      built.add(dot(mesh.positions[vertex], frame.u), dot(mesh.positions[vertex], frame.v));
+  }
+  const PlanBox all = box_of(mesh, level, frame);
+  const PlanBox part{std::max(all.left, built.left - around), std::min(all.right, built.right + around),
+                     std::max(all.bottom, built.bottom - around), std::min(all.top, built.top + around)};
+  return part.is_empty() ? all : part;
+}
+
+PlanRaster raster_over(const PlanBox& box) {
+  const double wide = box.right - box.left, high = box.top - box.bottom;
+  const double side = std::max(finest_cell, std::max(wide, high) / most_cells_of_side);
+  PlanRaster raster{box.left, box.bottom};
+  raster.columns = std::max(1, static_cast<int>(std::lround(wide / side)));
+  raster.rows = std::max(1, static_cast<int>(std::lround(high / side)));
+  raster.cell_u = wide / raster.columns;
+  raster.cell_v = high / raster.rows;
   return raster;
 }
 
 /// Fills the cells of one level.
 class Survey {
  public:
-  Survey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame)
-      : mesh_(mesh), caster_(caster), frame_(frame) {}
+  Survey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, const FloorLevel& level)
+      : mesh_(mesh),
+        caster_(caster),
+        frame_(frame),
+        level_(level),
+        ground_(mesh.positions, triangles_of(mesh, level), Traversal::watertight) {}
 
-  FloorRaster of(const Level& level) const {
-    FloorRaster floor{level.height, raster_over(mesh_, level, frame_), {}};
+  FloorRaster over(const PlanBox& box) const {
+    FloorRaster floor{level_.height, raster_over(box), {}, {}};
     floor.cells.resize(floor.raster.size());
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    for (const std::uint32_t triangle : level.triangles) triangles.push_back(mesh_.triangles[triangle]);
-    const TriangleCaster ground(mesh_.positions, triangles, Traversal::watertight);
-    for_rows(floor, [&](int column, int row) { survey_floor(floor, level, ground, column, row); });
+    for_rows(floor, [&](int column, int row) { survey_floor(floor, column, row); });
     const WallHeights heights = heights_of_walls(floor);
-    for_rows(floor, [&](int column, int row) { survey_walls(floor, heights, column, row); });
+    for_rows(floor, [&](int column, int row) { survey_cell(floor, heights, column, row); });
+    for_rows(floor, [&](int column, int row) { survey_ways(floor, heights, column, row); });
     return floor;
   }
 
  private:
+  static std::vector<std::array<std::uint32_t, 3>> triangles_of(const DisplayMesh& mesh, const FloorLevel& level) {
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (const std::uint32_t triangle : level.triangles) triangles.push_back(mesh.triangles[triangle]);
+    return triangles;
+  }
+
   template <class Work>
   static void for_rows(const FloorRaster& floor, Work work) {
     tbb::parallel_for(0, floor.raster.rows, [&](int row) {
@@ -127,17 +134,21 @@ class Survey {
     });
   }
 
-  Vec3 place(const FloorRaster& floor, int column, int row, double above) const {
-    return frame_.place(floor.raster.middle_u(column), floor.raster.middle_v(row), floor.height + above);
+  /// Returns a place over the middle of a cell; `above` counts from the cell's own surface.
+  Vec3 place(const FloorRaster& floor, std::size_t cell, double above) const {
+    const PlanRaster& raster = floor.raster;
+    return frame_.place(raster.middle_u(raster.column_of(cell)), raster.middle_v(raster.row_of(cell)),
+                        floor.height + floor.cells[cell].surface + above);
   }
 
-  void survey_floor(FloorRaster& floor, const Level& level, const TriangleCaster& ground, int column, int row) const {
-    FloorCell& cell = floor.cells[floor.raster.index(column, row)];
-    const auto below = ground.cast(place(floor, column, row, 2 * step_height), -frame_.up);
+  void survey_floor(FloorRaster& floor, int column, int row) const {
+    const std::size_t index = floor.raster.index(column, row);
+    FloorCell& cell = floor.cells[index];
+    const auto below = ground_.cast(place(floor, index, 2 * step_height), -frame_.up);
     if (!below) return;
-    cell.triangle = level.triangles[below->triangle];
-    const double surface = 2 * step_height - below->distance;
-    const auto above = caster_.cast(place(floor, column, row, surface + above_floor), frame_.up);
+    cell.triangle = level_.triangles[below->triangle];
+    cell.surface = static_cast<float>(2 * step_height - below->distance);
+    const auto above = caster_.cast(place(floor, index, above_floor), frame_.up);
     if (above) cell.clear_height = static_cast<float>(above->distance + above_floor);
     cell.is_floor = true;
   }
@@ -160,18 +171,36 @@ class Survey {
     return {std::min(low_wall, wall / 2), wall, std::max(wall, *high - below_ceiling)};
   }
 
-  void survey_walls(FloorRaster& floor, const WallHeights& heights, int column, int row) const {
-    FloorCell& cell = floor.cells[floor.raster.index(column, row)];
-    cell.is_covered = caster_.cast(place(floor, column, row, heights.wall), frame_.up).has_value();
-    const auto is_solid = [&](double height) { return is_in_solid(place(floor, column, row, height)); };
-    if (is_wall(heights, is_solid)) cell.is_floor = false;
-    const auto is_closed = [&](int to_column, int to_row) {
-      return is_wall(heights, [&](double height) {
-        return caster_.is_blocked(place(floor, column, row, height), place(floor, to_column, to_row, height));
-      });
-    };
-    if (column + 1 < floor.raster.columns) cell.closed_to_right = is_closed(column + 1, row);
-    if (row + 1 < floor.raster.rows) cell.closed_to_top = is_closed(column, row + 1);
+  void survey_cell(FloorRaster& floor, const WallHeights& heights, int column, int row) const {
+    const std::size_t index = floor.raster.index(column, row);
+    FloorCell& cell = floor.cells[index];
+    if (!cell.is_floor) return;
+    cell.wall_height = static_cast<float>(heights.wall);
+    const auto is_solid = [&](double height) { return is_in_solid(place(floor, index, height)); };
+    const auto is_covered = [&](double height) { return caster_.cast(place(floor, index, height), frame_.up).has_value(); };
+    cell.is_covered = is_covered(heights.wall);
+    const bool is_wall_there = is_wall(heights, is_solid);
+    if (!is_wall_there && cell.is_covered) return;
+    // Under a sloping roof, that height lies above the roof or within it.
+    const double lower = share_of_low_rooms * cell.clear_height;
+    const bool is_under_roof = cell.clear_height >= least_under_roof && lower < heights.wall && !is_solid(lower);
+    if (is_under_roof) cell.wall_height = static_cast<float>(lower), cell.is_covered = true;
+    cell.is_floor = is_under_roof || !is_wall_there;
+  }
+
+  void survey_ways(FloorRaster& floor, const WallHeights& heights, int column, int row) const {
+    const std::size_t index = floor.raster.index(column, row);
+    FloorCell& cell = floor.cells[index];
+    if (column + 1 < floor.raster.columns) cell.closed_to_right = is_closed(floor, heights, index, index + 1);
+    if (row + 1 < floor.raster.rows)
+      cell.closed_to_top = is_closed(floor, heights, index, index + static_cast<std::size_t>(floor.raster.columns));
+  }
+
+  bool is_closed(const FloorRaster& floor, const WallHeights& heights, std::size_t from, std::size_t to) const {
+    if (!floor.cells[from].is_floor || !floor.cells[to].is_floor) return false;  // nobody goes there
+    const double wall = std::min(floor.cells[from].wall_height, floor.cells[to].wall_height);
+    return is_wall({heights.low, wall, heights.high},
+                   [&](double height) { return caster_.is_blocked(place(floor, from, height), place(floor, to, height)); });
   }
 
   template <class IsThere>
@@ -196,9 +225,56 @@ class Survey {
   const DisplayMesh& mesh_;
   const TriangleCaster& caster_;
   const PlanFrame& frame_;
+  const FloorLevel& level_;
+  const TriangleCaster ground_;
 };
 
+/// Replaces each value by the least sum of another one and the square of the way to it, along a line of cells (Felzenszwalb and
+/// Huttenlocher 2012, "Distance transforms of sampled functions").
+void spread(std::vector<double>& values, double cell) {
+  const auto count = static_cast<int>(values.size());
+  std::vector<int> at(values.size());
+  std::vector<double> from(values.size() + 1), old = values;
+  int last = -1;
+  const auto meeting = [&](int a, int b) {  // where the parabolas over two places meet
+    return ((old[b] - old[a]) / (cell * cell) + double(b) * b - double(a) * a) / (2.0 * (b - a));
+  };
+  for (int q = 0; q < count; ++q) {
+    if (!(old[q] < 1e300)) continue;
+    while (last >= 0 && meeting(at[last], q) <= from[last]) --last;
+    from[last + 1] = last < 0 ? -1e300 : meeting(at[last], q);
+    at[++last] = q;
+  }
+  for (int q = 0, k = 0; q < count && last >= 0; ++q) {
+    while (k < last && from[k + 1] <= q) ++k;
+    const double way = (q - at[k]) * cell;
+    values[q] = old[at[k]] + way * way;
+  }
+}
+
 }  // namespace
+
+void measure_edges(FloorRaster& floor) {
+  const PlanRaster& raster = floor.raster;
+  std::vector<double> squares(raster.size(), 2e300);
+  for (std::size_t cell = 0; cell < squares.size(); ++cell)
+    if (floor.cells[cell].is_floor && floor.is_at_edge(cell)) squares[cell] = 0;
+  std::vector<double> line(static_cast<std::size_t>(raster.columns));
+  for (int row = 0; row < raster.rows; ++row) {
+    for (int column = 0; column < raster.columns; ++column) line[column] = squares[raster.index(column, row)];
+    spread(line, raster.cell_u);
+    for (int column = 0; column < raster.columns; ++column) squares[raster.index(column, row)] = line[column];
+  }
+  line.resize(static_cast<std::size_t>(raster.rows));
+  for (int column = 0; column < raster.columns; ++column) {
+    for (int row = 0; row < raster.rows; ++row) line[row] = squares[raster.index(column, row)];
+    spread(line, raster.cell_v);
+    for (int row = 0; row < raster.rows; ++row) squares[raster.index(column, row)] = line[row];
+  }
+  const double half = std::min(raster.cell_u, raster.cell_v) / 2;
+  floor.to_edge.clear();
+  for (const double square : squares) floor.to_edge.push_back(static_cast<float>(std::min(1e30, std::sqrt(square) + half)));
+}
 
 std::size_t PlanRaster::cell_at(double along_u, double along_v) const {
   const double column = std::floor((along_u - left) / cell_u), row = std::floor((along_v - bottom) / cell_v);
@@ -206,11 +282,47 @@ std::size_t PlanRaster::cell_at(double along_u, double along_v) const {
   return index(static_cast<int>(column), static_cast<int>(row));
 }
 
-std::vector<FloorRaster> floor_rasters(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame) {
-  const Survey survey(mesh, caster, frame);
-  std::vector<FloorRaster> rasters;
-  for (const Level& level : levels_of(mesh, frame)) rasters.push_back(survey.of(level));
-  return rasters;
+/// One level at hand: its triangles, and what surveys them.
+struct FloorSurvey::State {
+  FloorLevel level;
+  PlanBox built;
+  Survey survey;
+  State(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel given)
+      : level(std::move(given)), built(built_part(mesh, level, frame)), survey(mesh, caster, frame, level) {}
+};
+
+FloorSurvey::FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel level)
+    : state_(new State(mesh, caster, frame, std::move(level))) {}
+FloorSurvey::~FloorSurvey() = default;
+
+FloorRaster FloorSurvey::coarse() const { return state_->survey.over(state_->built); }
+
+FloorRaster FloorSurvey::fine(const PlanRaster& around) const {
+  constexpr double margin = 0.3;  // metres: the walls, and a little of what is behind them
+  return state_->survey.over({around.left - margin, around.left + around.columns * around.cell_u + margin, around.bottom - margin,
+                              around.bottom + around.rows * around.cell_v + margin});
+}
+
+std::vector<FloorLevel> floor_levels(const DisplayMesh& mesh, const PlanFrame& frame) {
+  std::vector<std::pair<double, std::uint32_t>> by_height;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 twice = double_area_of(mesh, mesh.triangles[t]);
+    if (dot(twice, frame.up) > upright * length(twice))
+      by_height.emplace_back(dot(mesh.positions[mesh.triangles[t][0]], frame.up), t);
+  }
+  std::ranges::sort(by_height);
+  std::vector<FloorLevel> levels;
+  double first = 0;
+  for (const auto& [height, triangle] : by_height) {
+    if (levels.empty() || height - first > step_height) levels.emplace_back(), first = height;
+    const double area = length(double_area_of(mesh, mesh.triangles[triangle])) / 2;
+    levels.back().height += area * height;
+    levels.back().area += area;
+    levels.back().triangles.push_back(triangle);
+  }
+  for (FloorLevel& level : levels) level.height /= level.area;
+  std::erase_if(levels, [](const FloorLevel& level) { return !(level.area >= least_level); });
+  return levels;
 }
 
 PlanFrame frame_along_walls(const DisplayMesh& mesh) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace alvor {
@@ -47,6 +48,8 @@ struct FloorCell {
   bool is_pillar = false;        ///< something stands on it that is no part of a wall: it is small, with floor all around
   bool closed_to_right = false;  ///< a wall separates it from the next cell along u
   bool closed_to_top = false;    ///< and along v
+  float surface = 0;             ///< of the floor above the level's height, metres
+  float wall_height = 0;         ///< above the surface, at which walls were looked for, metres
   float clear_height = std::numeric_limits<float>::infinity();  ///< to what is above the floor, metres
   std::uint32_t triangle = 0;                                   ///< of the mesh, on which the middle of the cell lies
 };
@@ -56,6 +59,14 @@ struct FloorRaster {
   double height = 0;  ///< along up, metres
   PlanRaster raster;
   std::vector<FloorCell> cells;
+  std::vector<float> to_edge;  ///< by cell: metres to the nearest wall or end of the floor; see measure_edges()
+
+  /// Returns whether a cell of the floor lies beside a wall or the floor's end.
+  bool is_at_edge(std::size_t cell) const {
+    int neighbours = 0;
+    for_open_neighbours(cell, [&](std::size_t next) { neighbours += cells[next].is_floor || cells[next].is_pillar; });
+    return neighbours < 4;
+  }
 
   /// Calls visit(cell) for the neighbours of a cell that no wall separates from it, floor or not.
   template <class Visit>
@@ -71,10 +82,36 @@ struct FloorRaster {
 /// Steps and carpets lower than this belong to the floor around them, metres.
 inline constexpr double step_height = 0.15;
 
-/// Returns the levels of a mesh, from the lowest. Walls are what stands in the way at a height of 1.9 m, or 0.8 of the clear
-/// height where that is less; or both at 0.3 m and under the ceiling, as below and above windows. Requires: `caster` holds the
-/// mesh's triangles.
-std::vector<FloorRaster> floor_rasters(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame);
+/// Sets the distances of a floor's cells to its edges.
+void measure_edges(FloorRaster& floor);
+
+/// Horizontal triangles of a mesh that face up, within `step_height` of each other.
+struct FloorLevel {
+  double height = 0;  ///< their mean by area, along up, metres
+  double area = 0;    ///< m2
+  std::vector<std::uint32_t> triangles;
+};
+
+/// Returns the levels of a mesh, from the lowest; none below 1 m2.
+std::vector<FloorLevel> floor_levels(const DisplayMesh& mesh, const PlanFrame& frame);
+
+/// Surveys a level. Walls are what stands in the way at a height of 1.9 m, or 0.8 of the clear height where that is less; or both
+/// at 0.3 m and under the ceiling, as below and above windows. Borrows the mesh, the caster and the frame.
+class FloorSurvey {
+ public:
+  /// Requires: `caster` holds the mesh's triangles.
+  FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel level);
+  ~FloorSurvey();
+
+  /// Returns the level where something is built on it, in cells of at least 2 cm.
+  FloorRaster coarse() const;
+  /// Returns the part of the level about a room that was found on its coarse raster.
+  FloorRaster fine(const PlanRaster& around) const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
 
 /// Returns the frame along whose axes most walls stand.
 PlanFrame frame_along_walls(const DisplayMesh& mesh);

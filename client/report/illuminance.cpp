@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t directions = 8;  // of the vertical planes whose mean is the cylindrical illuminance
 
 Vec3 place_of(const Room& room, const WorkPoint& point, double height) {
-  return room.frame.place(point.along_u, point.along_v, room.floor_height + height);
+  constexpr double least = 1e-3;  // metres: on the floor itself, rays would begin in its plane
+  return room.frame.place(point.along_u, point.along_v, room.floor_at(point.along_u, point.along_v) + std::max(least, height));
 }
 
 /// Sets the light on vertical planes at a point; nothing if it lies inside a solid.
@@ -24,7 +25,7 @@ void measure_vertical(const PlanFrame& frame, Vec3 point, const LightMeter& mete
   double squares = 0;
   for (std::size_t n = 0; n < directions; ++n) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(n) / directions;
-    const auto value = meter.at(point, std::cos(angle) * frame.u + std::sin(angle) * frame.v, stream + n);
+    const auto value = meter.at(point, std::cos(angle) * frame.u + std::sin(angle) * frame.v, stream + n, 1.0 / directions);
     if (!value) return;
     if (n % 2 == 0) light.vertical[n / 2] = value->value;
     sum.value += value->value / directions;
@@ -47,11 +48,10 @@ std::optional<PlaneStatistics> statistics_of(std::span<const Measured> values) {
   return all;
 }
 
-std::optional<Measured> LightMeter::at(Vec3 point, Vec3 normal, std::uint64_t stream) const {
-  const auto gathered = gatherer.gather(point, normal, stream);
+std::optional<Measured> LightMeter::at(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const {
+  const auto gathered = gatherer.gather(point, normal, stream, effort);
   if (!gathered) return std::nullopt;
-  return Measured{one_number(gathered->irradiance, quantity),
-                  std::hypot(gathered->standard_error, relative_error * one_number(gathered->from_surfaces, quantity))};
+  return Measured{one_number(gathered->irradiance, quantity), std::hypot(gathered->standard_error, gathered->told_error)};
 }
 
 std::vector<std::optional<Measured>> horizontal_light_on(const Room& room, const WorkGrid& grid, double height,

@@ -45,11 +45,10 @@ struct PlaneHeights {
 struct LightMeter {
   const Gatherer& gatherer;
   Quantity quantity = Quantity::radiometric;
-  /// Told relative error of the light that surfaces send; it counts as if all of them erred alike.
-  double relative_error = 0;
 
-  /// Returns nothing inside a solid and outside the room.
-  std::optional<Measured> at(Vec3 point, Vec3 normal, std::uint64_t stream) const;
+  /// Returns nothing inside a solid and outside the room. The error has the noise of rays, and the told errors of the surfaces
+  /// that they meet, as if all of these erred alike. `effort`: see Gatherer::gather().
+  std::optional<Measured> at(Vec3 point, Vec3 normal, std::uint64_t stream, double effort = 1) const;
 };
 
 /// Returns the light on the work plane at the points of a grid, in their order; nothing inside of solids. Uses all cores; the

@@ -51,23 +51,16 @@ std::vector<EmittingMaterial> emitting_materials(const DisplayMesh& mesh) {
   return emitting;
 }
 
-bool is_in(const Room& room, const Light& light) {
-  if (light.is_distant()) return false;
-  constexpr double above_ceiling = 0.5;  // metres: recessed luminaires are in the room below
-  const double height = dot(light.position, room.frame.up) - room.floor_height;
-  return height > 0 && height < room.clear_height + above_ceiling &&
-         room.cell_at(dot(light.position, room.frame.u), dot(light.position, room.frame.v)) != Room::Cell::elsewhere;
-}
-
-RoomPower power_in(const Room& room, const DisplayMesh& mesh) {
-  RoomPower power;
+std::vector<RoomPower> power_in(std::span<const Room> rooms, const DisplayMesh& mesh) {
+  std::vector<RoomPower> powers(rooms.size());
   for (const Light& light : mesh.lights) {
-    if (!is_in(room, light)) continue;
-    ++power.luminaires;
-    power.watts += light.electrical_watts;
-    power.is_complete &= light.electrical_watts > 0;
+    const auto room = light.is_distant() ? std::nullopt : room_at(rooms, light.position);
+    if (!room) continue;
+    ++powers[*room].luminaires;
+    powers[*room].watts += light.electrical_watts;
+    powers[*room].is_complete &= light.electrical_watts > 0;
   }
-  return power;
+  return powers;
 }
 
 }  // namespace alvor

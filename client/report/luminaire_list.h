@@ -4,6 +4,7 @@
 #include "client/report/rooms.h"
 #include "meshing/display_mesh.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,16 +32,14 @@ struct EmittingMaterial {
 /// Returns the materials that emit and are on some surface. Nothing if the mesh does not know its faces.
 std::vector<EmittingMaterial> emitting_materials(const DisplayMesh& mesh);
 
-/// The electrical power of the luminaires in a room. A luminaire is in the room over whose floor its middle is.
+/// The electrical power of the luminaires in a room; see room_at().
 struct RoomPower {
   std::size_t luminaires = 0;
   double watts = 0;         ///< of those whose power is known
   bool is_complete = true;  ///< the power of all is known
 };
 
-RoomPower power_in(const Room& room, const DisplayMesh& mesh);
-
-/// Returns whether a light is in a room.
-bool is_in(const Room& room, const Light& light);
+/// Returns the power in each room.
+std::vector<RoomPower> power_in(std::span<const Room> rooms, const DisplayMesh& mesh);
 
 }  // namespace alvor

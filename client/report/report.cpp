@@ -4,6 +4,7 @@
 #include "client/report/isolux.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -31,23 +32,32 @@ void scale(std::vector<PointLight>& lights, double factor) {
   }
 }
 
-/// Returns the observers in a room: those asked for, or four who stand at the middles of the walls and look across.
-std::vector<Observer> observers_in(const Room& room, const ReportOptions& options) {
+/// Returns four observers at the middles of the sides of a room's inner rectangle, who look across it.
+std::array<Observer, 4> usual_observers(const Room& room, double eye_height) {
+  constexpr double inwards = 0.01;  // metres: not on the edge itself
   const PlanFrame& frame = room.frame;
-  const double middle_u = room.left + room.length / 2, middle_v = room.bottom + room.width / 2;
-  const double height = room.floor_height + options.heights.face;
+  const double left = room.left + inwards, right = room.left + room.length - inwards, bottom = room.bottom + inwards,
+               top = room.bottom + room.width - inwards, middle_u = (left + right) / 2, middle_v = (bottom + top) / 2;
+  const auto eye = [&](double u, double v) { return frame.place(u, v, room.floor_at(u, v) + eye_height); };
+  return {{{eye(left, middle_v), frame.u},
+           {eye(right, middle_v), -frame.u},
+           {eye(middle_u, bottom), frame.v},
+           {eye(middle_u, top), -frame.v}}};
+}
+
+/// Returns the observers in each room: those asked for, or the usual ones. Counts in `outside` those who are in no room.
+std::vector<std::vector<Observer>> observers_in(std::span<const Room> rooms, const ReportOptions& options, std::size_t& outside) {
   std::vector<Observer> all = options.observers;
   if (all.empty())
-    all = {{frame.place(room.left, middle_v, height), frame.u},
-           {frame.place(room.left + room.length, middle_v, height), -frame.u},
-           {frame.place(middle_u, room.bottom, height), frame.v},
-           {frame.place(middle_u, room.bottom + room.width, height), -frame.v}};
-  std::erase_if(all, [&](const Observer& observer) {
-    const double above = dot(observer.eye, frame.up) - room.floor_height;
-    return !(above > 0 && above < room.clear_height) ||
-           room.cell_at(dot(observer.eye, frame.u), dot(observer.eye, frame.v)) == Room::Cell::elsewhere;
-  });
-  return all;
+    for (const Room& room : rooms)
+      for (const Observer& observer : usual_observers(room, options.heights.face)) all.push_back(observer);
+  std::vector<std::vector<Observer>> by_room(rooms.size());
+  for (const Observer& observer : all) {
+    const auto room = room_at(rooms, observer.eye);
+    if (room) by_room[*room].push_back(observer);
+    else ++outside;
+  }
+  return by_room;
 }
 
 /// Returns the value that this share of the values reaches. Requires: not empty.
@@ -55,6 +65,19 @@ double reached_by(std::vector<double> values, double share) {
   std::ranges::sort(values, std::greater{});
   const auto count = static_cast<double>(values.size());
   return values[std::min(values.size() - 1, static_cast<std::size_t>(std::ceil(share * count)) - 1)];
+}
+
+WorkGrid grid_of(const Room& room, const ReportOptions& options) {
+  try {
+    return work_grid(room, options.spacing);
+  } catch (const std::length_error& error) {
+    throw ReportError(room.name + ": " + error.what());
+  }
+}
+
+void require_rooms(bool are_there) {
+  if (!are_there)
+    throw ReportError("there is no floor: no horizontal surface of 1 m2 or more that faces up with room to stand on it");
 }
 
 /// A mesh and what is needed to measure light in it.
@@ -72,43 +95,36 @@ class Reporter {
   Reporter(const DisplayMesh& mesh, const ReportOptions& options, const std::optional<DaylightSolution>& overcast)
       : measured_(mesh, options.absorption),
         options_(options),
-        meter_{measured_.gatherer, mesh.quantity, told_relative_error(mesh).value_or(0)},
+        meter_{measured_.gatherer, mesh.quantity},
         glare_(mesh, measured_.gatherer) {
     if (overcast) overcast_.emplace(overcast->mesh, options.absorption), outside_ = overcast->outside;
   }
 
-  std::vector<RoomReport> rooms() const {
+  std::vector<RoomReport> rooms(std::size_t& observers_outside) const {
+    const std::vector<Room> rooms = rooms_of(measured_.mesh, options_.border);
+    const std::vector<RoomPower> powers = power_in(rooms, measured_.mesh);
+    const auto observers = observers_in(rooms, options_, observers_outside);
     std::vector<RoomReport> reports;
-    for (Room& room : rooms_of(measured_.mesh, options_.border)) reports.push_back(report_of(std::move(room)));
+    for (std::size_t n = 0; n < rooms.size(); ++n) reports.push_back(report_of(rooms[n], powers[n], observers[n]));
     return reports;
   }
 
  private:
-  RoomReport report_of(Room room) const {
-    RoomReport report{std::move(room), {}, {}, {}, {}, {}, {}, {}};
-    report.grid = grid_of(report.room);
+  RoomReport report_of(const Room& room, const RoomPower& power, std::span<const Observer> observers) const {
+    RoomReport report{room, {}, {}, {}, {}, power, {}, {}};
+    report.grid = grid_of(room, options_);
     report.light = light_on(report.room, report.grid, options_.heights, meter_);
     scale(report.light, options_.maintenance_factor);
     report.horizontal = statistics_of(values_of(report.light, &PointLight::horizontal));
     report.cylindrical = statistics_of(values_of(report.light, &PointLight::cylindrical));
-    report.power = power_in(report.room, measured_.mesh);
     if (measured_.mesh.quantity == Quantity::photometric)
-      for (const Observer& observer : observers_in(report.room, options_))
-        report.glare.push_back({observer, glare_.at(observer, report.glare.size())});
+      for (const Observer& observer : observers) report.glare.push_back({observer, glare_.at(observer, report.glare.size())});
     if (overcast_) report.daylight = daylight_in(report);
     return report;
   }
 
-  WorkGrid grid_of(const Room& room) const {
-    try {
-      return work_grid(room, options_.spacing);
-    } catch (const std::length_error& error) {
-      throw ReportError(room.name + ": " + error.what());
-    }
-  }
-
   std::optional<DaylightFactors> daylight_in(const RoomReport& report) const {
-    const LightMeter meter{overcast_->gatherer, overcast_->mesh.quantity, 0};
+    const LightMeter meter{overcast_->gatherer, overcast_->mesh.quantity};
     DaylightFactors factors;
     std::vector<double> there;
     for (const auto& light : horizontal_light_on(report.room, report.grid, options_.heights.work, meter)) {
@@ -133,12 +149,13 @@ class Reporter {
   double outside_ = 0;
 };
 
-Image plan_of(const RoomReport& report, const DisplayMesh& mesh) {
+/// Returns the picture of a plan, as PNG.
+std::string plan_of(const RoomReport& report, std::span<const Room> rooms, std::size_t which, const DisplayMesh& mesh) {
   const auto values = report.horizontal_values();
   IsoluxPlan plan{report.room, report.grid, values, {}, irradiance_unit(mesh.quantity), std::nullopt};
   for (const Light& light : mesh.lights)
-    if (is_in(report.room, light)) plan.luminaires.push_back(light);
-  return draw_isolux(plan);
+    if (!light.is_distant() && room_at(rooms, light.position) == which) plan.luminaires.push_back(light);
+  return encode_png(draw_isolux(plan), "plan");
 }
 
 void add_remarks(const DisplayMesh& mesh, Report& report) {
@@ -157,6 +174,12 @@ void add_remarks(const DisplayMesh& mesh, Report& report) {
 
 }  // namespace
 
+void check_rooms(const DisplayMesh& mesh, const ReportOptions& options) {
+  const std::vector<Room> rooms = rooms_of(mesh, options.border);
+  require_rooms(!rooms.empty());
+  for (const Room& room : rooms) (void)grid_of(room, options);
+}
+
 std::vector<std::optional<double>> RoomReport::horizontal_values() const {
   std::vector<std::optional<double>> values;
   for (const PointLight& point : light)
@@ -168,14 +191,18 @@ Report make_report(const DisplayMesh& mesh, const ReportOptions& options, const 
   Report report;
   report.quantity = mesh.quantity;
   report.options = options;
-  report.rooms = Reporter(mesh, options, overcast).rooms();
-  if (report.rooms.empty())
-    throw ReportError("there is no floor: no horizontal surface of 1 m2 or more that faces up with room to stand on it");
+  std::size_t outside = 0;
+  report.rooms = Reporter(mesh, options, overcast).rooms(outside);
+  require_rooms(!report.rooms.empty());
+  if (outside > 0 && !options.observers.empty())
+    report.remarks.push_back(std::to_string(outside) + " of the observers asked for are in no room.");
   report.luminaires = luminaire_types(mesh);
   report.emitting = emitting_materials(mesh);
   report.has_distant_light = std::ranges::any_of(mesh.lights, &Light::is_distant);
   report.told_error = told_relative_error(mesh);
-  for (const RoomReport& room : report.rooms) report.plans.push_back(plan_of(room, mesh));
+  std::vector<Room> rooms;
+  for (const RoomReport& each : report.rooms) rooms.push_back(each.room);
+  for (std::size_t n = 0; n < rooms.size(); ++n) report.plans.push_back(plan_of(report.rooms[n], rooms, n, mesh));
   add_remarks(mesh, report);
   return report;
 }

@@ -17,7 +17,7 @@ namespace alvor {
 
 struct ReportOptions {
   PlaneHeights heights;
-  double border = 0.5;              ///< metres from the walls that are not assessed; at most 15 % of a floor's shorter side
+  double border = 0.5;              ///< metres from the walls that are not assessed; at most 15 % of a room's local width
   std::optional<double> spacing;    ///< largest distance of grid points, metres; empty: that of EN 12464-1
   double maintenance_factor = 1;    ///< by which illuminances of the report are those of the solution, in (0, 1]
   std::vector<Observer> observers;  ///< whose glare is computed; empty: four of each room, who look across it
@@ -62,7 +62,7 @@ struct Report {
   std::optional<double> told_error;          ///< told relative error of the solution
   std::optional<Verification> verification;  ///< by path tracing, if it was made
   std::vector<std::string> remarks;          ///< one sentence each
-  std::vector<Image> plans;                  ///< isolux pictures, by room
+  std::vector<std::string> plans;            ///< isolux pictures by room, PNG
 };
 
 /// Thrown where a report cannot be made. what() is one line.
@@ -75,6 +75,9 @@ struct DaylightSolution {
   const DisplayMesh& mesh;
   double outside = 0;  ///< irradiance of an open horizontal surface, > 0
 };
+
+/// Throws ReportError if make_report() would, for a solution of the same surfaces. Needs no light.
+void check_rooms(const DisplayMesh& mesh, const ReportOptions& options);
 
 /// Computes a report from a solution. Uses all cores; the same arguments give the same report. Title, verification and the error
 /// of the solve are left to the caller. Throws ReportError if there is no floor, or the grid is too fine.

@@ -127,9 +127,9 @@ class Page {
     return text_of("%.2f", room.power.watts / room.room.area);
   }
 
-  std::string room(const RoomReport& room, const Image& plan) const {
+  std::string room(const RoomReport& room, const std::string& plan) const {
     std::string html = "<h2>" + escaped(room.room.name) + "</h2>\n";
-    html += "<div class=plan><img alt=\"plan\" src=\"data:image/png;base64," + absl::Base64Escape(encode_png(plan, "plan")) +
+    html += "<div class=plan><img alt=\"plan\" src=\"data:image/png;base64," + absl::Base64Escape(plan) +
             "\"></div>\n<p class=small>Plan from above; numbers at the grid points in " + unit_ +
             ", curves at the values of the legend, luminaires in red. Grey: the strip along the walls, and places inside of "
             "solids.</p>\n";
@@ -171,9 +171,10 @@ class Page {
     Table table{"observer (eye)", "looks along", "UGR", "L<sub>b</sub>, cd/m&sup2;"};
     for (const auto& [observer, glare] : room.glare)
       table.row({triple(observer.eye), triple(observer.forward),
-                 !glare          ? "inside a solid"
-                 : glare->rating ? text_of("%.1f", *glare->rating)
-                                 : "no luminaire in view",
+                 !glare                  ? "inside a solid"
+                 : glare->rating         ? text_of("%.1f", *glare->rating)
+                 : glare->background > 0 ? "no luminaire in view"
+                                         : "the background is dark",
                  glare ? text_of("%.3g", glare->background) : ""});
     return "<h3>Glare</h3>\n" + table.html();
   }
@@ -215,8 +216,8 @@ class Page {
     std::string html =
         "<h2>Method</h2>\n<p>Radiosity: all surfaces reflect diffusely, and light is exchanged between them until it changes no "
         "more. At each grid point the light of luminaires is computed exactly or by shadow rays, that of surfaces by 4096 rays "
-        "into the solution. What follows &plusmn; is one standard error: noise of these rays, and the solution's own error as if "
-        "all surfaces erred alike.";
+        "into the solution. What follows &plusmn; is one standard error: noise of these rays, and the solution's own error at "
+        "the surfaces that they meet, as if all of these erred alike.";
     if (is_photometric()) html += " UGR: CIE 117:1995 with Guth's position index; windows and skies belong to the background.";
     html += "</p>\n<ul>\n";
     if (report_.told_error)

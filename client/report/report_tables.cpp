@@ -6,7 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <string_view>
 
 namespace alvor {
 
@@ -85,9 +85,9 @@ std::string number(double value) {
 }
 std::string number(const std::optional<double>& value) { return value ? number(*value) : ""; }
 
-/// Returns a text as a field of a CSV file.
+/// Returns a text as a field of a CSV file. Spreadsheets would take a text that begins with some signs for a formula.
 std::string field(const std::string& text) {
-  std::string quoted = "\"";
+  std::string quoted = !text.empty() && std::string_view("=+-@").find(text[0]) != std::string_view::npos ? "\"'" : "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + '"';
 }
@@ -99,16 +99,17 @@ std::string joined(const std::vector<std::string>& fields) {
 }
 
 std::string room_line(const RoomReport& report) {
-  const PlaneStatistics none{};
-  const PlaneStatistics& plane = report.horizontal ? *report.horizontal : none;
+  const auto& plane = report.horizontal;
   const bool has_power = report.power.is_complete && report.power.luminaires > 0;
   std::optional<double> worst;
   for (const ObservedGlare& seen : report.glare)
     if (seen.glare && seen.glare->rating) worst = std::max(worst.value_or(-1e9), *seen.glare->rating);
-  return joined({field(report.room.name), number(report.room.area), std::to_string(plane.points), number(plane.mean.value),
-                 number(plane.mean.error), number(plane.minimum), number(plane.maximum), number(plane.uniformity()),
-                 report.cylindrical ? number(report.cylindrical->mean.value) : "", number(worst),
-                 has_power ? number(report.power.watts) : "", report.daylight ? number(report.daylight->median) : "",
+  return joined({field(report.room.name), number(report.room.area), std::to_string(plane ? plane->points : 0),
+                 plane ? number(plane->mean.value) : "", plane ? number(plane->mean.error) : "",
+                 plane ? number(plane->minimum) : "", plane ? number(plane->maximum) : "",
+                 plane ? number(plane->uniformity()) : "", report.cylindrical ? number(report.cylindrical->mean.value) : "",
+                 number(worst), has_power ? number(report.power.watts) : "",
+                 report.daylight ? number(report.daylight->median) : "",
                  report.daylight ? number(report.daylight->on_95_percent) : ""});
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -44,14 +45,6 @@ std::vector<std::uint32_t> parts_of(const FloorRaster& floor, std::uint32_t& cou
     ++count;
   }
   return parts;
-}
-
-/// Returns whether a cell of a floor lies beside a wall or the floor's end.
-bool is_at_edge(const FloorRaster& floor, std::size_t cell) {
-  int neighbours = 0;
-  floor.for_open_neighbours(cell,
-                            [&](std::size_t next) { neighbours += floor.cells[next].is_floor || floor.cells[next].is_pillar; });
-  return neighbours < 4;
 }
 
 /// The cells of one part of a floor.
@@ -143,30 +136,11 @@ class LevelRooms {
                     (part.last_row - part.first_row + 1) * raster_.cell_v);
   }
 
-  /// Returns whether each cell is nearer than `reach` to an edge of the floor within the part.
-  std::vector<bool> near_edge(const Part& part, double reach) const {
-    std::vector<bool> is_near(floor_.cells.size());
-    for (const std::size_t cell : part.cells)
-      if (is_at_edge(floor_, cell)) mark_around(cell, reach, is_near);
-    return is_near;
-  }
-
-  /// Marks the cells whose middle is within `reach` of the far side of an edge cell.
-  void mark_around(std::size_t cell, double reach, std::vector<bool>& marked) const {
-    const int column = raster_.column_of(cell), row = raster_.row_of(cell);
-    const int reach_u = static_cast<int>(reach / raster_.cell_u), reach_v = static_cast<int>(reach / raster_.cell_v);
-    const double radius = reach - std::min(raster_.cell_u, raster_.cell_v) / 2;
-    for (int y = std::max(0, row - reach_v); y <= std::min(raster_.rows - 1, row + reach_v); ++y)
-      for (int x = std::max(0, column - reach_u); x <= std::min(raster_.columns - 1, column + reach_u); ++x)
-        if (std::hypot((x - column) * raster_.cell_u, (y - row) * raster_.cell_v) < radius) marked[raster_.index(x, y)] = true;
-  }
-
   /// Divides a part of the floor at its doors. A room is what is left connected after a strip along the walls, as wide as half a
   /// door, is taken away, and what of the strip lies near it. Places that are too narrow for that, like corridors, are rooms,
   /// too.
   void add_rooms_of(const Part& part, std::vector<Room>& rooms) const {
     const double reach = std::min(half_door, shorter_side(part) / 4);
-    const std::vector<bool> is_strip = near_edge(part, reach);
     std::vector<std::uint32_t> owners(floor_.cells.size(), none);
     std::vector<bool> is_of_part(floor_.cells.size());
     for (const std::size_t cell : part.cells) is_of_part[cell] = true;
@@ -180,7 +154,7 @@ class LevelRooms {
         ++count;
       }
     };
-    take(least_core, [&](std::size_t cell) { return is_of_part[cell] && !is_strip[cell]; });
+    take(least_core, [&](std::size_t cell) { return is_of_part[cell] && floor_.to_edge[cell] >= reach; });
     grow(owners, 1.5 * reach);
     take(least_area, [&](std::size_t cell) { return is_of_part[cell] && owners[cell] == none; });
     grow(owners, std::numeric_limits<double>::infinity());
@@ -192,8 +166,14 @@ class LevelRooms {
   /// their width.
   bool is_wide_enough(const Part& part) const {
     const double across = std::min(raster_.columns * raster_.cell_u, raster_.rows * raster_.cell_v);
-    const std::vector<bool> is_near = near_edge(part, std::min(least_width / 2, across / 4));
-    return std::ranges::any_of(part.cells, [&](std::size_t cell) { return !is_near[cell]; });
+    return local_width(part) >= std::min(least_width, across / 2);
+  }
+
+  /// Returns the diameter of the largest circle within a part, metres.
+  double local_width(const Part& part) const {
+    float most = 0;
+    for (const std::size_t cell : part.cells) most = std::max(most, floor_.to_edge[cell]);
+    return 2 * most;
   }
 
   /// Gives each cell of the floor to the room from which it is reached first, within a distance.
@@ -211,11 +191,21 @@ class LevelRooms {
         });
   }
 
+  double median_surface(const Part& part) const {
+    std::vector<float> surfaces;
+    for (const std::size_t cell : part.cells) surfaces.push_back(floor_.cells[cell].surface);
+    const auto middle = surfaces.begin() + static_cast<std::ptrdiff_t>(surfaces.size() / 2);
+    std::ranges::nth_element(surfaces, middle);
+    return *middle;
+  }
+
   Room room_of(const Part& part) const {
-    const std::vector<bool> is_border = near_edge(part, std::min(border_, most_border * shorter_side(part)));
     Room room;
+    room.local_width = std::min(local_width(part), shorter_side(part));
+    const double border = std::min(border_, most_border * room.local_width);
+    const auto is_border = [&](std::size_t cell) { return floor_.to_edge[cell] < border; };
     room.frame = frame_;
-    room.floor_height = floor_.height;
+    room.floor_height = floor_.height + median_surface(part);
     room.clear_height = height_of_share(floor_, part, 0.1);  // most of the room may lie under furniture
     room.area = static_cast<double>(part.cells.size()) * cell_area();
     room.raster = {raster_.left + part.first_column * raster_.cell_u,
@@ -225,12 +215,14 @@ class LevelRooms {
                    part.last_column - part.first_column + 1,
                    part.last_row - part.first_row + 1};
     room.cells.assign(room.raster.size(), Room::Cell::elsewhere);
+    room.surface.assign(room.raster.size(), 0);
     std::vector<std::size_t> inner;
     for (const std::size_t cell : part.cells) {
       const std::size_t here =
           room.raster.index(raster_.column_of(cell) - part.first_column, raster_.row_of(cell) - part.first_row);
-      room.cells[here] = is_border[cell] ? Room::Cell::border : Room::Cell::inner;
-      if (!is_border[cell]) inner.push_back(here);
+      room.cells[here] = is_border(cell) ? Room::Cell::border : Room::Cell::inner;
+      room.surface[here] = static_cast<float>(floor_.height + floor_.cells[cell].surface - room.floor_height);
+      if (!is_border(cell)) inner.push_back(here);
     }
     const Part bounds = part_of(room.raster, std::move(inner));
     room.left = room.raster.left + bounds.first_column * raster_.cell_u;
@@ -274,6 +266,8 @@ void name_rooms(const DisplayMesh& mesh, std::vector<Room>& rooms) {
   std::map<std::string, int> times;
   for (Room& room : rooms) {
     room.name = object_of_triangle(mesh, room.floor_triangle);
+    for (char& c : room.name)
+      if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
     ++times[room.name];
   }
   std::map<std::string, int> number;
@@ -283,18 +277,66 @@ void name_rooms(const DisplayMesh& mesh, std::vector<Room>& rooms) {
   }
 }
 
+/// Returns whether cells are small enough for areas and borders.
+bool is_fine(const PlanRaster& raster) {
+  constexpr double fine_cell = 0.06;  // metres
+  return std::max(raster.cell_u, raster.cell_v) <= fine_cell;
+}
+
+/// Returns whether a room of a fine raster is that of a coarse one: most of its cells lie there.
+bool is_same_room(const Room& fine, const Room& coarse) {
+  std::size_t all = 0, there = 0;
+  for (std::size_t cell = 0; cell < fine.cells.size(); ++cell) {
+    if (fine.cells[cell] == Room::Cell::elsewhere) continue;
+    ++all;
+    there += coarse.cell_at(fine.raster.middle_u(fine.raster.column_of(cell)), fine.raster.middle_v(fine.raster.row_of(cell))) !=
+             Room::Cell::elsewhere;
+  }
+  return 2 * there > all;
+}
+
 }  // namespace
+
+std::optional<std::size_t> room_at(std::span<const Room> rooms, Vec3 place) {
+  constexpr double above_ceiling = 0.5;  // metres
+  std::optional<std::size_t> found;
+  for (std::size_t n = 0; n < rooms.size(); ++n) {
+    const Room& room = rooms[n];
+    const double u = dot(place, room.frame.u), v = dot(place, room.frame.v),
+                 height = dot(place, room.frame.up) - room.floor_at(u, v);
+    const bool is_here = height > 0 && height < room.clear_height + above_ceiling && room.cell_at(u, v) != Room::Cell::elsewhere;
+    if (is_here && (!found || room.floor_height > rooms[*found].floor_height)) found = n;
+  }
+  return found;
+}
 
 std::vector<Room> rooms_of(const DisplayMesh& mesh, double border) {
   const TriangleCaster caster(mesh.positions, mesh.triangles, Traversal::watertight);
   const PlanFrame frame = frame_along_walls(mesh);
   const double least_clear = std::min(least_clear_height, height_of(mesh, frame) / 2);
-  std::vector<FloorRaster> floors = floor_rasters(mesh, caster, frame);
-  for (FloorRaster& floor : floors) open_pillars(floor);
+  const std::vector<FloorLevel> levels = floor_levels(mesh, frame);
   std::vector<Room> rooms;
   for (const bool needs_ceiling : {true, false})
     if (rooms.empty())
-      for (const FloorRaster& floor : floors) LevelRooms(floor, frame, border, least_clear, needs_ceiling).add_to(rooms);
+      for (const FloorLevel& level : levels) {
+        const FloorSurvey survey(mesh, caster, frame, level);
+        const auto found = [&](FloorRaster floor) {
+          open_pillars(floor);
+          measure_edges(floor);
+          std::vector<Room> here = rooms;
+          LevelRooms(floor, frame, border, least_clear, needs_ceiling).add_to(here);
+          here.erase(here.begin(), here.begin() + static_cast<std::ptrdiff_t>(rooms.size()));
+          return here;
+        };
+        std::vector<Room> of_level;
+        for (Room& room : found(survey.coarse())) {
+          if (is_fine(room.raster)) of_level.push_back(std::move(room));
+          else
+            for (Room& finer : found(survey.fine(room.raster)))
+              if (is_same_room(finer, room)) of_level.push_back(std::move(finer));
+        }
+        rooms.insert(rooms.end(), std::move_iterator(of_level.begin()), std::move_iterator(of_level.end()));
+      }
   name_rooms(mesh, rooms);
   return rooms;
 }

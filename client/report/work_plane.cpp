@@ -8,7 +8,7 @@ namespace alvor {
 
 namespace {
 
-constexpr double most_points = 1e6, most_spacing = 10, rounding = 1e-9;
+constexpr double most_points = 1e5, most_spacing = 10, rounding = 1e-9;
 
 }  // namespace
 
@@ -19,10 +19,11 @@ double largest_spacing(double length, double width) {
 }
 
 WorkGrid work_grid(const Room& room, std::optional<double> spacing) {
-  const double most = spacing.value_or(largest_spacing(room.length, room.width));
+  const double most =
+      spacing.value_or(largest_spacing(std::max(room.length, room.width), std::min({room.length, room.width, room.local_width})));
   const double columns = std::max(1.0, std::ceil(room.length / most - rounding)),
                rows = std::max(1.0, std::ceil(room.width / most - rounding));
-  if (columns * rows > most_points) throw std::length_error("more than a million grid points");
+  if (columns * rows > most_points) throw std::length_error("more than 100000 grid points");
   WorkGrid grid{static_cast<int>(columns), static_cast<int>(rows), room.length / columns, room.width / rows, {}};
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {

@@ -27,7 +27,7 @@ struct WorkGrid {
 };
 
 /// `spacing`: the largest distance of points, metres; empty: largest_spacing(). Throws std::length_error if there would be more
-/// than a million points.
+/// than 100 000 points.
 WorkGrid work_grid(const Room& room, std::optional<double> spacing);
 
 }  // namespace alvor

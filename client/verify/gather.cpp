@@ -19,7 +19,8 @@ constexpr std::uint32_t rounds = 64, rays_per_round = 64;
 /// Total of shadow rays; they are shared among emitting triangles by the most that each could send, with a minimum for each.
 constexpr double shadow_rays = 2048;
 constexpr std::uint32_t least_shadow_rays = 4;
-constexpr std::uint32_t trial_rays = 128, rays_of_soft_lamp = 256;
+constexpr std::uint32_t trial_rays = 128;
+constexpr double rays_of_soft_lamp = 256, rays_of_soft_lamps = 8192;  // of each at most, and of all together
 /// Fraction of a shadow ray's length by which it ends before the emitter, so that in float32 it does not hit it.
 constexpr double before_emitter = 1e-5;
 
@@ -57,12 +58,13 @@ Gatherer::Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const 
   }
 }
 
-std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+std::optional<GatheredIrradiance> Gatherer::gather(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const {
   if (is_enclosed(point, stream)) return std::nullopt;
-  const GatheredIrradiance first = from_emitters(point, normal, stream), second = from_lamps(point, normal, stream),
-                           third = from_other_surfaces(point, normal, stream);
+  const GatheredIrradiance first = from_emitters(point, normal, stream, effort),
+                           second = from_lamps(point, normal, stream, effort),
+                           third = from_other_surfaces(point, normal, stream, effort);
   return GatheredIrradiance{first.irradiance + second.irradiance + third.irradiance, third.irradiance,
-                            std::hypot(first.standard_error, second.standard_error, third.standard_error)};
+                            std::hypot(first.standard_error, second.standard_error, third.standard_error), third.told_error};
 }
 
 Rgb Gatherer::through(const TriangleCaster::Hit& hit, Vec3 direction) const {
@@ -83,22 +85,36 @@ bool Gatherer::meets_front(std::uint32_t triangle, Vec3 direction) const {
 }
 
 /// Returns pi times the radiance that arrives at a point from a direction, without that of emitters and lamps.
-Rgb Gatherer::from_direction(Vec3 point, Vec3 direction) const {
-  Rgb arriving, share{1, 1, 1};
+Gatherer::Arriving Gatherer::from_direction(Vec3 point, Vec3 direction) const {
+  Arriving arriving;
+  Rgb share{1, 1, 1};
   std::vector<std::uint32_t> passed;
   while (passed.size() < TriangleCaster::most_passed && !share.is_zero()) {
     const auto hit = caster_.cast(point, direction, passed);
     if (!hit) {
       if (skies_.empty()) return arriving;
       const Rgb sky = std::numbers::pi * skies_.radiance(direction);
-      return arriving + share * medium_.transmittance(lamps_.way_out(point, direction)) * sky;
+      arriving.light += share * medium_.transmittance(lamps_.way_out(point, direction)) * sky;
+      return arriving;
     }
-    if (meets_front(hit->triangle, direction) && !is_emitter_[hit->triangle])
-      arriving += share * medium_.transmittance(hit->distance) * radiosity_.at(hit->triangle, hit->u, hit->v);
+    if (meets_front(hit->triangle, direction) && !is_emitter_[hit->triangle]) {
+      const Rgb light = share * medium_.transmittance(hit->distance) * radiosity_.at(hit->triangle, hit->u, hit->v);
+      arriving.light += light;
+      arriving.error += light.mean() * relative_error(*hit);
+    }
     share = share * through(*hit, direction);
     passed.push_back(hit->triangle);
   }
   return arriving;
+}
+
+/// Returns the told error of the irradiance where a triangle is hit, over the irradiance; at most 1.
+double Gatherer::relative_error(const TriangleCaster::Hit& hit) const {
+  if (mesh_.errors.empty()) return 0;
+  const auto& [a, b, c] = mesh_.triangles[hit.triangle];
+  const double received =
+      (1 - hit.u - hit.v) * mesh_.irradiance[a].mean() + hit.u * mesh_.irradiance[b].mean() + hit.v * mesh_.irradiance[c].mean();
+  return received > 0 ? std::min(1.0, error_at(mesh_, hit.triangle, hit.u, hit.v) / received) : 0;
 }
 
 bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
@@ -115,10 +131,10 @@ bool Gatherer::is_enclosed(Vec3 point, std::uint64_t stream) const {
     }
     if (hit) ++(meets_front(hit->triangle, direction) ? fronts : backs);
   }
-  return backs >= fronts;
+  return backs > 0 && backs >= fronts;
 }
 
-GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const {
   std::vector<Unblocked> unblocked;
   double total = 0;
   for (const std::uint32_t t : emitters_) {
@@ -131,7 +147,7 @@ GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_
   GatheredIrradiance sum;
   double variance = 0;
   for (const auto& [triangle, most] : unblocked) {
-    const auto rays = least_shadow_rays + static_cast<std::uint32_t>(shadow_rays * most.mean() / total);
+    const auto rays = least_shadow_rays + static_cast<std::uint32_t>(effort * shadow_rays * most.mean() / total);
     const VisibleShare share = visible_share(point, normal, triangle, rays, stream);
     sum.irradiance += share.mean * most;
     variance += most.mean() * most.mean() * share.variance;
@@ -140,13 +156,16 @@ GatheredIrradiance Gatherer::from_emitters(Vec3 point, Vec3 normal, std::uint64_
   return sum;
 }
 
-GatheredIrradiance Gatherer::from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+GatheredIrradiance Gatherer::from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const {
   GatheredIrradiance all;
   double variance = 0;
+  const double share =
+      std::min<double>(rays_of_soft_lamp, rays_of_soft_lamps / static_cast<double>(std::max<std::size_t>(1, lamps_.size())));
+  const std::uint32_t soft_rays = std::max(least_shadow_rays, static_cast<std::uint32_t>(effort * share));
   for (std::size_t l = 0; l < lamps_.size(); ++l) {
     PathRandom random(stream, lamp, l);
     const EvenPairs places(random);
-    const std::uint32_t rays = lamps_.is_soft(l) ? rays_of_soft_lamp : 1;
+    const std::uint32_t rays = lamps_.is_soft(l) ? soft_rays : 1;
     Rgb sum;
     double squares = 0;
     for (std::uint32_t n = 0; n < rays; ++n) {
@@ -195,16 +214,22 @@ Gatherer::VisibleShare Gatherer::visible_share(Vec3 point, Vec3 normal, std::uin
   return {mean, std::max(0.0, arriving_squared - 2 * m * product + m * m * all_squared) / (all * all) * used / (used - 1)};
 }
 
-GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream) const {
+GatheredIrradiance Gatherer::from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const {
   IrradianceEstimate estimate;
-  for (std::uint32_t round = 0; round < rounds; ++round) {
+  double error = 0;
+  const std::uint32_t count = std::max(2U, static_cast<std::uint32_t>(effort * rounds));
+  for (std::uint32_t round = 0; round < count; ++round) {
     PathRandom random(stream, indirect, round);
     const EvenPairs directions(random);
     Rgb sum;
-    for (std::uint32_t n = 0; n < rays_per_round; ++n) sum += from_direction(point, cosine_direction(normal, directions[n]));
+    for (std::uint32_t n = 0; n < rays_per_round; ++n) {
+      const Arriving arriving = from_direction(point, cosine_direction(normal, directions[n]));
+      sum += arriving.light;
+      error += arriving.error / (rays_per_round * count);
+    }
     estimate.add(sum * (1.0 / rays_per_round));
   }
-  return {estimate.mean(), estimate.mean(), std::sqrt(estimate.variance_of_band_mean())};
+  return {estimate.mean(), estimate.mean(), std::sqrt(estimate.variance_of_band_mean()), error};
 }
 
 }  // namespace alvor

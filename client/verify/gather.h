@@ -18,6 +18,7 @@ struct GatheredIrradiance {
   Rgb irradiance;             ///< W/m2
   Rgb from_surfaces;          ///< the part that comes from surfaces that do not emit, W/m2
   double standard_error = 0;  ///< error of irradiance.mean(), W/m2; only from sampling, not from the solution
+  double told_error = 0;  ///< error of irradiance.mean() by what the solution tells of its own, as if all of it erred alike, W/m2
 };
 
 /// Gathers the light that the surfaces of a solution send to a point. Light from emitters is each triangle's exact form factor
@@ -31,9 +32,10 @@ class Gatherer {
   Gatherer(const DisplayMesh& mesh, const TriangleCaster& caster, const Rgb& absorption);
 
   /// Returns the irradiance of a small surface at `point` that faces along `normal` (unit). `stream` selects the random numbers.
-  /// Returns nothing if most surfaces around the point show it their backs, or nothing is around: the point lies inside a solid
+  /// Returns nothing if most surfaces around the point show it their backs: the point lies inside a solid
   /// or outside the room.
-  std::optional<GatheredIrradiance> gather(Vec3 point, Vec3 normal, std::uint64_t stream) const;
+  /// `effort` is the share of the usual number of rays that is sent, in (0, 1].
+  std::optional<GatheredIrradiance> gather(Vec3 point, Vec3 normal, std::uint64_t stream, double effort = 1) const;
 
   /// Returns the share of light that goes straight from one place to another past the surfaces, per band.
   Rgb passing(Vec3 from, Vec3 to) const;
@@ -49,11 +51,17 @@ class Gatherer {
   /// pane is passed: its front, drawn close to it, dims.
   Rgb through(const TriangleCaster::Hit& hit, Vec3 direction) const;
   bool meets_front(std::uint32_t triangle, Vec3 direction) const;
-  Rgb from_direction(Vec3 point, Vec3 direction) const;
+  /// Light from a direction, and the told error of the part that comes from surfaces.
+  struct Arriving {
+    Rgb light;
+    double error = 0;
+  };
+  Arriving from_direction(Vec3 point, Vec3 direction) const;
+  double relative_error(const TriangleCaster::Hit& hit) const;
   bool is_enclosed(Vec3 point, std::uint64_t stream) const;
-  GatheredIrradiance from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream) const;
-  GatheredIrradiance from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream) const;
-  GatheredIrradiance from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream) const;
+  GatheredIrradiance from_emitters(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const;
+  GatheredIrradiance from_lamps(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const;
+  GatheredIrradiance from_other_surfaces(Vec3 point, Vec3 normal, std::uint64_t stream, double effort) const;
   VisibleShare visible_share(Vec3 point, Vec3 normal, std::uint32_t triangle, std::uint32_t rays, std::uint64_t stream) const;
   Vec3 corner(std::uint32_t triangle, int k) const { return mesh_.positions[mesh_.triangles[triangle][k]]; }
 

@@ -55,6 +55,18 @@ TEST_F(ReportCommand, TellsDaylightFactorsOfTheSceneOnly) {
   EXPECT_NE(ran.err.find("--daylight-factor: needs the scene"), std::string::npos) << ran.err;
 }
 
+TEST_F(ReportCommand, ReplacesAnEarlierReportButNotItsInput) {
+  ASSERT_EQ(run("report room.obj -o first" + quickly).status, 0);
+  write("first/plan_2.png", "of a room that is no more");
+  write("first/report.pdf", "of an earlier report");
+  EXPECT_EQ(run("report first/solution.glb -o first --spacing 1").status, 0);
+  EXPECT_FALSE(test::fs::exists(file("first") / "plan_2.png"));
+  EXPECT_FALSE(test::fs::exists(file("first") / "report.pdf"));
+  const test::Ran ran = run("report first/solution.glb -o again --luminaire lamp.ies@1,2,3");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("--luminaire: is for scenes"), std::string::npos) << ran.err;
+}
+
 TEST_F(ReportCommand, RefusesWhatItCannotReport) {
   write("wall.obj", "mtllib room.mtl\nusemtl lamp\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
   test::expect_bad_input(run("report wall.obj -o first -q"), "wall.obj: there is no floor");
@@ -64,7 +76,7 @@ TEST_F(ReportCommand, RefusesWhatItCannotReport) {
   EXPECT_EQ(run("report room.obj -o room.obj").status, 2) << "is no folder";
   EXPECT_EQ(run("report room.obj -o first --maintenance-factor 1.5").status, 2);
   test::expect_bad_input(run("report room.obj -o first --tolerance 0.2 --spacing 0.0001 -q"),
-                         "room.obj: Room 1: more than a million");
+                         "room.obj: Room 1: more than 100000");
 }
 
 }  // namespace

@@ -140,6 +140,79 @@ TEST(Rooms, AreNotDividedByAScreen) {
   EXPECT_NEAR(rooms[0].area, 20, 0.05);
 }
 
+TEST(Rooms, HaveTheHeightOfTheirOwnFloor) {
+  Scene scene = scene_of(1, 0.5);
+  test::add_box(scene, {0, 0, 0}, {5, 3, 4}, true);
+  test::add_box(scene, {5.2, 0.1, 0}, {9.2, 3, 4}, true);
+  test::add_polygon(scene, {{-50, -0.04, -50}, {-50, -0.04, 50}, {50, -0.04, 50}, {50, -0.04, -50}});  // the ground outside
+  const auto rooms = rooms_of(evenly_lit(scene, 1), 0.5);
+  ASSERT_EQ(rooms.size(), 2u);
+  EXPECT_NEAR(rooms[0].area, 20, 0.3);
+  EXPECT_NEAR(rooms[1].area, 16, 0.3);
+  EXPECT_NEAR(rooms[0].floor_height, 0, 1e-3);
+  EXPECT_NEAR(rooms[1].floor_height, 0.1, 1e-3);
+}
+
+TEST(Rooms, OnLargeGroundAreAsFineAsAlone) {
+  Scene scene = scene_of(1, 0.5);
+  test::add_box(scene, {0, 0, 0}, {5, 3, 4}, true);
+  test::add_polygon(scene, {{-2000, -0.1, -2000}, {-2000, -0.1, 2000}, {2000, -0.1, 2000}, {2000, -0.1, -2000}});
+  const auto rooms = rooms_of(evenly_lit(scene, 1), 0.5);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area, 20, 0.1);
+}
+
+TEST(Rooms, ThatAreBentAreCoveredByTheirGrid) {
+  Scene scene = scene_of(1, 0.5);
+  // A corridor 1.2 m wide with two legs of 10 m.
+  const std::array<Vec3, 6> outline{{{0, 0, 0}, {0, 0, 10}, {1.2, 0, 10}, {1.2, 0, 1.2}, {10, 0, 1.2}, {10, 0, 0}}};
+  scene.add_polygon(outline, 0);
+  std::array<Vec3, 6> ceiling = outline;
+  std::ranges::reverse(ceiling);
+  for (Vec3& corner : ceiling) corner.y = 2.5;
+  scene.add_polygon(ceiling, 0);
+  for (std::size_t n = 0; n < 6; ++n) {
+    const Vec3 a = outline[n], b = outline[(n + 1) % 6], up{0, 2.5, 0};
+    test::add_polygon(scene, {b, a, a + up, b + up});
+  }
+  const auto rooms = rooms_of(evenly_lit(scene, 1), 0.5);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area, 22.56, 0.2);
+  EXPECT_NEAR(rooms[0].local_width, 1.3, 0.15);
+  const WorkGrid grid = work_grid(rooms[0], std::nullopt);
+  for (double way = 0.6; way < 9.4; way += 0.4)
+    for (const auto& [u, v] : {std::array{way, -0.6}, std::array{0.6, -way}})
+      EXPECT_TRUE(std::ranges::any_of(
+          grid.points, [&](const WorkPoint& point) { return std::hypot(point.along_u - u, point.along_v - v) < 0.4; }))
+          << u << ' ' << v;
+}
+
+TEST(Rooms, HoldALampOnceEvenUnderAGallery) {
+  Scene scene = scene_of(1, 0.5);
+  test::add_box(scene, {0, 0, 0}, {10, 6, 8}, true);
+  test::add_box(scene, {6, 2.8, 0}, {10, 3, 8}, false);
+  const auto rooms = rooms_of(evenly_lit(scene, 1), 0.5);
+  ASSERT_EQ(rooms.size(), 2u);
+  EXPECT_EQ(room_at(rooms, {8, 5.9, 4}), 1u);
+  EXPECT_EQ(room_at(rooms, {8, 2.7, 4}), 0u);
+  EXPECT_EQ(room_at(rooms, {3, 5.9, 4}), 0u);
+  EXPECT_FALSE(room_at(rooms, {20, 2, 4}));
+}
+
+TEST(Rooms, ReachUnderASlopingRoof) {
+  Scene scene = scene_of(1, 0.5);
+  // 6 x 5 m; the roof rises from 1 m to 3 m.
+  test::add_polygon(scene, {{0, 0, 0}, {0, 0, 5}, {6, 0, 5}, {6, 0, 0}});
+  test::add_polygon(scene, {{0, 1, 0}, {6, 3, 0}, {6, 3, 5}, {0, 1, 5}});
+  test::add_polygon(scene, {{0, 0, 0}, {0, 1, 0}, {0, 1, 5}, {0, 0, 5}});
+  test::add_polygon(scene, {{6, 0, 0}, {6, 0, 5}, {6, 3, 5}, {6, 3, 0}});
+  test::add_polygon(scene, {{0, 0, 0}, {6, 0, 0}, {6, 3, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{0, 0, 5}, {0, 1, 5}, {6, 3, 5}, {6, 0, 5}});
+  const auto rooms = rooms_of(evenly_lit(scene, 1), 0.5);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area, 30, 0.5);
+}
+
 TEST(Rooms, NeedAFloor) {
   Scene scene = scene_of(1, 0.5);
   test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -353,6 +426,8 @@ TEST(ReportFiles, CarryHostileNamesAsText) {
   EXPECT_EQ(json["rooms"][0]["name"], name);
   EXPECT_EQ(json["rooms"][0]["horizontal"]["points"], report.rooms[0].grid.points.size());
   EXPECT_NE(rooms_csv(report).find("\"\"x\"\""), std::string::npos);
+  report.rooms[0].room.name = "=HYPERLINK(1)";  // is no formula
+  EXPECT_NE(rooms_csv(report).find("\"'=HYPERLINK(1)\""), std::string::npos);
   EXPECT_EQ(std::ranges::count(points_csv(report), '\n'), 1 + static_cast<long>(report.rooms[0].grid.points.size()));
 }
 

@@ -7,11 +7,13 @@
 #include "client/command/options/option_checks.h"
 #include "client/command/options/scene_options.h"
 #include "client/command/options/up_option.h"
+#include "client/command/output/display.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
 #include "client/command/output/notes.h"
 #include "client/command/output/numbers.h"
 #include "client/command/output/run_program.h"
+#include "client/command/output/status_line.h"
 #include "client/export/solution_file.h"
 #include "client/picture/units.h"
 #include "client/report/report.h"
@@ -42,6 +44,7 @@ struct ReportCommand {
   std::size_t verify_points = 300;
   SolveOptions solve;
   SceneOptions scene_options;
+  std::string only_for_scenes;  ///< an option that was given and says how a scene is read or solved; empty: none
 };
 
 Observer observer_of(const std::string& text, UpAxis axis) {
@@ -75,6 +78,17 @@ Scene under_overcast_sky(Scene scene) {
   return scene;
 }
 
+/// Throws Failure where a report would be refused, before the solve that it needs.
+void check_rooms(const ReportCommand& command, const Scene& scene) {
+  const BaseMesh mesh(scene);
+  if (mesh.roots().empty()) return;  // the solve says so
+  try {
+    check_rooms(solution_mesh(mesh, {}), command.report);
+  } catch (const ReportError& error) {
+    throw Failure(ExitStatus::bad_scene, name_of(command.input) + ": " + error.what());
+  }
+}
+
 /// What the report is about.
 struct Solved {
   std::optional<Scene> scene;  ///< not known for a solution file
@@ -85,11 +99,18 @@ Solved solved(const ReportCommand& command) {
   const RawScene bytes = scene_bytes(command.input, command.format);
   const std::string extension = lower_case_extension(bytes.file), name = name_of(command.input);
   if (!is_solution(bytes.bytes, extension)) {
+    std::error_code is_none;
+    if (!is_stream(command.input) && std::filesystem::equivalent(command.input, command.folder / "solution.glb", is_none))
+      throw Failure(ExitStatus::usage, "--output: the report would replace its input " + name);
     Solved result{read_scene(command.scene_options, bytes, name), {}};
+    check_rooms(command, *result.scene);
     result.mesh = solve_here(*result.scene, command.solve, name);
     return result;
   }
   if (command.daylight) throw Failure(ExitStatus::usage, "--daylight-factor: needs the scene; a solution has its own light only");
+  if (!command.only_for_scenes.empty())
+    throw Failure(ExitStatus::usage,
+                  command.only_for_scenes + ": is for scenes; " + name + " is a solution, which has its light");
   try {
     Solved result{std::nullopt, decode_solution(bytes.bytes, extension, name)};
     take_up(command.scene_options.up, result.mesh.up);
@@ -110,6 +131,8 @@ Report report_of(const ReportCommand& command, const Solved& solved) {
     overcast = solve_here(under_overcast_sky(*solved.scene), command.solve, name_of(command.input) + " under an overcast sky");
   std::optional<DaylightSolution> daylight;
   if (overcast) daylight.emplace(DaylightSolution{*overcast, open_sky});
+  StatusLine line;
+  line.show("measuring the light in the rooms");
   try {
     return make_report(solved.mesh, options, daylight);
   } catch (const ReportError& error) {
@@ -124,6 +147,8 @@ std::optional<Verification> verified(const ReportCommand& command, const Solved&
   options.trace.paths = 2000;
   return verify(*solved.scene, solved.mesh, options);
 }
+
+std::string plan_name(std::size_t number) { return "plan_" + std::to_string(number) + ".png"; }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
   write_whole_file(path, bytes);
@@ -141,17 +166,22 @@ void write_pdf(const std::filesystem::path& folder) {
   warn(std::array{std::string("no PDF was written: Chromium was not found or failed. The page prints well from any browser")});
 }
 
+/// Removes the files that an earlier report left in the folder and that this one may not write.
+void remove_old_files(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::filesystem::remove(folder / "report.pdf", ignored);
+  for (std::size_t n = 1; std::filesystem::remove(folder / plan_name(n), ignored); ++n) {}
+}
+
 void write(const ReportCommand& command, const Report& report, const Solved& solved) {
+  remove_old_files(command.folder);
   if (solved.scene) {
     write_solution_file(command.folder / "solution.glb", solved.mesh);
     notes() << "wrote " << (command.folder / "solution.glb").string() << '\n';
   }
   write_file(command.folder / "rooms.csv", rooms_csv(report));
   write_file(command.folder / "points.csv", points_csv(report));
-  for (std::size_t n = 0; n < report.plans.size(); ++n) {
-    const auto path = command.folder / ("plan_" + std::to_string(n + 1) + ".png");
-    write_file(path, encode_png(report.plans[n], path.string()));
-  }
+  for (std::size_t n = 0; n < report.plans.size(); ++n) write_file(command.folder / plan_name(n + 1), report.plans[n]);
   write_file(command.folder / "report.json", report_json(report));
   write_file(command.folder / "report.html", report_page(report));
   if (command.pdf) write_pdf(command.folder);
@@ -165,7 +195,7 @@ std::string summary_of(const Report& report) {
       text += "mean " + shortest(std::round(room.horizontal->mean.value * 10) / 10) + " " + irradiance_unit(report.quantity) +
               ", U0 " + shortest(std::round(room.horizontal->uniformity() * 100) / 100) + ", " +
               std::to_string(room.horizontal->points) + " points\n";
-    else text += "all grid points lie inside solids\n";
+    else text += "no grid point is in the open\n";
   }
   return text;
 }
@@ -175,7 +205,9 @@ void run_report(const ReportCommand& command) {
   make_folder(command.folder, "report.html", "--output");
   const Solved result = solved(command);
   Report report = report_of(command, result);
-  report.title = command.title.empty() ? "Lighting of " + command.input.stem().string() : command.title;
+  const std::string subject = is_stream(command.input) ? "a scene" : command.input.stem().string();
+  warn(report.remarks);
+  report.title = command.title.empty() ? "Lighting of " + subject : command.title;
   report.verification = verified(command, result);
   write(command, report, result);
   notes() << summary_of(report);
@@ -190,7 +222,7 @@ void add_plane_options(CLI::App& command, ReportCommand& options) {
       ->check(CLI::Range(0.0, 100.0));
   command
       .add_option("--border", options.report.border,
-                  "Width of the strip along walls that is left out, metres; at most 15 % of the shorter side (0.5)")
+                  "Width of the strip along walls that is left out, metres; at most 15 % of the room's local width (0.5)")
       ->check(CLI::Range(0.0, 100.0));
   command.add_option("--spacing", options.report.spacing, "Largest distance of grid points, metres (as EN 12464-1 says)")
       ->check(above_up_to(0, 1e6));
@@ -227,7 +259,12 @@ void add_report_command(CLI::App& app) {
   command.add_flag("--pdf", options->pdf, "Print the page to report.pdf, too, by Chromium");
   add_solve_limits(command, options->solve);
   add_scene_options(command, options->scene_options);
-  command.callback([options] { run_report(*options); });
+  command.callback([options, &command] {
+    for (const char* name : {"--luminaire", "--light-scale", "--quantity", "--luminous-efficacy", "--sun", "--place", "--sky",
+                             "--environment", "--translucent", "--tolerance"})
+      if (command.get_option(name)->count() > 0) options->only_for_scenes = name;
+    run_report(*options);
+  });
 }
 
 }  // namespace alvor
