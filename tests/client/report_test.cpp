@@ -181,10 +181,11 @@ TEST(Rooms, ThatAreBentAreCoveredByTheirGrid) {
   EXPECT_NEAR(rooms[0].local_width, 1.3, 0.15);
   const WorkGrid grid = work_grid(rooms[0], std::nullopt);
   for (double way = 0.6; way < 9.4; way += 0.4)
-    for (const auto& [u, v] : {std::array{way, -0.6}, std::array{0.6, -way}})
+    for (const auto& place : {std::array{way, -0.6}, std::array{0.6, -way}})
       EXPECT_TRUE(std::ranges::any_of(
-          grid.points, [&](const WorkPoint& point) { return std::hypot(point.along_u - u, point.along_v - v) < 0.4; }))
-          << u << ' ' << v;
+          grid.points,
+          [&](const WorkPoint& point) { return std::hypot(point.along_u - place[0], point.along_v - place[1]) < 0.4; }))
+          << place[0] << ' ' << place[1];
 }
 
 TEST(Rooms, HoldALampOnceEvenUnderAGallery) {
