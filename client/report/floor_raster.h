@@ -1,15 +1,10 @@
 #pragma once
 // A horizontal level of a scene as a raster: where it can be walked on, and where walls stand.
 
-#include "client/report/plan_frame.h"
-#include "meshing/display_mesh.h"
-#include "radiosity/rays/triangle_caster.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <vector>
 
 namespace alvor {
@@ -79,41 +74,7 @@ struct FloorRaster {
   }
 };
 
-/// Steps and carpets lower than this belong to the floor around them, metres.
-inline constexpr double step_height = 0.15;
-
 /// Sets the distances of a floor's cells to its edges.
 void measure_edges(FloorRaster& floor);
-
-/// Horizontal triangles of a mesh that face up, within `step_height` of each other.
-struct FloorLevel {
-  double height = 0;  ///< their mean by area, along up, metres
-  double area = 0;    ///< m2
-  std::vector<std::uint32_t> triangles;
-};
-
-/// Returns the levels of a mesh, from the lowest; none below 1 m2.
-std::vector<FloorLevel> floor_levels(const DisplayMesh& mesh, const PlanFrame& frame);
-
-/// Surveys a level. Walls are what stands in the way at a height of 1.9 m, or 0.8 of the clear height where that is less; or both
-/// at 0.3 m and under the ceiling, as below and above windows. Borrows the mesh, the caster and the frame.
-class FloorSurvey {
- public:
-  /// Requires: `caster` holds the mesh's triangles.
-  FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel level);
-  ~FloorSurvey();
-
-  /// Returns the level where something is built on it, in cells of at least 2 cm.
-  FloorRaster coarse() const;
-  /// Returns the part of the level about a room that was found on its coarse raster.
-  FloorRaster fine(const PlanRaster& around) const;
-
- private:
-  struct State;
-  std::unique_ptr<const State> state_;
-};
-
-/// Returns the frame along whose axes most walls stand.
-PlanFrame frame_along_walls(const DisplayMesh& mesh);
 
 }  // namespace alvor

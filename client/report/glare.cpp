@@ -1,7 +1,7 @@
 #include "client/report/glare.h"
 
-#include "client/picture/tone_map.h"
 #include "client/picture/units.h"
+#include "client/report/mesh_area.h"
 #include "client/report/plan_frame.h"
 #include "client/report/position_index.h"
 #include "meshing/mesh_radiosity.h"
@@ -17,17 +17,6 @@ namespace {
 
 constexpr int parts_of_side = 4;           // a face of an opening is divided into this number of parts along each side
 constexpr double nearly_there = 1 - 1e-3;  // a sight line ends before the luminaire, which may lie in a ceiling
-
-/// Returns the light that leaves a triangle's middle if that is more than it can reflect, one number; else 0.
-double emitted_by(const DisplayMesh& mesh, const MeshRadiosity& radiosity, std::uint32_t triangle) {
-  const auto emits_at = [&](std::uint32_t vertex) {
-    constexpr float rounded_up = 1 + 1e-6F;
-    const RgbF& received = mesh.irradiance[vertex];
-    return emits(mesh.radiosity[vertex], mesh.transmitted.empty() ? received : received + rounded_up * mesh.transmitted[vertex]);
-  };
-  if (!std::ranges::all_of(mesh.triangles[triangle], emits_at)) return 0;
-  return one_number(radiosity.at(triangle, 1.0 / 3, 1.0 / 3), mesh.quantity);
-}
 
 }  // namespace
 
@@ -64,11 +53,11 @@ void GlareMeter::add_emitters() {
   first_emitter_ = parts_.size();
   const MeshRadiosity radiosity(mesh_);
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const double emitted = emitted_by(mesh_, radiosity, t);
-    if (!(emitted > 0)) continue;
+    if (!gatherer_.is_emitter(t)) continue;
+    const double emitted = one_number(radiosity.at(t, 1.0 / 3, 1.0 / 3), mesh_.quantity);
     const Vec3 a = mesh_.positions[mesh_.triangles[t][0]], b = mesh_.positions[mesh_.triangles[t][1]],
                c = mesh_.positions[mesh_.triangles[t][2]];
-    const Vec3 area = cross(b - a, c - a) / 2;
+    const Vec3 area = double_area_of(mesh_, t) / 2;
     parts_.push_back({(a + b + c) / 3, area, length(area), emitted / std::numbers::pi});
   }
 }

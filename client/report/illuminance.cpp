@@ -1,6 +1,7 @@
 #include "client/report/illuminance.h"
 
 #include "client/picture/units.h"
+#include "client/report/mesh_area.h"
 
 #include <tbb/parallel_for.h>
 
@@ -78,8 +79,7 @@ std::optional<double> told_relative_error(const DisplayMesh& mesh) {
   double squares = 0, light = 0, area = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
-    const Vec3 corner = mesh.positions[a];
-    const double size = length(cross(mesh.positions[b] - corner, mesh.positions[c] - corner)) / 2;
+    const double size = area_of(mesh, t);
     const double error = error_at(mesh, t, 1.0 / 3, 1.0 / 3);
     squares += size * error * error;
     light += size * widen(mesh.irradiance[a] + mesh.irradiance[b] + mesh.irradiance[c]).mean() / 3;

@@ -1,6 +1,7 @@
 #include "client/report/luminaire_list.h"
 
 #include "client/picture/units.h"
+#include "client/report/mesh_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,14 +36,10 @@ std::vector<LuminaireType> luminaire_types(const DisplayMesh& mesh) {
 
 std::vector<EmittingMaterial> emitting_materials(const DisplayMesh& mesh) {
   std::vector<double> areas(mesh.materials.size());
-  std::size_t triangle = 0;
+  std::uint32_t triangle = 0;
   for (const FaceTriangles& run : mesh.faces)
-    for (std::uint32_t n = 0; n < run.count; ++n, ++triangle) {
-      if (run.material >= areas.size()) continue;
-      const auto& [a, b, c] = mesh.triangles[triangle];
-      const Vec3 corner = mesh.positions[a];
-      areas[run.material] += length(cross(mesh.positions[b] - corner, mesh.positions[c] - corner)) / 2;
-    }
+    for (std::uint32_t n = 0; n < run.count; ++n, ++triangle)
+      if (run.material < areas.size()) areas[run.material] += area_of(mesh, triangle);
   std::vector<EmittingMaterial> emitting;
   for (std::size_t m = 0; m < areas.size(); ++m) {
     const double exitance = one_number(mesh.materials[m].emission, mesh.quantity);

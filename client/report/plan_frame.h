@@ -1,6 +1,7 @@
 #pragma once
 // Coordinates of a floor plan.
 
+#include "meshing/display_mesh.h"
 #include "meshing/scene.h"
 #include "meshing/vec3.h"
 
@@ -19,5 +20,8 @@ inline PlanFrame plan_frame(UpAxis axis, double turn) {
   const Vec3 u = std::cos(turn) * x + std::sin(turn) * y;
   return {u, cross(up, u), up};
 }
+
+/// Returns the frame along whose axes most walls stand.
+PlanFrame frame_along_walls(const DisplayMesh& mesh);
 
 }  // namespace alvor

@@ -2,6 +2,7 @@
 // Finds the rooms of a solution: connected floors between walls.
 
 #include "client/report/floor_raster.h"
+#include "client/report/plan_frame.h"
 
 #include <cstdint>
 #include <optional>

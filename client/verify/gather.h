@@ -37,6 +37,9 @@ class Gatherer {
   /// `effort` is the share of the usual number of rays that is sent, in (0, 1].
   std::optional<GatheredIrradiance> gather(Vec3 point, Vec3 normal, std::uint64_t stream, double effort = 1) const;
 
+  /// Returns whether a triangle emits light.
+  bool is_emitter(std::uint32_t triangle) const { return is_emitter_[triangle]; }
+
   /// Returns the share of light that goes straight from one place to another past the surfaces, per band.
   Rgb passing(Vec3 from, Vec3 to) const;
 
