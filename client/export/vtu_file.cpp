@@ -1,5 +1,6 @@
 #include "client/export/vtu_file.h"
 
+#include "client/export/face_object.h"
 #include "client/picture/units.h"
 #include "import/base/bytes.h"
 
@@ -45,14 +46,6 @@ std::vector<double> coordinates_of(const DisplayMesh& mesh) {
   return coordinates;
 }
 
-/// Returns the number of the object that a face of the scene belongs to, or -1.
-std::int32_t object_of(const DisplayMesh& mesh, std::uint32_t face) {
-  for (std::size_t o = 0; o < mesh.objects.size(); ++o)
-    if (face >= mesh.objects[o].first_face && face - mesh.objects[o].first_face < mesh.objects[o].face_count)
-      return static_cast<std::int32_t>(o);
-  return -1;
-}
-
 void add_points(const DisplayMesh& mesh, VtuWriter& out) {
   out.text("<PointData Scalars=\"irradiance\">\n");
   out.array("irradiance", "Float32", 3, bands_of(mesh.irradiance));
@@ -68,7 +61,8 @@ void add_cell_data(const DisplayMesh& mesh, VtuWriter& out) {
   for (const FaceTriangles& run : mesh.faces) {
     faces.insert(faces.end(), run.count, static_cast<std::int32_t>(run.faces.first));
     materials.insert(materials.end(), run.count, static_cast<std::int32_t>(run.material));
-    objects.insert(objects.end(), run.count, object_of(mesh, run.faces.first));
+    const auto object = object_of_face(mesh.objects, run.faces.first);
+    objects.insert(objects.end(), run.count, object ? static_cast<std::int32_t>(*object) : -1);
   }
   for (auto* list : {&faces, &materials, &objects}) list->resize(mesh.triangles.size(), -1);
   out.text("<CellData>\n");

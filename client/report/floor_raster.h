@@ -36,7 +36,7 @@ struct PlanRaster {
   std::size_t cell_at(double along_u, double along_v) const;
 };
 
-/// What stands on one cell of a level, and what bounds it.
+/// One cell of a level: its floor, what stands on it, and the walls around it.
 struct FloorCell {
   bool is_floor = false;         ///< the level is there, and no wall stands on it
   bool is_covered = false;       ///< something is above it, higher than furniture

@@ -200,17 +200,13 @@ class Survey {
 
 }  // namespace
 
-/// One level at hand: its triangles, and what surveys them.
 struct FloorSurvey::State {
-  FloorLevel level;
   PlanBox built;
   Survey survey;
-  State(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel given)
-      : level(std::move(given)), built(built_part(mesh, level, frame)), survey(mesh, caster, frame, level) {}
 };
 
-FloorSurvey::FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel level)
-    : state_(new State(mesh, caster, frame, std::move(level))) {}
+FloorSurvey::FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, const FloorLevel& level)
+    : state_(new State{built_part(mesh, level, frame), Survey(mesh, caster, frame, level)}) {}
 FloorSurvey::~FloorSurvey() = default;
 
 FloorRaster FloorSurvey::coarse() const { return state_->survey.over(state_->built); }

@@ -26,11 +26,11 @@ struct FloorLevel {
 std::vector<FloorLevel> floor_levels(const DisplayMesh& mesh, const PlanFrame& frame);
 
 /// Surveys a level. Walls are what stands in the way at a height of 1.9 m, or 0.8 of the clear height where that is less; or both
-/// at 0.3 m and under the ceiling, as below and above windows. Borrows the mesh, the caster and the frame.
+/// at 0.3 m and under the ceiling, as below and above windows. Borrows all it is given.
 class FloorSurvey {
  public:
   /// Requires: `caster` holds the mesh's triangles.
-  FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, FloorLevel level);
+  FloorSurvey(const DisplayMesh& mesh, const TriangleCaster& caster, const PlanFrame& frame, const FloorLevel& level);
   ~FloorSurvey();
 
   /// Returns the level where something is built on it, in cells of at least 2 cm.

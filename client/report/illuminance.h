@@ -41,7 +41,7 @@ struct PlaneHeights {
   double face = 1.2;   ///< at which cylindrical and vertical illuminances are computed: of people who sit
 };
 
-/// What light is measured with.
+/// Measures the light at points of a solution: what a photometer would show there.
 struct LightMeter {
   const Gatherer& gatherer;
   Quantity quantity = Quantity::radiometric;

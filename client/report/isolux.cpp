@@ -45,7 +45,7 @@ class Plan {
     const CairoContext context(cairo_create(drawing.get()), cairo_destroy);
     if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) throw std::runtime_error("no memory for a drawing");
     cairo_select_font_face(context.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-    for (const Light& light : plan_.luminaires) draw_luminaire(context.get(), light);
+    for (const Light* light : plan_.luminaires) draw_luminaire(context.get(), *light);
     draw_numbers(context.get());
     draw_bar(context.get());
     Legend legend{scale_, {plan_.unit}};

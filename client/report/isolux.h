@@ -32,9 +32,9 @@ struct IsoluxPlan {
   const Room& room;
   const WorkGrid& grid;
   std::span<const std::optional<double>> values;
-  std::vector<Light> luminaires;     ///< marked by their outline, or a cross
-  std::string unit;                  ///< "lx"
-  std::optional<ColourScale> scale;  ///< empty: automatic
+  std::span<const Light* const> luminaires;  ///< marked by their outline, or a cross
+  std::string unit;                          ///< "lx"
+  std::optional<ColourScale> scale;          ///< empty: automatic
 };
 
 /// Returns the plan in colours, with curves of equal values at those of the legend, the values of the grid's points, the

@@ -48,16 +48,20 @@ std::vector<EmittingMaterial> emitting_materials(const DisplayMesh& mesh) {
   return emitting;
 }
 
-std::vector<RoomPower> power_in(std::span<const Room> rooms, const DisplayMesh& mesh) {
-  std::vector<RoomPower> powers(rooms.size());
-  for (const Light& light : mesh.lights) {
-    const auto room = light.is_distant() ? std::nullopt : room_at(rooms, light.position);
-    if (!room) continue;
-    ++powers[*room].luminaires;
-    powers[*room].watts += light.electrical_watts;
-    powers[*room].is_complete &= light.electrical_watts > 0;
+std::vector<std::vector<const Light*>> lights_in(std::span<const Room> rooms, const DisplayMesh& mesh) {
+  std::vector<std::vector<const Light*>> by_room(rooms.size());
+  for (const Light& light : mesh.lights)
+    if (const auto room = light.is_distant() ? std::nullopt : room_at(rooms, light.position)) by_room[*room].push_back(&light);
+  return by_room;
+}
+
+RoomPower power_of(std::span<const Light* const> lights) {
+  RoomPower power{lights.size()};
+  for (const Light* light : lights) {
+    power.watts += light->electrical_watts;
+    power.is_complete &= light->electrical_watts > 0;
   }
-  return powers;
+  return power;
 }
 
 }  // namespace alvor

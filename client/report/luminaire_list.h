@@ -39,7 +39,9 @@ struct RoomPower {
   bool is_complete = true;  ///< the power of all is known
 };
 
-/// Returns the power in each room.
-std::vector<RoomPower> power_in(std::span<const Room> rooms, const DisplayMesh& mesh);
+/// Returns the lights in each room, of those that are not distant. They are the mesh's.
+std::vector<std::vector<const Light*>> lights_in(std::span<const Room> rooms, const DisplayMesh& mesh);
+
+RoomPower power_of(std::span<const Light* const> lights);
 
 }  // namespace alvor

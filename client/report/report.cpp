@@ -75,11 +75,6 @@ WorkGrid grid_of(const Room& room, const ReportOptions& options) {
   }
 }
 
-void require_rooms(bool are_there) {
-  if (!are_there)
-    throw ReportError("there is no floor: no horizontal surface of 1 m2 or more that faces up with room to stand on it");
-}
-
 /// A mesh and what is needed to measure light in it.
 struct MeasuredMesh {
   explicit MeasuredMesh(const DisplayMesh& solution, const Rgb& absorption)
@@ -100,18 +95,8 @@ class Reporter {
     if (overcast) overcast_.emplace(overcast->mesh, options.absorption), outside_ = overcast->outside;
   }
 
-  std::vector<RoomReport> rooms(std::size_t& observers_outside) const {
-    const std::vector<Room> rooms = rooms_of(measured_.mesh, options_.border);
-    const std::vector<RoomPower> powers = power_in(rooms, measured_.mesh);
-    const auto observers = observers_in(rooms, options_, observers_outside);
-    std::vector<RoomReport> reports;
-    for (std::size_t n = 0; n < rooms.size(); ++n) reports.push_back(report_of(rooms[n], powers[n], observers[n]));
-    return reports;
-  }
-
- private:
-  RoomReport report_of(const Room& room, const RoomPower& power, std::span<const Observer> observers) const {
-    RoomReport report{room, {}, {}, {}, {}, power, {}, {}};
+  RoomReport report_of(const Room& room, std::span<const Light* const> lights, std::span<const Observer> observers) const {
+    RoomReport report{room, {}, {}, {}, {}, power_of(lights), {}, {}};
     report.grid = grid_of(room, options_);
     report.light = light_on(report.room, report.grid, options_.heights, meter_);
     scale(report.light, options_.maintenance_factor);
@@ -123,6 +108,7 @@ class Reporter {
     return report;
   }
 
+ private:
   std::optional<DaylightFactors> daylight_in(const RoomReport& report) const {
     const LightMeter meter{overcast_->gatherer, overcast_->mesh.quantity};
     DaylightFactors factors;
@@ -150,12 +136,9 @@ class Reporter {
 };
 
 /// Returns the picture of a plan, as PNG.
-std::string plan_of(const RoomReport& report, std::span<const Room> rooms, std::size_t which, const DisplayMesh& mesh) {
+std::string plan_of(const RoomReport& report, std::span<const Light* const> lights, Quantity quantity) {
   const auto values = report.horizontal_values();
-  IsoluxPlan plan{report.room, report.grid, values, {}, irradiance_unit(mesh.quantity), std::nullopt};
-  for (const Light& light : mesh.lights)
-    if (!light.is_distant() && room_at(rooms, light.position) == which) plan.luminaires.push_back(light);
-  return encode_png(draw_isolux(plan), "plan");
+  return encode_png(draw_isolux({report.room, report.grid, values, lights, irradiance_unit(quantity), std::nullopt}), "plan");
 }
 
 void add_remarks(const DisplayMesh& mesh, Report& report) {
@@ -174,10 +157,12 @@ void add_remarks(const DisplayMesh& mesh, Report& report) {
 
 }  // namespace
 
-void check_rooms(const DisplayMesh& mesh, const ReportOptions& options) {
-  const std::vector<Room> rooms = rooms_of(mesh, options.border);
-  require_rooms(!rooms.empty());
+std::vector<Room> find_rooms(const DisplayMesh& mesh, const ReportOptions& options) {
+  std::vector<Room> rooms = rooms_of(mesh, options.border);
+  if (rooms.empty())
+    throw ReportError("there is no floor: no horizontal surface of 1 m2 or more that faces up with room to stand on it");
   for (const Room& room : rooms) (void)grid_of(room, options);
+  return rooms;
 }
 
 std::vector<std::optional<double>> RoomReport::horizontal_values() const {
@@ -187,22 +172,25 @@ std::vector<std::optional<double>> RoomReport::horizontal_values() const {
   return values;
 }
 
-Report make_report(const DisplayMesh& mesh, const ReportOptions& options, const std::optional<DaylightSolution>& overcast) {
+Report make_report(const DisplayMesh& mesh, std::span<const Room> rooms, const ReportOptions& options,
+                   const std::optional<DaylightSolution>& overcast) {
   Report report;
   report.quantity = mesh.quantity;
   report.options = options;
   std::size_t outside = 0;
-  report.rooms = Reporter(mesh, options, overcast).rooms(outside);
-  require_rooms(!report.rooms.empty());
+  const auto observers = observers_in(rooms, options, outside);
+  const auto lights = lights_in(rooms, mesh);
+  const Reporter reporter(mesh, options, overcast);
+  for (std::size_t n = 0; n < rooms.size(); ++n) {
+    report.rooms.push_back(reporter.report_of(rooms[n], lights[n], observers[n]));
+    report.plans.push_back(plan_of(report.rooms[n], lights[n], mesh.quantity));
+  }
   if (outside > 0 && !options.observers.empty())
     report.remarks.push_back(std::to_string(outside) + " of the observers asked for are in no room.");
   report.luminaires = luminaire_types(mesh);
   report.emitting = emitting_materials(mesh);
   report.has_distant_light = std::ranges::any_of(mesh.lights, &Light::is_distant);
   report.told_error = told_relative_error(mesh);
-  std::vector<Room> rooms;
-  for (const RoomReport& each : report.rooms) rooms.push_back(each.room);
-  for (std::size_t n = 0; n < rooms.size(); ++n) report.plans.push_back(plan_of(report.rooms[n], rooms, n, mesh));
   add_remarks(mesh, report);
   return report;
 }

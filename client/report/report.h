@@ -9,6 +9,7 @@
 #include "client/verify/verification.h"
 
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -76,12 +77,13 @@ struct DaylightSolution {
   double outside = 0;  ///< irradiance of an open horizontal surface, > 0
 };
 
-/// Throws ReportError if make_report() would, for a solution of the same surfaces. Needs no light.
-void check_rooms(const DisplayMesh& mesh, const ReportOptions& options);
+/// Returns the rooms that a report of these surfaces is about; their light does not matter, so that this can be asked before a
+/// solve. Throws ReportError if there is no floor, or the grid is too fine.
+std::vector<Room> find_rooms(const DisplayMesh& mesh, const ReportOptions& options);
 
-/// Computes a report from a solution. Uses all cores; the same arguments give the same report. Title, verification and the error
-/// of the solve are left to the caller. Throws ReportError if there is no floor, or the grid is too fine.
-Report make_report(const DisplayMesh& mesh, const ReportOptions& options,
+/// Computes a report of rooms from a solution of their surfaces. Uses all cores; the same arguments give the same report. Title
+/// and verification are left to the caller. Requires: find_rooms() returned the rooms, for the same surfaces and options.
+Report make_report(const DisplayMesh& mesh, std::span<const Room> rooms, const ReportOptions& options,
                    const std::optional<DaylightSolution>& overcast = std::nullopt);
 
 /// Returns the report as one JSON object.

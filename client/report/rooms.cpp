@@ -1,5 +1,6 @@
 #include "client/report/rooms.h"
 
+#include "client/export/face_object.h"
 #include "client/report/floor_survey.h"
 #include "client/report/pillars.h"
 #include "client/report/room_division.h"
@@ -27,9 +28,8 @@ std::string object_of_triangle(const DisplayMesh& mesh, std::uint32_t triangle) 
   for (const FaceTriangles& run : mesh.faces) {
     end += run.count;
     if (triangle >= end) continue;
-    for (const SceneObject& object : mesh.objects)
-      if (run.faces.first >= object.first_face && run.faces.first - object.first_face < object.face_count) return object.name;
-    break;
+    const auto object = object_of_face(mesh.objects, run.faces.first);
+    return object ? mesh.objects[*object].name : std::string();
   }
   return {};
 }

@@ -43,6 +43,12 @@ Scene scene_of(double emission, double reflectance, Quantity quantity = Quantity
   return scene;
 }
 
+/// Returns the report of the rooms that are found in a solution.
+Report report_of(const DisplayMesh& mesh, const ReportOptions& options,
+                 const std::optional<DaylightSolution>& overcast = std::nullopt) {
+  return make_report(mesh, find_rooms(mesh, options), options, overcast);
+}
+
 Scene turned(Scene scene, double degrees) {
   const double c = std::cos(degrees * pi / 180), s = std::sin(degrees * pi / 180);
   for (Vec3& v : scene.vertices) v = {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
@@ -218,7 +224,7 @@ TEST(Rooms, NeedAFloor) {
   Scene scene = scene_of(1, 0.5);
   test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   EXPECT_TRUE(rooms_of(evenly_lit(scene, 1), 0.5).empty());
-  EXPECT_THROW(make_report(evenly_lit(scene, 1), {}), ReportError);
+  EXPECT_THROW(report_of(evenly_lit(scene, 1), {}), ReportError);
 }
 
 TEST(PositionIndex, FollowsTheFitOfLevin) {
@@ -244,7 +250,7 @@ TEST(PositionIndex, FollowsTheFitOfLevin) {
 TEST(Illuminance, InEvenLightIsTheSameInAllDirections) {
   Scene scene = scene_of(0, 0.5);
   test::add_box(scene, {0, 0, 0}, {4, 3, 4}, true);
-  const Report report = make_report(evenly_lit(scene, 200), {});  // B = 100
+  const Report report = report_of(evenly_lit(scene, 200), {});  // B = 100
   ASSERT_EQ(report.rooms.size(), 1u);
   const RoomReport& room = report.rooms[0];
   EXPECT_NEAR(room.horizontal->mean.value, 100, 1e-3);
@@ -258,7 +264,7 @@ TEST(Illuminance, IsMultipliedByTheMaintenanceFactor) {
   test::add_box(scene, {0, 0, 0}, {4, 3, 4}, true);
   ReportOptions options;
   options.maintenance_factor = 0.8;
-  EXPECT_NEAR(make_report(evenly_lit(scene, 200), options).rooms[0].horizontal->minimum, 80, 1e-3);
+  EXPECT_NEAR(report_of(evenly_lit(scene, 200), options).rooms[0].horizontal->minimum, 80, 1e-3);
 }
 
 /// Returns a luminaire that shines down as a Lambert emitter from a square.
@@ -288,7 +294,7 @@ TEST(Glare, OfASmallLuminaireIsThatOfTheFormula) {
   const DisplayMesh mesh = evenly_lit(scene, 200);  // Lb = 100 / pi
   ReportOptions options;
   options.observers = {{{1, 1.2, 4}, {1, 0, 0}}, {{7, 1.2, 4}, {1, 0, 0}}};
-  const auto& glare = make_report(mesh, options).rooms[0].glare;
+  const auto& glare = report_of(mesh, options).rooms[0].glare;
   ASSERT_EQ(glare.size(), 2u);
   // 1.7 m above the eye and 5 m ahead of it. L = I / A as for every Lambert emitter.
   const double distance2 = 1.7 * 1.7 + 25, luminance = 500 / 0.04;
@@ -308,8 +314,8 @@ TEST(Glare, OfASurfaceThatEmitsIsThatOfALuminaireOfTheSameLuminance) {
   test::add_polygon(scene, {{5.9, 2.9, 3.9}, {6.1, 2.9, 3.9}, {6.1, 2.9, 4.1}, {5.9, 2.9, 4.1}}, 1);
   ReportOptions options;
   options.observers = {{{1, 1.2, 3}, {1, 0, 0}}};
-  const double of_luminaire = *make_report(evenly_lit(with_luminaire, 200), options).rooms[0].glare[0].glare->rating;
-  const double of_surface = *make_report(evenly_lit(scene, 200), options).rooms[0].glare[0].glare->rating;
+  const double of_luminaire = *report_of(evenly_lit(with_luminaire, 200), options).rooms[0].glare[0].glare->rating;
+  const double of_surface = *report_of(evenly_lit(scene, 200), options).rooms[0].glare[0].glare->rating;
   EXPECT_NEAR(of_luminaire, of_surface, 0.1);
 }
 
@@ -356,7 +362,7 @@ TEST(Illuminance, OfFourLuminairesInAWhiteBoxIsThatOfTheZonalCavityMethod) {
   options.heights.work = 0.005;
   options.border = 0;
   options.spacing = 0.3;
-  const Report report = make_report(solution_of(scene, 0.01), options);
+  const Report report = report_of(solution_of(scene, 0.01), options);
   ASSERT_EQ(report.rooms.size(), 1u);
   EXPECT_NEAR(report.luminaires[0].lumens, 1000, 3);
   EXPECT_NEAR(report.rooms[0].horizontal->mean.value * area / lumens, utilisation, 0.02 * utilisation)
@@ -388,7 +394,7 @@ TEST(DaylightFactor, UnderAnOpeningInABlackRoofIsTheSkyComponent) {
   ReportOptions options;
   options.border = 0;
   options.spacing = 4;  // one point, in the middle of the part under the roof that is left
-  const Report report = make_report(mesh, options, DaylightSolution{mesh, 1000});
+  const Report report = report_of(mesh, options, DaylightSolution{mesh, 1000});
   ASSERT_EQ(report.rooms.size(), 1u);
   ASSERT_TRUE(report.rooms[0].daylight);
   const WorkPoint& point = report.rooms[0].grid.points.at(0);
@@ -408,7 +414,7 @@ TEST(DaylightFactor, SharesAreOfThePoints) {
   Scene scene = scene_of(0, 0.5);
   test::add_box(scene, {0, 0, 0}, {4, 3, 4}, true);
   const DisplayMesh mesh = evenly_lit(scene, 200);
-  const Report report = make_report(mesh, {}, DaylightSolution{mesh, 1000});
+  const Report report = report_of(mesh, {}, DaylightSolution{mesh, 1000});
   EXPECT_NEAR(report.rooms[0].daylight->median, 0.1, 1e-5);
   EXPECT_NEAR(report.rooms[0].daylight->on_95_percent, 0.1, 1e-5);
 }
@@ -418,7 +424,7 @@ TEST(ReportFiles, CarryHostileNamesAsText) {
   test::add_box(scene, {0, 0, 0}, {4, 3, 4}, true);
   const std::string name = "<script>alert(\"x\")</script>, \"a\" & b";
   scene.objects = {{name, std::nullopt, {}, 0, 6}};
-  Report report = make_report(evenly_lit(scene, 200), {});
+  Report report = report_of(evenly_lit(scene, 200), {});
   report.title = name;
   const std::string page = report_page(report);
   EXPECT_EQ(page.find("<script"), std::string::npos);
@@ -435,7 +441,7 @@ TEST(ReportFiles, CarryHostileNamesAsText) {
 TEST(ReportFiles, SayThatARadiometricSceneHasNoLux) {
   Scene scene = scene_of(0, 0.5, Quantity::radiometric);
   test::add_box(scene, {0, 0, 0}, {4, 3, 4}, true);
-  const Report report = make_report(evenly_lit(scene, 200), {});
+  const Report report = report_of(evenly_lit(scene, 200), {});
   EXPECT_TRUE(report.rooms[0].glare.empty());
   const auto json = nlohmann::json::parse(report_json(report));
   EXPECT_EQ(json["unit"], "W/m2");

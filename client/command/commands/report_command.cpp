@@ -23,7 +23,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 namespace alvor {
@@ -78,20 +77,25 @@ Scene under_overcast_sky(Scene scene) {
   return scene;
 }
 
-/// Throws Failure where a report would be refused, before the solve that it needs.
-void check_rooms(const ReportCommand& command, const Scene& scene) {
-  const BaseMesh mesh(scene);
-  if (mesh.roots().empty()) return;  // the solve says so
+/// Returns the rooms of these surfaces. Throws Failure if there are none to report.
+std::vector<Room> rooms_in(const ReportCommand& command, const DisplayMesh& mesh) {
   try {
-    check_rooms(solution_mesh(mesh, {}), command.report);
+    return find_rooms(mesh, command.report);
   } catch (const ReportError& error) {
     throw Failure(ExitStatus::bad_scene, name_of(command.input) + ": " + error.what());
   }
 }
 
-/// What the report is about.
+/// Returns the rooms of a scene that is not solved yet; none if no face has an area, which the solve refuses.
+std::vector<Room> rooms_in(const ReportCommand& command, const Scene& scene) {
+  const BaseMesh mesh(scene);
+  return mesh.roots().empty() ? std::vector<Room>{} : rooms_in(command, solution_mesh(mesh, {}));
+}
+
+/// A scene or a solution, solved, and its rooms.
 struct Solved {
   std::optional<Scene> scene;  ///< not known for a solution file
+  std::vector<Room> rooms;
   DisplayMesh mesh;
 };
 
@@ -102,8 +106,8 @@ Solved solved(const ReportCommand& command) {
     std::error_code is_none;
     if (!is_stream(command.input) && std::filesystem::equivalent(command.input, command.folder / "solution.glb", is_none))
       throw Failure(ExitStatus::usage, "--output: the report would replace its input " + name);
-    Solved result{read_scene(command.scene_options, bytes, name), {}};
-    check_rooms(command, *result.scene);
+    Solved result{read_scene(command.scene_options, bytes, name), {}, {}};
+    result.rooms = rooms_in(command, *result.scene);  // before the solve, which takes longer than a refusal should
     result.mesh = solve_here(*result.scene, command.solve, name);
     return result;
   }
@@ -112,8 +116,9 @@ Solved solved(const ReportCommand& command) {
     throw Failure(ExitStatus::usage,
                   command.only_for_scenes + ": is for scenes; " + name + " is a solution, which has its light");
   try {
-    Solved result{std::nullopt, decode_solution(bytes.bytes, extension, name)};
+    Solved result{std::nullopt, {}, decode_solution(bytes.bytes, extension, name)};
     take_up(command.scene_options.up, result.mesh.up);
+    result.rooms = rooms_in(command, result.mesh);
     return result;
   } catch (const SolutionFileError& error) {
     throw Failure(ExitStatus::bad_scene, error.what());
@@ -133,11 +138,7 @@ Report report_of(const ReportCommand& command, const Solved& solved) {
   if (overcast) daylight.emplace(DaylightSolution{*overcast, open_sky});
   StatusLine line;
   line.show("measuring the light in the rooms");
-  try {
-    return make_report(solved.mesh, options, daylight);
-  } catch (const ReportError& error) {
-    throw Failure(ExitStatus::bad_scene, name_of(command.input) + ": " + error.what());
-  }
+  return make_report(solved.mesh, solved.rooms, options, daylight);
 }
 
 std::optional<Verification> verified(const ReportCommand& command, const Solved& solved) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the command line says about how a scene is read that the command itself solves.
+// Options for how a scene is read by commands that solve it themselves: its light, medium, translucent materials and up axis.
 
 #include "client/command/options/input_file.h"
 #include "client/command/options/light_options.h"
