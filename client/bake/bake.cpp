@@ -3,6 +3,7 @@
 #include "client/bake/exr_writer.h"
 #include "client/bake/materials.h"
 #include "client/bake/placed_meshes.h"
+#include "client/bake/subdivision.h"
 #include "client/bake/texels.h"
 #include "client/bake/vertex_bake.h"
 #include "client/picture/png_file.h"
@@ -29,6 +30,8 @@ using nlohmann::json;
 constexpr double clipped_at_most = 0.002;
 // Texels that unused parts of a page take from their neighbours, so that two smaller mip levels hold no black. Chosen.
 constexpr int spread_texels = 8;
+// Packing takes 20 s for so many, and no engine wants them.
+constexpr std::size_t most_charts = 1'000'000;
 
 /// A chart of a node's mesh, and its place among the textures.
 struct NodeChart {
@@ -50,7 +53,7 @@ class Baker {
         scene_(scene),
         solution_(solution),
         options_(options),
-        surface_(solution, scene.objects, scene.faces.size()),
+        surface_(solution, scene),
         meshes_(placed_meshes(document_)) {}
 
   Baked bake() {
@@ -81,6 +84,9 @@ class Baker {
                              {}});
       }
     if (charts_.empty()) throw BakeError("file", "shows no surface");
+    if (charts_.size() > most_charts)
+      throw BakeError("file", "falls into " + std::to_string(charts_.size()) + " charts, more than " + std::to_string(most_charts) +
+                                  ": join the vertices of its faces");
   }
 
   const json& primitive_of(std::size_t mesh, std::size_t primitive) const {
@@ -122,7 +128,7 @@ class Baker {
       options_.on_progress(static_cast<double>(done += here) / texels);
     });
     if (options_.form == BakeForm::lightmap && options_.format == LightmapFormat::png) find_range();
-    for (LightPage& page : images_) spread(page, spread_texels);
+    for (LightPage& page : images_) spread(page, {0, 0, 0, page.size, page.size}, spread_texels);
   }
 
   TexelValue value_of_texels() const {
@@ -199,7 +205,7 @@ class Baker {
       json primitive = with_points;
       const bool stays = charts.keeps_vertices(of.primitive->positions.size()) &&
                          by_page[page].size() == of.primitive->triangles.size();
-      if (!stays) primitive["indices"] = indices_of(by_page[page]), primitive["mode"] = 4;
+      if (!stays) primitive["indices"] = document_.add_indices(by_page[page]), primitive["mode"] = glb::triangle_list;
       const bool keeps_material =
           textures_.empty() || (options_.form == BakeForm::unlit && shows_what_is_behind(material));
       if (!keeps_material) {
@@ -209,14 +215,6 @@ class Baker {
       primitives.push_back(std::move(primitive));
     }
     return primitives;
-  }
-
-  std::size_t indices_of(std::span<const MeshTriangle> triangles) {
-    std::string bytes;
-    for (const MeshTriangle& triangle : triangles)
-      for (const std::uint32_t vertex : triangle) append_value(bytes, vertex);
-    return document_.add_accessor({{"componentType", glb::uint_component}, {"type", "SCALAR"}}, bytes, 3 * triangles.size(),
-                                  glb::element_array_buffer);
   }
 
   /// Returns a primitive whose vertices are those of the charts: the same if the charts have none in common.
@@ -229,10 +227,7 @@ class Baker {
     copy(primitive.at("attributes"));
     if (primitive.contains("targets"))
       for (json& target : primitive["targets"]) copy(target);
-    if (primitive.contains("extensions")) {
-      primitive["extensions"].erase("KHR_draco_mesh_compression");
-      if (primitive["extensions"].empty()) primitive.erase("extensions");
-    }
+    drop_compression(primitive);
     return primitive;
   }
 
@@ -246,11 +241,7 @@ class Baker {
       if (vertex >= elements.count) throw BakeError("accessor " + std::to_string(accessor), "has fewer elements than POSITION");
       bytes += elements.at(vertex);
     }
-    const json like = document_.element("accessors", accessor);
-    known->second = document_.add_accessor(like, bytes, charts.source.size(), glb::array_buffer);
-    json& made = document_.root()["accessors"][known->second];
-    for (const char* bound : {"min", "max"})  // the same elements, some of them twice
-      if (like.contains(bound)) made[bound] = like[bound];
+    known->second = document_.add_accessor_like(accessor, bytes, charts.source.size());
     return known->second;
   }
 
@@ -321,9 +312,7 @@ class Baker {
               {"size", pages_.size}};
     if (options_.format == LightmapFormat::png) said["encoding"] = "sRGB", said["range"] = baked_.range;
     for (const Baked::File& file : baked_.beside) said["files"].push_back(file.name);
-    json& extras = document_.root()["extras"];
-    if (!extras.is_object() && !extras.is_null()) extras = {{"extras", extras}};
-    extras["alvor_lightmap"] = std::move(said);
+    document_.add_extra("alvor_lightmap", std::move(said));
   }
 
   GltfDocument document_;
@@ -347,7 +336,11 @@ class Baker {
 
 Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options) {
   try {
-    if (options.form == BakeForm::vertex) return bake_vertices(std::move(document), scene, solution);
+    for (const auto& [name, extra] : options.extras.items()) document.add_extra(name, extra);
+    if (options.form == BakeForm::vertex) {
+      if (options.longest_edge) subdivide(document, *options.longest_edge);
+      return bake_vertices(std::move(document), scene, solution);
+    }
     return Baker(std::move(document), scene, solution, options).bake();
   } catch (const nlohmann::json::exception&) {
     throw BakeError("file", "is not as glTF says: a member has another type or is missing");

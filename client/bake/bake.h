@@ -35,6 +35,8 @@ struct BakeOptions {
   std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
   std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
   bool keeps_lights = false;               ///< a file with lightmaps keeps its lamps, whose light viewers then add once more
+  std::optional<double> longest_edge;      ///< of triangles with colours at their vertices, metres; as they are if not given
+  nlohmann::json extras;                   ///< an object with members for the file's extras, or null
   std::string name = "baked";              ///< of the files beside the GLB: name-0.exr, name-1.exr
   std::function<void(double)> on_progress = [](double) {};  ///< called with the share that is done, from any thread
 };

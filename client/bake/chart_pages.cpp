@@ -73,12 +73,18 @@ std::optional<ChartPages> place_charts(std::span<const ChartSize> charts, const 
   double area = 0, longest = 0;
   for (const ChartSize& chart : charts) area += chart.wide * chart.high, longest = std::max({longest, chart.wide, chart.high});
   if (!(area > 0)) return placed(charts, options, 1, 1);
-  // The density that would fill the page, then less until all charts fit: each try has a twentieth less.
-  double texels_per_metre = options.size / std::max(std::sqrt(area), longest);
-  constexpr int tries = 200;
-  for (int n = 0; n < tries; ++n, texels_per_metre *= 0.95)
-    if (auto pages = placed(charts, options, texels_per_metre, 1)) return pages;
-  return std::nullopt;
+  // The density that would fill the page is halved until all charts fit, then raised again, within a fiftieth of the best.
+  constexpr int halvings = 30, steps = 5;
+  double low = options.size / std::max(std::sqrt(area), longest);
+  std::optional<ChartPages> pages;
+  for (int n = 0; n < halvings && !(pages = placed(charts, options, low, 1)); ++n) low /= 2;
+  double high = 2 * low;
+  for (int n = 0; n < steps && pages; ++n) {
+    const double middle = std::sqrt(low * high);
+    if (auto denser = placed(charts, options, middle, 1)) pages = std::move(denser), low = middle;
+    else high = middle;
+  }
+  return pages;
 }
 
 }  // namespace alvor

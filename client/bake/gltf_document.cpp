@@ -123,6 +123,12 @@ void append_chunk(std::string& glb, std::uint32_t type, std::string_view bytes, 
 
 }  // namespace
 
+void drop_compression(json& primitive) {
+  if (!primitive.contains("extensions")) return;
+  primitive["extensions"].erase("KHR_draco_mesh_compression");
+  if (primitive["extensions"].empty()) primitive.erase("extensions");
+}
+
 bool is_index(const json& value) { return value.is_number_integer() && (value.is_number_unsigned() || value.get<std::int64_t>() >= 0); }
 
 std::size_t index_in(const json& object, const char* name, const std::string& place, std::optional<std::size_t> otherwise) {
@@ -307,6 +313,22 @@ std::size_t GltfDocument::add_accessor(json like, std::string_view bytes, std::s
   return append("accessors", std::move(like));
 }
 
+std::size_t GltfDocument::add_accessor_like(std::size_t accessor, std::string_view bytes, std::size_t count) {
+  const json like = element("accessors", accessor);
+  const std::size_t made = add_accessor(like, bytes, count, glb::array_buffer);
+  for (const char* bound : {"min", "max"})
+    if (like.contains(bound)) root_["accessors"][made][bound] = like[bound];
+  return made;
+}
+
+std::size_t GltfDocument::add_indices(std::span<const std::array<std::uint32_t, 3>> triangles) {
+  std::string bytes;
+  for (const auto& triangle : triangles)
+    for (const std::uint32_t vertex : triangle) append_value(bytes, vertex);
+  return add_accessor({{"componentType", glb::uint_component}, {"type", "SCALAR"}}, bytes, 3 * triangles.size(),
+                      glb::element_array_buffer);
+}
+
 std::size_t GltfDocument::add_png(std::string_view bytes, const std::string& name) {
   const std::size_t of = add_view(bytes, std::nullopt);
   return append("images", {{"name", name}, {"mimeType", "image/png"}, {"bufferView", of}});
@@ -315,6 +337,12 @@ std::size_t GltfDocument::add_png(std::string_view bytes, const std::string& nam
 void GltfDocument::use_extension(const char* name) {
   json& used = root_["extensionsUsed"];
   if (std::ranges::find(used, name) == used.end()) used.push_back(name);
+}
+
+void GltfDocument::add_extra(const std::string& name, json extra) {
+  json& extras = root_["extras"];
+  if (!extras.is_object() && !extras.is_null()) extras = {{"extras", extras}};
+  extras[name] = std::move(extra);
 }
 
 std::string GltfDocument::encode() const {

@@ -1,5 +1,7 @@
 #include "client/bake/placed_meshes.h"
 
+#include "import/base/glb_format.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -9,7 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t triangle_list = 4, triangle_strip = 5, triangle_fan = 6;
+using glb::triangle_list;
+constexpr std::size_t triangle_strip = 5, triangle_fan = 6;
 
 std::string place_of(const char* list, std::size_t index) { return std::string(list) + " " + std::to_string(index); }
 

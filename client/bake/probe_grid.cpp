@@ -94,7 +94,22 @@ std::vector<AirProbe> probe_grid(const DisplayMesh& solution, const ProbeCounts&
   return probes;
 }
 
-std::string probes_json(const std::vector<AirProbe>& probes, const ProbeCounts& counts, Quantity quantity) {
+std::vector<AirProbe> turned_upright(std::vector<AirProbe> probes, UpAxis up) {
+  if (up == UpAxis::y) return probes;
+  for (AirProbe& probe : probes) {
+    probe.at = {probe.at.x, probe.at.z, -probe.at.y};
+    // With (x, y, z) = (X, -Z, Y) of the turned axes, harmonics become sums of others: yz and xy change places with a sign, and so on.
+    const auto of = probe.irradiance;
+    const double root3 = std::sqrt(3.0);
+    // x2 - y2 = X2 - Z2 and 3 z2 - 1 = 3 Y2 - 1, written in 3 Z2 - 1 and X2 - Y2.
+    probe.irradiance = {of[0],        of[2],         -1.0 * of[1], of[3],
+                        of[7],        -1.0 * of[5],  -0.5 * of[6] - root3 / 2 * of[8],
+                        -1.0 * of[4], 0.5 * of[8] - root3 / 2 * of[6]};
+  }
+  return probes;
+}
+
+json probes_json(const std::vector<AirProbe>& probes, const ProbeCounts& counts, Quantity quantity) {
   json list = json::array();
   for (const AirProbe& probe : probes) {
     json coefficients = json::array();
@@ -105,8 +120,7 @@ std::string probes_json(const std::vector<AirProbe>& probes, const ProbeCounts& 
   return json{{"counts", counts},
               {"quantity", "irradiance by direction, real orthonormal spherical harmonics up to l = 2"},
               {"unit", quantity == Quantity::photometric ? "lx" : "W/m2"},
-              {"probes", std::move(list)}}
-      .dump();
+              {"probes", std::move(list)}};
 }
 
 }  // namespace alvor

@@ -3,15 +3,16 @@
 
 #include "meshing/display_mesh.h"
 
+#include <nlohmann/json.hpp>
+
 #include <array>
-#include <string>
 #include <vector>
 
 namespace alvor {
 
 /// The irradiance of a small surface at one place, by the direction that it faces.
 struct AirProbe {
-  Vec3 at;  ///< metres
+  Vec3 at;  ///< metres, in the axes of the scene
   /// Coefficients of the real orthonormal spherical harmonics up to l = 2 of irradiance by direction, W/m2 or lx, in the order (l, m) =
   /// (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2, 2). Zero if enclosed.
   std::array<Rgb, 9> irradiance;
@@ -34,8 +35,11 @@ std::array<double, 9> spherical_harmonics(Vec3 direction);
 /// Hanrahan 2001). Uses all cores. Requires: counts are positive and their product is at most most_probes.
 std::vector<AirProbe> probe_grid(const DisplayMesh& solution, const ProbeCounts& counts, const Rgb& absorption = {});
 
+/// Returns probes of a scene as a glTF file has them, whose y axis is up: places and directions of a z-up scene are turned.
+std::vector<AirProbe> turned_upright(std::vector<AirProbe> probes, UpAxis up);
+
 /// Returns a JSON object: {"counts", "quantity", "unit", "probes": [{"at", "irradiance": nine of [r, g, b]}]}, with null for probes that are
 /// enclosed.
-std::string probes_json(const std::vector<AirProbe>& probes, const ProbeCounts& counts, Quantity quantity);
+nlohmann::json probes_json(const std::vector<AirProbe>& probes, const ProbeCounts& counts, Quantity quantity);
 
 }  // namespace alvor

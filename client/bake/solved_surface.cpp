@@ -1,6 +1,7 @@
 #include "client/bake/solved_surface.h"
 
 #include "client/bake/gltf_document.h"
+#include "client/verify/path_random.h"
 
 #include <algorithm>
 #include <array>
@@ -28,8 +29,10 @@ std::vector<std::uint32_t> objects_of_faces(std::span<const SceneObject> objects
 
 }  // namespace
 
-SolvedSurface::SolvedSurface(const DisplayMesh& solution, std::span<const SceneObject> objects, std::size_t face_count)
-    : solution_(solution), radiosity_(solution), parts_(objects.size() + 1) {
+SolvedSurface::SolvedSurface(const DisplayMesh& solution, const Scene& scene)
+    : solution_(solution), radiosity_(solution), parts_(scene.objects.size() + 1), tracer_(scene) {
+  const std::span<const SceneObject> objects = scene.objects;
+  const std::size_t face_count = scene.faces.size();
   if (solution.faces.empty()) throw BakeError("solution", "does not know the faces of its scene");
   for (std::size_t o = 0; o < objects.size(); ++o)
     if (const auto fault = fault_in(objects, o, face_count)) throw BakeError("object " + std::to_string(o), *fault);
@@ -77,6 +80,11 @@ std::optional<SolvedSurface::Sample> SolvedSurface::at(std::size_t object, Vec3 
   const Rgb irradiance = (1 - hit->u - hit->v) * widen(solution_.irradiance[a]) + hit->u * widen(solution_.irradiance[b]) +
                          hit->v * widen(solution_.irradiance[c]);
   return Sample{irradiance, radiosity_.of_what_is_there(triangle, hit->u, hit->v)};
+}
+
+bool SolvedSurface::is_covered(Vec3 point, Vec3 normal) const {
+  constexpr std::uint32_t rays = 8;
+  return tracer_.is_enclosed({point, normal}, rays, PathRandom(0, 0, 0));
 }
 
 }  // namespace alvor

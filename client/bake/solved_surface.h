@@ -1,6 +1,7 @@
 #pragma once
 // Reads a solution at points of the objects of its scene.
 
+#include "client/verify/path_tracer.h"
 #include "meshing/display_mesh.h"
 #include "meshing/mesh_radiosity.h"
 #include "meshing/scene.h"
@@ -22,15 +23,18 @@ class SolvedSurface {
     Rgb irradiance, radiosity;  ///< W/m2
   };
 
-  /// Sorts the triangles of `solution` by the object that their faces belong to. Objects are numbered as in `objects`; the faces
-  /// of no object are the last one, number objects.size(). Throws BakeError if the solution does not know its faces or they are
-  /// not within `face_count`.
-  SolvedSurface(const DisplayMesh& solution, std::span<const SceneObject> objects, std::size_t face_count);
+  /// Sorts the triangles of `solution` by the object that their faces belong to. Objects are numbered as in `scene`; the faces
+  /// of no object are the last one, number scene.objects.size(). Throws BakeError if the solution does not know its faces or they
+  /// are not those of the scene. Requires: !find_fault(scene), and at least one face with area.
+  SolvedSurface(const DisplayMesh& solution, const Scene& scene);
 
   std::size_t object_count() const { return parts_.size(); }
   /// Returns the solution where the side of an object's surface that faces along `normal` (unit) passes through `point`; where it
   /// does not, as the scene was welded, at the nearest place that faces within 60 degrees. Nothing if the object has none.
   std::optional<Sample> at(std::size_t object, Vec3 point, Vec3 normal) const;
+  /// Returns whether the side of a surface that faces along `normal` (unit) lies under or inside a solid at `point`, where no light
+  /// comes and nobody looks. Costs some 16 rays.
+  bool is_covered(Vec3 point, Vec3 normal) const;
 
  private:
   struct Part {
@@ -43,6 +47,7 @@ class SolvedSurface {
   MeshRadiosity radiosity_;
   double reach_ = 0;  // metres: how far before and behind a point its surface is looked for
   std::vector<Part> parts_;
+  PathTracer tracer_;
 };
 
 }  // namespace alvor

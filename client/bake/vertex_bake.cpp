@@ -35,7 +35,7 @@ class VertexBaker {
       : document_(std::move(document)),
         scene_(scene),
         exposure_(automatic_exposure(solution)),
-        surface_(solution, scene.objects, scene.faces.size()),
+        surface_(solution, scene),
         meshes_(placed_meshes(document_, Cutting::none)) {}
 
   Baked bake() {
@@ -91,7 +91,7 @@ class VertexBaker {
       constexpr double near = inwards / 3, far = 1 - 2 * near;
       constexpr std::array<std::array<double, 2>, 3> corners{{{near, near}, {far, near}, {near, far}}};
       for (std::size_t c = 0; c < 3 && normal != Vec3{}; ++c)
-        samples[t][c] = surface_.at(placed.object, placed_point(placed, number, corners[c][0], corners[c][1]), normal);
+        samples[t][c] = uncovered(placed.object, placed_point(placed, number, corners[c][0], corners[c][1]), normal);
     });
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto [a, b, d] = placed_corners(placed, static_cast<std::uint32_t>(t));
@@ -102,7 +102,32 @@ class VertexBaker {
         at.irradiance += area * samples[t][c]->irradiance, at.radiosity += area * samples[t][c]->radiosity, at.weight += area;
       }
     }
+    take_on(light, triangles);
     return light;
+  }
+
+  /// Returns what was solved at a point; nothing below what stands there.
+  std::optional<SolvedSurface::Sample> uncovered(std::size_t object, Vec3 point, Vec3 normal) const {
+    const auto sample = surface_.at(object, point, normal);
+    return sample && surface_.is_covered(point, normal) ? std::nullopt : sample;
+  }
+
+  /// Gives covered vertices the mean light of their neighbours, ring by ring.
+  static void take_on(std::vector<VertexLight>& light, std::span<const MeshTriangle> triangles) {
+    for (bool has_changed = true; has_changed;) {
+      std::vector<VertexLight> taken(light.size());
+      for (const MeshTriangle& triangle : triangles)
+        for (const std::uint32_t to : triangle)
+          for (const std::uint32_t from : triangle) {
+            if (light[to].weight > 0 || !(light[from].weight > 0)) continue;
+            taken[to].irradiance += light[from].irradiance * (1 / light[from].weight);
+            taken[to].radiosity += light[from].radiosity * (1 / light[from].weight);
+            taken[to].weight += 1;
+          }
+      has_changed = false;
+      for (std::size_t v = 0; v < light.size(); ++v)
+        if (taken[v].weight > 0) light[v] = taken[v], has_changed = true;
+    }
   }
 
   /// Returns by what the base colour is multiplied to look as in a picture; of what glows the colour of the picture itself.

@@ -90,12 +90,13 @@ bool PathTracer::is_enclosed(const SurfacePoint& point, std::uint32_t rays, Path
     return !met.surface && !met.is_outside;
   };
   constexpr double grazing = 2e-4;  // sine of the angle between ray and surface
-  std::uint32_t backs = 0, backs_along_surface = 0;
-  for (std::uint32_t n = 0; n < rays; ++n) {
-    backs += meets_black_back(directions[n]);
-    backs_along_surface += meets_black_back({directions[n].u, 1 - grazing * grazing});
-  }
-  return 2 * backs > rays && 2 * backs_along_surface > rays;
+  const auto are_mostly_backs = [&](auto at) {
+    std::uint32_t backs = 0;
+    for (std::uint32_t n = 0; n < rays; ++n) backs += meets_black_back(at(directions[n]));
+    return 2 * backs > rays;
+  };
+  return are_mostly_backs([](UnitPair at) { return at; }) &&
+         are_mostly_backs([](UnitPair at) { return UnitPair{at.u, 1 - grazing * grazing}; });
 }
 
 PathTracer::Bend PathTracer::start_at(const SurfacePoint& point) const {

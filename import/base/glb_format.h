@@ -9,6 +9,7 @@ namespace alvor::glb {
 inline constexpr std::uint32_t magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 inline constexpr std::size_t file_header_size = 12, chunk_header_size = 8, vec3_size = 12;
 inline constexpr int float_component = 5126, uint_component = 5125, array_buffer = 34962, element_array_buffer = 34963;
+inline constexpr std::size_t triangle_list = 4;  ///< the mode of a primitive
 /// Limit for the JSON of a solution file; ours has 2 kB, 350 bytes a light, up to 220 kB an environment map, 150 bytes a material
 /// and up to 400 an object. A parsed tree takes many times the memory of its text.
 inline constexpr std::size_t largest_json = 1 << 26;

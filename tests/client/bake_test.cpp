@@ -6,6 +6,7 @@
 #include "client/bake/probe_grid.h"
 #include "client/bake/scene_document.h"
 #include "client/bake/solved_surface.h"
+#include "client/bake/subdivision.h"
 #include "client/picture/png_file.h"
 #include "client/picture/tone_map.h"
 #include "client/verify/probe.h"
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -243,22 +245,31 @@ class BakedFile {
     for (std::uint32_t n = 0; n < all.size(); ++n) all[n] = n;
     return all;
   }
-  /// Returns the mean of the bands of the light at a place of the texture of a primitive, filtered as viewers do.
-  double light(const json& primitive, double s, double t) const {
+  /// Returns the mean of the bands of the light at a place of the texture of a primitive, filtered as viewers do, in a mip level: 2
+  /// is a quarter of the size.
+  double light(const json& primitive, double s, double t, int level = 0) const {
     const json& lightmap = file.element("materials", primitive["material"])["extensions"]["MOZ_lightmap"];
     const Image& image = images[file.element("textures", lightmap["index"])["source"]];
-    const double x = s * image.width - 0.5, y = t * image.height - 0.5;
+    const int cell = 1 << level;
+    const double x = s * image.width / cell - 0.5, y = t * image.height / cell - 0.5;
     const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
     double sum = 0;
     for (int dy = 0; dy < 2; ++dy)
       for (int dx = 0; dx < 2; ++dx) {
-        const auto column = static_cast<std::size_t>(std::clamp(left + dx, 0, image.width - 1)),
-                   row = static_cast<std::size_t>(std::clamp(top + dy, 0, image.height - 1));
-        const double weight = (dx ? x - left : 1 - (x - left)) * (dy ? y - top : 1 - (y - top));
-        for (std::size_t band = 0; band < 3; ++band)
-          sum += weight / 3 * linear_of_srgb(image.rgb[3 * (row * static_cast<std::size_t>(image.width) + column) + band] / 255.0);
+        const int column = std::clamp(left + dx, 0, image.width / cell - 1), row = std::clamp(top + dy, 0, image.height / cell - 1);
+        sum += (dx ? x - left : 1 - (x - left)) * (dy ? y - top : 1 - (y - top)) * mean_of(image, column, row, cell);
       }
     return sum * lightmap["intensity"].get<double>();
+  }
+
+  /// Returns the mean over a square cell of texels and over the bands.
+  static double mean_of(const Image& image, int column, int row, int cell) {
+    double sum = 0;
+    for (int y = row * cell; y < (row + 1) * cell; ++y)
+      for (int x = column * cell; x < (column + 1) * cell; ++x)
+        for (int band = 0; band < 3; ++band)
+          sum += linear_of_srgb(image.rgb[static_cast<std::size_t>(3 * (y * image.width + x) + band)] / 255.0);
+    return sum / (3 * cell * cell);
   }
 
   Baked baked;
@@ -276,7 +287,7 @@ Scene room_with_globe() {
 TEST(Bake, TexelsHoldTheSolutionEverywhere) {
   const Scene scene = room_with_globe();
   const DisplayMesh solution = solved(scene);
-  const SolvedSurface surface(solution, scene.objects, scene.faces.size());
+  const SolvedSurface surface(solution, scene);
   const BakedFile baked(scene, solution);
   double squares = 0, count = 0, sum = 0;
   for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
@@ -293,8 +304,10 @@ TEST(Bake, TexelsHoldTheSolutionEverywhere) {
       for (const std::pair<double, double>& place : {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5),
                                                      std::pair(0.0, 0.4), std::pair(0.37, 0.0)}) {
         const double u = place.first, v = place.second;
-        const auto sample = surface.at(0, (1 - u - v) * at(0) + u * at(1) + v * at(2), normal);
+        const Vec3 point = (1 - u - v) * at(0) + u * at(1) + v * at(2);
+        const auto sample = surface.at(0, point, normal);
         ASSERT_TRUE(sample);
+        if (surface.is_covered(point, normal)) continue;
         const auto mix = [&](std::size_t k) {
           return (1 - u - v) * points[indices[i]][k] + u * points[indices[i + 1]][k] + v * points[indices[i + 2]][k];
         };
@@ -315,7 +328,7 @@ TEST(Bake, BothSidesOfASmoothSeamAgree) {
   test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true, {0, 0, 0, 1, 0, 0});
   test::add_globe(scene, {0.9, 0.8, 1.1}, 0.4, 4, 0);
   const DisplayMesh solution = solved(scene);
-  const SolvedSurface surface(solution, scene.objects, scene.faces.size());
+  const SolvedSurface surface(solution, scene);
   const BakedFile baked(scene, solution);
   int seams = 0;
   for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
@@ -371,6 +384,82 @@ TEST(Bake, NoLightLeaksThroughAThinWall) {
   const BakedFile baked(scene, solved(scene));
   for (const auto& [s, t] : baked.points(baked.primitive(1))) EXPECT_EQ(baked.light(baked.primitive(1), s, t), 0);
   for (const auto& [s, t] : baked.points(baked.primitive(0))) EXPECT_GT(baked.light(baked.primitive(0), s, t), 0);
+}
+
+/// A room with a box that stands on its floor, from (0.4, 0, 0.4) to (1.6, 0.5, 1.6).
+Scene room_with_a_box_on_its_floor() {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(10, 0)};
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true, {0, 0, 0, 1, 0, 0});
+  test::add_box(scene, {0.4, 0, 0.4}, {1.6, 0.5, 1.6}, false);
+  return scene;
+}
+
+/// Calls visit(primitive, s, t, point) for many places of each triangle of node 0 that lies in the plane y = 0.
+template <class Visit>
+void for_each_floor_point(const BakedFile& baked, Visit visit) {
+  constexpr int steps = 120;
+  for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
+    const json& primitive = baked.primitive(0, p);
+    const auto positions = baked.file.read_positions(primitive["attributes"]["POSITION"]);
+    const auto points = baked.points(primitive);
+    const auto indices = baked.indices(primitive);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      const std::array<std::uint32_t, 3> t{indices[i], indices[i + 1], indices[i + 2]};
+      const auto at = [&](std::size_t c) { return Vec3{positions[t[c]][0], positions[t[c]][1], positions[t[c]][2]}; };
+      if (at(0).y != 0 || at(1).y != 0 || at(2).y != 0 || cross(at(1) - at(0), at(2) - at(0)).y <= 0) continue;
+      for (int a = 0; a < steps; ++a)
+        for (int b = 0; a + b < steps; ++b) {
+          const double u = (a + 0.5) / steps, v = (b + 0.4) / steps, w = 1 - u - v;
+          if (w < 0) continue;
+          const auto mix = [&](std::size_t k) { return w * points[t[0]][k] + u * points[t[1]][k] + v * points[t[2]][k]; };
+          visit(primitive, mix(0), mix(1), w * at(0) + u * at(1) + v * at(2));
+        }
+    }
+  }
+}
+
+TEST(Bake, NoDarknessLeaksFromBelowABox) {
+  // The floor is bright up to the box, also where texels lie half below it. Means over whole texels would lose a quarter of it.
+  const Scene scene = room_with_a_box_on_its_floor();
+  const DisplayMesh solution = solved(scene, 0.01);
+  const SolvedSurface surface(solution, scene);
+  const BakedFile baked(scene, solution, {.size = 128});
+  std::size_t looked_at = 0;
+  double least = 1;
+  for_each_floor_point(baked, [&](const json& primitive, double s, double t, const Vec3& at) {
+    const double beyond = std::max(std::abs(at.x - 1), std::abs(at.z - 1)) - 0.6;
+    if (beyond < 0.004 || beyond > 0.1) return;
+    const Vec3 further = at + (0.02 / 0.6) * Vec3{at.x - 1, 0, at.z - 1};  // the last mm belong to leaves below the box, too
+    const auto there = surface.at(0, further, {0, 1, 0});
+    ASSERT_TRUE(there);
+    least = std::min(least, baked.light(primitive, s, t) / there->irradiance.mean());
+    ++looked_at;
+  });
+  EXPECT_GT(least, 0.82);
+  EXPECT_GT(looked_at, 200u);
+}
+
+TEST(Bake, TwoSmallerMipLevelsMixNoCharts) {
+  // The inside of the box is dark, its outside bright; each chart lies on texels of its own in images of half and a quarter of the size.
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(10, 0)};
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true, {0, 0, 0, 1, 0, 0});
+  test::add_box(scene, {0.8, 0.8, 0.8}, {1.2, 1.2, 1.2}, false);
+  test::add_box(scene, {0.82, 0.82, 0.82}, {1.18, 1.18, 1.18}, true);
+  const BakedFile baked(scene, solved(scene, 0.1), {.size = 512});
+  double brightest_inside = 0;
+  for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
+    const json& primitive = baked.primitive(0, p);
+    const auto positions = baked.file.read_positions(primitive["attributes"]["POSITION"]);
+    const auto points = baked.points(primitive);
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const auto& [x, y, z] = positions[v];
+      const bool is_inside = std::max({std::abs(x - 1), std::abs(y - 1), std::abs(z - 1)}) < 0.19F;
+      if (is_inside) brightest_inside = std::max(brightest_inside, baked.light(primitive, points[v][0], points[v][1], 2));
+    }
+  }
+  EXPECT_EQ(brightest_inside, 0);
 }
 
 TEST(SceneDocument, IsReadAsTheSceneThatItWasMadeOf) {
@@ -493,7 +582,7 @@ TEST(Bake, ColoursOfVerticesAreThoseOfThePicture) {
   test::add_box(reflecting, {1, 1, 1}, {1.2, 1.2, 1.2}, false, {1, 1, 1, 1, 1, 1});
   const DisplayMesh solution = solved(reflecting);
   const BakedFile baked(reflecting, solution, {.form = BakeForm::vertex});
-  const SolvedSurface surface(solution, reflecting.objects, reflecting.faces.size());
+  const SolvedSurface surface(solution, reflecting);
   const double exposure = automatic_exposure(solution);
   const json &wall = baked.primitive(0, 0), &lamp = baked.primitive(0, 1);
   const auto positions = baked.file.read_positions(wall["attributes"]["POSITION"]);
@@ -509,6 +598,72 @@ TEST(Bake, ColoursOfVerticesAreThoseOfThePicture) {
   for (const auto& colour : baked.file.read_colours(lamp["attributes"]["COLOR_0"])) EXPECT_GT(colour[0], 0.99F);
   EXPECT_FALSE(baked.file.element("materials", lamp["material"])["pbrMetallicRoughness"].contains("baseColorFactor"));
   EXPECT_TRUE(baked.images.empty());
+}
+
+TEST(Bake, ColoursOfASubdividedFaceShowTheLightOnIt) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(10, 0)};
+  test::add_box(scene, {0, 0, 0}, {3, 2, 4}, true);
+  test::add_box(scene, {1.2, 1.9, 1.7}, {1.8, 1.95, 2.3}, false, {1, 1, 1, 1, 1, 1});
+  const DisplayMesh solution = solved(scene);
+  const BakedFile whole(scene, solution, {.form = BakeForm::vertex});
+  const BakedFile fine(scene, solution, {.form = BakeForm::vertex, .longest_edge = 0.25});
+  const json& wall = fine.primitive(0, 0);
+  const auto positions = fine.file.read_positions(wall["attributes"]["POSITION"]);
+  const auto normals = fine.file.read_positions(wall["attributes"]["NORMAL"]);
+  const auto colours = fine.file.read_colours(wall["attributes"]["COLOR_0"]);
+  const auto indices = fine.file.read_indices(wall["indices"]);
+  EXPECT_GT(positions.size(), whole.file.read_positions(whole.primitive(0, 0)["attributes"]["POSITION"]).size());
+  const auto at = [&](std::uint32_t v) { return Vec3{positions[v][0], positions[v][1], positions[v][2]}; };
+  // The triangles have short edges and the same area, and each vertex shows the light at its place.
+  double area = 0;
+  for (std::size_t t = 0; t < indices.size(); t += 3) {
+    const Vec3 a = at(indices[t]), b = at(indices[t + 1]), c = at(indices[t + 2]);
+    EXPECT_LE(std::max({length(b - a), length(c - b), length(a - c)}), 0.25 + 1e-6);
+    area += length(cross(b - a, c - a)) / 2;
+  }
+  EXPECT_NEAR(area, 2 * (3 * 2 + 3 * 4 + 2 * 4), 1e-4);
+  const SolvedSurface surface(solution, scene);
+  const double exposure = automatic_exposure(solution);
+  double brightest = 0, darkest = 1;
+  for (std::uint32_t v = 0; v < positions.size(); ++v) {
+    const auto sample = surface.at(0, at(v), {normals[v][0], normals[v][1], normals[v][2]});
+    ASSERT_TRUE(sample);
+    EXPECT_NEAR(0.5 * colours[v][0], std::min(0.5, tone_map(exposure * sample->radiosity).r), 0.03);
+    brightest = std::max<double>(brightest, colours[v][0]), darkest = std::min<double>(darkest, colours[v][0]);
+  }
+  EXPECT_GT(brightest, 1.2 * darkest);
+}
+
+TEST(Subdivision, CutsCommonEdgesAtTheSamePlaces) {
+  // A square and a triangle of other vertices at one of its sides, shown twice as large by a node.
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5)};
+  scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1.3, 0.4, 0.8}, {1, 1, 0}};
+  scene.add_face(std::array{0u, 1u, 2u, 3u}, 0);
+  scene.add_face(std::array{4u, 5u, 6u}, 0);
+  GltfDocument document = document_of(scene);
+  document.root()["nodes"][0]["scale"] = {2, 2, 2};
+  subdivide(document, 0.3);
+  const json& primitive = document.root()["meshes"][0]["primitives"][0];
+  const auto positions = document.read_positions(primitive["attributes"]["POSITION"]);
+  const auto indices = document.read_indices(primitive["indices"]);
+  // Each edge within a surface is walked once in each direction, by places: no vertex of one triangle lies on an edge of another.
+  std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, int> edges;
+  for (std::size_t t = 0; t < indices.size(); t += 3)
+    for (std::size_t c = 0; c < 3; ++c) ++edges[{positions[indices[t + c]], positions[indices[t + (c + 1) % 3]]}];
+  std::size_t common_to_both = 0;
+  for (const auto& [edge, count] : edges) {
+    EXPECT_EQ(count, 1);
+    if (edges.contains({edge.second, edge.first})) {
+      common_to_both += edge.first[0] == 1 && edge.second[0] == 1;
+      continue;
+    }
+    const auto on_the_border = [](const std::array<float, 3>& p) { return p[0] == 0 || p[1] == 0 || p[1] == 1 || p[2] > 0; };
+    EXPECT_TRUE(on_the_border(edge.first) || on_the_border(edge.second)) << edge.first[0] << ' ' << edge.first[1];
+  }
+  EXPECT_EQ(common_to_both, 16u) << "eight parts, from both sides";
+  EXPECT_THROW(subdivide(document, 1e-6), BakeError) << "more vertices than anybody can use";
 }
 
 TEST(Bake, WritesHalfFloatsBesideTheFile) {
@@ -545,6 +700,16 @@ TEST(AirProbes, InEvenLightAreTheSameInAllDirections) {
   }
 }
 
+TEST(AirProbes, TurnedUprightTellTheSameLightInTheTurnedDirection) {
+  AirProbe probe{{1, 2, 3}, {}, false};
+  for (std::size_t k = 0; k < 9; ++k) probe.irradiance[k] = Rgb{1, 1, 1} * std::sin(1.0 + static_cast<double>(k));
+  const AirProbe turned = turned_upright({probe}, UpAxis::z).front();
+  EXPECT_EQ(turned.at, (Vec3{1, 3, -2}));
+  for (const Vec3& n : {Vec3{0, 0, 1}, Vec3{0, 1, 0}, normalized(Vec3{1, 2, -3}), normalized(Vec3{-2, 0.3, 1})})
+    EXPECT_NEAR(turned.irradiance_along({n.x, n.z, -n.y}).g, probe.irradiance_along(n).g, 1e-12);
+  EXPECT_EQ(turned_upright({probe}, UpAxis::y).front().irradiance_along({0, 0, 1}), probe.irradiance_along({0, 0, 1}));
+}
+
 TEST(AirProbes, TellWhatAMeterInTheAirWouldRead) {
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(10, 0)};
@@ -559,7 +724,7 @@ TEST(AirProbes, TellWhatAMeterInTheAirWouldRead) {
     const auto meter = probe(solution, std::array{ProbePoint{probes[0].at, normal}});
     EXPECT_NEAR(probes[0].irradiance_along(normal).mean(), widen(meter[0].irradiance).mean(), 0.06 * probes[0].irradiance[0].mean());
   }
-  const json said = json::parse(probes_json(probes, {3, 1, 2}, solution.quantity));
+  const json said = probes_json(probes, {3, 1, 2}, solution.quantity);
   EXPECT_TRUE(said["probes"][1]["irradiance"].is_null());
   EXPECT_EQ(said["probes"][0]["irradiance"].size(), 9u);
 }

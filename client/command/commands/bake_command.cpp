@@ -57,11 +57,13 @@ GltfDocument document_of(const RawScene& bytes, const Scene& scene) {
   return GltfDocument(bytes.bytes, [&](const std::string& name) { return read_beside(bytes.folder, name); });
 }
 
-Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scene, const DisplayMesh& solution) {
+Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scene, const DisplayMesh& solution,
+            const nlohmann::json& probes) {
   BakeOptions options = command.bake;
   options.form = forms.at(command.form);
   options.format = formats.at(command.lightmap_format);
   options.unit = conventions.at(command.convention);
+  if (!probes.is_null()) options.extras["alvor_probes"] = probes;
   options.name = command.output.path.stem().string();
   StatusLine line;
   std::mutex mutex;
@@ -89,13 +91,12 @@ ProbeCounts counts_of(const std::string& text) {
   return counts;
 }
 
-/// Adds the file of probes beside the GLB.
-void add_probes(const BakeCommand& command, const ProbeCounts& counts, const Scene& scene, const DisplayMesh& solution,
-                Baked& baked) {
-  const auto probes = probe_grid(solution, counts, scene.absorption);
-  baked.beside.push_back({command.output.path.stem().string() + "-probes.json", probes_json(probes, counts, solution.quantity)});
+/// Gathers the probes and returns them as JSON.
+nlohmann::json gathered_probes(const ProbeCounts& counts, const Scene& scene, const DisplayMesh& solution) {
+  const auto probes = turned_upright(probe_grid(solution, counts, scene.absorption), scene.up);
   const auto enclosed = std::ranges::count(probes, true, &AirProbe::is_enclosed);
   if (enclosed > 0) notes() << enclosed << " of " << probes.size() << " probes are inside solids or outside the room\n";
+  return probes_json(probes, counts, solution.quantity);
 }
 
 /// Writes the files beside the GLB first, so that a GLB that is there has what it names.
@@ -127,6 +128,8 @@ void run_bake(const BakeCommand& command) {
     throw Failure(ExitStatus::usage, "--output: lightmaps in EXR are files beside the scene, so it cannot go to stdout");
   std::optional<ProbeCounts> counts;
   if (!command.probes.empty()) counts = counts_of(command.probes);
+  if (command.bake.longest_edge && command.form != "vertex")
+    throw Failure(ExitStatus::usage, "--subdivide: only --as vertex has colours at vertices");
   if (is_stream(command.output.path) && counts)
     throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
   reserve_stdout_for({command.output.path});
@@ -134,8 +137,10 @@ void run_bake(const BakeCommand& command) {
   const Scene scene = read_scene(command.scene_options, bytes, name_of(command.scene));
   const DisplayMesh solution =
       command.solution.empty() ? solve_here(scene, command.solve, name_of(command.scene)) : read_solution(command.solution, {});
-  Baked result = baked(command, bytes, scene, solution);
-  if (counts) add_probes(command, *counts, scene, solution, result);
+  nlohmann::json probes;
+  if (counts) probes = gathered_probes(*counts, scene, solution);
+  Baked result = baked(command, bytes, scene, solution, probes);
+  if (counts) result.beside.push_back({command.output.path.stem().string() + "-probes.json", probes.dump()});
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
                     (result.pages > 0 ? " charts" : " primitives") + " are lit from both sides; the brighter one is shown"});
@@ -178,8 +183,14 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
       ->check(above_up_to(0, 1e6));
   command
       .add_option("--probes", options.probes,
-                  "Light in the air for things that move: NX,NY,NZ probes in a grid over the scene, in BAKED-probes.json")
+                  "Light in the air for things that move: NX,NY,NZ probes in a grid over the scene, in BAKED-probes.json and in the extras "
+                  "of the scene")
       ->type_name("NX,NY,NZ");
+  command
+      .add_option("--subdivide", options.bake.longest_edge,
+                  "With --as vertex: cut triangles until no edge is longer than this, metres (vertices as they are)")
+      ->check(above_up_to(0, 1e6))
+      ->type_name("METRES");
   command.add_option("--padding", options.bake.padding, "Texels around each chart that repeat its edge (4)")
       ->check(CLI::Range(0, 64));
   command
