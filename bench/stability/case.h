@@ -39,6 +39,8 @@ std::vector<Case> dense_cases();
 std::vector<Case> step_cases();
 /// Returns scenes at the limits of geometry in a scene file.
 std::vector<Case> geometry_cases();
+/// Returns rooms with blockers that exact shadows may stumble over, compared with path tracing.
+std::vector<Case> shadow_cases();
 /// Returns scenes at the limits of emission and of the number of emitters.
 std::vector<Case> light_cases();
 

@@ -13,7 +13,8 @@ using Point = FlatPoint;
 
 // Points that are darker than this share of the brightest texel beside them may be covered. Chosen.
 constexpr double much_darker = 0.75;
-// Texels without light are looked at up to so many texels from the light, and take it on if they are covered: mip levels mix them.
+// Texels without light are looked at up to so many texels from the light, and take it on if they are covered: mip levels mix
+// them.
 constexpr int reach_of_darkness = 4;
 
 /// A place on a triangle: (1-u-v) a + u b + v c.
@@ -84,8 +85,7 @@ class Filler {
 
   std::array<Point, 3> flat(std::uint32_t t) const {
     std::array<Point, 3> corners;
-    for (std::size_t c = 0; c < 3; ++c)
-      corners[c] = texel_of(chart_, place_, padding_, chart_.mesh->triangles[t][c]);
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = texel_of(chart_, place_, padding_, chart_.mesh->triangles[t][c]);
     return corners;
   }
 
@@ -109,9 +109,7 @@ class Filler {
       }
   }
 
-  bool is_inside(int x, int y) {
-    return x >= 0 && y >= 0 && x < place_.wide && y < place_.high && at(x, y).distance == 0;
-  }
+  bool is_inside(int x, int y) { return x >= 0 && y >= 0 && x < place_.wide && y < place_.high && at(x, y).distance == 0; }
 
   /// The points of a surface that a texel stands for.
   struct Footprint {
@@ -127,7 +125,8 @@ class Filler {
     const bool is_surrounded = is_inside(x - 1, y) && is_inside(x + 1, y) && is_inside(x, y - 1) && is_inside(x, y + 1);
     if (!is_surrounded) {
       const double inwards = share_inwards(on.triangle);
-      of.points[of.count++] = placed_point(chart_, on.triangle, std::lerp(on.u, 1.0 / 3, inwards), std::lerp(on.v, 1.0 / 3, inwards));
+      of.points[of.count++] =
+          placed_point(chart_, on.triangle, std::lerp(on.u, 1.0 / 3, inwards), std::lerp(on.v, 1.0 / 3, inwards));
       return of;
     }
     const auto corners = flat(on.triangle);

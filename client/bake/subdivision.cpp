@@ -25,7 +25,8 @@ Edge edge_of(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
 class Halving {
  public:
   /// `placements`: of the nodes that show the mesh.
-  Halving(std::vector<Vec3> positions, std::vector<MeshTriangle> triangles, std::vector<Placement> placements, double longest_edge)
+  Halving(std::vector<Vec3> positions, std::vector<MeshTriangle> triangles, std::vector<Placement> placements,
+          double longest_edge)
       : triangles_(std::move(triangles)),
         first_new_(positions.size()),
         positions_(std::move(positions)),
@@ -85,7 +86,7 @@ class Halving {
     const auto count = std::ranges::count(are_long(), true);
     if (count == 0) return parts.push_back(t);
     // With one long edge it comes first, with two the short one comes last.
-    while (count < 3 && !(are_long()[0] && !are_long()[2])) std::ranges::rotate(t, t.begin() + 1);
+    while (count < 3 && !(are_long()[0] && !are_long()[2])) std::rotate(t.begin(), t.begin() + 1, t.end());
     const auto [a, b, c] = t;
     const std::uint32_t ab = middle(a, b);
     if (count == 1) {
@@ -148,7 +149,8 @@ void normalise_last(std::string& bytes, std::size_t element_size) {
 /// Returns an accessor with the elements of `accessor` and those of the new vertices.
 std::size_t with_middles(GltfDocument& document, std::size_t accessor, const Halving& halving, bool is_direction) {
   DenseElements elements = document.read(accessor);
-  if (elements.count != halving.first_new()) throw BakeError("accessor " + std::to_string(accessor), "has not as many elements as POSITION");
+  if (elements.count != halving.first_new())
+    throw BakeError("accessor " + std::to_string(accessor), "has not as many elements as POSITION");
   const std::size_t type = document.element("accessors", accessor).at("componentType").get<std::size_t>();
   elements.bytes.reserve((elements.count + halving.parents().size()) * elements.element_size);
   for (const auto& [a, b] : halving.parents()) {
@@ -160,15 +162,18 @@ std::size_t with_middles(GltfDocument& document, std::size_t accessor, const Hal
 }
 
 bool is_skinned(const json& primitive) {
-  return std::ranges::any_of(primitive.at("attributes").items(), [](const auto& item) { return item.key().starts_with("JOINTS_"); });
+  return std::ranges::any_of(primitive.at("attributes").items(),
+                             [](const auto& item) { return item.key().starts_with("JOINTS_"); });
 }
 
 json subdivided(GltfDocument& document, json primitive, const Halving& halving) {
   for (const auto& item : primitive.at("attributes").items())
-    item.value() = with_middles(document, item.value().get<std::size_t>(), halving, item.key() == "NORMAL" || item.key() == "TANGENT");
+    item.value() =
+        with_middles(document, item.value().get<std::size_t>(), halving, item.key() == "NORMAL" || item.key() == "TANGENT");
   if (primitive.contains("targets"))
     for (json& target : primitive["targets"])
-      for (const auto& item : target.items()) item.value() = with_middles(document, item.value().get<std::size_t>(), halving, false);
+      for (const auto& item : target.items())
+        item.value() = with_middles(document, item.value().get<std::size_t>(), halving, false);
   drop_compression(primitive);
   primitive["indices"] = document.add_indices(halving.triangles());
   primitive["mode"] = glb::triangle_list;

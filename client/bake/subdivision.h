@@ -1,5 +1,6 @@
 #pragma once
-// Cuts the triangles of a glTF file's meshes into smaller ones, so that colours at vertices can show light that changes on a face.
+// Cuts the triangles of a glTF file's meshes into smaller ones, so that colours at vertices can show light that changes on a
+// face.
 
 #include "client/bake/gltf_document.h"
 

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace alvor {
 
@@ -24,6 +26,9 @@ struct SolveOptions {
   /// Share of the visible area, in (0, 1], on which the told error must be within the tolerance: if less than 1, the solve stops
   /// when it is so (see ErrorByPlace), whatever the estimated nRMSE.
   double area_share = 1;
+  /// Names of objects of the mesh, or none. If any, the solve stops when that share of the visible area of these objects, and of those that
+  /// hang from them, is within the tolerance, and it refines nothing else. Names that no object has count for nothing.
+  std::vector<std::string> objects;
   int max_depth = 10;       ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
   std::uint64_t max_leaves = 200'000;
   double min_edge_m = 0;  ///< no split makes an edge shorter than this
@@ -34,6 +39,9 @@ struct SolveOptions {
   FormFactorMethod form_factors = FormFactorMethod::automatic;
   double step_pause_s = 0;  ///< waits this long after each published step, for people who watch; not counted as solving time
   FeatureSet forced_on;     ///< features kept on though the plan would switch them off: for tests and measurements
+
+  /// Returns whether the tolerance is that of places, not of the whole scene.
+  bool is_by_place() const { return area_share < 1 || !objects.empty(); }
 };
 
 }  // namespace alvor

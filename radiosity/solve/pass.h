@@ -22,7 +22,7 @@ enum class RowsToTrace { all, a_part };
 /// The told errors of leaves, each relative to the irradiance there, or to a tenth of the mean irradiance where it is darker.
 struct ErrorByPlace {
   double area_within = 1;  ///< share of the visible area whose error is within the tolerance, in [0, 1]
-  double kept_error = 0;   ///< least error that SolveOptions::area_share of the visible area keeps
+  double kept_error = 0;   ///< least error that SolveOptions::area_share of the visible area keeps; both areas are of SolveOptions::objects
 };
 
 /// Takes a state through one pass. The steps are called in the order in which they are declared; trace_rows() and
@@ -59,7 +59,7 @@ class Pass {
 
   ErrorByPlace error_by_place(const ErrorEstimate& error) const;
   /// Drops the candidates for refinement where the told errors are well within the tolerance, and counts those far beyond it for
-  /// less: for SolveOptions::area_share.
+  /// less: for SolveOptions::area_share and objects.
   void refine_only_what_is_not_within(const ErrorEstimate& error);
 
   // Between begin_exchange() and refine():

@@ -328,7 +328,7 @@ std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
 /// Drops the candidates that add rays if the error that would need splits which the limits forbid is beyond the tolerance, and
 /// all of these rays would hardly reduce it.
 void Pass::drop_rays_that_do_not_help(double lasting_error) {
-  if (state_.options.area_share < 1 || lasting_error <= state_.options.tolerance) return;
+  if (state_.options.is_by_place() || lasting_error <= state_.options.tolerance) return;
   double removable = 0;
   for (const Candidate& candidate : candidates_)
     if (!splits(candidate)) removable += candidate.squared_error;

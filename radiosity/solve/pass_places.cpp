@@ -20,11 +20,30 @@ constexpr double most_counted = 2;
 
 double squared(double x) { return x * x; }
 
+/// Returns whether each root counts: all of them, or those of the named objects and of the objects that hang from them.
+std::vector<std::uint8_t> counting_roots(const BaseMesh& mesh, const std::vector<std::string>& names) {
+  std::vector<std::uint8_t> counts(mesh.roots().size(), names.empty());
+  const auto objects = mesh.objects();
+  std::vector<std::uint8_t> is_named(objects.size());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> faces;  // first and end, in rising order
+  for (std::size_t o = 0; o < objects.size(); ++o) {
+    is_named[o] = std::ranges::find(names, objects[o].name) != names.end() || (objects[o].parent && is_named[*objects[o].parent]);
+    if (is_named[o]) faces.emplace_back(objects[o].first_face, objects[o].first_face + objects[o].face_count);
+  }
+  for (std::size_t r = 0; r < counts.size() && !faces.empty(); ++r) {
+    const std::uint32_t face = mesh.roots()[r].input.first;
+    const auto after = std::ranges::upper_bound(faces, face, {}, &std::pair<std::uint32_t, std::uint32_t>::first);
+    counts[r] = after != faces.begin() && face < std::prev(after)->second;
+  }
+  return counts;
+}
+
 }  // namespace
 
 std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) const {
   const auto leaves = system_->leaves();
   std::vector<PlaceError> places(leaves.size());
+  const std::vector<std::uint8_t> counts = counting_roots(state_.mesh, state_.options.objects);
   double power = 0, area = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     places[n].area = state_.rows.may_be_lit(state_.forests.row_of(leaves[n])) ? state_.visible_area(leaves[n]) : 0;
@@ -32,6 +51,7 @@ std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) con
     places[n].irradiance = irradiance.mean();
     places[n].error = told_error(n, irradiance, error);
     power += places[n].area * places[n].irradiance, area += places[n].area;
+    if (!counts[state_.forests.leaves().id(leaves[n]).root_face()]) places[n].area = 0;
   }
   const double floor = area > 0 ? darkest * power / area : 0;
   for (PlaceError& place : places) {

@@ -125,7 +125,7 @@ class Run {
       if (!pass()) return stop_reason();
       if (error_to_keep() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
-      if (is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
+      if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
       const bool is_better = gains() && pass_->refine();
       if (must_stop()) return stop_reason();
       if (!is_better) {
@@ -276,9 +276,8 @@ class Run {
     budget_.add_spent(is_.rays, is_.traversal_s);
   }
 
-  bool is_by_place() const { return options_.area_share < 1; }
   /// Returns the error that has to be within the tolerance.
-  double error_to_keep() const { return is_by_place() ? by_place_.kept_error : is_.error.total(); }
+  double error_to_keep() const { return options_.is_by_place() ? by_place_.kept_error : is_.error.total(); }
 
   double cpu_s() const { return is_.cpu_s + cpu_.seconds(); }
 

@@ -185,6 +185,7 @@ v1::SolveSpec encode(const SolveSpec& spec) {
   v1::SolveSpec message;
   message.set_tolerance(spec.tolerance);
   message.set_area_share(spec.area_share);
+  message.mutable_objects()->Assign(spec.objects.begin(), spec.objects.end());
   if (spec.max_depth) message.set_max_depth(*spec.max_depth);
   message.set_max_elements(spec.max_elements);
   message.set_min_edge_meters(spec.min_edge_m);
@@ -202,6 +203,7 @@ SolveSpec decode(const v1::SolveSpec& message) {
   SolveSpec spec;
   spec.tolerance = message.tolerance();
   spec.area_share = message.area_share();
+  spec.objects.assign(message.objects().begin(), message.objects().end());
   if (message.has_max_depth()) spec.max_depth = message.max_depth();
   spec.max_elements = message.max_elements();
   spec.min_edge_m = message.min_edge_meters();

@@ -39,6 +39,7 @@ constexpr bool is_final(SolveStatus status) {
 struct SolveSpec {
   double tolerance = 0;                ///< estimated nRMSE at which the solve stops
   double area_share = 0;               ///< see SolveOptions
+  std::vector<std::string> objects;    ///< see SolveOptions
   std::optional<int> max_depth;        ///< most levels of subdivision; 0 means no refinement
   std::uint64_t max_elements = 0;      ///< most leaves
   double min_edge_m = 0;               ///< no split makes an edge shorter than this

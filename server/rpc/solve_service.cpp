@@ -1,8 +1,11 @@
 #include "server/rpc/solve_service.h"
 
 #include "server/archive/record_codec.h"
+#include "server/base/status_error.h"
 #include "server/rpc/answer.h"
 #include "server/rpc/watch_call.h"
+
+#include <algorithm>
 
 namespace alvor {
 
@@ -13,6 +16,15 @@ v1::WatchSolveRequest parse(grpc::ByteBuffer bytes) {
   if (!grpc::SerializationTraits<v1::WatchSolveRequest>::Deserialize(&bytes, &request).ok())
     throw invalid_argument("the message is not a WatchSolveRequest");
   return request;
+}
+
+/// Throws StatusError INVALID_ARGUMENT if a solve names an object that its scene does not have.
+void check_objects(const std::vector<std::string>& names, const StoredScene& scene) {
+  if (names.empty()) return;
+  const auto content = scene.content();
+  for (std::size_t n = 0; n < names.size(); ++n)
+    if (std::ranges::find(content->scene.objects, names[n], &SceneObject::name) == content->scene.objects.end())
+      throw invalid_field("solve.spec.objects[" + std::to_string(n) + "]", "'" + names[n] + "'", "is no object of the scene");
 }
 
 }  // namespace
@@ -26,7 +38,9 @@ SolveService::Reactor* SolveService::CreateSolve(Context* context, const v1::Cre
   return keep(context, "CreateSolve", [this, request, solve](const std::string& tenant) {
     const Caller caller{tenant, request->request_id()};
     SceneUse scene = scenes_.use(request->parent(), tenant);
-    *solve = encode(solves_.create(std::move(scene), decode(request->solve().spec()), caller)->describe());
+    const SolveSpec spec = decode(request->solve().spec());
+    check_objects(spec.objects, *scene.scene);
+    *solve = encode(solves_.create(std::move(scene), spec, caller)->describe());
   });
 }
 

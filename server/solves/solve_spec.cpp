@@ -30,6 +30,11 @@ SolveOptions options_of(const SolveSpec& spec, const SolveLimits& limits) {
   if (spec.tolerance != 0) options.tolerance = spec.tolerance;
   if (spec.area_share != 0 && !(spec.area_share > 0 && spec.area_share <= 1))
     refuse("area_share", spec.area_share, "is outside (0, 1]");
+  constexpr double share_of_objects = 0.95;
+  constexpr std::size_t most_objects = 1000;
+  options.objects = spec.objects;
+  if (spec.objects.size() > most_objects) refuse("objects", spec.objects.size(), "are more than " + std::to_string(most_objects));
+  if (!spec.objects.empty()) options.area_share = share_of_objects;
   if (spec.area_share != 0) options.area_share = spec.area_share;
 
   options.max_depth = spec.max_depth.value_or(options.max_depth);

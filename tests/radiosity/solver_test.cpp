@@ -155,6 +155,30 @@ TEST(Solver, EndsWhenEnoughOfTheAreaIsWithinTheTolerance) {
   EXPECT_GT(nearly_all.last_step().leaves, most.last_step().leaves);
 }
 
+TEST(Solver, KeepsTheToleranceOnNamedObjectsAndRefinesNothingElse) {
+  Scene scene = lit_room();
+  // The room; the block, which hangs from a table that has no faces; the lamp.
+  scene.objects = {{"room", {}, {}, 0, 6}, {"table", {}, {}, 6, 0}, {"block", 1, {}, 6, 6}, {"lamp", {}, {}, 12, 1}};
+  const BaseMesh mesh(scene);
+  ASSERT_FALSE(find_fault(scene));
+  constexpr double tolerance = 0.01;
+  SolutionLog all, part, unknown;
+  EXPECT_EQ(solve(mesh, {.tolerance = tolerance, .area_share = 0.95}, all, {}).reason, StopReason::tolerance);
+  EXPECT_EQ(solve(mesh, {.tolerance = tolerance, .area_share = 0.95, .objects = {"table"}}, part, {}).reason,
+            StopReason::tolerance);
+  EXPECT_GE(part.last_step().area_within, 0.95);
+  EXPECT_LT(part.last_step().rays, 0.5 * static_cast<double>(all.last_step().rays));
+  const auto leaves_of_block = [&](const SolutionLog& log) {
+    return std::ranges::count_if(log.leaves(), [&](const LeafValue& leaf) {
+      const std::uint32_t face = mesh.roots()[leaf.patch.root_face()].input.first;
+      return face >= 6 && face < 12;
+    });
+  };
+  EXPECT_GT(leaves_of_block(part), leaves_of_block(all) / 2);
+  EXPECT_EQ(solve(mesh, {.tolerance = tolerance, .objects = {"nobody"}}, unknown, {}).reason, StopReason::tolerance)
+      << "nothing has to be within the tolerance";
+}
+
 TEST(Solver, RoomWithoutLightIsBlackAndDone) {
   Scene scene;
   scene.materials = {test::grey(0, 0.6)};

@@ -178,6 +178,10 @@ TEST(Api, ErrorsNameTheResource) {
   v1::SolveSpec spec;
   spec.set_tolerance(2);
   EXPECT_EQ(error_of([&] { client.create_solve(scene, spec); }), "INVALID_ARGUMENT: solve.spec.tolerance: 2 is outside (0, 1]");
+  v1::SolveSpec for_nobody;
+  for_nobody.add_objects("nobody");
+  EXPECT_EQ(error_of([&] { client.create_solve(scene, for_nobody); }),
+            "INVALID_ARGUMENT: solve.spec.objects[0]: 'nobody' is no object of the scene");
 }
 
 TEST(Api, SceneLivesAsLongAsItsSolves) {

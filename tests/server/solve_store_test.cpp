@@ -275,9 +275,16 @@ TEST(SolveSpec, ZeroMeansTheDefault) {
   EXPECT_EQ(options_of(zeros, {}).seed, 0u);
 }
 
+TEST(SolveSpec, NamedObjectsNeedNotBeWithinTheToleranceEverywhere) {
+  EXPECT_EQ(options_of({}, {}).area_share, 1);
+  EXPECT_EQ(options_of({.objects = {"table"}}, {}).area_share, 0.95);
+  EXPECT_EQ(options_of({.area_share = 1, .objects = {"table"}}, {}).area_share, 1);
+}
+
 TEST(SolveSpec, WhatIsAskedIsEffective) {
   const SolveSpec asked{.tolerance = 0.5,
                         .area_share = 0.9,
+                        .objects = {"table", "chair"},
                         .max_depth = 0,
                         .max_elements = 7,
                         .min_edge_m = 0.1,
@@ -320,6 +327,7 @@ TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
       {"solve.spec.tolerance: nan is outside (0, 1]", [](auto& s) { s.set_tolerance(NAN); }},
       {"solve.spec.area_share: 1.5 is outside (0, 1]", [](auto& s) { s.set_area_share(1.5); }},
       {"solve.spec.area_share: nan is outside (0, 1]", [](auto& s) { s.set_area_share(NAN); }},
+      {"solve.spec.objects: 1001 are more than 1000", [](auto& s) { for (int n = 0; n <= 1000; ++n) s.add_objects("x"); }},
       {"solve.spec.max_depth: 16 is outside [0, 15]", [](auto& s) { s.set_max_depth(16); }},
       {"solve.spec.max_elements: 101 is more than 100, the limit of this server", [](auto& s) { s.set_max_elements(101); }},
       {"solve.spec.min_edge_meters: -1 is not a finite length >= 0", [](auto& s) { s.set_min_edge_meters(-1); }},

@@ -32,8 +32,9 @@ void print_written(const std::filesystem::path& path) {
   if (!path.empty() && !is_stream(path)) notes() << "wrote " << path.string() << '\n';
 }
 
-void print_for_people(const OutputOptions& options, const Followed& followed, const MeanLight& light) {
-  notes() << summary(followed, light);
+void print_for_people(const OutputOptions& options, const Followed& followed, const MeanLight& light,
+                      std::span<const ObjectError> errors) {
+  notes() << summary(followed, light, errors);
   for (const auto& path : {options.solution.path, options.report, options.frames}) print_written(path);
 }
 
@@ -73,8 +74,10 @@ void deliver(const OutputOptions& options, const Scene& scene, const Followed& f
   write_pictures(options, mesh, followed);
   const MeanLight light = mean_light(mesh, followed.mirror.leaves());
   if (is_stream(options.report)) write_report();
-  if (options.json) results() << outcome_json(followed, light, warnings);
-  else print_for_people(options, followed, light);
+  constexpr std::size_t most_objects = 5;
+  const auto errors = largest_errors(mesh, followed.mirror.leaves(), followed.mirror.errors(), most_objects);
+  if (options.json) results() << outcome_json(followed, light, errors, warnings);
+  else print_for_people(options, followed, light, errors);
   if (followed.solve.state() != v1::Solve::SUCCEEDED) throw Failure(ExitStatus::failed, unfinished(followed.solve));
 }
 

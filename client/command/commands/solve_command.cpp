@@ -48,6 +48,7 @@ struct SolveCommand {
   ServerChoice server;
   OutputOptions outputs;
   std::optional<double> tolerance, area_share;
+  std::vector<std::string> objects;  ///< names
   std::optional<int> max_depth;
   std::optional<std::uint64_t> max_elements;
   std::optional<double> time_limit_s;
@@ -67,6 +68,7 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
   v1::SolveSpec spec;
   if (command.tolerance) spec.set_tolerance(*command.tolerance);
   if (command.area_share) spec.set_area_share(*command.area_share);
+  spec.mutable_objects()->Assign(command.objects.begin(), command.objects.end());
   if (command.max_depth) spec.set_max_depth(*command.max_depth);
   if (command.max_elements) spec.set_max_elements(*command.max_elements);
   if (command.threads) spec.set_threads(*command.threads);
@@ -151,6 +153,12 @@ void add_limits(CLI::App& command, SolveCommand& options) {
           "tolerance is that of the RMS error over the whole scene)")
       ->type_name("SHARE")
       ->check(above_up_to(0, 1));
+  command
+      .add_option("--for", options.objects,
+                  "Keep the tolerance on this object of the scene and what hangs from it, on --area-share of their area (0.95), and refine "
+                  "nothing else; repeatable")
+      ->type_name("OBJECT")
+      ->allow_extra_args(false);
   command.add_option("--max-depth", options.max_depth, "Most levels of subdivision; 0 means no refinement (10)")
       ->check(CLI::Range(0, 15));
   command.add_option("--max-elements", options.max_elements, "Stop refining at this many leaves (200000)")->check(whole_from(1));

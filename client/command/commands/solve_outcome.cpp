@@ -31,6 +31,15 @@ std::string unlit(const Step& step) {
          " of the surface that light may reach has no light yet: the solve ended before its turn\n";
 }
 
+std::string text_of(std::span<const ObjectError> errors) {
+  std::string line;
+  for (const ObjectError& of : errors)
+    line += (line.empty() ? "where the squared error lies: " : ", ") +
+            (of.name.empty() ? "faces of no object" : "'" + of.name + "'") + ' ' + percent(of.error_share) + " on " +
+            percent(of.area_share) + " of the area";
+  return line.empty() ? line : line + '\n';
+}
+
 std::string text_of(const MeanLight& light) {
   char text[120];
   std::snprintf(text, sizeof text, "mean %s of all surfaces %.4g %s (%.4g m2)\n",
@@ -57,7 +66,8 @@ MeanLight mean_light(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
   return light;
 }
 
-std::string outcome_json(const Followed& followed, const MeanLight& light, std::span<const std::string> warnings) {
+std::string outcome_json(const Followed& followed, const MeanLight& light, std::span<const ObjectError> errors,
+                         std::span<const std::string> warnings) {
   const Step last = last_step(followed);
   nlohmann::ordered_json json;
   json["solve"] = followed.solve.name();
@@ -72,6 +82,9 @@ std::string outcome_json(const Followed& followed, const MeanLight& light, std::
   json["unshot_fraction"] = last.unshot_fraction;
   json["estimated_error"] = last.estimated_error;
   json["area_within"] = last.area_within;
+  json["largest_errors"] = nlohmann::ordered_json::array();
+  for (const ObjectError& of : errors)
+    json["largest_errors"].push_back({{"object", of.name}, {"area_share", of.area_share}, {"error_share", of.error_share}});
   json["unlit_fraction"] = last.unlit_fraction;
   json["mean_irradiance"] = light.irradiance;
   json["irradiance_unit"] = irradiance_unit(light.quantity);
@@ -80,16 +93,19 @@ std::string outcome_json(const Followed& followed, const MeanLight& light, std::
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
-std::string summary(const Followed& followed, const MeanLight& light) {
+std::string summary(const Followed& followed, const MeanLight& light, std::span<const ObjectError> errors) {
   const Step last = last_step(followed);
   const std::string& reason = followed.solve.end_reason();
   const v1::SolveSpec& spec = followed.solve.effective_spec();
-  const bool is_by_place = spec.area_share() > 0 && spec.area_share() < 1;
-  const std::string by_place =
-      is_by_place ? " (" + percent(spec.tolerance()) + " kept on " + percent(last.area_within) + " of the area)" : "";
+  const bool is_by_place = (spec.area_share() > 0 && spec.area_share() < 1) || spec.objects_size() > 0;
+  const bool is_reached = is_by_place ? last.area_within >= spec.area_share() : last.estimated_error <= spec.tolerance();
+  const std::string by_place = is_by_place
+                                   ? " (" + percent(spec.tolerance()) + " kept on " + percent(last.area_within) +
+                                         (spec.objects_size() > 0 ? " of the area of the named objects)" : " of the area)")
+                                   : "";
   return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
          seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + by_place + ": " +
-         (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + text_of(light);
+         (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + (is_reached ? "" : text_of(errors)) + text_of(light);
 }
 
 }  // namespace alvor

@@ -2,6 +2,7 @@
 // Reports about a solve: for scripts, spreadsheets and people.
 
 #include "client/command/commands/follow.h"
+#include "client/verify/object_errors.h"
 #include "meshing/base_mesh.h"
 
 #include <span>
@@ -24,9 +25,11 @@ struct MeanLight {
 MeanLight mean_light(const BaseMesh& mesh, std::span<const LeafValue> leaves);
 
 /// Returns one JSON object: the outcome of the solve and the warnings about its scene.
-std::string outcome_json(const Followed& followed, const MeanLight& light, std::span<const std::string> warnings);
+std::string outcome_json(const Followed& followed, const MeanLight& light, std::span<const ObjectError> errors,
+                         std::span<const std::string> warnings);
 
-/// Returns lines for people: leaves, rays, seconds, estimated error, why it ended; mean light.
-std::string summary(const Followed& followed, const MeanLight& light);
+/// Returns lines for people: leaves, rays, seconds, estimated error, why it ended; where the error lies, if that was before the
+/// tolerance; mean light.
+std::string summary(const Followed& followed, const MeanLight& light, std::span<const ObjectError> errors);
 
 }  // namespace alvor
