@@ -105,7 +105,12 @@ class Pass {
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   double squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
-  double misfit_at_origins(NodeIndex row, const LightByLeaf& radiosity) const;
+  struct OriginMisfit {
+    double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
+    double noise = 0;   ///< variance of a stratum's value, mean over them
+  };
+  OriginMisfit misfit_at_origins(NodeIndex row, const LightByLeaf& radiosity) const;
+  std::array<Vec3, origins_per_patch> places_of_origins(NodeIndex row, bool has_more_rounds) const;
   bool rows_tell_what_is_lost() const;
   Rgb taken_up(const TransportRow& row) const;
 

@@ -42,6 +42,8 @@ constexpr double misfit_at_centre = 0.25;
 // squared normal deviations. With 0 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken for detail; with
 // 0.7 half of the gain in the furnished room is lost (docs/error-vs-time.md).
 constexpr double chance_of_origins = 0.35;
+// The same for a misfit that is told: two standard deviations.
+constexpr double sure_of_origins = 0.7;
 // Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
@@ -119,20 +121,20 @@ void Pass::show_smoothly() {
   state_.field.set_fits(rows, fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres()));
 }
 
-/// Returns by how much the irradiance at a row's origins differs from the field that is shown: mean square difference, less the
-/// noise of the origins and what it explains by chance; in emission units squared. It sees a strip of light as narrow as a
-/// quarter of the patch, such as the edge of a book that stands out from a shelf. An origin's noise is found from its own sixteen
-/// rays as if they were independent. They are stratified and have less, so that noise does not pass for a misfit.
-double Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& radiosity) const {
+/// Returns by how much the irradiance at a row's origins differs from the field that is shown. It sees a strip of light as narrow
+/// as a quarter of the patch, such as the edge of a book that stands out from a shelf. Rows of several rounds of rays have the
+/// mean over the rounds in each stratum, at its middle; its noise is found from how the rounds differ. With one round it is found
+/// from the rays of each origin as if they were independent. They are stratified and have less, so that noise does not pass for a
+/// misfit.
+Pass::OriginMisfit Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& radiosity) const {
   const TransportRow& row = state_.rows[node];
-  if (row.origin_hits.size() < origins_per_patch) return 0;
-  const PatchForest& forest = state_.forests.rows();
-  RandomStream random(state_.options.seed, forest.id(node));  // as rows are traced
-  const PatchPoints points = sample_points(state_.scene, forest.shape(node), random);
+  if (row.origin_hits.size() < origins_per_patch) return {};
+  struct Stratum {
+    double sum = 0, squares = 0, rounds = 0, noise_of_rays = 0;
+  };
+  std::array<Stratum, origins_per_patch> strata;
   const auto leaves = state_.rows.leaves_hit(node);
-  double misfit = 0;
-  int count = 0;
-  for (std::size_t o = 0, hit = 0; o < origins_per_patch; ++o) {
+  for (std::size_t o = 0, hit = 0; o < row.origin_hits.size(); ++o) {
     if (row.origin_hits[o] == TransportRow::not_sampled) continue;
     double sum = 0, squares = 0;
     for (const std::size_t last = hit + row.origin_hits[o]; hit < last; ++hit) {
@@ -140,12 +142,44 @@ double Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& radiosity) con
       sum += light, squares += light * light;
     }
     const double mean = sum / rays_per_origin;
-    const double noise = std::max(0.0, squares / rays_per_origin - mean * mean) / (rays_per_origin - 1);
-    const Vec3 at = state_.scene.frame().to_metres({points.x[o], points.y[o], points.z[o]});
-    misfit += squared(mean - state_.field.at(node, at).mean()) - (1 + chance_of_origins) * noise;
-    ++count;
+    Stratum& stratum = strata[o % origins_per_patch];
+    stratum.sum += mean, stratum.squares += mean * mean, stratum.rounds += 1;
+    stratum.noise_of_rays += std::max(0.0, squares / rays_per_origin - mean * mean) / (rays_per_origin - 1);
   }
-  return count > 0 ? std::max(0.0, misfit / count) : 0;
+  const auto places = places_of_origins(node, row.origin_hits.size() > origins_per_patch);
+  OriginMisfit misfit;
+  double count = 0;
+  for (std::size_t k = 0; k < strata.size(); ++k) {
+    const Stratum& of = strata[k];
+    if (of.rounds == 0) continue;
+    const double mean = of.sum / of.rounds;
+    const double noise = of.rounds > 1 ? std::max(0.0, of.squares / of.rounds - mean * mean) / (of.rounds - 1) : of.noise_of_rays;
+    misfit.square += squared(mean - state_.field.at(node, places[k]).mean()) - noise;
+    misfit.noise += noise;
+    count += 1;
+  }
+  if (count > 0) misfit.square /= count, misfit.noise /= count;
+  return misfit;
+}
+
+/// Returns the points, in metres, that the sixteen strata of a row stand for: the origins of its first round of rays, or the
+/// middles of the strata if it has more rounds.
+std::array<Vec3, origins_per_patch> Pass::places_of_origins(NodeIndex node, bool has_more_rounds) const {
+  const PatchForest& forest = state_.forests.rows();
+  const PatchShape shape = forest.shape(node);
+  std::array<Vec3, origins_per_patch> places;
+  if (has_more_rounds) {
+    for (int o = 0; o < origins_per_patch; ++o) {
+      const Uv at = shape.stratum_centre(o);
+      places[static_cast<std::size_t>(o)] = state_.mesh.roots()[shape.root].at(at.u, at.v);
+    }
+    return places;
+  }
+  RandomStream random(state_.options.seed, forest.id(node));  // as rows are traced
+  const PatchPoints points = sample_points(state_.scene, shape, random);
+  for (std::size_t o = 0; o < places.size(); ++o)
+    places[o] = state_.scene.frame().to_metres({points.x[o], points.y[o], points.z[o]});
+  return places;
 }
 
 bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
@@ -199,9 +233,12 @@ double Pass::contact_variation(NodeIndex row, const SmoothNeighbours& neighbours
 void Pass::estimate_rows(ErrorEstimate& error) {
   const auto patches = system_->patches();
   const auto leaving = system_->radiosity();
+  std::vector<OriginMisfit> at_origins(patches.size());
   std::vector<double> errors(patches.size());
-  tbb::parallel_for(std::size_t{0}, patches.size(),
-                    [&](std::size_t p) { errors[p] = visible_area(p) * misfit_at_origins(system_->rows()[p], leaving); });
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t p) {
+    at_origins[p] = misfit_at_origins(system_->rows()[p], leaving);
+    errors[p] = visible_area(p) * std::max(0.0, at_origins[p].square - chance_of_origins * at_origins[p].noise);
+  });
   row_squares_.resize(patches.size());
   const auto neighbours = state_.forests.row_neighbours(system_->rows());
   const std::vector<double> irradiance = irradiance_of_rows();
@@ -211,8 +248,11 @@ void Pass::estimate_rows(ErrorEstimate& error) {
     const TransportRow& row = state_.rows[node];
     const FieldFit& fit = state_.field.fit(node);
     const double area = visible_area(p), noise = area * fit.variance;
-    error.misfit += area * fit.squared_misfit;
-    row_squares_[p] = std::max(0.0, fit.squared_misfit);
+    const bool is_seen = row.origin_hits.size() > origins_per_patch ||
+                         at_origins[p].square > std::max(fit.squared_misfit, sure_of_origins * at_origins[p].noise);
+    const double misfit = is_seen ? at_origins[p].square : fit.squared_misfit;
+    error.misfit += area * misfit;
+    row_squares_[p] = std::max(0.0, misfit);
     errors[p] = std::max(errors[p], area * misfit_at_centre * fit.window_misfit);
     if (row.crosses_contact()) {
       const double by_contact = area * squared(contact_variation(node, neighbours[p], irradiance));
