@@ -51,13 +51,14 @@ Rgb clamp_extrapolated(const Rgb& x, const LeafSlope& slope) {
 }
 
 /// Returns the displacement that moves a vertex by 1 to the front of all faces around it (Kaczmarz' iteration). Folds of a
-/// curtain stay closed.
+/// curtain stay closed. At a rim, where the two sides of a sheet meet, there is none: it is 0.
 Vec3 miter(std::span<const Vec3> normals) {
   Vec3 moved = normals[0];
   constexpr int rounds = 32;
   for (int round = 0; round < rounds; ++round)
     for (const Vec3& normal : normals) moved += (1 - dot(moved, normal)) * normal;
-  return moved * std::min(1.0, longest_miter / length(moved));
+  const bool is_behind = std::ranges::any_of(normals, [&](const Vec3& normal) { return dot(moved, normal) < 0; });
+  return is_behind ? Vec3{} : moved * std::min(1.0, longest_miter / length(moved));
 }
 
 class Triangulation {

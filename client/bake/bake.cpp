@@ -1,5 +1,6 @@
 #include "client/bake/bake.h"
 
+#include "client/bake/chart_layout.h"
 #include "client/bake/exr_writer.h"
 #include "client/bake/materials.h"
 #include "client/bake/placed_meshes.h"
@@ -30,21 +31,8 @@ using nlohmann::json;
 constexpr double clipped_at_most = 0.002;
 // Texels that unused parts of a page take from their neighbours, so that two smaller mip levels hold no black. Chosen.
 constexpr int spread_texels = 8;
-// Packing takes 20 s for so many, and no engine wants them.
-constexpr std::size_t most_charts = 1'000'000;
-
-/// A chart of a node's mesh, and its place among the textures.
-struct NodeChart {
-  PlacedChart placed;
-  ShownSide side;
-};
-
-/// A primitive of a node's mesh: its charts are those from first_chart on.
-struct NodePrimitive {
-  const MeshNode* node;
-  const PrimitiveCharts* primitive;
-  std::size_t first_chart;
-};
+// Members of the file's extras.
+constexpr const char *lightmap_key = "alvor_lightmap", *form_key = "alvor_baked_form";
 
 class Baker {
  public:
@@ -54,12 +42,10 @@ class Baker {
         solution_(solution),
         options_(options),
         surface_(solution, scene),
-        meshes_(placed_meshes(document_)) {}
+        layout_(document_, scene, options) {}
 
   Baked bake() {
-    check_objects(meshes_, scene_);
-    collect_charts();
-    place();
+    baked_.pages = pages_.count, baked_.texels_per_metre = pages_.texels_per_metre;
     choose_sides();
     fill_pages();
     write_pages();
@@ -67,50 +53,15 @@ class Baker {
     if (options_.form == BakeForm::lightmap && !options_.keeps_lights) drop_lights();
     describe();
     baked_.glb = document_.encode();
-    baked_.nodes = meshes_.nodes.size();
+    baked_.nodes = layout_.meshes.nodes.size();
     baked_.charts = charts_.size();
     return std::move(baked_);
   }
 
  private:
-  void collect_charts() {
-    for (const MeshNode& node : meshes_.nodes)
-      for (const PrimitiveCharts& primitive : meshes_.primitives.at(node.mesh)) {
-        primitives_.push_back({&node, &primitive, charts_.size()});
-        const bool may_show_back = is_two_sided(primitive_of(node.mesh, primitive.primitive), document_);
-        for (const Chart& chart : primitive.charts.charts)
-          charts_.push_back({{primitive.positions, &primitive.charts, &chart, to_scene(scene_) * node.placement, node.object,
-                              may_show_back},
-                             {}});
-      }
-    if (charts_.empty()) throw BakeError("file", "shows no surface");
-    if (charts_.size() > most_charts)
-      throw BakeError("file", "falls into " + std::to_string(charts_.size()) + " charts, more than " + std::to_string(most_charts) +
-                                  ": join the vertices of its faces");
-  }
-
-  const json& primitive_of(std::size_t mesh, std::size_t primitive) const {
-    return document_.element("meshes", mesh).at("primitives").at(primitive);
-  }
-
-  void place() {
-    std::vector<ChartSize> sizes;
-    for (const NodeChart& chart : charts_) sizes.push_back(size_of(chart.placed));
-    auto pages = place_charts(sizes, {options_.size, options_.padding, options_.texels_per_metre});
-    if (!pages)
-      throw BakeError("file", "its " + std::to_string(charts_.size()) + " charts do not fit textures of " +
-                                  std::to_string(options_.size) + " x " + std::to_string(options_.size) +
-                                  (options_.texels_per_metre ? ": ask for larger textures or fewer texels per metre"
-                                                             : ": ask for larger textures"));
-    pages_ = *std::move(pages);
-    baked_.pages = pages_.count, baked_.texels_per_metre = pages_.texels_per_metre;
-  }
-
   void choose_sides() {
-    tbb::parallel_for(std::size_t{0}, charts_.size(),
-                      [&](std::size_t c) { charts_[c].side = brighter_side(charts_[c].placed, surface_); });
-    baked_.lit_from_both = static_cast<std::size_t>(
-        std::ranges::count_if(charts_, [](const NodeChart& chart) { return chart.side.loses_light; }));
+    tbb::parallel_for(std::size_t{0}, charts_.size(), [&](std::size_t c) { sides_[c] = brighter_side(charts_[c], surface_); });
+    baked_.lit_from_both = static_cast<std::size_t>(std::ranges::count_if(sides_, &ShownSide::loses_light));
   }
 
   /// Fills the rectangles of charts, which do not overlap.
@@ -122,8 +73,7 @@ class Baker {
     for (const ChartPlace& place : pages_.places) texels += double(place.wide) * place.high;
     tbb::parallel_for(std::size_t{0}, charts_.size(), [&](std::size_t c) {
       const ChartPlace& place = pages_.places[c];
-      fill(images_[static_cast<std::size_t>(place.page)], charts_[c].placed, place, pages_.padding, charts_[c].side.is_back,
-           surface_, value);
+      fill(images_[static_cast<std::size_t>(place.page)], charts_[c], place, pages_.padding, sides_[c].is_back, surface_, value);
       const std::size_t here = static_cast<std::size_t>(place.wide) * static_cast<std::size_t>(place.high);
       options_.on_progress(static_cast<double>(done += here) / texels);
     });
@@ -182,8 +132,8 @@ class Baker {
 
   void write_meshes() {
     std::size_t next = 0;
-    rewrite_meshes(document_, meshes_, [&](const MeshNode&, const PrimitiveCharts&, const json& primitive) {
-      return written(primitives_[next++], primitive);
+    rewrite_meshes(document_, layout_.meshes, [&](const MeshNode&, const PrimitiveCharts&, const json& primitive) {
+      return written(layout_.primitives[next++], primitive);
     });
   }
 
@@ -203,18 +153,25 @@ class Baker {
     for (std::size_t page = 0; page < by_page.size(); ++page) {
       if (by_page[page].empty()) continue;
       json primitive = with_points;
-      const bool stays = charts.keeps_vertices(of.primitive->positions.size()) &&
-                         by_page[page].size() == of.primitive->triangles.size();
+      const bool stays =
+          charts.keeps_vertices(of.primitive->positions.size()) && by_page[page].size() == of.primitive->triangles.size();
       if (!stays) primitive["indices"] = document_.add_indices(by_page[page]), primitive["mode"] = glb::triangle_list;
-      const bool keeps_material =
-          textures_.empty() || (options_.form == BakeForm::unlit && shows_what_is_behind(material));
+      const bool keeps_material = textures_.empty() || (options_.form == BakeForm::unlit && shows_what_is_behind(material));
       if (!keeps_material) {
         primitive["material"] = material_with_light(original, page, set);
         if (options_.form == BakeForm::unlit) primitive["attributes"].erase("COLOR_0");  // the image has it
       }
+      if (textures_.empty()) tell_file(primitive, page);
       primitives.push_back(std::move(primitive));
     }
     return primitives;
+  }
+
+  /// Tells in a primitive's extras which of the files beside the GLB it uses.
+  static void tell_file(json& primitive, std::size_t page) {
+    json& extras = primitive["extras"];
+    if (!extras.is_object() && !extras.is_null()) extras = {{"extras", extras}};
+    extras["alvor_lightmap_file"] = page;
   }
 
   /// Returns a primitive whose vertices are those of the charts: the same if the charts have none in common.
@@ -252,7 +209,7 @@ class Baker {
     for (std::size_t vertex = 0; vertex < charts.source.size(); ++vertex) {
       std::array<double, 2> at{0.5, 0.5};
       if (const std::uint32_t chart = charts.vertex_chart[vertex]; chart != ChartedMesh::no_chart)
-        at = texel_of(charts_[of.first_chart + chart].placed, pages_.places[of.first_chart + chart], pages_.padding,
+        at = texel_of(charts_[of.first_chart + chart], pages_.places[of.first_chart + chart], pages_.padding,
                       static_cast<std::uint32_t>(vertex));
       for (const double texel : at) append_value(bytes, static_cast<float>(texel / pages_.size));
     }
@@ -276,8 +233,8 @@ class Baker {
     const json material = material_of(primitive, document_), texture{{"index", textures_[page]}, {"texCoord", set}};
     const bool is_lightmap = options_.form == BakeForm::lightmap;
     document_.use_extension(is_lightmap ? "MOZ_lightmap" : "KHR_materials_unlit");
-    known->second = document_.append(
-        "materials", is_lightmap ? with_lightmap(material, texture, baked_.range) : unlit(material, {{"baseColorTexture", texture}}));
+    known->second = document_.append("materials", is_lightmap ? with_lightmap(material, texture, baked_.range)
+                                                              : unlit(material, {{"baseColorTexture", texture}}));
     return known->second;
   }
 
@@ -305,14 +262,14 @@ class Baker {
 
   /// Says in the file what the light is.
   void describe() {
-    if (options_.form == BakeForm::unlit) return;
+    if (options_.form == BakeForm::unlit) return document_.add_extra(form_key, "unlit");
     json said{{"quantity", options_.unit == LightmapUnit::irradiance ? "irradiance" : "irradiance over pi"},
               {"unit", solution_.quantity == Quantity::photometric ? "lx" : "W/m2"},
               {"texels_per_metre", pages_.texels_per_metre},
               {"size", pages_.size}};
     if (options_.format == LightmapFormat::png) said["encoding"] = "sRGB", said["range"] = baked_.range;
     for (const Baked::File& file : baked_.beside) said["files"].push_back(file.name);
-    document_.add_extra("alvor_lightmap", std::move(said));
+    document_.add_extra(lightmap_key, std::move(said));
   }
 
   GltfDocument document_;
@@ -320,10 +277,10 @@ class Baker {
   const DisplayMesh& solution_;
   const BakeOptions& options_;
   SolvedSurface surface_;
-  PlacedMeshes meshes_;
-  std::vector<NodePrimitive> primitives_;
-  std::vector<NodeChart> charts_;
-  ChartPages pages_;
+  ChartLayout layout_;
+  const std::vector<PlacedChart>& charts_ = layout_.charts;
+  const ChartPages& pages_ = layout_.pages;
+  std::vector<ShownSide> sides_{charts_.size()};  // by chart
   std::vector<LightPage> images_;
   std::optional<std::size_t> sampler_;
   std::vector<std::size_t> textures_;  // by page
@@ -332,21 +289,46 @@ class Baker {
   Baked baked_;
 };
 
-}  // namespace
-
-Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options) {
+/// Returns what `work` returns. Turns what JSON throws into BakeError.
+template <class Work>
+auto baking(Work work) {
   try {
-    for (const auto& [name, extra] : options.extras.items()) document.add_extra(name, extra);
-    if (options.form == BakeForm::vertex) {
-      if (options.longest_edge) subdivide(document, *options.longest_edge);
-      return bake_vertices(std::move(document), scene, solution);
-    }
-    return Baker(std::move(document), scene, solution, options).bake();
-  } catch (const nlohmann::json::exception&) {
+    return work();
+  } catch (const json::exception&) {
     throw BakeError("file", "is not as glTF says: a member has another type or is missing");
   } catch (const std::out_of_range&) {
     throw BakeError("file", "is not as glTF says: an index is out of range");
   }
+}
+
+/// Throws BakeError if a file has baked light, which would pass for its colours.
+void refuse_baked(const GltfDocument& document) {
+  const json extras = document.root().value("extras", json());
+  for (const char* key : {lightmap_key, form_key})
+    if (extras.is_object() && extras.contains(key))
+      throw BakeError("extras." + std::string(key), "light is baked into this file: bake the one that it was made of");
+}
+
+}  // namespace
+
+void require_room(const GltfDocument& document, const Scene& scene, const BakeOptions& options) {
+  baking([&] {
+    refuse_baked(document);
+    if (options.form != BakeForm::vertex) ChartLayout(document, scene, options);
+  });
+}
+
+Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options) {
+  return baking([&] {
+    refuse_baked(document);
+    for (const auto& [name, extra] : options.extras.items()) document.add_extra(name, extra);
+    if (options.form == BakeForm::vertex) {
+      document.add_extra(form_key, "vertex");
+      if (options.longest_edge) subdivide(document, *options.longest_edge);
+      return bake_vertices(std::move(document), scene, solution);
+    }
+    return Baker(std::move(document), scene, solution, options).bake();
+  });
 }
 
 }  // namespace alvor

@@ -55,6 +55,10 @@ struct Baked {
   std::vector<std::string> warnings;  ///< a sentence each
 };
 
+/// Throws BakeError if the file cannot be baked whatever the light is: charts that do not fit, or baked light in it. For callers who do not
+/// want to learn that after a long solve. Requires the document and the scene that bake() asks for.
+void require_room(const GltfDocument& document, const Scene& scene, const BakeOptions& options);
+
 /// Adds the light of `solution`, of `scene`, to `document`, which is the file that the scene was read from or document_of() it:
 /// its nodes are the scene's objects, in the order in which they are visited. Everything else stays as it is; each node that shows
 /// a mesh gets a mesh of its own that shares its accessors, but for the new texture coordinates, and vertices that charts had in

@@ -13,6 +13,8 @@ using Point = FlatPoint;
 
 // Points that are darker than this share of the brightest texel beside them may be covered. Chosen.
 constexpr double much_darker = 0.75;
+// Share of that brightest texel below which what a covered point sees counts as dark. Chosen.
+constexpr double darkness = 0.02;
 // Texels without light are looked at up to so many texels from the light, and take it on if they are covered: mip levels mix
 // them.
 constexpr int reach_of_darkness = 4;
@@ -151,7 +153,7 @@ class Filler {
     for (std::size_t n = 0; n < of->count; ++n) {
       const auto sample = surface_.at(chart_.object, of->points[n], normal);
       if (!sample) continue;
-      if (bright && sample->irradiance.mean() <= much_darker * *bright && surface_.is_covered(of->points[n], normal)) continue;
+      if (bright && sample->irradiance.mean() <= much_darker * *bright && surface_.is_covered(of->points[n], normal, darkness * *bright)) continue;
       sum += value_(*sample), irradiance += sample->irradiance, count += 1;
     }
     page_.is_set[index] = count > 0;

@@ -33,11 +33,14 @@ bool uses_set(const json& material, std::size_t set) {
   return false;
 }
 
+bool has_base_image(const json& material) {
+  return material.contains("pbrMetallicRoughness") && material["pbrMetallicRoughness"].contains("baseColorTexture");
+}
+
 bool shows_what_is_behind(const json& material) {
-  const bool has_image = material.contains("pbrMetallicRoughness") && material["pbrMetallicRoughness"].contains("baseColorTexture");
   const bool has_alpha = material.value("alphaMode", "OPAQUE") != "OPAQUE";
   const bool is_glass = material.contains("extensions") && material["extensions"].contains("KHR_materials_transmission");
-  return (has_alpha && has_image) || is_glass;
+  return (has_alpha && has_base_image(material)) || is_glass;
 }
 
 json with_lightmap(json material, json texture, double intensity) {

@@ -13,6 +13,8 @@ nlohmann::json material_of(const nlohmann::json& primitive, const GltfDocument& 
 bool is_two_sided(const nlohmann::json& primitive, const GltfDocument& document);
 /// Returns whether a material emits light of its own.
 bool emits_light(const nlohmann::json& material);
+/// Returns whether a material's base colour has an image.
+bool has_base_image(const nlohmann::json& material);
 /// Returns whether a material has a texture, other than one of baked light, that lies by a set of texture coordinates.
 bool uses_set(const nlohmann::json& material, std::size_t set);
 /// Returns whether one sees through a material where its image or glass says so, which an image of colours cannot show.

@@ -1,6 +1,7 @@
 #include "client/bake/solved_surface.h"
 
 #include "client/bake/gltf_document.h"
+#include "client/verify/cosine_direction.h"
 #include "client/verify/path_random.h"
 
 #include <algorithm>
@@ -30,7 +31,8 @@ std::vector<std::uint32_t> objects_of_faces(std::span<const SceneObject> objects
 }  // namespace
 
 SolvedSurface::SolvedSurface(const DisplayMesh& solution, const Scene& scene)
-    : solution_(solution), radiosity_(solution), parts_(scene.objects.size() + 1), tracer_(scene) {
+    : solution_(solution), radiosity_(solution), parts_(scene.objects.size() + 1),
+      everything_(solution.positions, solution.triangles) {
   const std::span<const SceneObject> objects = scene.objects;
   const std::size_t face_count = scene.faces.size();
   if (solution.faces.empty()) throw BakeError("solution", "does not know the faces of its scene");
@@ -79,12 +81,34 @@ std::optional<SolvedSurface::Sample> SolvedSurface::at(std::size_t object, Vec3 
   const auto& [a, b, c] = solution_.triangles[triangle];
   const Rgb irradiance = (1 - hit->u - hit->v) * widen(solution_.irradiance[a]) + hit->u * widen(solution_.irradiance[b]) +
                          hit->v * widen(solution_.irradiance[c]);
-  return Sample{irradiance, radiosity_.of_what_is_there(triangle, hit->u, hit->v)};
+  const Rgb smooth = (1 - hit->u - hit->v) * widen(solution_.radiosity[a]) + hit->u * widen(solution_.radiosity[b]) +
+                     hit->v * widen(solution_.radiosity[c]);
+  return Sample{irradiance, radiosity_.of_what_is_there(triangle, hit->u, hit->v), smooth};
 }
 
-bool SolvedSurface::is_covered(Vec3 point, Vec3 normal) const {
+bool SolvedSurface::is_covered(Vec3 point, Vec3 normal, double dark) const {
   constexpr std::uint32_t rays = 8;
-  return tracer_.is_enclosed({point, normal}, rays, PathRandom(0, 0, 0));
+  constexpr double grazing = 2e-4;  // sine of the angle between a ray along the surface and it
+  PathRandom random(0, 0, 0);
+  const EvenPairs directions(random);
+  const Vec3 start = point + reach_ * normal;
+  const auto meets_darkness = [&](UnitPair at) {
+    const Vec3 direction = cosine_direction(normal, at);
+    const auto hit = everything_.cast(start, direction);
+    if (!hit) return false;  // the sky
+    const auto& [a, b, c] = solution_.triangles[hit->triangle];
+    const Vec3 from = solution_.positions[a];
+    if (dot(cross(solution_.positions[b] - from, solution_.positions[c] - from), direction) >= 0) return true;
+    const auto brightest = [](const RgbF& light) { return std::max({light.r, light.g, light.b}); };
+    return std::max({brightest(solution_.irradiance[a]), brightest(solution_.irradiance[b]), brightest(solution_.irradiance[c]),
+                     brightest(solution_.radiosity[a])}) <= dark;
+  };
+  const auto mostly = [&](auto at) {
+    std::uint32_t count = 0;
+    for (std::uint32_t n = 0; n < rays; ++n) count += meets_darkness(at(directions[n]));
+    return 2 * count > rays;
+  };
+  return mostly([](UnitPair at) { return at; }) && mostly([](UnitPair at) { return UnitPair{at.u, 1 - grazing * grazing}; });
 }
 
 }  // namespace alvor

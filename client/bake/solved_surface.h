@@ -1,7 +1,6 @@
 #pragma once
 // Reads a solution at points of the objects of its scene.
 
-#include "client/verify/path_tracer.h"
 #include "meshing/display_mesh.h"
 #include "meshing/mesh_radiosity.h"
 #include "meshing/scene.h"
@@ -21,6 +20,7 @@ class SolvedSurface {
  public:
   struct Sample {
     Rgb irradiance, radiosity;  ///< W/m2
+    Rgb smooth_radiosity;       ///< with the mean colour of an image instead of what it has there
   };
 
   /// Sorts the triangles of `solution` by the object that their faces belong to. Objects are numbered as in `scene`; the faces
@@ -32,9 +32,10 @@ class SolvedSurface {
   /// Returns the solution where the side of an object's surface that faces along `normal` (unit) passes through `point`; where it
   /// does not, as the scene was welded, at the nearest place that faces within 60 degrees. Nothing if the object has none.
   std::optional<Sample> at(std::size_t object, Vec3 point, Vec3 normal) const;
-  /// Returns whether the side of a surface that faces along `normal` (unit) lies under or inside a solid at `point`, where no light
-  /// comes and nobody looks. Costs some 16 rays.
-  bool is_covered(Vec3 point, Vec3 normal) const;
+  /// Returns whether the side of a surface that faces along `normal` (unit) lies under or inside a solid at `point`, where no light comes
+  /// and nobody looks: most of eight rays above the surface, and most of eight along it, meet sides with no more than `dark`, W/m2, or
+  /// backs. What is in a shadow of the room sees lit surfaces.
+  bool is_covered(Vec3 point, Vec3 normal, double dark) const;
 
  private:
   struct Part {
@@ -47,7 +48,7 @@ class SolvedSurface {
   MeshRadiosity radiosity_;
   double reach_ = 0;  // metres: how far before and behind a point its surface is looked for
   std::vector<Part> parts_;
-  PathTracer tracer_;
+  TriangleCaster everything_;
 };
 
 }  // namespace alvor

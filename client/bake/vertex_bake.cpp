@@ -22,12 +22,26 @@ using nlohmann::json;
 // Share of the way from a corner to the middle of its triangle at which its light is read: at the corner itself another surface
 // often begins. Chosen.
 constexpr double inwards = 0.02;
+// Shares of that way at which a corner that is covered looks for light. Chosen.
+constexpr double further_inwards[]{inwards, 0.1, 0.3, 0.6};
+// Share of the mean irradiance below which what a covered point sees counts as dark. Chosen.
+constexpr double darkness = 0.01;
 
 /// What was solved at a vertex: the mean over its triangles by their area.
 struct VertexLight {
   Rgb irradiance, radiosity;
   double weight = 0;
 };
+
+double mean_irradiance(const DisplayMesh& solution) {
+  double power = 0, area = 0;
+  for (const auto& [a, b, c] : solution.triangles) {
+    const Vec3 from = solution.positions[a];
+    const double here = length(cross(solution.positions[b] - from, solution.positions[c] - from));
+    power += here * widen(solution.irradiance[a]).mean(), area += here;
+  }
+  return area > 0 ? power / area : 0;
+}
 
 class VertexBaker {
  public:
@@ -36,6 +50,7 @@ class VertexBaker {
         scene_(scene),
         exposure_(automatic_exposure(solution)),
         surface_(solution, scene),
+        dark_(darkness * mean_irradiance(solution)),
         meshes_(placed_meshes(document_, Cutting::none)) {}
 
   Baked bake() {
@@ -55,8 +70,8 @@ class VertexBaker {
     Chart all;
     all.triangles.resize(mesh.triangles.size());
     std::iota(all.triangles.begin(), all.triangles.end(), 0u);
-    const PlacedChart placed{mesh.positions, &mesh.charts, &all, to_scene(scene_) * node.placement, node.object,
-                             is_two_sided(primitive, document_)};
+    const PlacedChart placed{
+        mesh.positions, &mesh.charts, &all, to_scene(scene_) * node.placement, node.object, is_two_sided(primitive, document_)};
     const ShownSide side = brighter_side(placed, surface_);
     baked_.lit_from_both += side.loses_light;
     ++baked_.charts;
@@ -64,20 +79,21 @@ class VertexBaker {
     if (primitive["attributes"].contains("COLOR_0"))
       colours = document_.read_colours(index_in(primitive["attributes"], "COLOR_0", "primitive"));
     if (colours.size() != mesh.positions.size()) throw BakeError("COLOR_0", "has not as many elements as POSITION");
-    const bool glows = emits_light(material);
+    // What glows, or has no image, shows the colour of the picture itself, which may be brighter than its base colour.
+    const bool is_whole = emits_light(material) || !has_base_image(material);
     const std::vector<VertexLight> light = light_at_vertices(placed, side.is_back);
     std::string bytes;
     for (std::size_t v = 0; v < colours.size(); ++v) {
-      const Rgb shown = colour_of(light[v], glows);
+      const Rgb shown = colour_of(light[v], is_whole);
       for (std::size_t band = 0; band < 3; ++band) {
-        const double factor = (&shown.r)[band] * (glows ? 1 : double(colours[v][band]));
+        const double factor = (&shown.r)[band] * (is_whole ? 1 : double(colours[v][band]));
         append_value(bytes, static_cast<float>(std::clamp(factor, 0.0, 1.0)));
       }
       append_value(bytes, colours[v][3]);
     }
-    primitive["attributes"]["COLOR_0"] = document_.add_accessor(
-        {{"componentType", glb::float_component}, {"type", "VEC4"}}, bytes, colours.size(), glb::array_buffer);
-    primitive["material"] = unlit_material(primitive, material, glows);
+    primitive["attributes"]["COLOR_0"] = document_.add_accessor({{"componentType", glb::float_component}, {"type", "VEC4"}},
+                                                                bytes, colours.size(), glb::array_buffer);
+    primitive["material"] = unlit_material(primitive, material, is_whole);
     return primitive;
   }
 
@@ -88,10 +104,12 @@ class VertexBaker {
     tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
       const auto number = static_cast<std::uint32_t>(t);
       const Vec3 normal = (is_back ? -1.0 : 1.0) * placed_normal(placed, number);
-      constexpr double near = inwards / 3, far = 1 - 2 * near;
-      constexpr std::array<std::array<double, 2>, 3> corners{{{near, near}, {far, near}, {near, far}}};
       for (std::size_t c = 0; c < 3 && normal != Vec3{}; ++c)
-        samples[t][c] = uncovered(placed.object, placed_point(placed, number, corners[c][0], corners[c][1]), normal);
+        for (const double share : further_inwards) {
+          const double near = share / 3, far = 1 - 2 * near;
+          const auto [u, v] = std::array<std::array<double, 2>, 3>{{{near, near}, {far, near}, {near, far}}}[c];
+          if ((samples[t][c] = uncovered(placed.object, placed_point(placed, number, u, v), normal))) break;
+        }
     });
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       const auto [a, b, d] = placed_corners(placed, static_cast<std::uint32_t>(t));
@@ -99,7 +117,8 @@ class VertexBaker {
       for (std::size_t c = 0; c < 3; ++c) {
         if (!samples[t][c]) continue;
         VertexLight& at = light[triangles[t][c]];
-        at.irradiance += area * samples[t][c]->irradiance, at.radiosity += area * samples[t][c]->radiosity, at.weight += area;
+        at.irradiance += area * samples[t][c]->irradiance, at.radiosity += area * samples[t][c]->smooth_radiosity,
+            at.weight += area;
       }
     }
     take_on(light, triangles);
@@ -109,7 +128,7 @@ class VertexBaker {
   /// Returns what was solved at a point; nothing below what stands there.
   std::optional<SolvedSurface::Sample> uncovered(std::size_t object, Vec3 point, Vec3 normal) const {
     const auto sample = surface_.at(object, point, normal);
-    return sample && surface_.is_covered(point, normal) ? std::nullopt : sample;
+    return sample && surface_.is_covered(point, normal, dark_) ? std::nullopt : sample;
   }
 
   /// Gives covered vertices the mean light of their neighbours, ring by ring.
@@ -130,12 +149,12 @@ class VertexBaker {
     }
   }
 
-  /// Returns by what the base colour is multiplied to look as in a picture; of what glows the colour of the picture itself.
-  Rgb colour_of(const VertexLight& light, bool glows) const {
+  /// Returns by what the base colour is multiplied to look as in a picture, or the colour of the picture itself.
+  Rgb colour_of(const VertexLight& light, bool is_whole) const {
     if (!(light.weight > 0)) return {};
     const Rgb irradiance = light.irradiance * (1 / light.weight), radiosity = light.radiosity * (1 / light.weight);
     const Rgb shown = tone_map(exposure_ * radiosity);
-    if (glows) return shown;
+    if (is_whole) return shown;
     const auto band = [](double colour, double leaving, double arriving) {
       return leaving > 0 ? colour * arriving / leaving : 0;
     };
@@ -143,7 +162,7 @@ class VertexBaker {
             band(shown.b, radiosity.b, irradiance.b)};
   }
 
-  std::size_t unlit_material(const json& primitive, const json& material, bool glows) {
+  std::size_t unlit_material(const json& primitive, const json& material, bool is_whole) {
     constexpr std::size_t none = ~std::size_t{0};
     const auto [known, is_new] = materials_.try_emplace(index_in(primitive, "material", "primitive", none), 0);
     if (!is_new) return known->second;
@@ -151,7 +170,7 @@ class VertexBaker {
     json base = json::object();
     const json pbr = material.value("pbrMetallicRoughness", json::object());
     for (const char* kept : {"baseColorFactor", "baseColorTexture"})
-      if (!glows && pbr.contains(kept)) base[kept] = pbr[kept];
+      if (!is_whole && pbr.contains(kept)) base[kept] = pbr[kept];
     known->second = document_.append("materials", unlit(material, std::move(base)));
     return known->second;
   }
@@ -160,6 +179,7 @@ class VertexBaker {
   const Scene& scene_;
   double exposure_;
   SolvedSurface surface_;
+  double dark_;  // W/m2
   PlacedMeshes meshes_;
   std::map<std::size_t, std::size_t> materials_;
   Baked baked_;

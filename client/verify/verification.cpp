@@ -24,18 +24,6 @@ std::string text_of(Vec3 p) {
   return text.data();
 }
 
-/// Throws MismatchError if the bounding boxes differ: the solution belongs to another scene, or to this one in other units.
-void require_same_box(const Scene& scene, const DisplayMesh& solution) {
-  constexpr double alike = 0.01;
-  const std::vector<Facet> facets = facets_of(scene);
-  const Extent here = extent_of(facets), there = extent_of(solution.positions);
-  const double off = length(there.centre - here.centre) + std::abs(there.longest_side - here.longest_side);
-  if (off <= alike * here.longest_side + float_step * length(here.centre)) return;
-  throw MismatchError("is not a solution of this scene: it is " + std::to_string(there.longest_side) + " m long, about " +
-                      text_of(there.centre) + ", and the scene " + std::to_string(here.longest_side) + " m, about " +
-                      text_of(here.centre));
-}
-
 std::vector<ProbeSample> solution_at(const DisplayMesh& solution, std::span<const SurfacePoint> points) {
   std::vector<ProbePoint> asked;
   for (const SurfacePoint& point : points) asked.push_back({point.position, point.normal});
@@ -93,6 +81,17 @@ void append_numbers(std::string& text, std::initializer_list<double> numbers) {
 
 double VerifiedPoint::certain_error() const {
   return std::max(0.0, std::abs(error()) - 1.96 * std::sqrt(truth.variance_of_band_mean()));
+}
+
+void require_same_box(const Scene& scene, const DisplayMesh& solution) {
+  constexpr double alike = 0.01;
+  const std::vector<Facet> facets = facets_of(scene);
+  const Extent here = extent_of(facets), there = extent_of(solution.positions);
+  const double off = length(there.centre - here.centre) + std::abs(there.longest_side - here.longest_side);
+  if (off <= alike * here.longest_side + float_step * length(here.centre)) return;
+  throw MismatchError("is not a solution of this scene: it is " + std::to_string(there.longest_side) + " m long, about " +
+                      text_of(there.centre) + ", and the scene " + std::to_string(here.longest_side) + " m, about " +
+                      text_of(here.centre));
 }
 
 Verification verify(const Scene& scene, const DisplayMesh& solution, const VerifyOptions& options) {

@@ -57,6 +57,10 @@ struct MismatchError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Throws MismatchError if the bounding boxes differ: the solution belongs to another scene, or to this one in other units.
+/// Requires: at least one face with area, !solution.triangles.empty().
+void require_same_box(const Scene& scene, const DisplayMesh& solution);
+
 /// Compares a solution with path tracing at random points of the scene. Throws MismatchError. Requires: !find_fault(scene), at
 /// least one face with area, !solution.triangles.empty().
 Verification verify(const Scene& scene, const DisplayMesh& solution, const VerifyOptions& options);

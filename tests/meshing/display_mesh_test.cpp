@@ -65,6 +65,28 @@ TEST(DisplayMesh, TheSidesOfATwoSidedFaceLieApartAndNoFartherThanAPixelShows) {
   EXPECT_GT(back, 4);
 }
 
+TEST(DisplayMesh, NoSideOfATwoSidedFaceReachesBehindIt) {
+  // Two walls on a slab, with a common corner: edges of three and more faces, and rims where two sides meet.
+  Scene scene;
+  scene.materials.push_back({"concrete", {}, {0.5, 0.5, 0.5}, true});
+  test::add_box(scene, {-0.15, -0.2, -5.15}, {6.15, 0, 0.15}, false);
+  test::add_box(scene, {-0.15, 0, 0}, {6.15, 2.8, 0.15}, false);
+  test::add_box(scene, {-0.15, 0, -5}, {0, 2.8, 0}, false);
+  const BaseMesh mesh(scene);
+  for (const bool is_refined : {false, true}) {
+    std::vector<LeafValue> leaves;
+    for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) leaves.push_back({PatchId::root(root), {1, 1, 1}});
+    if (is_refined) leaves = refined_leaves(mesh, [](Vec3) { return RgbF{1, 1, 1}; });
+    const DisplayMesh display = build_display_mesh(mesh, leaves);
+    for (const auto& [a, b, c] : display.triangles) {
+      const Vec3 middle = display.positions[a];  // of a leaf, moved straight to the front
+      const Vec3 normal = display.normals[a];
+      for (const std::uint32_t corner : {b, c})
+        EXPECT_GE(dot(display.positions[corner] - middle, normal), -3e-5 * mesh.extent()) << "moved through its own face";
+    }
+  }
+}
+
 TEST(DisplayMesh, TheFoldsOfACurtainStayClosed) {
   Scene scene;
   scene.materials.push_back({"curtain", {}, {0.5, 0.5, 0.5}, true});

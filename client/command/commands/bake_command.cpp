@@ -15,6 +15,7 @@
 #include "client/command/output/numbers.h"
 #include "client/command/output/output_file.h"
 #include "client/command/output/status_line.h"
+#include "client/verify/verification.h"
 #include "import/base/scene_format.h"
 #include "import/base/whole_file.h"
 
@@ -29,6 +30,8 @@
 namespace alvor {
 
 namespace {
+
+using nlohmann::json;
 
 constexpr std::string_view glb_formats[]{"glb"};
 const FileKind baked_kind{"a baked scene", glb_formats, false, false};
@@ -57,14 +60,27 @@ GltfDocument document_of(const RawScene& bytes, const Scene& scene) {
   return GltfDocument(bytes.bytes, [&](const std::string& name) { return read_beside(bytes.folder, name); });
 }
 
-Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scene, const DisplayMesh& solution,
-            const nlohmann::json& probes) {
+BakeOptions options_of(const BakeCommand& command) {
   BakeOptions options = command.bake;
   options.form = forms.at(command.form);
   options.format = formats.at(command.lightmap_format);
   options.unit = conventions.at(command.convention);
-  if (!probes.is_null()) options.extras["alvor_probes"] = probes;
   options.name = command.output.path.stem().string();
+  return options;
+}
+
+/// Returns what `work` returns. Turns a BakeError into a Failure that names the scene.
+template <class Work>
+auto naming_the_scene(const BakeCommand& command, Work work) {
+  try {
+    return work();
+  } catch (const BakeError& error) {
+    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": " + error.what());
+  }
+}
+
+/// Bakes and shows how far it is.
+Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, const DisplayMesh& solution) {
   StatusLine line;
   std::mutex mutex;
   options.on_progress = [&](double share) {
@@ -72,11 +88,26 @@ Baked baked(const BakeCommand& command, const RawScene& bytes, const Scene& scen
     if (lock && line.on_terminal() && (line.due() || share == 1))
       line.show(progress_bar(share) + " " + percent(share) + " of the texels");
   };
+  return bake(std::move(document), scene, solution, options);
+}
+
+/// Returns the solution of the scene, given or solved. Throws Failure if the given one is of another scene.
+DisplayMesh solution_for(const BakeCommand& command, const Scene& scene) {
+  if (command.solution.empty()) return solve_here(scene, command.solve, name_of(command.scene));
+  DisplayMesh solution = read_solution(command.solution, {});
   try {
-    return bake(document_of(bytes, scene), scene, solution, options);
-  } catch (const BakeError& error) {
-    throw Failure(ExitStatus::bad_scene, name_of(command.scene) + ": " + error.what());
+    require_same_box(scene, solution);
+  } catch (const MismatchError& error) {
+    throw Failure(ExitStatus::bad_scene, name_of(command.solution) + ": " + error.what());
   }
+  return solution;
+}
+
+void require_other_output(const BakeCommand& command) {
+  std::error_code is_none;
+  for (const auto& input : {command.scene, command.solution})
+    if (!is_stream(input) && std::filesystem::equivalent(input, command.output.path, is_none))
+      throw Failure(ExitStatus::usage, "--output: " + name_of(input) + " is read: write another file");
 }
 
 /// Returns the numbers of "NX,NY,NZ". Throws Failure (usage).
@@ -92,7 +123,7 @@ ProbeCounts counts_of(const std::string& text) {
 }
 
 /// Gathers the probes and returns them as JSON.
-nlohmann::json gathered_probes(const ProbeCounts& counts, const Scene& scene, const DisplayMesh& solution) {
+json gathered_probes(const ProbeCounts& counts, const Scene& scene, const DisplayMesh& solution) {
   const auto probes = turned_upright(probe_grid(solution, counts, scene.absorption), scene.up);
   const auto enclosed = std::ranges::count(probes, true, &AirProbe::is_enclosed);
   if (enclosed > 0) notes() << enclosed << " of " << probes.size() << " probes are inside solids or outside the room\n";
@@ -110,14 +141,18 @@ void write(const BakeCommand& command, const Baked& baked) {
   if (!is_stream(command.output.path)) notes() << "wrote " << command.output.path.string() << '\n';
 }
 
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + ' ' + (count == 1 ? one : many);
+}
+
 std::string summary_of(const BakeCommand& command, const Baked& baked) {
-  if (baked.pages == 0) return std::to_string(baked.nodes) + " meshes with colours at their vertices\n";
-  std::string text = std::to_string(baked.nodes) + " meshes in " + std::to_string(baked.charts) + " charts on " +
-                     std::to_string(baked.pages) + (baked.pages == 1 ? " texture" : " textures") + " of " +
+  if (baked.pages == 0) return counted(baked.nodes, "mesh", "meshes") + " with colours at their vertices\n";
+  std::string text = counted(baked.nodes, "mesh", "meshes") + " in " + counted(baked.charts, "chart", "charts") + " on " +
+                     counted(static_cast<std::size_t>(baked.pages), "texture", "textures") + " of " +
                      std::to_string(command.bake.size) + " x " + std::to_string(command.bake.size) + ", " +
-                     shortest(baked.texels_per_metre) + " texels per metre";
+                     compact(baked.texels_per_metre) + " texels per metre";
   if (baked.range > 0)
-    text += "; brightest value " + shortest(baked.range) + ", " + percent(baked.clipped_share) + " of the texels are brighter";
+    text += "; brightest value " + compact(baked.range) + ", " + percent(baked.clipped_share) + " of the texels are brighter";
   return text + '\n';
 }
 
@@ -130,16 +165,24 @@ void run_bake(const BakeCommand& command) {
   if (!command.probes.empty()) counts = counts_of(command.probes);
   if (command.bake.longest_edge && command.form != "vertex")
     throw Failure(ExitStatus::usage, "--subdivide: only --as vertex has colours at vertices");
+  if (command.lightmap_format == "exr" && command.form != "lightmap")
+    throw Failure(ExitStatus::usage, "--lightmap-format: only --as lightmap has lightmaps");
   if (is_stream(command.output.path) && counts)
     throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
+  require_other_output(command);
   reserve_stdout_for({command.output.path});
   const RawScene bytes = scene_bytes(command.scene, command.format);
   const Scene scene = read_scene(command.scene_options, bytes, name_of(command.scene));
-  const DisplayMesh solution =
-      command.solution.empty() ? solve_here(scene, command.solve, name_of(command.scene)) : read_solution(command.solution, {});
-  nlohmann::json probes;
-  if (counts) probes = gathered_probes(*counts, scene, solution);
-  Baked result = baked(command, bytes, scene, solution, probes);
+  BakeOptions options = options_of(command);
+  const GltfDocument document = naming_the_scene(command, [&] {
+    GltfDocument read = document_of(bytes, scene);
+    require_room(read, scene, options);
+    return read;
+  });
+  const DisplayMesh solution = solution_for(command, scene);
+  json probes;
+  if (counts) options.extras["alvor_probes"] = probes = gathered_probes(*counts, scene, solution);
+  Baked result = naming_the_scene(command, [&] { return baked(options, document, scene, solution); });
   if (counts) result.beside.push_back({command.output.path.stem().string() + "-probes.json", probes.dump()});
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
@@ -183,7 +226,8 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
       ->check(above_up_to(0, 1e6));
   command
       .add_option("--probes", options.probes,
-                  "Light in the air for things that move: NX,NY,NZ probes in a grid over the scene, in BAKED-probes.json and in the extras "
+                  "Light in the air for things that move: NX,NY,NZ probes in a grid over the scene, in BAKED-probes.json and in "
+                  "the extras "
                   "of the scene")
       ->type_name("NX,NY,NZ");
   command
