@@ -16,6 +16,16 @@ bool is_same_type(const Light& a, const Light& b) {
          a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone && a.electrical_watts == b.electrical_watts;
 }
 
+/// Returns the area of each material, m2.
+std::vector<double> areas_of_materials(const DisplayMesh& mesh) {
+  std::vector<double> areas(mesh.materials.size());
+  std::uint32_t triangle = 0;
+  for (const FaceTriangles& run : mesh.faces)
+    for (std::uint32_t n = 0; n < run.count; ++n, ++triangle)
+      if (run.material < areas.size()) areas[run.material] += area_of(mesh, triangle);
+  return areas;
+}
+
 }  // namespace
 
 std::vector<LuminaireType> luminaire_types(const DisplayMesh& mesh) {
@@ -34,12 +44,18 @@ std::vector<LuminaireType> luminaire_types(const DisplayMesh& mesh) {
   return types;
 }
 
+std::vector<SurfaceMaterial> surface_materials(const DisplayMesh& mesh) {
+  const std::vector<double> areas = areas_of_materials(mesh);
+  std::vector<SurfaceMaterial> surfaces;
+  for (std::size_t m = 0; m < areas.size(); ++m)
+    if (areas[m] > 0)
+      surfaces.push_back({mesh.materials[m].name, one_number(mesh.materials[m].reflectance, mesh.quantity), areas[m]});
+  std::ranges::stable_sort(surfaces, std::ranges::greater{}, &SurfaceMaterial::area);
+  return surfaces;
+}
+
 std::vector<EmittingMaterial> emitting_materials(const DisplayMesh& mesh) {
-  std::vector<double> areas(mesh.materials.size());
-  std::uint32_t triangle = 0;
-  for (const FaceTriangles& run : mesh.faces)
-    for (std::uint32_t n = 0; n < run.count; ++n, ++triangle)
-      if (run.material < areas.size()) areas[run.material] += area_of(mesh, triangle);
+  const std::vector<double> areas = areas_of_materials(mesh);
   std::vector<EmittingMaterial> emitting;
   for (std::size_t m = 0; m < areas.size(); ++m) {
     const double exitance = one_number(mesh.materials[m].emission, mesh.quantity);

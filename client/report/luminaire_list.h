@@ -19,6 +19,15 @@ struct LuminaireType {
   double electrical_watts = 0;  ///< of one; 0: not known
 };
 
+/// A material of a scene's surfaces.
+struct SurfaceMaterial {
+  std::string name;
+  double reflectance = 0;  ///< luminous in photometric scenes, else the mean of the bands; without images
+  double area = 0;         ///< m2, both sides of two-sided faces
+};
+/// Returns the materials of all faces, the largest area first.
+std::vector<SurfaceMaterial> surface_materials(const DisplayMesh& mesh);
+
 /// Returns the types of lights that are not distant, in the order in which they first come.
 std::vector<LuminaireType> luminaire_types(const DisplayMesh& mesh);
 

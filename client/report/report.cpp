@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 namespace alvor {
@@ -141,7 +142,32 @@ std::string plan_of(const RoomReport& report, std::span<const Light* const> ligh
   return encode_png(draw_isolux({report.room, report.grid, values, lights, irradiance_unit(quantity), std::nullopt}), "plan");
 }
 
+/// Adds remarks about lights that hang where they light no room.
+void add_remarks_on_places(const DisplayMesh& mesh, std::span<const Room> rooms, Report& report) {
+  for (const Light& light : mesh.lights) {
+    if (light.is_distant()) continue;
+    char place[96];
+    std::snprintf(place, sizeof place, "%.4g, %.4g, %.4g", light.position.x, light.position.y, light.position.z);
+    const std::string subject = "Light '" + light.name + "' at " + place + " hangs ";
+    const auto room = room_at(rooms, light.position);
+    if (!room) {
+      report.remarks.push_back(subject + "in no room: its power is not counted.");
+      continue;
+    }
+    const PlanFrame& frame = rooms[*room].frame;
+    const double floor = rooms[*room].floor_at(dot(light.position, frame.u), dot(light.position, frame.v));
+    if (dot(light.position, frame.up) - floor > rooms[*room].clear_height)
+      report.remarks.push_back(subject + "above the ceiling of " + rooms[*room].name +
+                               ": its light comes in only if there is an opening below it.");
+  }
+}
+
 void add_remarks(const DisplayMesh& mesh, Report& report) {
+  const auto is_dark = [](const RoomReport& room) { return room.horizontal && !(room.horizontal->mean.value > 0); };
+  if (std::ranges::any_of(report.rooms, is_dark))
+    report.remarks.emplace_back("No light arrives at the work plane of some rooms.");
+  for (const RoomReport& room : report.rooms)
+    if (!room.horizontal) report.remarks.push_back(room.room.name + ": no grid point is in the open, below the ceiling.");
   if (mesh.quantity == Quantity::radiometric)
     report.remarks.emplace_back("The scene counts light in watts (radiometric): no illuminance in lx, no glare rating.");
   if (!report.told_error) report.remarks.emplace_back("The solution tells no errors of its own.");
@@ -158,7 +184,12 @@ void add_remarks(const DisplayMesh& mesh, Report& report) {
 }  // namespace
 
 std::vector<Room> find_rooms(const DisplayMesh& mesh, const ReportOptions& options) {
-  std::vector<Room> rooms = rooms_of(mesh, options.border);
+  std::vector<Room> rooms;
+  try {
+    rooms = rooms_of(mesh, options.border);
+  } catch (const std::length_error& error) {
+    throw ReportError(error.what());
+  }
   if (rooms.empty())
     throw ReportError("there is no floor: no horizontal surface of 1 m2 or more that faces up with room to stand on it");
   for (const Room& room : rooms) (void)grid_of(room, options);
@@ -191,6 +222,8 @@ Report make_report(const DisplayMesh& mesh, std::span<const Room> rooms, const R
   report.emitting = emitting_materials(mesh);
   report.has_distant_light = std::ranges::any_of(mesh.lights, &Light::is_distant);
   report.told_error = told_relative_error(mesh);
+  report.surfaces = surface_materials(mesh);
+  add_remarks_on_places(mesh, rooms, report);
   add_remarks(mesh, report);
   return report;
 }

@@ -54,11 +54,13 @@ struct RoomReport {
 
 struct Report {
   std::string title;
+  std::string source;  ///< whence the report comes: file, date and program, one line; may be empty
   Quantity quantity = Quantity::radiometric;
   ReportOptions options;
   std::vector<RoomReport> rooms;
   std::vector<LuminaireType> luminaires;
   std::vector<EmittingMaterial> emitting;
+  std::vector<SurfaceMaterial> surfaces;     ///< the largest first
   bool has_distant_light = false;            ///< a sun, a sky or an environment shines
   std::optional<double> told_error;          ///< told relative error of the solution
   std::optional<Verification> verification;  ///< by path tracing, if it was made

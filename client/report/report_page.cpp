@@ -7,9 +7,11 @@
 
 #include <absl/strings/escaping.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
+#include <span>
 
 namespace alvor {
 
@@ -21,6 +23,7 @@ h1 { font-size: 1.6em; margin-bottom: 0; } h2 { font-size: 1.25em; margin-top: 2
 table { border-collapse: collapse; margin: 0.8em 0; } td, th { padding: 0.2em 0.9em 0.2em 0; text-align: left; vertical-align: top; }
 th { font-weight: 600; } td.n, th.n { text-align: right; } thead th { border-bottom: 1px solid #888; }
 img { max-width: 100%; } .plan { page-break-inside: avoid; } small, .small { color: #555; font-size: 0.9em; }
+@page { size: A4; margin: 16mm; } tr { page-break-inside: avoid; }
 @media print { body { margin: 0; max-width: none; } h2 { page-break-after: avoid; } }
 )";
 
@@ -50,6 +53,12 @@ std::string metres_text(double metres) { return text_of("%.2f", metres) + " m"; 
 std::string measured_text(const Measured& measured) {
   return light_text(measured.value) + " &plusmn; " + text_of("%.2g", measured.error);
 }
+
+/// Where there is no light there is no uniformity.
+std::string uniformity_text(const PlaneStatistics& plane) {
+  return plane.mean.value > 0 ? text_of("%.2f", plane.uniformity()) : "&ndash;";
+}
+std::string flux_text(double flux) { return flux >= 1000 ? text_of("%.0f", flux) : text_of("%.4g", flux); }
 
 /// A table of HTML. Cells are HTML.
 class Table {
@@ -85,7 +94,8 @@ class Page {
                        "</title><style>" + style + "</style></head><body>\n<h1>" + escaped(report_.title) + "</h1>\n";
     page += "<p>" + introduction() + "</p>\n" + overview();
     for (std::size_t n = 0; n < report_.rooms.size(); ++n) page += room(report_.rooms[n], report_.plans[n]);
-    page += luminaires() + method();
+    page += luminaires() + surfaces() + method();
+    if (!report_.source.empty()) page += "<p class=small>" + escaped(report_.source) + "</p>\n";
     return page + "</body></html>\n";
   }
 
@@ -95,7 +105,8 @@ class Page {
   std::string introduction() const {
     std::string text = is_photometric() ? "Illuminance" : "Irradiance";
     text += " on work planes " + metres_text(report_.options.heights.work) + " above the floor, without a strip of " +
-            metres_text(report_.options.border) + " along the walls, at grid points as in EN 12464-1. ";
+            metres_text(report_.options.border) +
+            " along the walls, or of 15 % of a room's width where that is less, at grid points as in EN 12464-1. ";
     const double factor = report_.options.maintenance_factor;
     text += factor == 1 ? "Maintenance factor 1: values are initial ones."
                         : "Maintenance factor " + text_of("%.2g", factor) + ": values are maintained ones; glare is initial.";
@@ -109,8 +120,7 @@ class Page {
       table.row({escaped(room.room.name), text_of("%.1f", room.room.area) + " m&sup2;",
                  has_light ? light_text(room.horizontal->mean.value) + " " + unit_ : "&ndash;",
                  has_light ? light_text(room.horizontal->minimum) + " " + unit_ : "&ndash;",
-                 has_light ? text_of("%.2f", room.horizontal->uniformity()) : "&ndash;", highest_glare(room),
-                 power_density(room)});
+                 has_light ? uniformity_text(*room.horizontal) : "&ndash;", highest_glare(room), power_density(room)});
     }
     return table.html();
   }
@@ -147,7 +157,7 @@ class Page {
       table.row({"Mean", measured_text(plane.mean) + " " + unit_});
       table.row({"Minimum", light_text(plane.minimum) + " " + unit_});
       table.row({"Maximum", light_text(plane.maximum) + " " + unit_});
-      table.row({"Uniformity U<sub>0</sub> (minimum / mean)", text_of("%.2f", plane.uniformity())});
+      table.row({"Uniformity U<sub>0</sub> (minimum / mean)", uniformity_text(plane)});
     }
     if (room.cylindrical)
       table.row({"Cylindrical, mean at " + metres_text(report_.options.heights.face),
@@ -159,8 +169,8 @@ class Page {
   void add_power(const RoomReport& room, Table& table) const {
     if (!room.power.is_complete || room.power.luminaires == 0) return;
     const double density = room.power.watts / room.room.area;
-    table.row({"Electrical power",
-               text_of("%.4g", room.power.watts) + " W in " + std::to_string(room.power.luminaires) + " luminaires"});
+    table.row({"Electrical power", text_of("%.4g", room.power.watts) + " W in " + std::to_string(room.power.luminaires) +
+                                       (room.power.luminaires == 1 ? " luminaire" : " luminaires")});
     table.row({"Power density", text_of("%.2f", density) + " W/m&sup2;"});
     if (is_photometric() && room.horizontal && room.horizontal->mean.value > 0)
       table.row({"Power density per 100 lx", text_of("%.2f", 100 * density / room.horizontal->mean.value) + " W/m&sup2;"});
@@ -200,15 +210,29 @@ class Page {
     Table table{"luminaire", "number", light.c_str(), "W", is_photometric() ? "lm/W" : ""};
     for (const LuminaireType& type : report_.luminaires) {
       const bool has_watts = type.electrical_watts > 0;
-      table.row({escaped(type.name), std::to_string(type.count), text_of("%.4g", type.lumens),
+      table.row({escaped(type.name), std::to_string(type.count), flux_text(type.lumens),
                  has_watts ? text_of("%.4g", type.electrical_watts) : "&ndash;",
                  has_watts && is_photometric() ? text_of("%.3g", type.lumens / type.electrical_watts) : ""});
     }
     for (const EmittingMaterial& material : report_.emitting)
       table.row({"surface '" + escaped(material.name) + "', " + text_of("%.3g", material.area) + " m&sup2;", "",
-                 text_of("%.4g", material.lumens), "&ndash;", ""});
-    std::string html = "<h2>Luminaires</h2>\n" + table.html() + "<p class=small>Light and power of one luminaire.</p>\n";
+                 flux_text(material.lumens), "&ndash;", ""});
+    std::string html = "<h2>Luminaires</h2>\n" + table.html() +
+                       "<p class=small>Light and power of one luminaire; of surfaces the area and the light of all together, "
+                       "with both sides of those that have two.</p>\n";
     if (report_.has_distant_light) html += "<p>A sun, a sky or an environment shines, too.</p>\n";
+    return html;
+  }
+
+  std::string surfaces() const {
+    if (report_.surfaces.empty()) return "";
+    constexpr std::size_t most = 20;
+    Table table{"material", "reflectance", "area"};
+    for (const SurfaceMaterial& material : std::span(report_.surfaces).first(std::min(most, report_.surfaces.size())))
+      table.row({escaped(material.name), text_of("%.2f", material.reflectance), text_of("%.1f", material.area) + " m&sup2;"});
+    std::string html = "<h2>Surfaces</h2>\n" + table.html();
+    if (report_.surfaces.size() > most)
+      html += "<p class=small>And " + std::to_string(report_.surfaces.size() - most) + " materials of smaller areas.</p>\n";
     return html;
   }
 
@@ -223,7 +247,7 @@ class Page {
     if (report_.told_error)
       html += "<li>The solution tells an error of " + percent_text(*report_.told_error) +
               " (RMS over all surfaces, relative to their mean light).</li>\n";
-    if (report_.verification) {
+    if (report_.verification && report_.verification->errors.points > 0) {
       const ErrorStatistics& errors = report_.verification->errors;
       html += "<li>Compared with independent path tracing at " + std::to_string(errors.points) + " points of the surfaces (" +
               std::to_string(report_.verification->paths) + " paths each): RMS error " + percent_text(errors.nrmse.value) +

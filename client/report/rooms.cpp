@@ -6,8 +6,11 @@
 #include "client/report/room_division.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <map>
+#include <stdexcept>
 
 namespace alvor {
 
@@ -67,6 +70,16 @@ bool is_same_room(const Room& fine, const Room& coarse) {
   return 2 * there > all;
 }
 
+/// Throws std::length_error if a room is so high that its scene counts in centimetres or millimetres.
+void require_sensible_height(const Room& room) {
+  constexpr double highest = 100;  // metres: higher than halls and domes
+  if (!std::isfinite(room.clear_height) || room.clear_height <= highest) return;
+  char height[32];
+  std::snprintf(height, sizeof height, "%.3g", room.clear_height);
+  throw std::length_error("a room is " + std::string(height) +
+                          " m high: does the scene count in centimetres or millimetres? Its unit has to be the metre");
+}
+
 /// Returns the rooms of a level; those found on a coarse raster are surveyed once more.
 std::vector<Room> rooms_of_level(const FloorSurvey& survey, const PlanFrame& frame, const RoomLimits& limits,
                                  std::span<const Room> below) {
@@ -77,6 +90,7 @@ std::vector<Room> rooms_of_level(const FloorSurvey& survey, const PlanFrame& fra
   };
   std::vector<Room> rooms;
   for (Room& room : rooms_in(survey.coarse())) {
+    require_sensible_height(room);
     if (is_fine(room.raster)) {
       rooms.push_back(std::move(room));
       continue;

@@ -46,7 +46,7 @@ std::optional<std::size_t> room_at(std::span<const Room> rooms, Vec3 place);
 
 /// Returns the rooms, lowest first. What is nearer to a wall than `border` (metres), but at most 15 % of a floor's shorter side,
 /// is not assessed. Floors joined by a door, up to 1.3 m wide, are two rooms. Tops of furniture are no floors. Where nothing has
-/// a ceiling, open floors are rooms.
+/// a ceiling, open floors are rooms. Throws std::length_error if a room is more than 100 m high.
 std::vector<Room> rooms_of(const DisplayMesh& mesh, double border);
 
 }  // namespace alvor

@@ -57,7 +57,8 @@ Mesh spiral_ramp() {
   constexpr int steps = 96;
   for (int n = 0; n <= steps; ++n) {
     const double angle = 4 * std::numbers::pi * n / steps;
-    for (const double radius : {1.0, 2.0}) mesh.positions.push_back({radius * std::cos(angle), 0.1 * angle, -radius * std::sin(angle)});
+    for (const double radius : {1.0, 2.0})
+      mesh.positions.push_back({radius * std::cos(angle), 0.1 * angle, -radius * std::sin(angle)});
   }
   for (std::uint32_t n = 0; n < steps; ++n) {
     mesh.triangles.push_back({2 * n, 2 * n + 1, 2 * n + 3});
@@ -111,7 +112,8 @@ void expect_charts_are_sound(const Mesh& mesh) {
       EXPECT_GT(area_of(flat), 0.7 * area) << "triangle " << t;
     }
     for (int n = 0; n < 400; ++n)
-      EXPECT_LE(cover(charted, chart, {chart.wide * (n % 20 + 0.517) / 20, chart.high * (n / 20 + 0.483) / 20}), 1) << "chart " << c;
+      EXPECT_LE(cover(charted, chart, {chart.wide * (n % 20 + 0.517) / 20, chart.high * (n / 20 + 0.483) / 20}), 1)
+          << "chart " << c;
   }
   EXPECT_TRUE(std::ranges::all_of(seen, [](int times) { return times == 1; }));
 }
@@ -223,8 +225,9 @@ class BakedFile {
     for (const json& image : file.root().value("images", json::array())) {
       // The views of a document can be read as accessors of bytes.
       const json& view = file.element("bufferViews", image["bufferView"]);
-      const std::size_t accessor =
-          file.append("accessors", {{"bufferView", image["bufferView"]}, {"componentType", 5121}, {"type", "SCALAR"}, {"count", view["byteLength"]}});
+      const std::size_t accessor = file.append(
+          "accessors",
+          {{"bufferView", image["bufferView"]}, {"componentType", 5121}, {"type", "SCALAR"}, {"count", view["byteLength"]}});
       images.push_back(decode_png(file.read(accessor).bytes, 8192, 8192));
     }
   }
@@ -245,8 +248,8 @@ class BakedFile {
     for (std::uint32_t n = 0; n < all.size(); ++n) all[n] = n;
     return all;
   }
-  /// Returns the mean of the bands of the light at a place of the texture of a primitive, filtered as viewers do, in a mip level: 2
-  /// is a quarter of the size.
+  /// Returns the mean of the bands of the light at a place of the texture of a primitive, filtered as viewers do, in a mip level:
+  /// 2 is a quarter of the size.
   double light(const json& primitive, double s, double t, int level = 0) const {
     const json& lightmap = file.element("materials", primitive["material"])["extensions"]["MOZ_lightmap"];
     const Image& image = images[file.element("textures", lightmap["index"])["source"]];
@@ -256,7 +259,8 @@ class BakedFile {
     double sum = 0;
     for (int dy = 0; dy < 2; ++dy)
       for (int dx = 0; dx < 2; ++dx) {
-        const int column = std::clamp(left + dx, 0, image.width / cell - 1), row = std::clamp(top + dy, 0, image.height / cell - 1);
+        const int column = std::clamp(left + dx, 0, image.width / cell - 1),
+                  row = std::clamp(top + dy, 0, image.height / cell - 1);
         sum += (dx ? x - left : 1 - (x - left)) * (dy ? y - top : 1 - (y - top)) * mean_of(image, column, row, cell);
       }
     return sum * lightmap["intensity"].get<double>();
@@ -301,8 +305,8 @@ TEST(Bake, TexelsHoldTheSolutionEverywhere) {
         return Vec3{x, y, z};
       };
       const Vec3 twice = cross(at(1) - at(0), at(2) - at(0)), normal = normalized(twice);
-      for (const std::pair<double, double>& place : {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5),
-                                                     std::pair(0.0, 0.4), std::pair(0.37, 0.0)}) {
+      for (const std::pair<double, double>& place :
+           {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5), std::pair(0.0, 0.4), std::pair(0.37, 0.0)}) {
         const double u = place.first, v = place.second;
         const Vec3 point = (1 - u - v) * at(0) + u * at(1) + v * at(2);
         const auto sample = surface.at(0, point, normal);
@@ -446,7 +450,8 @@ TEST(Bake, NoDarknessLeaksFromBelowABox) { expect_no_darkness_leaks(room_with_a_
 TEST(Bake, NoDarknessLeaksFromBelowABoxOfTwoSides) { expect_no_darkness_leaks(room_with_a_box_on_its_floor(true)); }
 
 TEST(Bake, TwoSmallerMipLevelsMixNoCharts) {
-  // The inside of the box is dark, its outside bright; each chart lies on texels of its own in images of half and a quarter of the size.
+  // The inside of the box is dark, its outside bright; each chart lies on texels of its own in images of half and a quarter of
+  // the size.
   Scene scene;
   scene.materials = {test::grey(0, 0.5), test::grey(10, 0)};
   test::add_box(scene, {0, 0, 0}, {2, 2, 2}, true, {0, 0, 0, 1, 0, 0});
@@ -472,7 +477,8 @@ TEST(SceneDocument, IsReadAsTheSceneThatItWasMadeOf) {
   scene.materials[1].emission = {50, 40, 0.5};
   scene.materials[1].name = "lamp";
   scene.materials[2].two_sided = true;
-  scene.objects = {{"shell", std::nullopt, {}, 0, 6}, {"block and lamp", std::nullopt, {}, 6, static_cast<std::uint32_t>(scene.faces.size()) - 6}};
+  scene.objects = {{"shell", std::nullopt, {}, 0, 6},
+                   {"block and lamp", std::nullopt, {}, 6, static_cast<std::uint32_t>(scene.faces.size()) - 6}};
   const Scene read = read_scene_content({"room.glb", document_of(scene).encode(), ".glb", {}}).scene;
   ASSERT_EQ(read.objects.size(), scene.objects.size());
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
@@ -503,14 +509,16 @@ GltfDocument two_squares() {
   square.objects = {{"near", std::nullopt, {}, 0, 1}, {"lamp", std::nullopt, {}, 1, 1}};
   GltfDocument document = document_of(square);
   json& root = document.root();
-  root["nodes"].push_back({{"name", "far"}, {"mesh", 0}, {"translation", {9, 0, 0}}, {"scale", {-2, 1, 1}}, {"extras", {{"kept", 7}}}});
+  root["nodes"].push_back(
+      {{"name", "far"}, {"mesh", 0}, {"translation", {9, 0, 0}}, {"scale", {-2, 1, 1}}, {"extras", {{"kept", 7}}}});
   root["scenes"][0]["nodes"].push_back(2);
   root["meshes"][0]["primitives"][0]["material"] = 0;
   root["animations"] = json::array();
   root.erase("animations");
   root["extensions"]["KHR_lights_punctual"]["lights"] = json::array({{{"type", "point"}, {"intensity", 10}}});
   root["extensionsUsed"] = json::array({"KHR_lights_punctual"});
-  root["nodes"].push_back({{"name", "bulb"}, {"translation", {0, 1, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  root["nodes"].push_back(
+      {{"name", "bulb"}, {"translation", {0, 1, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   root["scenes"][0]["nodes"].push_back(3);
   root["cameras"] = json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
   return document;
@@ -595,7 +603,8 @@ TEST(Bake, ColoursOfVerticesAreThoseOfThePicture) {
   const auto normals = baked.file.read_positions(wall["attributes"]["NORMAL"]);
   ASSERT_EQ(colours.size(), positions.size());
   for (std::size_t v = 0; v < colours.size(); ++v) {
-    const auto sample = surface.at(0, {positions[v][0], positions[v][1], positions[v][2]}, {normals[v][0], normals[v][1], normals[v][2]});
+    const auto sample =
+        surface.at(0, {positions[v][0], positions[v][1], positions[v][2]}, {normals[v][0], normals[v][1], normals[v][2]});
     ASSERT_TRUE(sample);
     EXPECT_NEAR(colours[v][0], tone_map(exposure * sample->radiosity).r, 0.02);
   }
@@ -726,7 +735,8 @@ TEST(AirProbes, TellWhatAMeterInTheAirWouldRead) {
   EXPECT_FALSE(probes[0].is_enclosed);
   for (const Vec3& normal : {Vec3{0, 1, 0}, normalized(Vec3{1, 1, 1}), Vec3{0, -1, 0}, normalized(Vec3{-1, 0.5, 0.2})}) {
     const auto meter = probe(solution, std::array{ProbePoint{probes[0].at, normal}});
-    EXPECT_NEAR(probes[0].irradiance_along(normal).mean(), widen(meter[0].irradiance).mean(), 0.06 * probes[0].irradiance[0].mean());
+    EXPECT_NEAR(probes[0].irradiance_along(normal).mean(), widen(meter[0].irradiance).mean(),
+                0.06 * probes[0].irradiance[0].mean());
   }
   const json said = probes_json(probes, {3, 1, 2}, solution.quantity);
   EXPECT_TRUE(said["probes"][1]["irradiance"].is_null());

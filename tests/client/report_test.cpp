@@ -419,6 +419,49 @@ TEST(DaylightFactor, SharesAreOfThePoints) {
   EXPECT_NEAR(report.rooms[0].daylight->on_95_percent, 0.1, 1e-5);
 }
 
+TEST(Rooms, OfCentimetresAreRefused) {
+  Scene scene = scene_of(1, 0.5);
+  test::add_box(scene, {0, 0, 0}, {600, 280, 400}, true);
+  EXPECT_THROW(find_rooms(evenly_lit(scene, 1), {}), ReportError);
+}
+
+TEST(Rooms, BetweenWallsOfTwoSidesThatStandOnASlabAreWhole) {
+  Scene scene = scene_of(1, 0.5);
+  scene.materials[0].two_sided = true;
+  test::add_box(scene, {-0.15, -0.2, -5.15}, {6.15, 0, 0.15}, false);
+  test::add_box(scene, {-0.15, 2.8, -5.15}, {6.15, 3, 0.15}, false);
+  test::add_box(scene, {-0.15, 0, 0}, {6.15, 2.8, 0.15}, false);
+  test::add_box(scene, {-0.15, 0, -5.15}, {6.15, 2.8, -5}, false);
+  test::add_box(scene, {-0.15, 0, -5}, {0, 2.8, 0}, false);
+  test::add_box(scene, {6, 0, -5}, {6.15, 2.8, 0}, false);
+  const std::vector<Room> rooms = find_rooms(evenly_lit(scene, 1), {});
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area, 30, 0.5);
+}
+
+TEST(ReportFiles, TellOfLightsThatLightNoRoom) {
+  Scene scene = scene_of(0, 0.5);
+  test::add_box(scene, {0, 0, 0}, {6, 2.8, 5}, true);
+  Light lamp;
+  lamp.name = "bulb";
+  lamp.intensity = {100, 100, 100};
+  for (const Vec3 place : {Vec3{3, 2.805, 2.5}, Vec3{30, 2, 2.5}, Vec3{3, 2, 2.5}}) {
+    lamp.position = place;
+    scene.lights.push_back(lamp);
+  }
+  const Report report = report_of(evenly_lit(scene, 0), {});
+  const auto remarks_with = [&](const std::string& words) {
+    return std::ranges::count_if(report.remarks,
+                                 [&](const std::string& remark) { return remark.find(words) != std::string::npos; });
+  };
+  EXPECT_EQ(remarks_with("above the ceiling of Room 1"), 1);
+  EXPECT_EQ(remarks_with("hangs in no room"), 1);
+  EXPECT_EQ(remarks_with("No light arrives"), 0) << "the third bulb shines";
+  ASSERT_EQ(report.surfaces.size(), 1u);
+  EXPECT_NEAR(report.surfaces[0].reflectance, 0.5, 1e-9);
+  EXPECT_NEAR(report.surfaces[0].area, 2 * (6 * 5 + 6 * 2.8 + 5 * 2.8), 1e-6);
+}
+
 TEST(ReportFiles, CarryHostileNamesAsText) {
   Scene scene = scene_of(0, 0.5);
   test::add_box(scene, {0, 0, 0}, {4, 3, 4}, true);

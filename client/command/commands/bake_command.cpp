@@ -93,7 +93,7 @@ Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, cons
 
 /// Returns the solution of the scene, given or solved. Throws Failure if the given one is of another scene.
 DisplayMesh solution_for(const BakeCommand& command, const Scene& scene) {
-  if (command.solution.empty()) return solve_here(scene, command.solve, name_of(command.scene));
+  if (command.solution.empty()) return solve_here(scene, command.solve, name_of(command.scene)).mesh;
   DisplayMesh solution = read_solution(command.solution, {});
   try {
     require_same_box(scene, solution);

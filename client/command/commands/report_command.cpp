@@ -21,7 +21,9 @@
 #include "import/base/whole_file.h"
 
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <optional>
 
@@ -97,6 +99,7 @@ struct Solved {
   std::optional<Scene> scene;  ///< not known for a solution file
   std::vector<Room> rooms;
   DisplayMesh mesh;
+  std::string unfinished;  ///< why the solve ended before its tolerance; empty if it did not
 };
 
 Solved solved(const ReportCommand& command) {
@@ -106,9 +109,10 @@ Solved solved(const ReportCommand& command) {
     std::error_code is_none;
     if (!is_stream(command.input) && std::filesystem::equivalent(command.input, command.folder / "solution.glb", is_none))
       throw Failure(ExitStatus::usage, "--output: the report would replace its input " + name);
-    Solved result{read_scene(command.scene_options, bytes, name), {}, {}};
+    Solved result{read_scene(command.scene_options, bytes, name), {}, {}, {}};
     result.rooms = rooms_in(command, *result.scene);  // before the solve, which takes longer than a refusal should
-    result.mesh = solve_here(*result.scene, command.solve, name);
+    SolvedHere here = solve_here(*result.scene, command.solve, name);
+    result.mesh = std::move(here.mesh), result.unfinished = std::move(here.unfinished);
     return result;
   }
   if (command.daylight) throw Failure(ExitStatus::usage, "--daylight-factor: needs the scene; a solution has its own light only");
@@ -116,7 +120,7 @@ Solved solved(const ReportCommand& command) {
     throw Failure(ExitStatus::usage,
                   command.only_for_scenes + ": is for scenes; " + name + " is a solution, which has its light");
   try {
-    Solved result{std::nullopt, {}, decode_solution(bytes.bytes, extension, name)};
+    Solved result{std::nullopt, {}, decode_solution(bytes.bytes, extension, name), {}};
     take_up(command.scene_options.up, result.mesh.up);
     result.rooms = rooms_in(command, result.mesh);
     return result;
@@ -133,7 +137,8 @@ Report report_of(const ReportCommand& command, const Solved& solved) {
   options.absorption = medium.absorption;
   std::optional<DisplayMesh> overcast;
   if (command.daylight)
-    overcast = solve_here(under_overcast_sky(*solved.scene), command.solve, name_of(command.input) + " under an overcast sky");
+    overcast =
+        solve_here(under_overcast_sky(*solved.scene), command.solve, name_of(command.input) + " under an overcast sky").mesh;
   std::optional<DaylightSolution> daylight;
   if (overcast) daylight.emplace(DaylightSolution{*overcast, open_sky});
   StatusLine line;
@@ -201,6 +206,19 @@ std::string summary_of(const Report& report) {
   return text;
 }
 
+std::string with_capital(std::string sentence) {
+  if (!sentence.empty()) sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+  return sentence;
+}
+
+/// Returns the line that says whence a report comes.
+std::string source_of(const std::string& input) {
+  const std::time_t now = std::time(nullptr);
+  char date[16];
+  std::strftime(date, sizeof date, "%Y-%m-%d", std::gmtime(&now));
+  return "Made from " + input + " on " + date + " with alvor " ALVOR_VERSION ".";
+}
+
 void run_report(const ReportCommand& command) {
   require_inputs({{InputKind::scene, command.input}}, command.format);
   make_folder(command.folder, "report.html", "--output");
@@ -208,10 +226,12 @@ void run_report(const ReportCommand& command) {
   Report report = report_of(command, result);
   const std::string subject = is_stream(command.input) ? "a scene" : command.input.stem().string();
   warn(report.remarks);
+  if (!result.unfinished.empty()) report.remarks.push_back(with_capital(result.unfinished) + ".");
+  report.source = source_of(is_stream(command.input) ? "a scene from a stream" : command.input.filename().string());
   report.title = command.title.empty() ? "Lighting of " + subject : command.title;
   report.verification = verified(command, result);
   write(command, report, result);
-  notes() << summary_of(report);
+  results() << summary_of(report);
 }
 
 void add_plane_options(CLI::App& command, ReportCommand& options) {

@@ -36,7 +36,7 @@ void add_solve_limits(CLI::App& command, SolveOptions& options) {
   command.add_option("--seed", options.seed, "The same seed gives the same solution (1)")->check(whole_from(0));
 }
 
-DisplayMesh solve_here(const Scene& scene, const SolveOptions& options, const std::string& name) {
+SolvedHere solve_here(const Scene& scene, const SolveOptions& options, const std::string& name) {
   const BaseMesh mesh(scene);
   if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, name + ": all faces are degenerate");
   const Interrupt interrupt;
@@ -52,10 +52,12 @@ DisplayMesh solve_here(const Scene& scene, const SolveOptions& options, const st
   log.forget(handle);
   show(log.last_step());
   if (outcome.reason == StopReason::cancelled) throw Failure(ExitStatus::failed, "the solve was cancelled");
-  if (outcome.reason != StopReason::tolerance)
-    warn(std::array{"the solve ended before its tolerance: " + std::string(text(outcome.reason)) + ", estimated error " +
-                    percent(log.last_step().estimated_error)});
-  return mesh_of(mesh, log);
+  SolvedHere solved{mesh_of(mesh, log), {}};
+  if (outcome.reason == StopReason::tolerance) return solved;
+  solved.unfinished = "the solve ended before its tolerance: " + std::string(text(outcome.reason)) + ", estimated error " +
+                      percent(log.last_step().estimated_error);
+  warn(std::array{solved.unfinished});
+  return solved;
 }
 
 }  // namespace alvor

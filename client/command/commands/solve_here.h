@@ -13,8 +13,14 @@ namespace alvor {
 /// Adds the options for how far a scene is solved.
 void add_solve_limits(CLI::App& command, SolveOptions& options);
 
+/// A solution, and why it ended if that was before its tolerance.
+struct SolvedHere {
+  DisplayMesh mesh;
+  std::string unfinished;  ///< one sentence, or empty
+};
+
 /// Solves a scene, which messages call `name`, and shows how far it is. Warns if the solve ends before its tolerance. Throws
 /// Failure if it is cancelled or no face has an area.
-DisplayMesh solve_here(const Scene& scene, const SolveOptions& options, const std::string& name);
+SolvedHere solve_here(const Scene& scene, const SolveOptions& options, const std::string& name);
 
 }  // namespace alvor
