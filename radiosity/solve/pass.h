@@ -45,7 +45,8 @@ class Pass {
   ErrorEstimate estimate();
   /// Splits patches and asks for rays where that removes most error per ray, which ends the pass. Returns false if nothing was
   /// done: the limits forbid every split, and noise of rows is not the largest error.
-  bool refine();
+  /// If `gives_up` returns true, which is asked between patches from any thread, it returns early, and the state must not be used.
+  bool refine(const std::function<bool()>& gives_up = [] { return false; });
 
   /// Takes the first three steps at once, for callers who do not show what comes in between.
   Exchange& prepare();
@@ -99,7 +100,7 @@ class Pass {
   double told_error(std::size_t place, const RelativeLight& irradiance, const ErrorEstimate& error) const;
   std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
   void tell_leaves(double share_of_interpolation);
-  void guide_rows(std::span<const Candidate> marked);
+  void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   void drop_rays_that_do_not_help(double lasting_error);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;

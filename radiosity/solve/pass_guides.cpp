@@ -46,7 +46,7 @@ class HitsSeen {
 
 }  // namespace
 
-void Pass::guide_rows(std::span<const Candidate> marked) {
+void Pass::guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up) {
   if (!state_.rows.carry_light() || !state_.rows.may_be_guided()) return;
   std::vector<NodeIndex> rows;
   for (const Candidate& candidate : marked)
@@ -58,6 +58,7 @@ void Pass::guide_rows(std::span<const Candidate> marked) {
   const auto neighbours = state_.forests.row_neighbours(rows);
   std::vector<DirectionGuide> guides(rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
+    if (gives_up()) return;
     const Vec3 centre = state_.forests.row_centres()[rows[n]];
     GuideBuilder builder;
     HitsSeen seen(state_, leaving, state_.scene.root(state_.forests.rows().id(rows[n]).root_face()), centre, builder);

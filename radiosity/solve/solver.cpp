@@ -126,7 +126,8 @@ class Run {
       if (error_to_keep() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
-      const bool is_better = gains() && pass_->refine();
+      if (must_break_off()) return stop_reason();
+      const bool is_better = gains() && pass_->refine([this] { return must_break_off(); });
       if (must_stop()) return stop_reason();
       if (!is_better) {
         pass_.emplace(state_);

@@ -288,40 +288,60 @@ Scene room_with_globe() {
   return scene;
 }
 
-TEST(Bake, TexelsHoldTheSolutionEverywhere) {
-  const Scene scene = room_with_globe();
-  const DisplayMesh solution = solved(scene);
-  const SolvedSurface surface(solution, scene);
-  const BakedFile baked(scene, solution);
-  double squares = 0, count = 0, sum = 0;
+/// A triangle of a baked file: its primitive, its corners, and their places on the lightmap.
+struct BakedTriangle {
+  const json& primitive;
+  std::array<Vec3, 3> corner;
+  std::array<std::array<float, 2>, 3> on_map;
+
+  /// Returns (1 - u - v) a + u b + v c of the corners, and of their places on the lightmap.
+  Vec3 point(double u, double v) const { return (1 - u - v) * corner[0] + u * corner[1] + v * corner[2]; }
+  double place(double u, double v, std::size_t axis) const {
+    return (1 - u - v) * on_map[0][axis] + u * on_map[1][axis] + v * on_map[2][axis];
+  }
+};
+
+/// Calls visit(BakedTriangle) for each triangle of node 0.
+template <class Visit>
+void for_each_triangle(const BakedFile& baked, Visit visit) {
   for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
     const json& primitive = baked.primitive(0, p);
     const auto positions = baked.file.read_positions(primitive["attributes"]["POSITION"]);
     const auto points = baked.points(primitive);
     const auto indices = baked.indices(primitive);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      const auto at = [&](std::size_t c) {
+      BakedTriangle triangle{primitive, {}, {}};
+      for (std::size_t c = 0; c < 3; ++c) {
         const auto& [x, y, z] = positions[indices[i + c]];
-        return Vec3{x, y, z};
-      };
-      const Vec3 twice = cross(at(1) - at(0), at(2) - at(0)), normal = normalized(twice);
-      for (const std::pair<double, double>& place :
-           {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5), std::pair(0.0, 0.4), std::pair(0.37, 0.0)}) {
-        const double u = place.first, v = place.second;
-        const Vec3 point = (1 - u - v) * at(0) + u * at(1) + v * at(2);
-        const auto sample = surface.at(0, point, normal);
-        ASSERT_TRUE(sample);
-        if (surface.is_covered(point, normal, 0.01)) continue;
-        const auto mix = [&](std::size_t k) {
-          return (1 - u - v) * points[indices[i]][k] + u * points[indices[i + 1]][k] + v * points[indices[i + 2]][k];
-        };
-        const double light = baked.light(primitive, mix(0), mix(1)), area = length(twice);
-        if (sample->irradiance.mean() > baked.baked.range) continue;
-        squares += area * std::pow(light - sample->irradiance.mean(), 2);
-        sum += area * sample->irradiance.mean(), count += area;
+        triangle.corner[c] = {x, y, z};
+        triangle.on_map[c] = points[indices[i + c]];
       }
+      visit(triangle);
     }
   }
+}
+
+TEST(Bake, TexelsHoldTheSolutionEverywhere) {
+  const Scene scene = room_with_globe();
+  const DisplayMesh solution = solved(scene);
+  const SolvedSurface surface(solution, scene);
+  const BakedFile baked(scene, solution);
+  double squares = 0, count = 0, sum = 0;
+  for_each_triangle(baked, [&](const BakedTriangle& triangle) {
+    const auto& [a, b, c] = triangle.corner;
+    const Vec3 twice = cross(b - a, c - a), normal = normalized(twice);
+    for (const auto& [u, v] :
+         {std::pair(0.31, 0.27), std::pair(0.05, 0.9), std::pair(0.5, 0.5), std::pair(0.0, 0.4), std::pair(0.37, 0.0)}) {
+      const Vec3 point = triangle.point(u, v);
+      const auto sample = surface.at(0, point, normal);
+      ASSERT_TRUE(sample);
+      if (surface.is_covered(point, normal, 0.01)) continue;
+      const double light = baked.light(triangle.primitive, triangle.place(u, v, 0), triangle.place(u, v, 1));
+      if (sample->irradiance.mean() > baked.baked.range) continue;
+      squares += length(twice) * std::pow(light - sample->irradiance.mean(), 2);
+      sum += length(twice) * sample->irradiance.mean(), count += length(twice);
+    }
+  });
   EXPECT_LT(std::sqrt(squares / count) / (sum / count), 0.02);
 }
 
@@ -404,24 +424,15 @@ Scene room_with_a_box_on_its_floor(bool two_sided) {
 template <class Visit>
 void for_each_floor_point(const BakedFile& baked, Visit visit) {
   constexpr int steps = 120;
-  for (std::size_t p = 0; p < baked.file.element("meshes", 0)["primitives"].size(); ++p) {
-    const json& primitive = baked.primitive(0, p);
-    const auto positions = baked.file.read_positions(primitive["attributes"]["POSITION"]);
-    const auto points = baked.points(primitive);
-    const auto indices = baked.indices(primitive);
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      const std::array<std::uint32_t, 3> t{indices[i], indices[i + 1], indices[i + 2]};
-      const auto at = [&](std::size_t c) { return Vec3{positions[t[c]][0], positions[t[c]][1], positions[t[c]][2]}; };
-      if (at(0).y != 0 || at(1).y != 0 || at(2).y != 0 || cross(at(1) - at(0), at(2) - at(0)).y <= 0) continue;
-      for (int a = 0; a < steps; ++a)
-        for (int b = 0; a + b < steps; ++b) {
-          const double u = (a + 0.5) / steps, v = (b + 0.4) / steps, w = 1 - u - v;
-          if (w < 0) continue;
-          const auto mix = [&](std::size_t k) { return w * points[t[0]][k] + u * points[t[1]][k] + v * points[t[2]][k]; };
-          visit(primitive, mix(0), mix(1), w * at(0) + u * at(1) + v * at(2));
-        }
-    }
-  }
+  for_each_triangle(baked, [&](const BakedTriangle& triangle) {
+    const auto& [a, b, c] = triangle.corner;
+    if (a.y != 0 || b.y != 0 || c.y != 0 || cross(b - a, c - a).y <= 0) return;
+    for (int i = 0; i < steps; ++i)
+      for (int j = 0; i + j < steps; ++j) {
+        const double u = (i + 0.5) / steps, v = (j + 0.4) / steps;
+        if (u + v < 1) visit(triangle.primitive, triangle.place(u, v, 0), triangle.place(u, v, 1), triangle.point(u, v));
+      }
+  });
 }
 
 void expect_no_darkness_leaks(const Scene& scene) {
