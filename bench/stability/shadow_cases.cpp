@@ -18,13 +18,15 @@ namespace {
 constexpr double tolerance = 0.015, limit = 2 * tolerance;
 constexpr double lamp_height = 2.5;
 
-/// Returns a grey room of 4 x 3 x 5 m, in units of `metre`, with a lamp of 1 m2 half a metre below its ceiling.
-Scene lit_room_of(double metre) {
+/// Returns a grey room of 4 x 3 x 5 m with a lamp of 1 m2 half a metre below its ceiling, and with what `add` adds.
+template <class Add>
+Scene lit_room_with(Add add) {
+  constexpr double y = lamp_height;
   Scene scene;
   scene.materials = {grey(0, 0.6), grey(50, 0)};
-  add_room(scene, {0, 0, 0}, {4 * metre, 3 * metre, 5 * metre});
-  const double y = lamp_height * metre, x = 1.5 * metre, X = 2.5 * metre, z = 2 * metre, Z = 3 * metre;
-  add_quad(scene, {x, y, z}, {X, y, z}, {X, y, Z}, {x, y, Z}, 1);
+  add_room(scene, {0, 0, 0}, {4, 3, 5});
+  add_quad(scene, {1.5, y, 2}, {2.5, y, 2}, {2.5, y, 3}, {1.5, y, 3}, 1);
+  add(scene);
   return scene;
 }
 
@@ -32,14 +34,6 @@ Scene lit_room_of(double metre) {
 void add_plate(Scene& scene, double x, double y, double z) {
   add_quad(scene, {x, y, z}, {x, y, z + 1}, {x + 1, y, z + 1}, {x + 1, y, z});
   add_quad(scene, {x, y, z}, {x + 1, y, z}, {x + 1, y, z + 1}, {x, y, z + 1});
-}
-
-/// Returns a lit room whose further contents are added by `add`.
-template <class Add>
-Scene lit_room_with(Add add) {
-  Scene scene = lit_room_of(1);
-  add(scene);
-  return scene;
 }
 
 Scene block_at_the_lamp() {
@@ -84,11 +78,11 @@ Scene lamp_in_a_solid() {
     add_quad(scene, {0.8, 0.9, 0.8}, {1.2, 0.9, 0.8}, {1.2, 0.9, 1.2}, {0.8, 0.9, 1.2}, 1);
   });
 }
-Scene blocks_in_units_of(double metre) {
-  Scene scene = lit_room_of(metre);
-  add_block(scene, {metre, 0, metre}, {2 * metre, metre, 3 * metre});
-  add_block(scene, {2.2 * metre, 1.2 * metre, 2.2 * metre}, {2.8 * metre, 1.4 * metre, 3 * metre});
-  return scene;
+Scene two_blocks() {
+  return lit_room_with([](Scene& scene) {
+    add_block(scene, {1, 0, 1}, {2, 1, 3});
+    add_block(scene, {2.2, 1.2, 2.2}, {2.8, 1.4, 3});
+  });
 }
 
 Case lit(const std::string& name, const std::string& condition, Scene (*scene)()) {
@@ -117,8 +111,8 @@ std::vector<Case> shadow_cases() {
                           lit("a block", "there twice", blocker_twice),
                           lit("three blocks", "crossing each other", crossing_blockers),
                           lit("a second lamp", "inside a block", lamp_in_a_solid),
-                          lit("two blocks", "the metre is 1e-6", [] { return blocks_in_units_of(1e-6); }),
-                          lit("two blocks", "the metre is 1e6", [] { return blocks_in_units_of(1e6); })};
+                          lit("two blocks", "the metre is 1e-6", [] { return placed(two_blocks(), 1e-6); }),
+                          lit("two blocks", "the metre is 1e6", [] { return placed(two_blocks(), 1e6); })};
   Case through = lit("a block through the lamp", "crossing", block_through_the_lamp);
   through.remark = "the light on the block jumps where the lamp's plane crosses it, which leaves can only follow by their size.";
   Case plate = lit("a plate on the floor", "in its plane", plate_on_the_floor);

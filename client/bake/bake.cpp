@@ -36,13 +36,14 @@ constexpr const char *lightmap_key = "alvor_lightmap", *form_key = "alvor_baked_
 
 class Baker {
  public:
-  Baker(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options)
+  Baker(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options,
+        const ChartLayout& layout)
       : document_(std::move(document)),
         scene_(scene),
         solution_(solution),
         options_(options),
         surface_(solution, scene),
-        layout_(document_, scene, options) {}
+        layout_(layout) {}
 
   Baked bake() {
     baked_.pages = pages_.count, baked_.texels_per_metre = pages_.texels_per_metre;
@@ -161,17 +162,10 @@ class Baker {
         primitive["material"] = material_with_light(original, page, set);
         if (options_.form == BakeForm::unlit) primitive["attributes"].erase("COLOR_0");  // the image has it
       }
-      if (textures_.empty()) tell_file(primitive, page);
+      if (textures_.empty()) add_extra_to(primitive, "alvor_lightmap_file", page);
       primitives.push_back(std::move(primitive));
     }
     return primitives;
-  }
-
-  /// Tells in a primitive's extras which of the files beside the GLB it uses.
-  static void tell_file(json& primitive, std::size_t page) {
-    json& extras = primitive["extras"];
-    if (!extras.is_object() && !extras.is_null()) extras = {{"extras", extras}};
-    extras["alvor_lightmap_file"] = page;
   }
 
   /// Returns a primitive whose vertices are those of the charts: the same if the charts have none in common.
@@ -277,7 +271,7 @@ class Baker {
   const DisplayMesh& solution_;
   const BakeOptions& options_;
   SolvedSurface surface_;
-  ChartLayout layout_;
+  const ChartLayout& layout_;
   const std::vector<PlacedChart>& charts_ = layout_.charts;
   const ChartPages& pages_ = layout_.pages;
   std::vector<ShownSide> sides_{charts_.size()};  // by chart
@@ -311,23 +305,25 @@ void refuse_baked(const GltfDocument& document) {
 
 }  // namespace
 
-void require_room(const GltfDocument& document, const Scene& scene, const BakeOptions& options) {
-  baking([&] {
+std::shared_ptr<const ChartLayout> lay_out(const GltfDocument& document, const Scene& scene, const BakeOptions& options) {
+  return baking([&]() -> std::shared_ptr<const ChartLayout> {
     refuse_baked(document);
-    if (options.form != BakeForm::vertex) ChartLayout(document, scene, options);
+    if (options.form == BakeForm::vertex) return nullptr;
+    return std::make_shared<const ChartLayout>(document, scene, options);
   });
 }
 
-Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options) {
+Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options,
+           std::shared_ptr<const ChartLayout> layout) {
+  if (!layout) layout = lay_out(document, scene, options);
   return baking([&] {
-    refuse_baked(document);
     for (const auto& [name, extra] : options.extras.items()) document.add_extra(name, extra);
     if (options.form == BakeForm::vertex) {
       document.add_extra(form_key, "vertex");
       if (options.longest_edge) subdivide(document, *options.longest_edge);
       return bake_vertices(std::move(document), scene, solution);
     }
-    return Baker(std::move(document), scene, solution, options).bake();
+    return Baker(std::move(document), scene, solution, options, *layout).bake();
   });
 }
 

@@ -7,23 +7,24 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace alvor {
 
-/// What is baked. Lightmap: irradiance in textures of their own, which materials multiply by their colour. Unlit: the colours that
-/// a picture of the solution shows, in place of the materials' colours, for viewers that know no lightmaps; glass, and what an image
-/// cuts holes into, keep their materials.
-/// Vertex: such colours at the vertices, see bake_vertices().
+/// What is baked. Lightmap: irradiance in textures of their own, which materials multiply by their colour. Unlit: the colours
+/// that a picture of the solution shows, in place of the materials' colours, for viewers that know no lightmaps; glass, and what
+/// an image cuts holes into, keep their materials. Vertex: such colours at the vertices, see bake_vertices().
 enum class BakeForm { lightmap, unlit, vertex };
 
 /// What the texels of lightmaps hold. Irradiance: E in W/m2 or lx (three.js). Irradiance over pi: the radiance of a white
 /// diffuse surface (Unity, Godot, Blender).
 enum class LightmapUnit { irradiance, irradiance_over_pi };
 
-/// How lightmaps are stored. png: in the GLB, 8 bits sRGB between 0 and a range that is told; exr: half floats in files beside it.
+/// How lightmaps are stored. png: in the GLB, 8 bits sRGB between 0 and a range that is told; exr: half floats in files beside
+/// it.
 enum class LightmapFormat { png, exr };
 
 struct BakeOptions {
@@ -55,14 +56,19 @@ struct Baked {
   std::vector<std::string> warnings;  ///< a sentence each
 };
 
-/// Throws BakeError if the file cannot be baked whatever the light is: charts that do not fit, or baked light in it. For callers who do not
-/// want to learn that after a long solve. Requires the document and the scene that bake() asks for.
-void require_room(const GltfDocument& document, const Scene& scene, const BakeOptions& options);
+struct ChartLayout;
+
+/// Lays out the charts of a file, before it is solved; null for BakeForm::vertex, which has none. Throws BakeError if the file
+/// cannot be baked whatever the light is: charts that do not fit, or baked light in it. Requires the document and the scene that
+/// bake() asks for.
+std::shared_ptr<const ChartLayout> lay_out(const GltfDocument& document, const Scene& scene, const BakeOptions& options);
 
 /// Adds the light of `solution`, of `scene`, to `document`, which is the file that the scene was read from or document_of() it:
-/// its nodes are the scene's objects, in the order in which they are visited. Everything else stays as it is; each node that shows
-/// a mesh gets a mesh of its own that shares its accessors, but for the new texture coordinates, and vertices that charts had in
-/// common are there more than once. Uses all cores; the result does not depend on their number. Throws BakeError.
-Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options);
+/// its nodes are the scene's objects, in the order in which they are visited. Everything else stays as it is; each node that
+/// shows a mesh gets a mesh of its own that shares its accessors, but for the new texture coordinates, and vertices that charts
+/// had in common are there more than once. Uses all cores; the result does not depend on their number. `layout` is what lay_out()
+/// returned for these arguments, or null. Throws BakeError.
+Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options,
+           std::shared_ptr<const ChartLayout> layout = nullptr);
 
 }  // namespace alvor

@@ -153,7 +153,9 @@ class Filler {
     for (std::size_t n = 0; n < of->count; ++n) {
       const auto sample = surface_.at(chart_.object, of->points[n], normal);
       if (!sample) continue;
-      if (bright && sample->irradiance.mean() <= much_darker * *bright && surface_.is_covered(of->points[n], normal, darkness * *bright)) continue;
+      if (bright && sample->irradiance.mean() <= much_darker * *bright &&
+          surface_.is_covered(of->points[n], normal, darkness * *bright))
+        continue;
       sum += value_(*sample), irradiance += sample->irradiance, count += 1;
     }
     page_.is_set[index] = count > 0;

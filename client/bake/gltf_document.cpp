@@ -1,9 +1,8 @@
 #include "client/bake/gltf_document.h"
 
+#include "client/bake/gltf_parts.h"
 #include "import/base/bytes.h"
 #include "import/base/glb_format.h"
-
-#include <absl/strings/escaping.h>
 
 #include <algorithm>
 #include <limits>
@@ -15,64 +14,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t most_bytes = std::numeric_limits<std::uint32_t>::max();
-constexpr int deepest = 200;  // levels of JSON, as the importer allows
 constexpr int signed_byte = 5120, unsigned_byte = 5121, signed_short = 5122, unsigned_short = 5123;
 
 std::string place_of(const char* list, std::size_t index) { return std::string(list) + " " + std::to_string(index); }
-
-json parse(std::string_view text) {
-  const auto refuse_deep = [](int depth, json::parse_event_t, json&) {
-    if (depth > deepest) throw BakeError("file", "its JSON is nested too deeply");
-    return true;
-  };
-  json root;
-  try {
-    root = json::parse(text, refuse_deep);
-  } catch (const json::parse_error& error) {
-    throw BakeError("file", "its JSON is broken at byte " + std::to_string(error.byte));
-  }
-  if (!root.is_object()) throw BakeError("file", "is no glTF");
-  return root;
-}
-
-/// The two parts of a file. A text file has no binary part.
-struct Parts {
-  std::string_view text;
-  std::optional<std::string_view> binary;
-};
-
-std::string_view take_chunk(std::string_view& rest, std::uint32_t type) {
-  if (rest.size() < glb::chunk_header_size || value_at<std::uint32_t>(rest, 4) != type)
-    throw BakeError("file", "is no whole GLB");
-  const std::size_t size = value_at<std::uint32_t>(rest, 0);
-  if (size > rest.size() - glb::chunk_header_size) throw BakeError("file", "ends within a chunk");
-  const std::string_view chunk = rest.substr(glb::chunk_header_size, size);
-  rest.remove_prefix(glb::chunk_header_size + size);
-  return chunk;
-}
-
-Parts parts_of(std::string_view bytes) {
-  if (!bytes.starts_with("glTF")) return {bytes, {}};
-  if (bytes.size() < glb::file_header_size) throw BakeError("file", "ends within its header");
-  std::string_view rest = bytes.substr(glb::file_header_size);
-  Parts parts{take_chunk(rest, glb::json_chunk), {}};
-  if (!rest.empty()) parts.binary = take_chunk(rest, glb::binary_chunk);
-  return parts;
-}
-
-/// Returns the bytes that a URI names, of a file or within it.
-std::string bytes_of(const std::string& uri, const FileFinder& find, const std::string& place) {
-  if (uri.starts_with("data:")) {
-    const std::size_t comma = uri.find(',');
-    std::string bytes;
-    if (comma == std::string::npos || !absl::Base64Unescape(uri.substr(comma + 1), &bytes))
-      throw BakeError(place, "its data URI is not base64");
-    return bytes;
-  }
-  auto bytes = find(uri);
-  if (!bytes) throw BakeError(place, "the file '" + uri + "' is missing");
-  return *std::move(bytes);
-}
 
 std::size_t component_size(std::size_t type, const std::string& place) {
   switch (type) {
@@ -123,13 +67,21 @@ void append_chunk(std::string& glb, std::uint32_t type, std::string_view bytes, 
 
 }  // namespace
 
+void add_extra_to(json& part, const std::string& name, json extra) {
+  json& extras = part["extras"];
+  if (!extras.is_object() && !extras.is_null()) extras = {{"extras", extras}};
+  extras[name] = std::move(extra);
+}
+
 void drop_compression(json& primitive) {
   if (!primitive.contains("extensions")) return;
   primitive["extensions"].erase("KHR_draco_mesh_compression");
   if (primitive["extensions"].empty()) primitive.erase("extensions");
 }
 
-bool is_index(const json& value) { return value.is_number_integer() && (value.is_number_unsigned() || value.get<std::int64_t>() >= 0); }
+bool is_index(const json& value) {
+  return value.is_number_integer() && (value.is_number_unsigned() || value.get<std::int64_t>() >= 0);
+}
 
 std::size_t index_in(const json& object, const char* name, const std::string& place, std::optional<std::size_t> otherwise) {
   const auto member = object.find(name);
@@ -141,8 +93,8 @@ std::size_t index_in(const json& object, const char* name, const std::string& pl
 GltfDocument::GltfDocument() : root_{{"asset", {{"version", "2.0"}, {"generator", "Alvor"}}}} {}
 
 GltfDocument::GltfDocument(std::string_view bytes, const FileFinder& find) {
-  const Parts parts = parts_of(bytes);
-  root_ = parse(parts.text);
+  const GltfParts parts = parts_of(bytes);
+  root_ = parse_gltf(parts.text);
   take_in_buffers(find, parts.binary);
   take_in_images(find);
 }
@@ -198,9 +150,9 @@ void GltfDocument::take_in_images(const FileFinder& find) {
     if (uri == image.end() || !uri->is_string()) continue;
     const std::string bytes = bytes_of(uri->get<std::string>(), find, place);
     image.erase("uri");
-    image["mimeType"] = std::string_view(bytes).starts_with("\xff\xd8")          ? "image/jpeg"
+    image["mimeType"] = std::string_view(bytes).starts_with("\xff\xd8")           ? "image/jpeg"
                         : std::string_view(bytes).substr(0, 12).ends_with("WEBP") ? "image/webp"
-                                                                                 : "image/png";
+                                                                                  : "image/png";
     image["bufferView"] = add_view(bytes, std::nullopt);
   }
 }
@@ -282,7 +234,8 @@ std::vector<std::array<float, 4>> GltfDocument::read_colours(std::size_t accesso
 
 std::vector<std::uint32_t> GltfDocument::read_indices(std::size_t accessor) const {
   const DenseElements elements = read(accessor);
-  if (element("accessors", accessor).value("type", "") != "SCALAR") throw BakeError(place_of("accessor", accessor), "holds no indices");
+  if (element("accessors", accessor).value("type", "") != "SCALAR")
+    throw BakeError(place_of("accessor", accessor), "holds no indices");
   std::vector<std::uint32_t> indices(elements.count);
   for (std::size_t n = 0; n < elements.count; ++n) indices[n] = index_at(elements.at(n), elements.element_size);
   return indices;
@@ -304,7 +257,8 @@ std::size_t GltfDocument::add_accessor(json like, std::string_view bytes, std::s
   if (target == glb::array_buffer && stride != size) {
     std::string spread(count * stride, '\0');
     for (std::size_t n = 0; n < count; ++n)
-      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(n * size), size, spread.begin() + static_cast<std::ptrdiff_t>(n * stride));
+      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(n * size), size,
+                  spread.begin() + static_cast<std::ptrdiff_t>(n * stride));
     like["bufferView"] = add_view(spread, target);
     root_["bufferViews"].back()["byteStride"] = stride;
   } else {
@@ -339,17 +293,14 @@ void GltfDocument::use_extension(const char* name) {
   if (std::ranges::find(used, name) == used.end()) used.push_back(name);
 }
 
-void GltfDocument::add_extra(const std::string& name, json extra) {
-  json& extras = root_["extras"];
-  if (!extras.is_object() && !extras.is_null()) extras = {{"extras", extras}};
-  extras[name] = std::move(extra);
-}
+void GltfDocument::add_extra(const std::string& name, json extra) { add_extra_to(root_, name, std::move(extra)); }
 
 std::string GltfDocument::encode() const {
   json root = root_;
   if (!binary_.empty()) root["buffers"] = json::array({{{"byteLength", binary_.size()}}});
   const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
-  const std::size_t size = glb::file_header_size + 2 * glb::chunk_header_size + (text.size() + 3) / 4 * 4 + (binary_.size() + 3) / 4 * 4;
+  const std::size_t size =
+      glb::file_header_size + 2 * glb::chunk_header_size + (text.size() + 3) / 4 * 4 + (binary_.size() + 3) / 4 * 4;
   if (size > most_bytes) throw BakeError("file", "would have more than the 4 GB of a GLB file");
   std::string glb;
   glb.reserve(size);

@@ -63,7 +63,8 @@ class GltfDocument {
 
   /// Appends an accessor like `like` whose elements are `bytes`. `target`: 34962 for vertices, 34963 for indices.
   std::size_t add_accessor(nlohmann::json like, std::string_view bytes, std::size_t count, int target);
-  /// Appends an accessor of vertices like that of number `accessor`, with its bounds: `bytes` are elements of it or lie between them.
+  /// Appends an accessor of vertices like that of number `accessor`, with its bounds: `bytes` are elements of it or lie between
+  /// them.
   std::size_t add_accessor_like(std::size_t accessor, std::string_view bytes, std::size_t count);
   /// Appends an accessor of the vertices of triangles.
   std::size_t add_indices(std::span<const std::array<std::uint32_t, 3>> triangles);
@@ -73,7 +74,7 @@ class GltfDocument {
   /// Adds a name to "extensionsUsed", once.
   void use_extension(const char* name);
 
-  /// Adds a member to the file's extras. Extras that are no object become the member "extras" of one.
+  /// Adds a member to the file's extras, see add_extra_to().
   void add_extra(const std::string& name, nlohmann::json extra);
 
   /// Returns the bytes of the GLB file. Throws BakeError if it would have 4 GB or more.
@@ -90,6 +91,9 @@ class GltfDocument {
   nlohmann::json root_;
   std::string binary_;
 };
+
+/// Adds a member to the "extras" of a part of a file. Extras that are no object become the member "extras" of one.
+void add_extra_to(nlohmann::json& part, const std::string& name, nlohmann::json extra);
 
 /// Takes from a primitive what says that its old vertices are compressed, as it has new ones.
 void drop_compression(nlohmann::json& primitive);

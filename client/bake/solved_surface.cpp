@@ -3,6 +3,8 @@
 #include "client/bake/gltf_document.h"
 #include "client/verify/cosine_direction.h"
 #include "client/verify/path_random.h"
+#include "meshing/face_object.h"
+#include "meshing/mesh_area.h"
 
 #include <algorithm>
 #include <array>
@@ -21,17 +23,12 @@ double longest_side(std::span<const Vec3> points) {
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 
-std::vector<std::uint32_t> objects_of_faces(std::span<const SceneObject> objects, std::size_t face_count) {
-  std::vector<std::uint32_t> object(face_count, static_cast<std::uint32_t>(objects.size()));
-  for (std::uint32_t o = 0; o < objects.size(); ++o)
-    for (std::uint32_t f = 0; f < objects[o].face_count; ++f) object[objects[o].first_face + f] = o;
-  return object;
-}
-
 }  // namespace
 
 SolvedSurface::SolvedSurface(const DisplayMesh& solution, const Scene& scene)
-    : solution_(solution), radiosity_(solution), parts_(scene.objects.size() + 1),
+    : solution_(solution),
+      radiosity_(solution),
+      parts_(scene.objects.size() + 1),
       everything_(solution.positions, solution.triangles) {
   const std::span<const SceneObject> objects = scene.objects;
   const std::size_t face_count = scene.faces.size();
@@ -39,11 +36,10 @@ SolvedSurface::SolvedSurface(const DisplayMesh& solution, const Scene& scene)
   for (std::size_t o = 0; o < objects.size(); ++o)
     if (const auto fault = fault_in(objects, o, face_count)) throw BakeError("object " + std::to_string(o), *fault);
   reach_ = reach_of_extent * longest_side(solution.positions);
-  const auto object = objects_of_faces(objects, face_count);
   std::uint32_t next = 0;
   for (const FaceTriangles& run : solution.faces) {
     if (run.faces.first >= face_count) throw BakeError("solution", "is of another scene: it has more faces");
-    auto& of = parts_[object[run.faces.first]].triangles;
+    auto& of = parts_[object_of_face(objects, run.faces.first).value_or(objects.size())].triangles;
     for (std::uint32_t n = 0; n < run.count; ++n) of.push_back(next++);
   }
   for (Part& part : parts_) {
@@ -65,8 +61,7 @@ SolvedSurface::SolvedSurface(const DisplayMesh& solution, const Scene& scene)
 
 /// Returns whether a triangle of the solution faces within 60 degrees of `normal` (unit).
 bool SolvedSurface::faces_along(std::uint32_t triangle, Vec3 normal) const {
-  const auto& [a, b, c] = solution_.triangles[triangle];
-  const Vec3 from = solution_.positions[a], twice = cross(solution_.positions[b] - from, solution_.positions[c] - from);
+  const Vec3 twice = double_area_of(solution_, triangle);
   return dot(twice, normal) > 0.5 * length(twice);
 }
 
@@ -75,7 +70,8 @@ std::optional<SolvedSurface::Sample> SolvedSurface::at(std::size_t object, Vec3 
   if (!part.caster) return std::nullopt;
   auto hit = part.caster->cast_front(point + reach_ * normal, -1.0 * normal);
   // At the edge of a wall the ray runs along the next one, which rounding may put in its way.
-  if (!hit || hit->distance > 2 * reach_ || !faces_along(part.triangles[hit->triangle], normal)) hit = part.caster->nearest(point, normal);
+  if (!hit || hit->distance > 2 * reach_ || !faces_along(part.triangles[hit->triangle], normal))
+    hit = part.caster->nearest(point, normal);
   if (!hit) return std::nullopt;
   const std::uint32_t triangle = part.triangles[hit->triangle];
   const auto& [a, b, c] = solution_.triangles[triangle];
@@ -96,9 +92,8 @@ bool SolvedSurface::is_covered(Vec3 point, Vec3 normal, double dark) const {
     const Vec3 direction = cosine_direction(normal, at);
     const auto hit = everything_.cast(start, direction);
     if (!hit) return false;  // the sky
+    if (dot(double_area_of(solution_, hit->triangle), direction) >= 0) return true;
     const auto& [a, b, c] = solution_.triangles[hit->triangle];
-    const Vec3 from = solution_.positions[a];
-    if (dot(cross(solution_.positions[b] - from, solution_.positions[c] - from), direction) >= 0) return true;
     const auto brightest = [](const RgbF& light) { return std::max({light.r, light.g, light.b}); };
     return std::max({brightest(solution_.irradiance[a]), brightest(solution_.irradiance[b]), brightest(solution_.irradiance[c]),
                      brightest(solution_.radiosity[a])}) <= dark;

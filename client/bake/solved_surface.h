@@ -32,9 +32,9 @@ class SolvedSurface {
   /// Returns the solution where the side of an object's surface that faces along `normal` (unit) passes through `point`; where it
   /// does not, as the scene was welded, at the nearest place that faces within 60 degrees. Nothing if the object has none.
   std::optional<Sample> at(std::size_t object, Vec3 point, Vec3 normal) const;
-  /// Returns whether the side of a surface that faces along `normal` (unit) lies under or inside a solid at `point`, where no light comes
-  /// and nobody looks: most of eight rays above the surface, and most of eight along it, meet sides with no more than `dark`, W/m2, or
-  /// backs. What is in a shadow of the room sees lit surfaces.
+  /// Returns whether the side of a surface that faces along `normal` (unit) lies under or inside a solid at `point`, where no
+  /// light comes and nobody looks: most of eight rays above the surface, and most of eight along it, meet sides with no more than
+  /// `dark`, W/m2, or backs. What is in a shadow of the room sees lit surfaces.
   bool is_covered(Vec3 point, Vec3 normal, double dark) const;
 
  private:

@@ -45,10 +45,11 @@ ChartSize size_of(const PlacedChart& placed) {
 std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place, int padding, std::uint32_t vertex) {
   const auto [u, v] = chart.mesh->flat[vertex];
   const auto share = [](double value, double side) { return side > 0 ? std::clamp(value / side, 0.0, 1.0) : 0.5; };
-  const auto along = [&](double part, int begin, int texels) { return begin + padding + 0.5 + part * (texels - 2 * padding - 1); };
+  const auto along = [&](double part, int begin, int texels) {
+    return begin + padding + 0.5 + part * (texels - 2 * padding - 1);
+  };
   // Rows run downwards: v is turned, so that charts are not mirrored.
-  return {along(share(u, chart.chart->wide), place.x, place.wide),
-          along(1 - share(v, chart.chart->high), place.y, place.high)};
+  return {along(share(u, chart.chart->wide), place.x, place.wide), along(1 - share(v, chart.chart->high), place.y, place.high)};
 }
 
 ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface) {
@@ -71,7 +72,9 @@ ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface) 
 }
 
 void spread(LightPage& page, const ChartPlace& within, int times) {
-  const auto cell = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(within.wide) + static_cast<std::size_t>(x); };
+  const auto cell = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(within.wide) + static_cast<std::size_t>(x);
+  };
   std::vector<std::uint8_t> was_set(static_cast<std::size_t>(within.wide) * static_cast<std::size_t>(within.high));
   for (int n = 0; n < times; ++n) {
     for (int y = 0; y < within.high; ++y)

@@ -61,13 +61,14 @@ struct ShownSide {
 ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface);
 
 /// Sets the texels of a chart's rectangle: those within the chart to the mean of four points, those at its edge to the point that
-/// they stand for, those around it to the nearest point of the chart. Points that something covers, as a table's legs do on a floor, count
-/// only where all of a texel's are: up to four texels from the light such a texel takes it on, further in it stays dark. Writes only
-/// within the rectangle.
+/// they stand for, those around it to the nearest point of the chart. Points that something covers, as a table's legs do on a
+/// floor, count only where all of a texel's are: up to four texels from the light such a texel takes it on, further in it stays
+/// dark. Writes only within the rectangle.
 void fill(LightPage& page, const PlacedChart& chart, const ChartPlace& place, int padding, bool shows_back,
           const SolvedSurface& surface, const TexelValue& value);
 
-/// Gives each texel of a rectangle that is not set the mean of its set neighbours, `times` times, so that smaller mip levels stay clean.
+/// Gives each texel of a rectangle that is not set the mean of its set neighbours, `times` times, so that smaller mip levels stay
+/// clean.
 void spread(LightPage& page, const ChartPlace& within, int times);
 
 }  // namespace alvor

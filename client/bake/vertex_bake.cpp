@@ -6,6 +6,7 @@
 #include "client/picture/tone_map.h"
 #include "import/base/bytes.h"
 #include "import/base/glb_format.h"
+#include "meshing/mesh_area.h"
 
 #include <tbb/parallel_for.h>
 
@@ -33,12 +34,12 @@ struct VertexLight {
   double weight = 0;
 };
 
+/// Returns the mean over the area of the irradiance at the middles of leaves, W/m2.
 double mean_irradiance(const DisplayMesh& solution) {
   double power = 0, area = 0;
-  for (const auto& [a, b, c] : solution.triangles) {
-    const Vec3 from = solution.positions[a];
-    const double here = length(cross(solution.positions[b] - from, solution.positions[c] - from));
-    power += here * widen(solution.irradiance[a]).mean(), area += here;
+  for (std::uint32_t t = 0; t < solution.triangles.size(); ++t) {
+    const double here = area_of(solution, t);
+    power += here * widen(solution.irradiance[solution.triangles[t][0]]).mean(), area += here;
   }
   return area > 0 ? power / area : 0;
 }
@@ -79,7 +80,8 @@ class VertexBaker {
     if (primitive["attributes"].contains("COLOR_0"))
       colours = document_.read_colours(index_in(primitive["attributes"], "COLOR_0", "primitive"));
     if (colours.size() != mesh.positions.size()) throw BakeError("COLOR_0", "has not as many elements as POSITION");
-    // What glows, or has no image, shows the colour of the picture itself, which may be brighter than its base colour.
+    // A material that glows, or whose base colour has no image, gets the colour of the picture itself, which may be brighter than
+    // the base colour.
     const bool is_whole = emits_light(material) || !has_base_image(material);
     const std::vector<VertexLight> light = light_at_vertices(placed, side.is_back);
     std::string bytes;

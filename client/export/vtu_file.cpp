@@ -1,6 +1,6 @@
 #include "client/export/vtu_file.h"
 
-#include "client/export/face_object.h"
+#include "meshing/face_object.h"
 #include "client/picture/units.h"
 #include "import/base/bytes.h"
 

@@ -1,6 +1,6 @@
 #include "client/report/floor_survey.h"
 
-#include "client/report/mesh_area.h"
+#include "meshing/mesh_area.h"
 
 #include <tbb/parallel_for.h>
 

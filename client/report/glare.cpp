@@ -1,7 +1,7 @@
 #include "client/report/glare.h"
 
 #include "client/picture/units.h"
-#include "client/report/mesh_area.h"
+#include "meshing/mesh_area.h"
 #include "client/report/plan_frame.h"
 #include "client/report/position_index.h"
 #include "meshing/mesh_radiosity.h"

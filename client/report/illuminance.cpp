@@ -1,7 +1,7 @@
 #include "client/report/illuminance.h"
 
 #include "client/picture/units.h"
-#include "client/report/mesh_area.h"
+#include "meshing/mesh_area.h"
 
 #include <tbb/parallel_for.h>
 

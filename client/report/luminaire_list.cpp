@@ -1,7 +1,7 @@
 #include "client/report/luminaire_list.h"
 
 #include "client/picture/units.h"
-#include "client/report/mesh_area.h"
+#include "meshing/mesh_area.h"
 
 #include <algorithm>
 #include <cmath>

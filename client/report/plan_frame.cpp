@@ -1,6 +1,6 @@
 #include "client/report/plan_frame.h"
 
-#include "client/report/mesh_area.h"
+#include "meshing/mesh_area.h"
 
 #include <algorithm>
 #include <cmath>

@@ -54,7 +54,7 @@ std::string measured_text(const Measured& measured) {
   return light_text(measured.value) + " &plusmn; " + text_of("%.2g", measured.error);
 }
 
-/// Where there is no light there is no uniformity.
+/// Returns U0 of a work plane, and a dash where the plane has no light.
 std::string uniformity_text(const PlaneStatistics& plane) {
   return plane.mean.value > 0 ? text_of("%.2f", plane.uniformity()) : "&ndash;";
 }

@@ -1,6 +1,6 @@
 #include "client/report/rooms.h"
 
-#include "client/export/face_object.h"
+#include "meshing/face_object.h"
 #include "client/report/floor_survey.h"
 #include "client/report/pillars.h"
 #include "client/report/room_division.h"

@@ -1,5 +1,6 @@
 #include "client/verify/object_errors.h"
 
+#include "meshing/face_object.h"
 #include "meshing/patch_place.h"
 
 #include <algorithm>
@@ -15,11 +16,7 @@ std::vector<ObjectError> largest_errors(const BaseMesh& mesh, std::span<const Le
   double area = 0, squares = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     const std::uint32_t face = mesh.roots()[leaves[n].patch.root_face()].input.first;
-    // Faces come in the order of their objects; empty objects begin where the next one does.
-    const auto after = std::ranges::upper_bound(objects, face, {}, &SceneObject::first_face);
-    const auto o = static_cast<std::size_t>(after - objects.begin());
-    const bool is_within = o > 0 && face < objects[o - 1].first_face + objects[o - 1].face_count;
-    ObjectError& object = of[is_within ? o - 1 : objects.size()];
+    ObjectError& object = of[object_of_face(objects, face).value_or(objects.size())];
     const double here = area_of(mesh, shape_of(mesh, leaves[n].patch)), square = here * double(errors[n]) * double(errors[n]);
     object.area_share += here, object.error_share += square;
     area += here, squares += square;

@@ -1,5 +1,5 @@
 #pragma once
-// Where the told error of a solution lies, by the names of its objects.
+// Finds the objects of a scene that hold most of the error that a solution tells of itself.
 
 #include "meshing/base_mesh.h"
 #include "solution/leaf_value.h"
@@ -14,7 +14,8 @@ namespace alvor {
 struct ObjectError {
   std::string name;       ///< empty: the faces of no object
   double area_share = 0;  ///< of all surfaces
-  /// Of the squared told error, integrated over all surfaces: what the estimated nRMSE is made of.
+  /// The object's share of the squared told error, integrated over all surfaces; the root of that integral's mean is the
+  /// estimated RMSE.
   double error_share = 0;
 };
 

@@ -42,7 +42,7 @@ constexpr double misfit_at_centre = 0.25;
 // squared normal deviations. With 0 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken for detail; with
 // 0.7 half of the gain in the furnished room is lost (docs/error-vs-time.md).
 constexpr double chance_of_origins = 0.35;
-// The same for a misfit that is told: two standard deviations.
+// Multiple of the noise of origins that a misfit must exceed to be part of the told error: two standard deviations of that mean.
 constexpr double sure_of_origins = 0.7;
 // Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
@@ -119,67 +119,6 @@ void Pass::show_smoothly() {
   std::vector<RowSamples> samples(rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t p) { samples[p] = samples_of(rows[p], leaving); });
   state_.field.set_fits(rows, fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres()));
-}
-
-/// Returns by how much the irradiance at a row's origins differs from the field that is shown. It sees a strip of light as narrow
-/// as a quarter of the patch, such as the edge of a book that stands out from a shelf. Rows of several rounds of rays have the
-/// mean over the rounds in each stratum, at its middle; its noise is found from how the rounds differ. With one round it is found
-/// from the rays of each origin as if they were independent. They are stratified and have less, so that noise does not pass for a
-/// misfit.
-Pass::OriginMisfit Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& radiosity) const {
-  const TransportRow& row = state_.rows[node];
-  if (row.origin_hits.size() < origins_per_patch) return {};
-  struct Stratum {
-    double sum = 0, squares = 0, rounds = 0, noise_of_rays = 0;
-  };
-  std::array<Stratum, origins_per_patch> strata;
-  const auto leaves = state_.rows.leaves_hit(node);
-  for (std::size_t o = 0, hit = 0; o < row.origin_hits.size(); ++o) {
-    if (row.origin_hits[o] == TransportRow::not_sampled) continue;
-    double sum = 0, squares = 0;
-    for (const std::size_t last = hit + row.origin_hits[o]; hit < last; ++hit) {
-      const double light = radiosity.mean(leaves[hit]) * (row.hit_weight.empty() ? 1 : row.hit_weight[hit].mean());
-      sum += light, squares += light * light;
-    }
-    const double mean = sum / rays_per_origin;
-    Stratum& stratum = strata[o % origins_per_patch];
-    stratum.sum += mean, stratum.squares += mean * mean, stratum.rounds += 1;
-    stratum.noise_of_rays += std::max(0.0, squares / rays_per_origin - mean * mean) / (rays_per_origin - 1);
-  }
-  const auto places = places_of_origins(node, row.origin_hits.size() > origins_per_patch);
-  OriginMisfit misfit;
-  double count = 0;
-  for (std::size_t k = 0; k < strata.size(); ++k) {
-    const Stratum& of = strata[k];
-    if (of.rounds == 0) continue;
-    const double mean = of.sum / of.rounds;
-    const double noise = of.rounds > 1 ? std::max(0.0, of.squares / of.rounds - mean * mean) / (of.rounds - 1) : of.noise_of_rays;
-    misfit.square += squared(mean - state_.field.at(node, places[k]).mean()) - noise;
-    misfit.noise += noise;
-    count += 1;
-  }
-  if (count > 0) misfit.square /= count, misfit.noise /= count;
-  return misfit;
-}
-
-/// Returns the points, in metres, that the sixteen strata of a row stand for: the origins of its first round of rays, or the
-/// middles of the strata if it has more rounds.
-std::array<Vec3, origins_per_patch> Pass::places_of_origins(NodeIndex node, bool has_more_rounds) const {
-  const PatchForest& forest = state_.forests.rows();
-  const PatchShape shape = forest.shape(node);
-  std::array<Vec3, origins_per_patch> places;
-  if (has_more_rounds) {
-    for (int o = 0; o < origins_per_patch; ++o) {
-      const Uv at = shape.stratum_centre(o);
-      places[static_cast<std::size_t>(o)] = state_.mesh.roots()[shape.root].at(at.u, at.v);
-    }
-    return places;
-  }
-  RandomStream random(state_.options.seed, forest.id(node));  // as rows are traced
-  const PatchPoints points = sample_points(state_.scene, shape, random);
-  for (std::size_t o = 0; o < places.size(); ++o)
-    places[o] = state_.scene.frame().to_metres({points.x[o], points.y[o], points.z[o]});
-  return places;
 }
 
 bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {

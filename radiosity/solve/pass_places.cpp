@@ -1,5 +1,6 @@
 // Compares the told errors of places with the tolerance.
 
+#include "meshing/face_object.h"
 #include "radiosity/solve/pass.h"
 
 #include <algorithm>
@@ -25,16 +26,11 @@ std::vector<std::uint8_t> counting_roots(const BaseMesh& mesh, const std::vector
   std::vector<std::uint8_t> counts(mesh.roots().size(), names.empty());
   const auto objects = mesh.objects();
   std::vector<std::uint8_t> is_named(objects.size());
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> faces;  // first and end, in rising order
-  for (std::size_t o = 0; o < objects.size(); ++o) {
+  for (std::size_t o = 0; o < objects.size(); ++o)
     is_named[o] = std::ranges::find(names, objects[o].name) != names.end() || (objects[o].parent && is_named[*objects[o].parent]);
-    if (is_named[o]) faces.emplace_back(objects[o].first_face, objects[o].first_face + objects[o].face_count);
-  }
-  for (std::size_t r = 0; r < counts.size() && !faces.empty(); ++r) {
-    const std::uint32_t face = mesh.roots()[r].input.first;
-    const auto after = std::ranges::upper_bound(faces, face, {}, &std::pair<std::uint32_t, std::uint32_t>::first);
-    counts[r] = after != faces.begin() && face < std::prev(after)->second;
-  }
+  if (std::ranges::find(is_named, true) == is_named.end()) return counts;
+  for (std::size_t r = 0; r < counts.size(); ++r)
+    if (const auto object = object_of_face(objects, mesh.roots()[r].input.first)) counts[r] = is_named[*object];
   return counts;
 }
 

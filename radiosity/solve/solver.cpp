@@ -2,17 +2,16 @@
 
 #include "radiosity/solve/cpu_clock.h"
 #include "radiosity/solve/pass.h"
+#include "radiosity/solve/solve_clock.h"
 
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
-#include <thread>
 
 namespace alvor {
 
@@ -58,29 +57,6 @@ struct Progress {
   std::uint64_t idle_passes = 0;    ///< passes since then
 };
 
-/// Measures the wall seconds of a solve, without its pauses.
-class SolveClock {
- public:
-  double elapsed_s() const { return seconds(Clock::now() - start_ - paused_); }
-  /// Waits, and does not count the time. Returns early once must_stop() is true.
-  void pause(double duration_s, const std::function<bool()>& must_stop) {
-    const auto before = Clock::now(), end = before + of(duration_s);
-    while (!must_stop() && Clock::now() < end)
-      std::this_thread::sleep_for(std::min<Clock::duration>(end - Clock::now(), most_nap));
-    paused_ += Clock::now() - before;
-  }
-  /// Adds seconds that had elapsed before this clock was made.
-  void add_elapsed(double elapsed_s) { start_ -= of(elapsed_s); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds most_nap{20};
-  static Clock::duration of(double s) { return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s)); }
-  static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
-  Clock::time_point start_ = Clock::now();
-  Clock::duration paused_{};
-};
-
 /// Publishes one step: every face, and no light on any.
 SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
   std::vector<LeafValue> values;
@@ -110,8 +86,9 @@ class Run {
     else load();
     const StopReason reason = pass_until_done();
     if (reason == StopReason::parked) save();
-    // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet are shown
-    // with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 % instead of 1.8 %).
+    // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
+    // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
+    // instead of 1.8 %).
     if (reason == StopReason::time_limit && is_.passes == 0) publish();
     const double cpu = cpu_s();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};

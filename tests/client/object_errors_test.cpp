@@ -1,4 +1,4 @@
-// Where the told error of a solution lies, by object.
+// Tests of largest_errors(): the objects that hold most of the error that a solution tells.
 
 #include "client/verify/object_errors.h"
 #include "radiosity/solve/solver.h"

@@ -80,7 +80,8 @@ auto naming_the_scene(const BakeCommand& command, Work work) {
 }
 
 /// Bakes and shows how far it is.
-Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, const DisplayMesh& solution) {
+Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, const DisplayMesh& solution,
+            std::shared_ptr<const ChartLayout> layout) {
   StatusLine line;
   std::mutex mutex;
   options.on_progress = [&](double share) {
@@ -88,7 +89,7 @@ Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, cons
     if (lock && line.on_terminal() && (line.due() || share == 1))
       line.show(progress_bar(share) + " " + percent(share) + " of the texels");
   };
-  return bake(std::move(document), scene, solution, options);
+  return bake(std::move(document), scene, solution, options, std::move(layout));
 }
 
 /// Returns the solution of the scene, given or solved. Throws Failure if the given one is of another scene.
@@ -174,16 +175,13 @@ void run_bake(const BakeCommand& command) {
   const RawScene bytes = scene_bytes(command.scene, command.format);
   const Scene scene = read_scene(command.scene_options, bytes, name_of(command.scene));
   BakeOptions options = options_of(command);
-  const GltfDocument document = naming_the_scene(command, [&] {
-    GltfDocument read = document_of(bytes, scene);
-    require_room(read, scene, options);
-    return read;
-  });
+  GltfDocument document = naming_the_scene(command, [&] { return document_of(bytes, scene); });
+  const auto layout = naming_the_scene(command, [&] { return lay_out(document, scene, options); });
   const DisplayMesh solution = solution_for(command, scene);
-  json probes;
-  if (counts) options.extras["alvor_probes"] = probes = gathered_probes(*counts, scene, solution);
-  Baked result = naming_the_scene(command, [&] { return baked(options, document, scene, solution); });
-  if (counts) result.beside.push_back({command.output.path.stem().string() + "-probes.json", probes.dump()});
+  if (counts) options.extras["alvor_probes"] = gathered_probes(*counts, scene, solution);
+  Baked result = naming_the_scene(command, [&] { return baked(options, std::move(document), scene, solution, layout); });
+  if (counts)
+    result.beside.push_back({command.output.path.stem().string() + "-probes.json", options.extras["alvor_probes"].dump()});
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
                     (result.pages > 0 ? " charts" : " primitives") + " are lit from both sides; the brighter one is shown"});
