@@ -9,7 +9,7 @@ compile=(
   libopenmesh-dev libembree-dev libtbb-dev libspdlog-dev
   libzstd-dev libssl-dev libsqlitecpp-dev libsqlite3-dev prometheus-cpp-dev libboost-dev
   libassimp-dev libtinygltf-dev libtinyobjloader-dev libstb-dev libcli11-dev libpng-dev libwebp-dev libopenexr-dev libcairo2-dev
-  nlohmann-json3-dev libseccomp-dev
+  nlohmann-json3-dev libseccomp-dev libopenmpi-dev
 )
 page=(protobuf-compiler libprotobuf-dev)
 # Node.js may come from elsewhere, with npm inside.
@@ -19,7 +19,7 @@ test=(
   libgtest-dev libgmock-dev libcpp-httplib-dev clang libclang-rt-14-dev
   gnuplot-nox curl chromium
   python3-grpcio python3-zstandard python3-protobuf
-  nginx-light python3-hpack openssl
+  nginx-light python3-hpack openssl openmpi-bin
 )
 containers=(
   podman podman-compose buildah runc netavark aardvark-dns iptables iproute2 catatonit debootstrap

@@ -10,6 +10,7 @@
 #include "server/rpc/self_probe.h"
 #include "server/rpc/service.h"
 #include "server/server_options.h"
+#include "server/solves/solving_ranks.h"
 #include "server/web/web_front.h"
 
 #include <google/protobuf/stubs/logging.h>
@@ -159,9 +160,11 @@ std::unique_ptr<alvor::HealthPort> serve_health(const std::string& address, std:
 }
 
 alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const std::shared_ptr<spdlog::logger>& logger,
-                                      alvor::Archive* archive, std::shared_ptr<alvor::FrontDoor> door) {
+                                      alvor::Archive* archive, std::shared_ptr<alvor::FrontDoor> door,
+                                      alvor::SolvingRanks& ranks) {
   alvor::ServiceOptions service;
-  service.solves.max_running = options.max_solves;
+  service.solves.solver = ranks.solver();
+  service.solves.max_running = ranks.size() == 1 ? options.max_solves : 1;
   service.solves.logger = logger;
   service.solves.spare_solves = [door] { return door->end_greediest(much_received); };
   service.flooding = [door, logger](const std::string& peer) {
@@ -179,6 +182,11 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
 }
 
 int serve(const alvor::ServerOptions& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
+  alvor::SolvingRanks ranks;
+  if (!ranks.is_first()) {
+    ranks.follow();
+    return 0;
+  }
   const std::size_t descriptors = alvor::raise_descriptor_limit();
   alvor::ConnectionLimits limits = options.connections;
   limits.in_all = alvor::bounded_connections(limits.in_all, 0.5, descriptors);
@@ -186,7 +194,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
   const auto door = std::make_shared<alvor::FrontDoor>(options.listen.address, limits);
   std::unique_ptr<alvor::Archive> archive;
   if (!options.directory.empty()) archive = std::make_unique<alvor::Archive>(options.directory);
-  alvor::Service service(service_options(options, logger, archive.get(), door));
+  alvor::Service service(service_options(options, logger, archive.get(), door, ranks));
   const auto health = serve_health(options.health, descriptors, *logger);
   const auto rpc = start(service, options, door, *logger);
   const auto door_metrics = std::make_shared<alvor::DoorMetrics>(*door);  // kept here, because the exposer does not keep it
@@ -200,6 +208,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
     tell_health(is_answered, *rpc, health.get());
   });
   logger->info("{} descriptors; at most {} connections, {} of one address", descriptors, limits.in_all, limits.by_address);
+  if (ranks.size() > 1) logger->info("{} ranks solve together", ranks.size());
   logger->info("listening on {}", rpc->address());
   logger->info("stopping: {}", wait_for_stop(signals));
   self_probe.stop();

@@ -1,6 +1,6 @@
 #pragma once
-// Writes numbers as bytes and reads them back, for what is kept on a disk: of fixed width, little-endian, without names and types. What
-// is kept begins with a version of its own, by which a later program knows how to read it.
+// Writes numbers as bytes and reads them back, for what is kept on a disk: of fixed width, little-endian, without names and
+// types. What is kept begins with a version of its own, by which a later program knows how to read it.
 
 #include <array>
 #include <bit>
@@ -71,6 +71,10 @@ class PlainWriter {
   void put_all(const std::vector<T>& values) {
     put_all(std::span(values));
   }
+  /// Writes what another writer has put.
+  void put_bytes(std::span<const std::byte> bytes) {
+    if (!bytes.empty()) sink_(bytes);
+  }
 
  private:
   Sink sink_;
@@ -84,8 +88,8 @@ inline std::vector<std::byte> plain_bytes(const std::function<void(PlainWriter&)
   return bytes;
 }
 
-/// Reads values in the order in which PlainWriter put them. A copy reads on from the same place. Throws BadBytes. Never allocates more
-/// than the bytes that are left to read.
+/// Reads values in the order in which PlainWriter put them. A copy reads on from the same place. Throws BadBytes. Never allocates
+/// more than the bytes that are left to read.
 class PlainReader {
  public:
   explicit PlainReader(std::span<const std::byte> bytes) : left_(bytes) {}

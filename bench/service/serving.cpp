@@ -60,9 +60,8 @@ SolveOutcome solve_evenly(SolutionLog& log, const SolveControl& control, double 
 
 int serve(double seconds) {
   ServiceOptions options;
-  options.solves.solver = [=](const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
-    return solve_evenly(log, control, seconds);
-  };
+  options.solves.solver = [=](const SceneContent&, const Plan&, const SolveOptions&, SolutionLog& log,
+                              const SolveControl& control) { return solve_evenly(log, control, seconds); };
   Service service(options);
   grpc::ServerBuilder builder;
   int port = 0;

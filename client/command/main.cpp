@@ -5,6 +5,7 @@
 #include "client/command/output/failure.h"
 #include "client/command/output/notes.h"
 #include "client/export/solution_file.h"
+#include "client/rpc/in_process.h"
 #include "import/apart/scene_file.h"
 
 #include <google/protobuf/stubs/common.h>
@@ -69,6 +70,11 @@ ExitStatus parse_and_run(CLI::App& app, int argc, char** argv) {
 ExitStatus run(int argc, char** argv) {
   CLI::App app("Radiosity of diffuse scenes, meshed where the light changes", "alvor");
   try {
+    ProgramRanks ranks;
+    if (!ranks.is_first()) {
+      ranks.follow();
+      return ExitStatus::done;
+    }
     add_commands(app);
     return parse_and_run(app, argc, argv);
   } catch (const Failure& failure) {

@@ -7,6 +7,19 @@
 
 namespace alvor {
 
+/// The ranks of this program, if a launcher such as mpirun started several (server/solves/solving_ranks.h). The first rank's
+/// InProcessServers solve on all of them. One of these, made first and destroyed last, on the main thread.
+class ProgramRanks {
+ public:
+  ProgramRanks();
+  ~ProgramRanks();
+  ProgramRanks(const ProgramRanks&) = delete;
+  /// Returns whether this is the first rank, or the only one.
+  bool is_first() const;
+  /// Of the other ranks: takes part in solves until the first one ends.
+  void follow();
+};
+
 /// A server without a port. Stops its solves when destroyed; channels must not be used after that.
 class InProcessServer {
  public:

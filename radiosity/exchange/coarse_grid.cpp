@@ -6,39 +6,45 @@
 
 namespace alvor {
 
-std::array<CoarseGrid::Matrix, 3> CoarseGrid::matrices(const CoarseUnits& units, const RowHits& hits,
-                                                       std::span<const double> weight) {
-  std::array<Matrix, 3> bands;
-  for (Matrix& band : bands) band.assign(units.count, std::vector<double>(units.count));
+std::vector<std::uint64_t> CoarseGrid::matrices(const CoarseUnits& units, const RowHits& hits, std::span<const double> weight) {
+  std::vector<std::uint64_t> entries(units.count * units.count * 3);
   const auto members = units.members();
   const bool lets_light_through = std::ranges::any_of(hits.patches, &ShootingPatch::is_translucent);
   tbb::parallel_for(std::size_t{0}, units.count, [&](std::size_t unit) {
-    const auto add = [&](std::size_t to, const Rgb& entry) {
-      bands[0][unit][to] += entry.r;
-      bands[1][unit][to] += entry.g;
-      bands[2][unit][to] += entry.b;
+    const auto subtract = [&](std::size_t from, const Rgb& entry) {
+      std::uint64_t* const bands = &entries[(unit * units.count + from) * 3];
+      bands[0] -= fixed_point(entry.r);
+      bands[1] -= fixed_point(entry.g);
+      bands[2] -= fixed_point(entry.b);
     };
-    add(unit, {1, 1, 1});
     for (const std::uint32_t patch : members[unit])
       hits.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {
-        add(units.of_patch[hit], -weight[patch] * (share * hits.patches[hit].reflectance));
+        subtract(units.of_patch[hit], weight[patch] * (share * hits.patches[hit].reflectance));
       });
     if (!lets_light_through) return;
     for (const std::uint32_t patch : members[unit])
       hits.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {
         const std::uint32_t behind = hits.patches[hit].behind;
         if (behind == ShootingPatch::none) return;
-        add(units.of_patch[behind], -weight[patch] * (share * hits.patches[behind].diffuse_transmittance));
+        subtract(units.of_patch[behind], weight[patch] * (share * hits.patches[behind].diffuse_transmittance));
       });
   });
-  return bands;
+  return entries;
 }
 
-CoarseGrid::CoarseGrid(CoarseUnits units, const RowHits& hits) : units_(std::move(units)) {
+CoarseGrid::CoarseGrid(CoarseUnits units, const RowHits& hits, Ranks& ranks) : units_(std::move(units)) {
   std::vector<double> area(units_.count);
   for (std::size_t p = 0; p < units_.of_patch.size(); ++p) area[units_.of_patch[p]] += hits.patches[p].area;
   for (std::size_t p = 0; p < units_.of_patch.size(); ++p) weight_.push_back(hits.patches[p].area / area[units_.of_patch[p]]);
-  for (Matrix& band : matrices(units_, hits, weight_)) band_.emplace_back(std::move(band));
+  std::vector<std::uint64_t> entries = matrices(units_, hits, weight_);
+  ranks.sum(entries);
+  for (std::size_t b = 0; b < 3; ++b) {
+    std::vector<std::vector<double>> matrix(units_.count, std::vector<double>(units_.count));
+    for (std::size_t i = 0; i < units_.count; ++i)
+      for (std::size_t j = 0; j < units_.count; ++j)
+        matrix[i][j] = (i == j) + from_fixed_point(entries[(i * units_.count + j) * 3 + b]);
+    band_.emplace_back(std::move(matrix));
+  }
 }
 
 void CoarseGrid::correct(std::span<const RelativeLight> residual, std::span<RelativeLight> step) const {

@@ -13,15 +13,16 @@ namespace alvor {
 /// constant over units.
 class CoarseGrid {
  public:
-  CoarseGrid(CoarseUnits units, const RowHits& hits);
+  /// Collective.
+  CoarseGrid(CoarseUnits units, const RowHits& hits, Ranks& ranks = Ranks::alone());
 
   /// Improves `step`, which holds the residual at first: replaces its mean over each unit by the irradiance that removes the mean
   /// of the residual. Both spans are by patch.
   void correct(std::span<const RelativeLight> residual, std::span<RelativeLight> step) const;
 
  private:
-  using Matrix = std::vector<std::vector<double>>;
-  static std::array<Matrix, 3> matrices(const CoarseUnits& units, const RowHits& hits, std::span<const double> weight);
+  /// The matrices of three bands in fixed point, by unit, then unit hit, then band.
+  static std::vector<std::uint64_t> matrices(const CoarseUnits& units, const RowHits& hits, std::span<const double> weight);
 
   CoarseUnits units_;
   std::vector<double> weight_;  // each patch's share of the area of its unit

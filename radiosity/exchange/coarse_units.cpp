@@ -1,7 +1,11 @@
 #include "radiosity/exchange/coarse_units.h"
 
+#include "radiosity/ranks/deal.h"
+
 #include <algorithm>
+#include <cstring>
 #include <unordered_map>
+#include <utility>
 
 namespace alvor {
 
@@ -38,11 +42,78 @@ CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
   return numbered(names);
 }
 
-/// Joins each unit, in turn, to the unit that it sees most of. Results are group names by unit, for grouped().
+/// What patches see of each other. Light is a share of the area of all patches, in fixed point.
+class SightOfPatches {
+ public:
+  explicit SightOfPatches(const RowHits& hits) : hits_(hits) {
+    for (const ShootingPatch& patch : hits.patches) area_ += patch.area;
+  }
+  /// Calls body(patch seen, light from it).
+  template <class Body>
+  void for_each(std::uint32_t patch, Body&& body) const {
+    const double share_of_area = hits_.patches[patch].area / area_;
+    hits_.for_each(patch, [&](std::uint32_t hit, const Rgb& share) { body(hit, fixed_point(share_of_area * share.mean())); });
+  }
+
+ private:
+  const RowHits& hits_;
+  double area_ = 0;
+};
+
+/// What units see of each other, on all ranks together.
+class SightOfUnits {
+ public:
+  /// Collective.
+  SightOfUnits(const CoarseUnits& units, const RowHits& hits, Ranks& ranks) : first_(units.count + 1) {
+    const std::vector<Seen> own = seen_here(units, hits);
+    const BytesOfRanks all = gather_bytes(ranks, std::as_bytes(std::span(own)));
+    std::vector<Seen> of_all(all.bytes.size() / sizeof(Seen));
+    if (!of_all.empty()) std::memcpy(of_all.data(), all.bytes.data(), all.bytes.size());
+    for (const Seen& seen : of_all) ++first_[seen.unit + 1];
+    for (std::size_t u = 0; u < units.count; ++u) first_[u + 1] += first_[u];
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    seen_.resize(of_all.size());
+    for (const Seen& seen : of_all) seen_[next[seen.unit]++] = seen;
+  }
+  template <class Body>
+  void for_each(std::uint32_t unit, Body&& body) const {
+    for (std::size_t k = first_[unit]; k < first_[unit + 1]; ++k) body(seen_[k].there, seen_[k].light);
+  }
+
+ private:
+  struct Seen {
+    std::uint32_t unit, there;
+    std::uint64_t light;
+  };
+  static std::vector<Seen> seen_here(const CoarseUnits& units, const RowHits& hits) {
+    const SightOfPatches sight(hits);
+    const auto members = units.members();
+    std::vector<std::uint64_t> light(units.count);
+    std::vector<Seen> seen;
+    for (std::uint32_t unit = 0; unit < units.count; ++unit) {
+      const std::size_t first = seen.size();
+      for (const std::uint32_t patch : members[unit])
+        sight.for_each(patch, [&](std::uint32_t hit, std::uint64_t from_there) {
+          const std::uint32_t there = units.of_patch[hit];
+          if (light[there] == 0 && from_there > 0) seen.push_back({unit, there, 0});
+          light[there] += from_there;
+        });
+      for (Seen& each : std::span(seen).subspan(first)) each.light = std::exchange(light[each.there], 0);
+    }
+    return seen;
+  }
+
+  std::vector<std::size_t> first_;  // by unit
+  std::vector<Seen> seen_;
+};
+
+/// Joins each unit, in turn, to the unit that it sees most of; of several, to the first. Results are group names by unit, for
+/// grouped(). `Sight` tells what the items see of which the units are made.
+template <class Sight>
 class PairFinder {
  public:
-  PairFinder(const CoarseUnits& units, const RowHits& hits)
-      : units_(units), hits_(hits), members_(units.members()), flux_(units.count), partner_(units.count, none) {}
+  PairFinder(const CoarseUnits& units, const Sight& sight)
+      : units_(units), sight_(sight), members_(units.members()), light_(units.count), partner_(units.count, none) {}
 
   std::vector<std::uint32_t> pairs() {
     for (std::uint32_t unit = 0; unit < units_.count; ++unit) {
@@ -77,26 +148,42 @@ class PairFinder {
   template <class MayTake>
   std::uint32_t strongest(std::uint32_t unit, MayTake&& may_take) {
     std::vector<std::uint32_t> seen;
-    for (const std::uint32_t patch : members_[unit])
-      hits_.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {
-        const std::uint32_t there = units_.of_patch[hit];
+    for (const std::uint32_t item : members_[unit])
+      sight_.for_each(item, [&](std::uint32_t other, std::uint64_t from_there) {
+        const std::uint32_t there = units_.of_patch[other];
         if (there == unit || !may_take(there)) return;
-        if (flux_[there] == 0) seen.push_back(there);
-        flux_[there] += hits_.patches[patch].area * share.mean();
+        if (light_[there] == 0) seen.push_back(there);
+        light_[there] += from_there;
       });
     std::uint32_t best = none;
     for (const std::uint32_t there : seen)
-      if (best == none || flux_[there] > flux_[best]) best = there;
-    for (const std::uint32_t there : seen) flux_[there] = 0;
+      if (light_[there] > 0 && (best == none || light_[there] > light_[best] || (light_[there] == light_[best] && there < best)))
+        best = there;
+    for (const std::uint32_t there : seen) light_[there] = 0;
     return best;
   }
 
   const CoarseUnits& units_;
-  const RowHits& hits_;
+  const Sight& sight_;
   std::vector<std::vector<std::uint32_t>> members_;
-  std::vector<double> flux_;  // by unit: light from the unit that strongest() looks from; 0 between calls
+  std::vector<std::uint64_t> light_;  // by unit: light from the unit that strongest() looks from; 0 between calls
   std::vector<std::uint32_t> partner_;
 };
+
+template <class Sight>
+int join(CoarseUnits& units, const Sight& sight, std::size_t most) {
+  int rounds = 0;
+  while (units.count > most) {
+    ++rounds;
+    PairFinder finder(units, sight);
+    CoarseUnits joined = grouped(units, finder.pairs());
+    if (static_cast<double>(joined.count) > (1 - least_decrease) * static_cast<double>(units.count))
+      joined = grouped(units, finder.pairs_and_followers());
+    if (joined.count == units.count) break;
+    units = std::move(joined);
+  }
+  return rounds;
+}
 
 }  // namespace
 
@@ -116,17 +203,15 @@ CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most) {
   return units;
 }
 
-int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most) {
-  int rounds = 0;
-  while (units.count > most) {
-    ++rounds;
-    PairFinder finder(units, hits);
-    CoarseUnits joined = grouped(units, finder.pairs());
-    if (static_cast<double>(joined.count) > (1 - least_decrease) * static_cast<double>(units.count))
-      joined = grouped(units, finder.pairs_and_followers());
-    if (joined.count == units.count) break;
-    units = std::move(joined);
-  }
+int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most, Ranks& ranks) {
+  if (units.count <= most) return 0;
+  if (ranks.is_alone()) return join(units, SightOfPatches(hits), most);
+  const SightOfUnits sight(units, hits, ranks);
+  CoarseUnits of_unit{{}, units.count};
+  for (std::uint32_t unit = 0; unit < units.count; ++unit) of_unit.of_patch.push_back(unit);
+  const int rounds = join(of_unit, sight, most);
+  for (std::uint32_t& unit : units.of_patch) unit = of_unit.of_patch[unit];
+  units.count = of_unit.count;
   return rounds;
 }
 

@@ -2,6 +2,7 @@
 // Groups patches into a few units over which light is nearly constant.
 
 #include "radiosity/exchange/row_hits.h"
+#include "radiosity/ranks/ranks.h"
 #include "solution/patch_id.h"
 
 #include <span>
@@ -21,9 +22,10 @@ struct CoarseUnits {
 /// the roots if these are more.
 CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most);
 
-/// Joins units in rounds until they are at most `most` or none see each other. In a round each unit forms a pair with the
-/// unpaired unit that it sees most of (pairwise aggregation, Notay 2010). If that leaves more than 90 % of the units, unpaired
-/// ones join the pairs, as in smoothed aggregation (Vanek et al. 1996). Returns the number of rounds; each reads all hits.
-int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most);
+/// Collective. Joins units in rounds until they are at most `most` or none see each other. In a round each unit forms a pair with
+/// the unpaired unit that it sees most of (pairwise aggregation, Notay 2010). If that leaves more than 90 % of the units,
+/// unpaired ones join the pairs, as in smoothed aggregation (Vanek et al. 1996). Returns the number of rounds; each reads all
+/// hits. The ranks first tell each other what units see of each other.
+int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most, Ranks& ranks = Ranks::alone());
 
 }  // namespace alvor

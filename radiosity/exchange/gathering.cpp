@@ -34,12 +34,13 @@ Rgb ratio(const Rgb& a, const Rgb& b) {
 Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
                      std::span<const RelativeLight> own_radiosity, std::vector<const std::uint32_t*> hit_leaf,
                      std::vector<RelativeLight> irradiance, std::vector<PatchId> ids, GatheringNeeds needs,
-                     std::span<const Rgb> leaf_reflectance)
+                     std::span<const Rgb> leaf_reflectance, GatheringRanks of_ranks)
     : patches_(patches),
       leaf_of_place_(leaf_of_place),
       own_radiosity_(own_radiosity),
       reflectance_(leaf_reflectance),
       hit_leaf_(std::move(hit_leaf)),
+      of_ranks_(std::move(of_ranks)),
       is_accelerated_(needs.acceleration),
       leaving_(leaf_count, needs.three_bands),
       irradiance_(std::move(irradiance)),
@@ -67,8 +68,8 @@ void Gathering::coarsen(CoarseUnits units) {
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
       patch_of_leaf_[leaf_of_place_[k]] = p;
   const RowHits hits{patches_, hit_leaf_, patch_of_leaf_};
-  join_pairs(units, hits, many_units);
-  if (units.count <= many_units) coarse_.emplace(std::move(units), hits);
+  join_pairs(units, hits, many_units, of_ranks_.ranks);
+  if (units.count <= many_units) coarse_.emplace(std::move(units), hits, of_ranks_.ranks);
 }
 
 void Gathering::watch_decrease() {
@@ -101,7 +102,7 @@ RelativeLight Gathering::row_times_radiosity(std::size_t p) const {
 }
 
 void Gathering::gather(std::vector<RelativeLight>& received) {
-  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
+  of_ranks_.patches.for_each(of_ranks_.ranks, std::span(received), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
 }
 
 // A row sees as much albedo as it would gather light if all patches scattered an irradiance of 1.

@@ -5,6 +5,7 @@
 #include "radiosity/exchange/exchange.h"
 #include "radiosity/exchange/light_by_leaf.h"
 #include "radiosity/exchange/shooting.h"
+#include "radiosity/ranks/deal.h"
 
 #include <array>
 #include <cstdint>
@@ -20,12 +21,20 @@ struct GatheringNeeds {
   bool acceleration = true;  ///< false: only plain steps, for systems that need few of them
 };
 
+/// The ranks that gather together, and which of them has the hits of each patch's row.
+struct GatheringRanks {
+  Ranks& ranks = Ranks::alone();
+  Deal patches;
+};
+
 /// The exchange of light as a linear system with one unknown per patch and band: y = F (e + R y), the irradiance by the patch's
 /// row. R reflects irradiance, and lets it through to the patch behind a translucent one. Each sweep gathers once at all patches,
 /// in parallel. A coarse grid first improves the residual to a step; a finer grid takes its place if the residual falls slowly.
 /// The step is then combined with the last six directions so that the smallest residual is left (GCR, Eisenstat, Elman & Schultz
 /// 1983). Bands are systems of their own; a band that gains less than 1 % takes the step without combination. No transpose of the
-/// rows is needed. R times the residual is the unshot radiosity, of either sign. Results do not depend on the number of threads.
+/// rows is needed. R times the residual is the unshot radiosity, of either sign. Results do not depend on the number of threads,
+/// nor of ranks: each rank gathers at its patches, and does all else for all patches. The constructor and sweep() are
+/// collectives.
 class Gathering : public Exchange {
  public:
   /// Makes an exchange between no patches.
@@ -38,7 +47,7 @@ class Gathering : public Exchange {
   Gathering(std::span<const ShootingPatch> patches, std::span<const std::uint32_t> leaf_of_place, std::size_t leaf_count,
             std::span<const RelativeLight> own_radiosity, std::vector<const std::uint32_t*> hit_leaf,
             std::vector<RelativeLight> irradiance, std::vector<PatchId> ids = {}, GatheringNeeds needs = {},
-            std::span<const Rgb> leaf_reflectance = {});
+            std::span<const Rgb> leaf_reflectance = {}, GatheringRanks of_ranks = {});
 
   std::size_t sweep() override;
   double unshot_power() const override { return unshot_power_; }
@@ -93,6 +102,7 @@ class Gathering : public Exchange {
   std::span<const RelativeLight> own_radiosity_;
   std::span<const Rgb> reflectance_;
   std::vector<const std::uint32_t*> hit_leaf_;
+  GatheringRanks of_ranks_;
   bool is_accelerated_ = true;
   LightByLeaf leaving_{0, true};                      // light that the next gathering finds at each leaf
   std::vector<RelativeLight> irradiance_, residual_;  // by patch

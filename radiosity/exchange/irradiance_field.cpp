@@ -2,6 +2,7 @@
 
 #include "meshing/tangent_frame.h"
 #include "radiosity/exchange/field_equations.h"
+#include "radiosity/ranks/deal.h"
 
 #include <tbb/parallel_for.h>
 
@@ -239,10 +240,10 @@ RelativeLight FieldFit::at(Vec3 point) const {
 
 std::vector<FieldFit> fit_field(const PatchForest& forest, std::span<const NodeIndex> rows,
                                 std::span<const SmoothNeighbours> neighbours, std::span<const RowSamples> samples,
-                                std::span<const Vec3> centre) {
+                                std::span<const Vec3> centre, Ranks& ranks) {
   const Fitter fitter(forest, rows, neighbours, samples, centre);
   std::vector<FieldFit> fits(rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) { fits[n] = fitter.fit_at(n); });
+  share_work(ranks, std::span(fits), [&](std::size_t n) { fits[n] = fitter.fit_at(n); });
   return fits;
 }
 

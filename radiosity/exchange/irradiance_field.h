@@ -2,6 +2,7 @@
 // Fits a smooth field to the irradiance of rows, so that neighbouring rows share their rays.
 
 #include "meshing/leaf_gradient.h"
+#include "radiosity/ranks/ranks.h"
 #include "radiosity/rays/transport_rows.h"
 #include "solution/relative_light.h"
 
@@ -43,9 +44,9 @@ struct FieldFit {
 /// joined smoothly to it (moving least squares, Lancaster & Salkauskas 1981). It is a quadratic over a window of 3.5 edges if
 /// noise explains its misfit; else a plane over 1.5 edges; else, if neither has less noise, the row's own mean. The noise of a
 /// ray is estimated from the differences between quarters of a row, averaged over the window. `neighbours` and `samples` are by
-/// place in `rows`, `centre` is by node. In parallel.
+/// place in `rows`, `centre` is by node. In parallel, on all ranks together: a collective.
 std::vector<FieldFit> fit_field(const PatchForest& forest, std::span<const NodeIndex> rows,
                                 std::span<const SmoothNeighbours> neighbours, std::span<const RowSamples> samples,
-                                std::span<const Vec3> centre);
+                                std::span<const Vec3> centre, Ranks& ranks = Ranks::alone());
 
 }  // namespace alvor

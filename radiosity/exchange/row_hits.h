@@ -3,12 +3,13 @@
 
 #include "radiosity/exchange/shooting.h"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
 namespace alvor {
 
-/// Which patches the rows of a system hit. Borrows all.
+/// Which patches the rows of a system hit, as far as this rank has the hits. Borrows all.
 struct RowHits {
   std::span<const ShootingPatch> patches;
   std::span<const std::uint32_t* const> hit_leaf;  ///< by patch, then by hit of its row
@@ -25,5 +26,10 @@ struct RowHits {
       body(patch_of_leaf[hit_leaf[patch][h]], share * (row.hit_weight.empty() ? Rgb{1, 1, 1} : widen(row.hit_weight[h])));
   }
 };
+
+/// A number in [0, 1] or little more as a whole number of 2^-50, with the rounding of a double. Sums of such numbers, modulo
+/// 2^64, are the same in any order, on any number of ranks.
+inline std::uint64_t fixed_point(double x) { return static_cast<std::uint64_t>(std::llrint(x * 0x1p50)); }
+inline double from_fixed_point(std::uint64_t sum) { return static_cast<double>(static_cast<std::int64_t>(sum)) * 0x1p-50; }
 
 }  // namespace alvor

@@ -388,15 +388,16 @@ void TransportRow::append(const TransportRow& more) {
     }
   }
   std::size_t hit = 0;
+  const bool has_hits = !more.hits.empty();
   for (std::size_t o = 0; o < more.origin_hits.size(); ++o) {
     const std::uint8_t count = more.origin_hits[o];
     const bool counts = count != not_sampled && !(hidden_origins >> (o % origins_per_patch) & 1);
     origin_hits.push_back(counts ? count : not_sampled);
-    if (counts) {
+    if (counts) rays += rays_per_origin;
+    if (counts && has_hits) {
       hits.insert(hits.end(), more.hits.begin() + hit, more.hits.begin() + hit + count);
       if (!more.hit_weight.empty())
         hit_weight.insert(hit_weight.end(), more.hit_weight.begin() + hit, more.hit_weight.begin() + hit + count);
-      rays += rays_per_origin;
     }
     if (count != not_sampled) hit += count;
   }

@@ -38,7 +38,8 @@ struct TransportRow {
   double visible_share() const { return 1 - std::popcount(hidden_origins) / double(origins_per_patch); }
   /// Returns the sum of the hits' weights, times ray_count().
   Rgb stored_weight() const;
-  /// Adds another round of rays of the same patch. The hidden origins stay those of the first round.
+  /// Adds another round of rays of the same patch. The hidden origins stay those of the first round. Either row may be without
+  /// the hits that origin_hits counts, if both are.
   void append(const TransportRow& more);
 };
 

@@ -30,8 +30,8 @@ bool is_sound(const DirectLight& light) {
 }  // namespace
 
 DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene,
-                         RayBudget& budget)
-    : forests_(forests), plan_(plan), options_(options), scene_(scene), budget_(budget) {
+                         RayBudget& budget, Ranks& ranks)
+    : forests_(forests), plan_(plan), options_(options), scene_(scene), budget_(budget), ranks_(ranks) {
   choose_lights();
   fit_to_nodes();
 }
@@ -133,14 +133,16 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
       const auto part = std::span(receivers).subspan(first, count);
       const auto part_light = std::span(light).subspan(first, count);
       for (const LightSource* next : lights_) add_one(*next, part, std::span(leaves).subspan(first, count), part_light);
-      add_direct_light(scene_, *light_tree_, part, options_.seed, budget_, part_light, shadow_needs());
-      if (budget_.is_out()) return;
+      share(part, part_light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
+        add_direct_light(scene_, *light_tree_, own, options_.seed, budget_, own_light, shadow_needs());
+      });
+      if (budget_.settle(ranks_)) return;
       show_part(first, count, waiting, true);
     }
   } else {
     for (const LightSource* next : lights_) {
       add_one(*next, receivers, leaves, light);
-      if (budget_.is_out()) return;
+      if (budget_.settle(ranks_)) return;
       show_part(0, leaves.size(), waiting * next->power() / power_, next == lights_.back());
     }
     if (lights_.empty()) show_part(0, leaves.size(), 0, true);
@@ -160,6 +162,15 @@ double DirectField::stopped_by(NodeIndex leaf, const RelativeLight& irradiance) 
   return forests_.cover(leaf) * (kept * irradiance).sum();
 }
 
+/// Collective. Calls add(receivers, light) with this rank's part of both, and shares the light.
+template <class Add>
+void DirectField::share(std::span<const Receiver> receivers, std::span<DirectLight> light, Add&& add) {
+  const Deal deal = Deal::in_runs(ranks_, receivers.size());
+  const std::size_t first = deal.own_run(ranks_).first, count = deal.own_run(ranks_).second;
+  ranks_.do_own_work([&] { add(receivers.subspan(first, count), light.subspan(first, count)); });
+  deal.share(ranks_, light);
+}
+
 /// Adds one light to the light of `receivers`, which are these leaves.
 void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                           std::span<DirectLight> light) {
@@ -168,7 +179,9 @@ void DirectField::add_one(const LightSource& next, std::span<const Receiver> rec
   if (is_distant)
     for (std::size_t n = 0; n < leaves.size(); ++n)
       from_afar_[leaves[n]] -= static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
-  add_direct_light(scene_, lights, receivers, options_.seed, budget_, light, shadow_needs());
+  share(receivers, light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
+    add_direct_light(scene_, lights, own, options_.seed, budget_, own_light, shadow_needs());
+  });
   if (is_distant)
     for (std::size_t n = 0; n < leaves.size(); ++n)
       from_afar_[leaves[n]] += static_cast<float>(stopped_by(leaves[n], light[n].irradiance));

@@ -16,7 +16,8 @@ namespace alvor {
 /// with. Used by one thread at a time.
 class DirectField {
  public:
-  DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
+  DirectField(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget,
+              Ranks& ranks);
 
   /// Returns the emission of a root patch.
   const RelativeLight& emission_of(std::uint32_t root) const { return emission_[forests_.mesh().roots()[root].material]; }
@@ -38,8 +39,8 @@ class DirectField {
   /// Tells the estimated nRMSE of the pass before, by which add_new() decides how to find shadows: exactly if it is small.
   /// Without this call, shadows are found by rays.
   void heed_error(double error_so_far);
-  /// Adds direct light to the leaves whose rows are traced. Up to twelve lights reach all of these leaves, one light after the
-  /// other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
+  /// Collective. Adds direct light to the leaves whose rows are traced. Up to twelve lights reach all of these leaves, one light
+  /// after the other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
   /// where the ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
   /// Makes the next add_new() find the leaf's light again.
@@ -62,6 +63,8 @@ class DirectField {
   ShadowNeeds shadow_needs() const;
   void add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                std::span<DirectLight> light);
+  template <class Add>
+  void share(std::span<const Receiver> receivers, std::span<DirectLight> light, Add&& add);
   double stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const;
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
@@ -73,6 +76,7 @@ class DirectField {
   const SolveOptions& options_;
   const LocalScene& scene_;
   RayBudget& budget_;
+  Ranks& ranks_;
   std::vector<RelativeLight> emission_;  ///< by material
   OwnedLights owned_lights_;
   std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first

@@ -55,12 +55,13 @@ void TracedRows::make_exact() {
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     TransportRow& row = rows_[rows[n]];
     if (row.is_hidden() || budget_.is_out()) return;
+    row.origin_hits.clear();
+    row.rays = 1;
+    if (!is_own(rows[n])) return;
     const auto entries = form_factors.row(static_cast<std::uint32_t>(n));
     const double scale = scale_to_closure(entries, row.visible_share(), row.is_closed);
     row.hits.clear();
     row.hit_weight.clear();
-    row.origin_hits.clear();
-    row.rays = 1;
     for (const MatrixEntry& entry : entries)
       for (const NodeIndex leaf : leaves[entry.to]) {
         const double share = scale * forests_.leaf_area(leaf) / patches.area(entry.to);

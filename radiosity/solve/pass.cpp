@@ -79,7 +79,7 @@ bool Pass::refine(const std::function<bool()>& gives_up) {
   const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
   const std::vector<Candidate> marked = mark(std::move(candidates_), marked_share);
   guide_rows(marked, gives_up);
-  if (gives_up()) return false;
+  if (state_.ranks.any_of(gives_up())) return false;
   const auto shot = exchange_->shot();
   for (std::size_t n = 0; n < shot.size(); ++n) state_.shot[system_->leaves()[n]] = shot[n];
   exchange_.reset();

@@ -22,12 +22,14 @@ enum class RowsToTrace { all, a_part };
 /// The told errors of leaves, each relative to the irradiance there, or to a tenth of the mean irradiance where it is darker.
 struct ErrorByPlace {
   double area_within = 1;  ///< share of the visible area whose error is within the tolerance, in [0, 1]
-  double kept_error = 0;   ///< least error that SolveOptions::area_share of the visible area keeps; both areas are of SolveOptions::objects
+  double kept_error =
+      0;  ///< least error that SolveOptions::area_share of the visible area keeps; both areas are of SolveOptions::objects
 };
 
-/// Takes a state through one pass. The steps are called in the order in which they are declared; trace_rows() and
-/// add_direct_light() may be repeated, and are left out where nothing is new. Each step asserts that the one before was done.
-/// While rows are traced and direct light is added the state may be saved. Used by one thread at a time.
+/// Takes a state through one pass. With several ranks every function that does not only read, and balance(), is a collective. The
+/// steps are called in the order in which they are declared; trace_rows() and add_direct_light() may be repeated, and are left
+/// out where nothing is new. Each step asserts that the one before was done. While rows are traced and direct light is added the
+/// state may be saved. Used by one thread at a time.
 class Pass {
  public:
   explicit Pass(SolveState& state) : state_(state) {}
@@ -45,7 +47,8 @@ class Pass {
   ErrorEstimate estimate();
   /// Splits patches and asks for rays where that removes most error per ray, which ends the pass. Returns false if nothing was
   /// done: the limits forbid every split, and noise of rows is not the largest error.
-  /// If `gives_up` returns true, which is asked between patches from any thread, it returns early, and the state must not be used.
+  /// If `gives_up` returns true on any rank, where it is asked between patches from any thread, it returns early, and the state
+  /// must not be used.
   bool refine(const std::function<bool()>& gives_up = [] { return false; });
 
   /// Takes the first three steps at once, for callers who do not show what comes in between.
@@ -101,6 +104,7 @@ class Pass {
   std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
   void tell_leaves(double share_of_interpolation);
   void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
+  void guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up);
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays);
   void drop_rays_that_do_not_help(double lasting_error);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;

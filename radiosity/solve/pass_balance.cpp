@@ -32,13 +32,15 @@ PowerBalance Pass::balance() const {
   PowerBalance balance{.emitted = state_.in_watts(direct.emitted_power())};
   if (!exchange_) return balance;
   const auto patches = system_->patches();
+  std::vector<Rgb> taken(patches.size());
+  system_->deal().for_each(state_.ranks, std::span(taken), [&](std::size_t p) { taken[p] = taken_up(*patches[p].row); });
   const auto irradiance = state_.rows.carry_light() ? exchange_->irradiance() : std::vector<RelativeLight>(patches.size());
   RelativeLight absorbed, lost;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const ShootingPatch& patch = patches[p];
     const TransportRow& row = *patch.row;
     const std::uint32_t root = state_.forests.rows().id(system_->rows()[p]).root_face();
-    const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * taken_up(row);
+    const Rgb white{1, 1, 1}, found = row.is_hidden() ? Rgb{} : (1.0 / row.ray_count()) * taken[p];
     const Material& material = state_.mesh.material_of(root);
     const Rgb kept = white - material.regular_transmittance - material.diffuse_transmittance;
     RelativeLight through;

@@ -69,21 +69,12 @@ struct Field {
   std::span<const RelativeLight> value;
 };
 
-template <class Body>
-void for_each_leaf(const Field& field, Body&& body) {
-  tbb::parallel_for(std::size_t{0}, field.leaves.size(), std::forward<Body>(body));
-}
-
-void find_slopes(const Field& f, std::span<RelativeSlope> by_node) {
-  for_each_leaf(
-      f, [&](std::size_t n) { by_node[f.leaves[n]] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); });
-}
-
-std::vector<double> interpolation_errors(const Field& f, std::span<const RelativeSlope> slope) {
-  std::vector<double> errors(f.leaves.size());
-  for_each_leaf(f,
-                [&](std::size_t n) { errors[n] = interpolation_error(f.leaves[n], f.neighbours[n], f.centre, f.value, slope); });
-  return errors;
+/// Collective. Sets the slope of each leaf.
+void find_slopes(const Field& f, std::span<RelativeSlope> by_node, Ranks& ranks) {
+  std::vector<RelativeSlope> slopes(f.leaves.size());
+  share_work(ranks, std::span(slopes),
+             [&](std::size_t n) { slopes[n] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); });
+  for (std::size_t n = 0; n < slopes.size(); ++n) by_node[f.leaves[n]] = slopes[n];
 }
 
 }  // namespace
@@ -117,8 +108,9 @@ void Pass::show_smoothly() {
   const auto neighbours = state_.forests.row_neighbours(rows);
   const auto leaving = system_->radiosity();
   std::vector<RowSamples> samples(rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t p) { samples[p] = samples_of(rows[p], leaving); });
-  state_.field.set_fits(rows, fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres()));
+  system_->deal().for_each(state_.ranks, std::span(samples), [&](std::size_t p) { samples[p] = samples_of(rows[p], leaving); });
+  state_.field.set_fits(rows,
+                        fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres(), state_.ranks));
 }
 
 bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
@@ -174,10 +166,10 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   const auto leaving = system_->radiosity();
   std::vector<OriginMisfit> at_origins(patches.size());
   std::vector<double> errors(patches.size());
-  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t p) {
-    at_origins[p] = misfit_at_origins(system_->rows()[p], leaving);
+  system_->deal().for_each(state_.ranks, std::span(at_origins),
+                           [&](std::size_t p) { at_origins[p] = misfit_at_origins(system_->rows()[p], leaving); });
+  for (std::size_t p = 0; p < patches.size(); ++p)
     errors[p] = visible_area(p) * std::max(0.0, at_origins[p].square - chance_of_origins * at_origins[p].noise);
-  });
   row_squares_.resize(patches.size());
   const auto neighbours = state_.forests.row_neighbours(system_->rows());
   const std::vector<double> irradiance = irradiance_of_rows();
@@ -251,11 +243,12 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   const auto neighbours = forests.leaf_neighbours(leaves);
   const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
   std::vector<RelativeSlope> slope(forests.leaves().node_count());
-  find_slopes(field, slope);
-  auto errors = interpolation_errors(field, slope);
-  for_each_leaf(field, [&](std::size_t n) {
+  find_slopes(field, slope, state_.ranks);
+  std::vector<double> errors(leaves.size());
+  share_work(state_.ranks, std::span(errors), [&](std::size_t n) {
     const NodeIndex leaf = leaves[n];
-    const double smooth = squared(errors[n]) - noise_in_differences * state_.direct[leaf].variance;
+    const double miss = interpolation_error(leaf, neighbours[n], field.centre, field.value, slope);
+    const double smooth = squared(miss) - noise_in_differences * state_.direct[leaf].variance;
     const double contrast = squared_contrast(leaf, slope[leaf]);
     errors[n] = state_.visible_area(leaf) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
   });

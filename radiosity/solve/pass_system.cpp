@@ -9,7 +9,7 @@
 
 namespace alvor {
 
-PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.rows().leaves()) {
+PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.rows().leaves()), deal_(state.rows.deal(rows_)) {
   const Forests& forests = state.forests;
   for (const NodeIndex row : rows_) {
     const auto first = static_cast<std::uint32_t>(leaves_.size());
@@ -35,7 +35,7 @@ PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.r
     own_radiosity_.push_back(state.direct.emission_by_rows(root) + state.scattered_direct_light(leaf));
   }
   if (state.rows.carry_light())
-    tbb::parallel_for(std::size_t{0}, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
+    deal_.for_each_own(state.ranks, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
 }
 
 void PassSystem::find_patches_behind() {
@@ -69,7 +69,7 @@ std::unique_ptr<Exchange> PassSystem::begin_gathering() const {
   return std::make_unique<Gathering>(
       patches_, leaves_, state_.forests.leaves().node_count(), own_radiosity_, std::move(hit_leaf), std::move(irradiance),
       std::move(ids), GatheringNeeds{state_.plan.needs(Feature::three_bands), state_.plan.needs(Feature::acceleration)},
-      leaf_reflectance_);
+      leaf_reflectance_, GatheringRanks{state_.ranks, deal_});
 }
 
 Shooting PassSystem::shooting() const {

@@ -25,7 +25,10 @@ class PassSystem {
     return leaves().subspan(patches_[patch].first_leaf, patches_[patch].leaf_count);
   }
 
-  /// Returns an exchange of light by the strategy of the options. If rows carry no light it has no patches.
+  /// Which rank has the hits of each patch's row.
+  const Deal& deal() const { return deal_; }
+
+  /// Collective. Returns an exchange of light by the strategy of the options. If rows carry no light it has no patches.
   std::unique_ptr<Exchange> begin_exchange() const;
   /// Returns the system with the shots that are recorded in the state (SolveState::shot).
   Shooting shooting() const;
@@ -40,6 +43,7 @@ class PassSystem {
   SolveState& state_;
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
+  Deal deal_;
   std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and scattered direct light
   std::vector<Rgb> leaf_reflectance_;         ///< by place; none if no reflectance varies
 };

@@ -1,6 +1,7 @@
 #pragma once
 // Steers a solve while it runs: stop requests, priority, checkpoints.
 
+#include "radiosity/ranks/ranks.h"
 #include "solution/plain_bytes.h"
 
 #include <cstddef>
@@ -20,7 +21,9 @@ inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 4;
 /// it.
 enum class SolvePriority { low, normal, high };
 
-/// Requests to a solve and the functions that it calls, all on the thread that solves.
+/// Requests to a solve and the functions that it calls, all on the thread that solves. With several ranks each has its own, which
+/// differ: a request that reaches any rank counts for all; the clock of the first rank counts; and only the first rank is asked
+/// whether a checkpoint is due, saves it, and publishes.
 struct SolveControl {
   /// Ends the solve within one batch of rays or shots. The log keeps the last step that was published.
   std::stop_token stop;
@@ -38,8 +41,12 @@ struct SolveControl {
 
   SolvePriority priority = SolvePriority::normal;
 
-  /// A checkpoint of this mesh, plan and options to go on from, with the log as it was saved then. Empty: the solve begins anew.
+  /// A checkpoint of this mesh, plan and options to go on from, with the log as it was saved then, by any number of ranks. The
+  /// same on all ranks. Empty: the solve begins anew.
   std::span<const std::byte> checkpoint;
+
+  /// The ranks that solve together, of which this process is one. Must outlive the solve.
+  Ranks& ranks = Ranks::alone();
 };
 
 }  // namespace alvor

@@ -35,17 +35,20 @@ Rgb largest_irradiance(const BaseMesh& mesh) {
 
 }  // namespace
 
-SolveState::SolveState(const BaseMesh& base_mesh, Plan solve_plan, SolveOptions solve_options, RayBudget& ray_budget)
+SolveState::SolveState(const BaseMesh& base_mesh, Plan solve_plan, SolveOptions solve_options, RayBudget& ray_budget,
+                       Ranks& solving_ranks)
     : mesh(base_mesh),
       plan(std::move(solve_plan)),
       options(std::move(solve_options)),
       budget(ray_budget),
+      ranks(solving_ranks),
       scene(mesh),
       forests(mesh, plan, {options.max_depth, options.max_leaves, options.min_edge_m}),
-      rows(forests, plan, options, scene, budget),
+      rows(forests, plan, options, scene, budget, ranks),
       field(forests, rows.carry_light()),
-      direct(forests, plan, options, scene, budget),
+      direct(forests, plan, options, scene, budget, ranks),
       largest_irradiance_(largest_irradiance(mesh)) {
+  assert(ranks.is_alone() || options.strategy == Strategy::automatic);
   fit_to_nodes();
 }
 

@@ -15,11 +15,13 @@
 namespace alvor {
 
 /// The parts of a solve: forests, rows, direct light and the shown field, each owned by one member. A Pass improves them; between
-/// passes they can be saved. Used by one thread at a time.
+/// passes they can be saved. It is the same on all ranks but for the hits of rows. Used by one thread at a time.
 class SolveState {
  public:
-  /// Requires: the plan is of this mesh and these options. The mesh and the budget must outlive the state.
-  SolveState(const BaseMesh& base_mesh, Plan solve_plan, SolveOptions solve_options, RayBudget& ray_budget);
+  /// Requires: the plan is of this mesh and these options; with several ranks, Strategy::automatic. The mesh, the budget and the
+  /// ranks must outlive the state.
+  SolveState(const BaseMesh& base_mesh, Plan solve_plan, SolveOptions solve_options, RayBudget& ray_budget,
+             Ranks& solving_ranks = Ranks::alone());
   SolveState(const BaseMesh& base_mesh, const SolveOptions& solve_options, RayBudget& ray_budget)
       : SolveState(base_mesh, Plan(base_mesh, solve_options), solve_options, ray_budget) {}
   SolveState(const SolveState&) = delete;  // the parts refer to each other
@@ -28,6 +30,7 @@ class SolveState {
   const Plan plan;
   const SolveOptions options;
   RayBudget& budget;
+  Ranks& ranks;
   const LocalScene scene;
   Forests forests;
   TracedRows rows;
@@ -77,8 +80,8 @@ class SolveState {
   /// which points are hidden.
   void heed_hidden_origins(NodeIndex row);
 
-  /// Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on; all else is
-  /// computed again.
+  /// Collective. Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on, with
+  /// any number of ranks; all else is computed again.
   void save(PlainWriter& out) const;
   /// Reads what save() wrote in a checkpoint of `version`, see solve_control.h. Throws BadBytes; the state must not be used after
   /// that. Requires: no row was traced and nothing split since construction.

@@ -1,5 +1,6 @@
 #include "radiosity/solve/solver.h"
 
+#include "radiosity/ranks/launched_ranks.h"
 #include "radiosity/solve/cpu_clock.h"
 #include "radiosity/solve/pass.h"
 #include "radiosity/solve/solve_clock.h"
@@ -7,10 +8,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace alvor {
@@ -78,8 +82,9 @@ class Run {
         log_(log),
         control_(control),
         cpu_(cpu),
-        budget_([this] { return must_stop(); }),
-        state_(mesh, plan, options, budget_) {}
+        ranks_(control.ranks),
+        budget_([this] { return wishes_here().any(); }),
+        state_(mesh, plan, options, budget_, ranks_) {}
 
   SolveOutcome run() {
     if (control_.checkpoint.empty()) publish();
@@ -90,7 +95,7 @@ class Run {
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
     // instead of 1.8 %).
     if (reason == StopReason::time_limit && is_.passes == 0) publish();
-    const double cpu = cpu_s();
+    const double cpu = cpu_s_of_all();
     return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
   }
 
@@ -104,7 +109,7 @@ class Run {
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
       if (must_break_off()) return stop_reason();
-      const bool is_better = gains() && pass_->refine([this] { return must_break_off(); });
+      const bool is_better = gains() && pass_->refine([this] { return wishes_here().end(); });
       if (must_stop()) return stop_reason();
       if (!is_better) {
         pass_.emplace(state_);
@@ -132,6 +137,7 @@ class Run {
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
     is_.error = pass_->estimate();
     account();
+    expect_agreement();
     by_place_ = pass_->error_by_place(is_.error);
     publish();
     ++is_.passes;
@@ -148,7 +154,7 @@ class Run {
       if (must_stop()) return false;
       pass_->add_direct_light([this] {
         ++is_.shots;
-        if (is_.passes == 0 && !must_stop()) publish_if_due();
+        if (is_.passes == 0 && !wishes_here().any()) publish_if_due();
         save_if_due();
       });
     }
@@ -194,11 +200,13 @@ class Run {
   /// Publishes a step that only shows progress, if it is one of the first twelve or publishing takes less than a tenth of the
   /// time.
   void publish_if_due() {
+    if (!ranks_.is_first()) return;
     const bool is_early = log_.head() < always_published;
     if (is_early || clock_.elapsed_s() - published_at_ > publishing_s_ / publishing_share) publish();
   }
 
   void publish() {
+    if (!ranks_.is_first()) return;
     const double before = clock_.elapsed_s();
     Step step;
     step.elapsed_s = before;
@@ -214,15 +222,22 @@ class Run {
     log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
-    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return must_stop(); });
+    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return wishes_here().any(); });
   }
 
+  /// Collective.
   void save_if_due() {
-    if (control_.is_checkpoint_due && control_.is_checkpoint_due()) save();
+    if (ranks_.any_of(ranks_.is_first() && control_.is_checkpoint_due && control_.is_checkpoint_due())) save();
   }
 
+  /// Collective.
   void save() {
-    if (!control_.save) return;
+    if (!ranks_.any_of(ranks_.is_first() && control_.save)) return;
+    if (!ranks_.is_first()) {
+      PlainWriter nowhere([](std::span<const std::byte>) {});
+      state_.save(nowhere);
+      return;
+    }
     Progress now = is_;
     now.elapsed_s = clock_.elapsed_s();
     now.cpu_s = cpu_s();
@@ -265,17 +280,50 @@ class Run {
   bool may_be_last() const {
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
-  /// Returns whether to give up even in the middle of an exchange. A request to park does not count: a solve that went on from
-  /// the middle of an exchange would go on differently.
-  bool must_break_off() const {
-    return control_.stop.stop_requested() || control_.short_of_memory.stop_requested() ||
-           clock_.elapsed_s() > options_.time_limit_s;
+  /// Why a solve shall end that could go on.
+  struct Wishes {
+    bool cancelled = false, memory = false, time_limit = false, parked = false;
+
+    /// A request to park is not among them: a solve that went on from the middle of an exchange would go on differently.
+    bool end() const { return cancelled || memory || time_limit; }
+    bool any() const { return end() || parked; }
+  };
+  /// Returns what this rank knows of. Safe from any thread. A wish that is true stays true.
+  Wishes wishes_here() const {
+    return {control_.stop.stop_requested(), control_.short_of_memory.stop_requested(),
+            ranks_.is_first() && clock_.elapsed_s() > options_.time_limit_s, control_.park.stop_requested()};
   }
-  bool must_stop() const { return control_.park.stop_requested() || must_break_off(); }
+  /// Collective. Learns of the wishes of all ranks.
+  const Wishes& ask() {
+    const Wishes here = wishes_here();
+    std::array<std::uint64_t, 4> counts{here.cancelled, here.memory, here.time_limit, here.parked};
+    ranks_.sum(counts);
+    return wishes_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0};
+  }
+  /// Collective. Returns whether to give up even in the middle of an exchange.
+  bool must_break_off() { return ask().end(); }
+  /// Collective.
+  bool must_stop() { return ask().any(); }
+  /// As of the last call of ask().
   StopReason stop_reason() const {
-    if (control_.stop.stop_requested()) return StopReason::cancelled;
-    if (control_.short_of_memory.stop_requested()) return StopReason::memory;
-    return clock_.elapsed_s() > options_.time_limit_s ? StopReason::time_limit : StopReason::parked;
+    if (wishes_.cancelled) return StopReason::cancelled;
+    if (wishes_.memory) return StopReason::memory;
+    return wishes_.time_limit ? StopReason::time_limit : StopReason::parked;
+  }
+  /// Collective. Ends the solve if ranks differ in what they found, as on machines that compute differently.
+  void expect_agreement() {
+    const std::array<std::uint64_t, 3> here{std::bit_cast<std::uint64_t>(is_.error.total()),
+                                            std::bit_cast<std::uint64_t>(is_.balance.gap()), state_.leaf_count()};
+    auto of_first = here;
+    ranks_.broadcast(std::as_writable_bytes(std::span(of_first)));
+    if (ranks_.any_of(of_first != here))
+      throw std::runtime_error("ranks found different solutions: all must run the same program on processors of one kind");
+  }
+  /// Collective.
+  double cpu_s_of_all() {
+    std::uint64_t microseconds = static_cast<std::uint64_t>(1e6 * cpu_.seconds());
+    ranks_.sum({&microseconds, 1});
+    return is_.cpu_s + 1e-6 * static_cast<double>(microseconds);
   }
   StopReason limit_reached() const {
     const bool has_translucent = std::ranges::any_of(state_.mesh.materials(), &Material::is_translucent);
@@ -289,6 +337,8 @@ class Run {
   const SolveControl& control_;
   SolveClock clock_;
   const CpuClock& cpu_;
+  Ranks& ranks_;
+  Wishes wishes_;
   RayBudget budget_;
   SolveState state_;
   std::optional<Pass> pass_{state_};
@@ -323,15 +373,22 @@ std::string_view text(StopReason reason) {
   return "unknown";
 }
 
+std::string_view why_on_one_rank(const SolveOptions& options) {
+  if (options.strategy != Strategy::automatic) return "textbook strategies shoot patch after patch";
+  return {};
+}
+
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control) {
   assert(!mesh.roots().empty());
   assert(!control.checkpoint.empty() || log.head() == 0);
-  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  if (const auto why = why_on_one_rank(options); !why.empty() && !control.ranks.is_alone())
+    throw std::invalid_argument("takes a single rank: " + std::string(why));
+  const int threads = options.threads > 0 ? options.threads : threads_of(control.ranks);
   tbb::task_arena arena(threads, 1, priority_of(control.priority));
   const CpuClock cpu(arena);
   return arena.execute([&] {
-    if (!plan.has_light()) return show_darkness(mesh, cpu, log);
+    if (!plan.has_light()) return show_darkness(mesh, cpu, log);  // on every rank, each in its own log
     return Run(mesh, plan, options, cpu, log, control).run();
   });
 }

@@ -2,7 +2,11 @@
 
 #include "radiosity/solve/saved_nodes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
+#include <cassert>
 
 namespace alvor {
 
@@ -41,15 +45,42 @@ TransportRow load_row(std::size_t roots, PlainReader& in, std::uint32_t version)
   return row;
 }
 
+/// What all ranks keep of a row that was just traced, or of one round of its rays.
+struct RowHead {
+  std::uint32_t rays;
+  std::uint16_t hidden_origins;
+  std::uint8_t is_closed, has_origin_hits;
+  std::array<std::uint8_t, origins_per_patch> origin_hits;
+};
+
+RowHead head_of(const TransportRow& row) {
+  RowHead head{row.rays, row.hidden_origins, row.is_closed, !row.origin_hits.empty(), {}};
+  assert(row.origin_hits.empty() || row.origin_hits.size() == head.origin_hits.size());
+  std::ranges::copy(row.origin_hits, head.origin_hits.begin());
+  return head;
+}
+
+TransportRow without_hits(const RowHead& head) {
+  TransportRow row;
+  row.rays = head.rays;
+  row.hidden_origins = head.hidden_origins;
+  row.is_closed = head.is_closed != 0;
+  if (head.has_origin_hits) row.origin_hits.assign(head.origin_hits.begin(), head.origin_hits.end());
+  return row;
+}
+
+void drop_hits(TransportRow& row) { row.hits = {}, row.hit_weight = {}; }
+
 }  // namespace
 
 TracedRows::TracedRows(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene,
-                       RayBudget& budget)
+                       RayBudget& budget, Ranks& ranks)
     : forests_(forests),
       plan_(plan),
       options_(options),
       scene_(scene),
       budget_(budget),
+      ranks_(ranks),
       directions_(options.seed, options.form_factors == FormFactorMethod::hemicube ? RayPlacing::hemicube : RayPlacing::nusselt) {
   fit_to_nodes();
 }
@@ -76,19 +107,51 @@ bool TracedRows::trace(std::span<const NodeIndex> rows) {
   std::vector<RowSize> sizes;
   for (const NodeIndex row : rows) sizes.push_back(size_of(forests_.rows().id(row)));
   const bool nothing_to_find = !carry_light() && !plan_.backs_are_seen();
-  auto found =
-      nothing_to_find ? std::vector(rows.size(), TransportRow{.rays = rays_per_row}) : traced(rows, sizes, options_.seed);
-  if (budget_.is_out()) return false;
+  auto found = nothing_to_find ? std::optional(std::vector(rows.size(), TransportRow{.rays = rays_per_row}))
+                               : traced(rows, sizes, options_.seed);
+  if (nothing_to_find && budget_.settle(ranks_)) return false;
+  if (!found) return false;
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    rows_[rows[n]] = std::move(found[n]);
+    rows_[rows[n]] = std::move((*found)[n]);
     is_traced_[rows[n]] = true;
     guides_.erase(rows[n]);
   }
   return true;
 }
 
-std::vector<TransportRow> TracedRows::traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
-                                             std::uint64_t seed) {
+/// Collective. Returns the rows, those of other ranks without hits; nothing if the ray budget ran out.
+std::optional<std::vector<TransportRow>> TracedRows::traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
+                                                            std::uint64_t seed) {
+  if (ranks_.is_alone()) {
+    auto found = traced_here(rows, sizes, seed);
+    return budget_.is_out() ? std::nullopt : std::optional(std::move(found));
+  }
+  std::vector<NodeIndex> own;
+  std::vector<RowSize> own_sizes;
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    if (is_own(rows[n])) own.push_back(rows[n]), own_sizes.push_back(sizes[n]);
+  std::vector<TransportRow> found;
+  ranks_.do_own_work([&] { found = traced_here(own, own_sizes, seed); });
+  if (budget_.settle(ranks_)) return std::nullopt;
+  std::vector<RowHead> heads(rows.size());
+  for (std::size_t n = 0, k = 0; n < rows.size(); ++n)
+    if (is_own(rows[n])) heads[n] = head_of(found[k++]);
+  deal(rows).share(ranks_, std::span(heads));
+  std::vector<TransportRow> all;
+  for (std::size_t n = 0, k = 0; n < rows.size(); ++n)
+    all.push_back(is_own(rows[n]) ? std::move(found[k++]) : without_hits(heads[n]));
+  return all;
+}
+
+Deal TracedRows::deal(std::span<const NodeIndex> rows) const {
+  if (ranks_.is_alone()) return {};
+  std::vector<std::uint16_t> ranks(rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) { ranks[n] = static_cast<std::uint16_t>(rank_of(rows[n])); });
+  return Deal::by_rank(ranks_, ranks);
+}
+
+std::vector<TransportRow> TracedRows::traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
+                                                  std::uint64_t seed) {
   std::vector<PatchShape> shapes;
   std::vector<PatchId> patches;
   std::vector<const DirectionGuide*> guides;
@@ -128,9 +191,9 @@ bool TracedRows::add_wanted_rays() {
   const std::size_t count = std::min(rows_per_batch, wanting_.size());
   const std::vector<NodeIndex> rows(wanting_.end() - static_cast<std::ptrdiff_t>(count), wanting_.end());
   const auto more = traced(rows, std::vector(count, RowSize::whole), options_.seed + rounds_of_rays_);
-  if (budget_.is_out()) return false;
+  if (!more) return false;
   for (std::size_t n = 0; n < count; ++n) {
-    rows_[rows[n]].append(more[n]);
+    rows_[rows[n]].append((*more)[n]);
     guides_.erase(rows[n]);
   }
   wanting_.resize(wanting_.size() - count);
@@ -139,6 +202,7 @@ bool TracedRows::add_wanted_rays() {
 
 // Leaves are only ever split, so the look-up of each hit starts at the leaf that it found last.
 void TracedRows::find_hit_leaves(NodeIndex row) {
+  if (!is_own(row)) return;
   const auto& hits = rows_[row].hits;
   auto& found = hit_leaves_[row];
   if (found.size() != hits.size()) {
@@ -151,14 +215,41 @@ void TracedRows::find_hit_leaves(NodeIndex row) {
 
 void TracedRows::save_rows(PlainWriter& out) const {
   const auto rows = forests_.rows().leaves();
-  for (const NodeIndex row : rows) save(rows_[row], out);
+  if (ranks_.is_alone())
+    for (const NodeIndex row : rows) save(rows_[row], out);
+  else
+    for (std::span<const NodeIndex> left = rows; !left.empty(); left = left.subspan(std::min(rows_per_batch, left.size())))
+      save_batch(left.first(std::min(rows_per_batch, left.size())), out);
   save_flags(rows, is_traced_, out);
+}
+
+/// Collective. Writes some rows of all ranks.
+void TracedRows::save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const {
+  std::vector<std::uint64_t> sizes(rows.size());
+  std::vector<std::byte> own;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    if (!is_own(rows[n])) continue;
+    const auto bytes = plain_bytes([&](PlainWriter& row) { save(rows_[rows[n]], row); });
+    own.insert(own.end(), bytes.begin(), bytes.end());
+    sizes[n] = bytes.size();
+  }
+  ranks_.sum(sizes);
+  const BytesOfRanks all = gather_bytes(ranks_, own);
+  std::vector<std::size_t> next(all.first);
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    std::size_t& begin = next[rank_of(rows[n])];
+    out.put_bytes(std::span(all.bytes).subspan(begin, sizes[n]));
+    begin += sizes[n];
+  }
 }
 
 void TracedRows::load_rows(PlainReader& in, std::uint32_t version) {
   fit_to_nodes();
   const auto rows = forests_.rows().leaves();
-  for (const NodeIndex row : rows) rows_[row] = load_row(forests_.mesh().roots().size(), in, version);
+  for (const NodeIndex row : rows) {
+    rows_[row] = load_row(forests_.mesh().roots().size(), in, version);
+    if (!is_own(row)) drop_hits(rows_[row]);
+  }
   load_flags(rows, is_traced_, in);
 }
 

@@ -2,24 +2,32 @@
 // The transport rows of a solve: traced rows, rows that want more rays, and the leaves that hits find.
 
 #include "radiosity/plan/plan.h"
+#include "radiosity/ranks/deal.h"
 #include "radiosity/rays/transport_rows.h"
 #include "radiosity/solve/forests.h"
 
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace alvor {
 
-/// The transport rows of the row forest's leaves. Indices are row nodes. Borrows all that it is made with. Used by one thread at
-/// a time.
+/// The transport rows of the row forest's leaves. Indices are row nodes. Each row's hits are on the rank that traced it
+/// (is_own()); all else of the row is on all ranks. Borrows all that it is made with. Used by one thread at a time.
 class TracedRows {
  public:
-  TracedRows(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget);
+  TracedRows(const Forests& forests, const Plan& plan, const SolveOptions& options, const LocalScene& scene, RayBudget& budget,
+             Ranks& ranks);
 
   const TransportRow& operator[](NodeIndex row) const { return rows_[row]; }
   bool is_traced(NodeIndex row) const { return is_traced_[row]; }
-  /// Returns the leaf node that each hit of the row found when find_hit_leaves() was called last.
+  /// Returns the rank that traces the row and has its hits.
+  std::size_t rank_of(NodeIndex row) const { return alvor::rank_of(forests_.rows().id(row), ranks_.size()); }
+  bool is_own(NodeIndex row) const { return ranks_.is_alone() || rank_of(row) == ranks_.rank(); }
+  /// Deals rows to the ranks that have them.
+  Deal deal(std::span<const NodeIndex> rows) const;
+  /// Returns the leaf node that each hit of a row of this rank found when find_hit_leaves() was called last.
   std::span<const NodeIndex> leaves_hit(NodeIndex row) const { return hit_leaves_[row]; }
 
   /// Returns whether light goes along rows. If not, rows only tell which origins are hidden, and hold no hits.
@@ -28,7 +36,8 @@ class TracedRows {
   /// Returns the leaves of the row forest that light may reach and whose rows are not traced.
   std::vector<NodeIndex> untraced() const;
 
-  /// Traces the rows. Returns false, and changes nothing, if the ray budget ran out. Requires: leaves of the row forest.
+  /// Collective. Traces the rows. Returns false, and changes nothing, if the ray budget ran out. Requires: leaves of the row
+  /// forest.
   bool trace(std::span<const NodeIndex> rows);
   /// Replaces the hits of all rows by exact form factors between patches (FormFactorMethod::analytic). Keeps the hidden origins
   /// and is_closed that rays found.
@@ -46,10 +55,12 @@ class TracedRows {
   /// Asks for another round of rays for these rows.
   void want_rays(std::span<const NodeIndex> rows);
   bool want_any() const { return !wanting_.empty(); }
-  /// Adds the rays that were asked for to a batch of rows. Returns false, and changes nothing, if the ray budget ran out.
+  /// Collective. Adds the rays that were asked for to a batch of rows. Returns false, and changes nothing, if the ray budget ran
+  /// out.
   bool add_wanted_rays();
 
   /// Finds the leaves on which the hits of the row lie now, for leaves_hit(). Different threads may call it for different rows.
+  /// Does nothing for rows of other ranks.
   void find_hit_leaves(NodeIndex row);
 
   /// Makes room for new nodes of the row forest.
@@ -57,6 +68,7 @@ class TracedRows {
   /// Forgets the row of a node that was split.
   void forget(NodeIndex row);
 
+  /// Collective. Every rank writes the rows of all.
   void save_rows(PlainWriter& out) const;
   void save_wanted(PlainWriter& out) const;
   void save_guides(PlainWriter& out) const;
@@ -72,7 +84,10 @@ class TracedRows {
   static constexpr std::size_t rows_per_batch = 8192;
 
  private:
-  std::vector<TransportRow> traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
+  std::optional<std::vector<TransportRow>> traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
+                                                  std::uint64_t seed);
+  std::vector<TransportRow> traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
+  void save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const;
   RowSize size_of(PatchId patch) const;
 
   const Forests& forests_;
@@ -80,13 +95,14 @@ class TracedRows {
   const SolveOptions& options_;
   const LocalScene& scene_;
   RayBudget& budget_;
+  Ranks& ranks_;
   DirectionSets directions_;
   std::vector<TransportRow> rows_;
   std::vector<bool> is_traced_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;
   std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
-  std::uint64_t rounds_of_rays_ = 0;  ///< each adds independent rays
-  std::vector<NodeIndex> wanting_;    ///< rows that have not got the rays of the newest round
+  std::uint64_t rounds_of_rays_ = 0;            ///< each adds independent rays
+  std::vector<NodeIndex> wanting_;              ///< rows that have not got the rays of the newest round
 };
 
 }  // namespace alvor

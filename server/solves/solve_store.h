@@ -30,7 +30,7 @@ struct SolveStoreOptions {
   MemoryGuard memory;
   /// Ends something else that takes memory, if it can; asked before a solve must end. Returns whether it did.
   std::function<bool()> spare_solves = [] { return false; };
-  Solver solver = solve_as_planned;
+  Solver solver = solve_in_process;
   Keeping keeping;
   std::chrono::steady_clock::duration patience =
       std::chrono::seconds(7);                               ///< with solves that are to be parked when the server stops

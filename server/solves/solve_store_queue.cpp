@@ -121,10 +121,10 @@ void SolveStore::run(Entry& entry) {
   }();
   be_as_nice_as(solve->priority);
   // What the scene has become may be far more than it was: faces of many corners are cut up.
-  const Solver solver = [&](const BaseMesh& mesh, const Plan& plan, const SolveOptions& how, SolutionLog& log,
+  const Solver solver = [&](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
                             const SolveControl& control) {
-    options_.memory.admit("solve", bytes_a_face * mesh.roots().size() + PatchReflectance::bytes_for(mesh));
-    return options_.solver(mesh, plan, how, log, control);
+    options_.memory.admit("solve", bytes_a_face * scene.mesh.roots().size() + PatchReflectance::bytes_for(scene.mesh));
+    return options_.solver(scene, plan, how, log, control);
   };
   const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),
                            abandon_.get_token()};

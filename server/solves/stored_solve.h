@@ -16,8 +16,12 @@
 
 namespace alvor {
 
-/// solve_as_planned, or what stands in for it.
-using Solver = std::function<SolveOutcome(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog&, const SolveControl&)>;
+/// solve_in_process, or what stands in for it.
+using Solver =
+    std::function<SolveOutcome(const SceneContent&, const Plan&, const SolveOptions&, SolutionLog&, const SolveControl&)>;
+/// Solves in this process, by solve_as_planned.
+SolveOutcome solve_in_process(const SceneContent& scene, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                              const SolveControl& control);
 
 /// Of all solves.
 struct KeepingCounts {

@@ -22,6 +22,11 @@ std::vector<std::string> pieces_of(const SolveControl::Write& write) {
 
 }  // namespace
 
+SolveOutcome solve_in_process(const SceneContent& scene, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                              const SolveControl& control) {
+  return solve_as_planned(scene.mesh, plan, options, log, control);
+}
+
 std::vector<std::byte> StoredSolve::take_checkpoint() {
   {
     Lock hold(lock_);
@@ -107,7 +112,7 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
     keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
     next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
   };
-  return solver(content->mesh, plan, options, *log(), control);
+  return solver(*content, plan, options, *log(), control);
 }
 
 void StoredSolve::save(const SolveControl::Write& write) {

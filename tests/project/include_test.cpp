@@ -27,7 +27,7 @@ const std::map<std::string, std::set<std::string>> allowed{
 // The rooms of a folder from the lowest to the highest: a file includes files of its own room and of lower ones.
 const std::map<std::string, std::vector<std::string>> rooms{
     {"import", {"base", "environment", "photometry", "apart", "formats", "program"}},
-    {"radiosity", {"rays", "form_factors", "direct", "exchange", "estimate", "plan", "solve"}},
+    {"radiosity", {"ranks", "rays", "form_factors", "direct", "exchange", "estimate", "plan", "solve"}},
     {"server", {"base", "archive", "scenes", "solves", "watch", "access", "rpc", "web"}},
     {"client", {"picture", "export", "rpc", "verify", "bake", "report", "command"}},
     {"client/command", {"output", "options", "commands"}},
@@ -60,6 +60,7 @@ const std::map<std::string, std::string> kept_behind{
     {"boost/", "server/web/"},
     {"assimp/", "import/formats/"},
     {"seccomp.h", "import/program/"},
+    {"mpi.h", "radiosity/ranks/mpi_ranks.cpp"},
     {"webp/", "import/formats/image_file.cpp"},
 };
 

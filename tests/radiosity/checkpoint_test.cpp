@@ -1,7 +1,7 @@
 // Checkpoints: a solve that is interrupted and goes on later gives the same bytes.
 
 #include "radiosity/solve/solver.h"
-#include "tests/scenes.h"
+#include "tests/radiosity/solve_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -53,37 +53,6 @@ Interrupted solve_until(int n, const BaseMesh& mesh, const SolveOptions& options
   return result;
 }
 
-Scene room_with_many_lamps() {
-  Scene scene = test::coloured_room();
-  for (int n = 0; n < 20; ++n) {
-    const double x = 0.15 * n + 0.2, X = x + 0.1;
-    test::add_polygon(scene, {{x, 2.9, 4}, {X, 2.9, 4}, {X, 2.9, 4.1}, {x, 2.9, 4.1}}, 1);
-  }
-  return scene;
-}
-
-/// Returns a room with a sphere lamp and a spot, into which the sun shines through the missing ceiling.
-Scene room_with_lamps_and_sun() {
-  Scene scene = test::coloured_room();
-  scene.faces.erase(scene.faces.begin() + 1);
-  Light lamp{"bulb", LightKind::point, {9, 8, 7}, {3, 2, 4}},
-      spot{"spot", LightKind::spot, {50, 50, 20}, {0.5, 2.5, 0.5}, {0, -1, 0}};
-  lamp.radius = 0.1;
-  Light sun{"sun", LightKind::directional, {60, 60, 50}};
-  sun.direction = normalized(Vec3{0.5, -1, 0.2});
-  sun.angular_diameter = 0.0093;
-  scene.lights = {lamp, spot, sun};
-  return scene;
-}
-
-Scene black_room() { return test::black(test::room_with_contacts()); }
-
-Scene hazy_room() {
-  Scene scene = test::room_with_contacts();
-  scene.absorption = {0.01, 0.1, 0.05};
-  return scene;
-}
-
 struct Case {
   std::string name;
   Scene (*scene)();
@@ -95,11 +64,11 @@ class Checkpoint : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Checkpoint,
     testing::Values(Case{"OneLamp", test::room_with_contacts, {.tolerance = 0.02, .max_leaves = 6000}},
-                    Case{"ManyLamps", room_with_many_lamps, {.tolerance = 0.03, .max_leaves = 4000}},
+                    Case{"ManyLamps", test::room_with_many_lamps, {.tolerance = 0.03, .max_leaves = 4000}},
                     Case{"Shooting", test::coloured_room, {.tolerance = 0.04, .strategy = Strategy::sorted}},
-                    Case{"NothingReflects", black_room, {.tolerance = 0.03, .max_leaves = 6000}},
-                    Case{"HemicubesInHaze", hazy_room, {.tolerance = 0.05, .form_factors = FormFactorMethod::hemicube}},
-                    Case{"LampsAndSun", room_with_lamps_and_sun, {.tolerance = 0.03, .max_leaves = 5000}},
+                    Case{"NothingReflects", test::black_room, {.tolerance = 0.03, .max_leaves = 6000}},
+                    Case{"HemicubesInHaze", test::hazy_room, {.tolerance = 0.05, .form_factors = FormFactorMethod::hemicube}},
+                    Case{"LampsAndSun", test::room_with_lamps_and_sun, {.tolerance = 0.03, .max_leaves = 5000}},
                     Case{"Furnace", [] { return test::furnace(1, 0.9); }, {}}),
     [](const auto& one) { return one.param.name; });
 

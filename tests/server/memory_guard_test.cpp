@@ -47,7 +47,7 @@ TEST(MemoryGuard, HeldBytesAreThoseThatWereTaken) {
 }
 
 /// A solver that runs until it is told to end, and then frees memory.
-SolveOutcome wait_for_end(const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
+SolveOutcome wait_for_end(const SceneContent&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
   log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 3}}}, {});
   while (!control.short_of_memory.stop_requested() && !control.stop.stop_requested()) std::this_thread::yield();
   if (control.stop.stop_requested()) return {.reason = StopReason::cancelled};

@@ -3,7 +3,7 @@
 namespace alvor {
 
 Solver StagedSolver::solver() {
-  return [this](const BaseMesh&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
+  return [this](const SceneContent&, const Plan&, const SolveOptions&, SolutionLog& log, const SolveControl& control) {
     return run(log, control);
   };
 }
