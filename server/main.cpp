@@ -165,6 +165,7 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
   alvor::ServiceOptions service;
   service.solves.solver = ranks.solver();
   service.solves.max_running = ranks.size() == 1 ? options.max_solves : 1;
+  service.solves.limits.threads = ranks.threads();
   service.solves.logger = logger;
   service.solves.spare_solves = [door] { return door->end_greediest(much_received); };
   service.flooding = [door, logger](const std::string& peer) {

@@ -45,8 +45,11 @@ class CommandLine : public testing::Test {
   }
   ~CommandLine() override { fs::remove_all(folder_); }
 
-  Ran run(const std::string& arguments) const {
-    const std::string line = "cd '" + folder_.string() + "' && '" ALVOR_BINARIES "/alvor' " + arguments + " >out 2>err";
+  Ran run(const std::string& arguments) const { return run_with("", arguments); }
+  /// `launcher` begins the line: a program that runs the command, or an assignment of a variable.
+  Ran run_with(const std::string& launcher, const std::string& arguments) const {
+    const std::string line =
+        "cd '" + folder_.string() + "' && " + launcher + " '" ALVOR_BINARIES "/alvor' " + arguments + " >out 2>err";
     const int ended = std::system(line.c_str());
     return {WIFEXITED(ended) ? WEXITSTATUS(ended) : -1, text_of(folder_ / "out"), text_of(folder_ / "err")};
   }

@@ -19,6 +19,7 @@ ServiceOptions own_options() {
   if (!program_ranks || program_ranks->size() == 1) return options;
   options.solves.solver = program_ranks->solver();
   options.solves.max_running = 1;
+  options.solves.limits.threads = program_ranks->threads();
   return options;
 }
 

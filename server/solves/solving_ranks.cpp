@@ -3,6 +3,7 @@
 #include "proto/codec.h"
 #include "radiosity/ranks/launched_ranks.h"
 
+#include <csignal>
 #include <stdexcept>
 
 namespace alvor {
@@ -104,7 +105,12 @@ SolvingRanks::~SolvingRanks() {
   if (several_ && is_first()) send(*several_, end_of_orders);
 }
 
+int SolvingRanks::threads() const { return threads_of(ranks()); }
+
 void SolvingRanks::follow() {
+  // A launcher passes on Ctrl-C and requests to end to all ranks. The first one decides, and needs the others until it has ended.
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
   for (;;) {
     Order order = 0;
     ranks().broadcast(std::as_writable_bytes(std::span(&order, 1)));

@@ -21,6 +21,8 @@ class SolvingRanks {
 
   std::size_t size() const { return ranks().size(); }
   bool is_first() const { return ranks().is_first(); }
+  /// Returns the most threads that a solve may use on each rank.
+  int threads() const;
   /// Of the others: takes part in solves until the first rank ends.
   void follow();
   /// Of the first: returns what solves on all ranks, one solve at a time, or in this process alone if the options ask for what
