@@ -10,7 +10,7 @@
 namespace {
 
 constexpr const char* usage =
-    "usage: office_block --faces N -o FILE.obj [--seed S] [--lamps-per-1000-faces L]; N from 100 to 1000000, L from 0 to 100\n";
+    "usage: office_block --faces N -o FILE.obj [--seed S] [--lamps-per-1000-faces L]; N from 100 to 5000000, L from 0 to 100\n";
 
 struct Arguments {
   alvor::bench::OfficeOptions office{.faces = 0};
@@ -29,7 +29,7 @@ bool read_option(const std::string& name, const char* value, Arguments& into) {
 
 bool is_usable(const Arguments& arguments) {
   const auto& office = arguments.office;
-  return office.faces >= 100 && office.faces <= 1'000'000 && office.lamps_per_1000_faces >= 0 &&
+  return office.faces >= 100 && office.faces <= 5'000'000 && office.lamps_per_1000_faces >= 0 &&
          office.lamps_per_1000_faces <= 100 && arguments.path.ends_with(".obj");
 }
 
