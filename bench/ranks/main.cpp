@@ -4,6 +4,7 @@
 #include "radiosity/ranks/deal.h"
 #include "radiosity/ranks/launched_ranks.h"
 #include "radiosity/solve/solver.h"
+#include "solution/state_hash.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -16,7 +17,7 @@ namespace alvor {
 
 namespace {
 
-/// What one rank took.
+/// The time, bytes and memory that a solve took on one rank.
 struct Share {
   double work_s = 0, collectives_s = 0, largest_mb = 0;
   std::uint64_t collectives = 0, bytes_received = 0;
@@ -28,21 +29,16 @@ double largest_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// Returns a name of the bytes of a solution (FNV-1a).
-std::uint64_t name_of(std::span<const LeafValue> leaves) {
-  std::uint64_t name = 0xcbf29ce484222325u;
-  const auto add = [&](const auto& value) {
-    for (const std::byte byte : std::as_bytes(std::span(&value, 1)))
-      name = (name ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
-  };
-  for (const LeafValue& leaf : leaves) add(leaf.patch), add(leaf.irradiance);
-  return name;
+std::uint64_t hash_of(std::span<const LeafValue> leaves) {
+  StateHash hash;
+  for (const LeafValue& leaf : leaves) hash.add(leaf);
+  return hash.bits();
 }
 
 nlohmann::json measured(Ranks& ranks, const BaseMesh& mesh, const SolveOptions& options) {
   const auto begun = std::chrono::steady_clock::now();
   SolutionLog log;
-  const SolveControl control{.ranks = ranks};
+  const SolveControl control{.ranks = &ranks};
   const SolveOutcome outcome = solve_as_planned(mesh, Plan(mesh, options), options, log, control);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begun;
   std::vector<Share> shares(ranks.size());
@@ -59,7 +55,7 @@ nlohmann::json measured(Ranks& ranks, const BaseMesh& mesh, const SolveOptions& 
                       {"rays", log.last_step().rays},
                       {"leaves", log.last_step().leaves},
                       {"estimated_error", log.last_step().estimated_error},
-                      {"solution", name_of(log.leaves())}};
+                      {"solution", hash_of(log.leaves())}};
   for (const Share& share : shares)
     line["shares"].push_back({{"work_s", share.work_s},
                               {"collectives_s", share.collectives_s},

@@ -113,7 +113,7 @@ def main():
   furnished = compare("Furnished room at 3 %", ROOT / "scenes/furnished_room.obj", "--tolerance", "0.03")
   middle = compare("Office block of 50 000 faces at 10 %", office(50_000), "--tolerance", "0.1")
   first_light = solve(2, 1, office(1_000_000), "--tolerance", "0.5", "--max-depth", "0", "--max-elements", "2000000")
-  small, model_small = cluster("Office block of 50 000 faces at 10 %", middle[2][1])
+  small, _ = cluster("Office block of 50 000 faces at 10 %", middle[2][1])
   large, model_large = cluster("Office block of a million faces, each face one leaf", first_light)
   print(f"""# Solving on several ranks
 

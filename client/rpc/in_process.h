@@ -16,7 +16,7 @@ class ProgramRanks {
   ProgramRanks(const ProgramRanks&) = delete;
   /// Returns whether this is the first rank, or the only one.
   bool is_first() const;
-  /// Of the other ranks: takes part in solves until the first one ends.
+  /// Takes part in the solves of the first rank until that one ends. Requires: !is_first().
   void follow();
 };
 

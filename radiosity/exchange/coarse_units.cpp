@@ -42,7 +42,8 @@ CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
   return numbered(names);
 }
 
-/// What patches see of each other. Light is a share of the area of all patches, in fixed point.
+/// Tells which patches a patch sees, and how much of its irradiance would come from each if all were equally bright. That light
+/// is a share of the area of all patches, in fixed point.
 class SightOfPatches {
  public:
   explicit SightOfPatches(const RowHits& hits) : hits_(hits) {
@@ -60,15 +61,18 @@ class SightOfPatches {
   double area_ = 0;
 };
 
-/// What units see of each other, on all ranks together.
+/// Tells which units a unit sees, as SightOfPatches does for patches, from the hits of all ranks.
 class SightOfUnits {
  public:
   /// Collective.
   SightOfUnits(const CoarseUnits& units, const RowHits& hits, Ranks& ranks) : first_(units.count + 1) {
-    const std::vector<Seen> own = seen_here(units, hits);
-    const BytesOfRanks all = gather_bytes(ranks, std::as_bytes(std::span(own)));
-    std::vector<Seen> of_all(all.bytes.size() / sizeof(Seen));
-    if (!of_all.empty()) std::memcpy(of_all.data(), all.bytes.data(), all.bytes.size());
+    const BytesOfItems by_rank = Deal::in_runs(ranks, ranks.size()).gather(ranks, [&](std::size_t) {
+      const std::vector<Seen> own = seen_here(units, hits);
+      const auto bytes = std::as_bytes(std::span(own));
+      return std::vector(bytes.begin(), bytes.end());
+    });
+    std::vector<Seen> of_all(by_rank.all().size() / sizeof(Seen));
+    if (!of_all.empty()) std::memcpy(of_all.data(), by_rank.all().data(), by_rank.all().size());
     for (const Seen& seen : of_all) ++first_[seen.unit + 1];
     for (std::size_t u = 0; u < units.count; ++u) first_[u + 1] += first_[u];
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);

@@ -22,16 +22,31 @@ Deal Deal::by_rank(const Ranks& ranks, std::span<const std::uint16_t> rank_of) {
   return deal;
 }
 
-BytesOfRanks gather_bytes(Ranks& ranks, std::span<const std::byte> own) {
-  std::vector<std::uint64_t> sizes(ranks.size());
-  sizes[ranks.rank()] = own.size();
-  ranks.sum(sizes);
-  BytesOfRanks all;
-  all.first.push_back(0);
-  for (const std::uint64_t size : sizes) all.first.push_back(all.first.back() + size);
-  all.bytes.resize(all.first.back());
-  std::ranges::copy(own, all.bytes.begin() + static_cast<std::ptrdiff_t>(all.first[ranks.rank()]));
-  ranks.gather(all.bytes, all.first);
+BytesOfItems Deal::gather(Ranks& ranks, const std::function<std::vector<std::byte>(std::size_t)>& bytes_of) const {
+  const std::size_t items = first_.back();
+  BytesOfItems all;
+  all.first_.resize(items);
+  all.size_.resize(items);
+  std::vector<std::byte> own;
+  for (std::size_t k = first_[ranks.rank()]; k < first_[ranks.rank() + 1]; ++k) {
+    const std::vector<std::byte> bytes = bytes_of(item(k));
+    own.insert(own.end(), bytes.begin(), bytes.end());
+    all.size_[item(k)] = bytes.size();
+  }
+  share(ranks, std::span(all.size_));
+  std::vector<std::size_t> first_byte;
+  std::size_t next = 0;
+  for (std::size_t r = 0; r < ranks.size(); ++r) {
+    first_byte.push_back(next);
+    for (std::size_t k = first_[r]; k < first_[r + 1]; ++k) {
+      all.first_[item(k)] = next;
+      next += all.size_[item(k)];
+    }
+  }
+  first_byte.push_back(next);
+  all.bytes_.resize(next);
+  std::ranges::copy(own, all.bytes_.begin() + static_cast<std::ptrdiff_t>(first_byte[ranks.rank()]));
+  ranks.gather(all.bytes_, first_byte);
   return all;
 }
 

@@ -9,11 +9,26 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <functional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace alvor {
+
+/// Bytes of numbered items, in the order in which they were dealt to ranks.
+class BytesOfItems {
+ public:
+  /// Returns the bytes of item n.
+  std::span<const std::byte> operator[](std::size_t n) const { return std::span(bytes_).subspan(first_[n], size_[n]); }
+  /// Returns the bytes of all items.
+  std::span<const std::byte> all() const { return bytes_; }
+
+ private:
+  friend class Deal;
+  std::vector<std::byte> bytes_;
+  std::vector<std::size_t> first_, size_;  // by item
+};
 
 /// Which rank works on each of some numbered items.
 class Deal {
@@ -45,6 +60,9 @@ class Deal {
     for_each_own(ranks, values.size(), body);
     share(ranks, values);
   }
+  /// Collective. Returns the bytes of all items. Calls bytes_of(n) for the items that this rank works on. Requires: dealt in runs
+  /// or by rank.
+  BytesOfItems gather(Ranks& ranks, const std::function<std::vector<std::byte>(std::size_t)>& bytes_of) const;
 
  private:
   /// Returns the item at a place in the order of ranks.
@@ -76,18 +94,6 @@ void share_work(Ranks& ranks, std::span<T> values, Body&& body) {
   if (ranks.is_alone()) return tbb::parallel_for(std::size_t{0}, values.size(), body);
   Deal::in_runs(ranks, values.size()).for_each(ranks, values, body);
 }
-
-/// Bytes of all ranks.
-struct BytesOfRanks {
-  std::vector<std::byte> bytes;
-  std::vector<std::size_t> first;  ///< by rank: where its bytes begin; and their number
-
-  std::span<const std::byte> of(std::size_t rank) const {
-    return std::span(bytes).subspan(first[rank], first[rank + 1] - first[rank]);
-  }
-};
-/// Collective. Returns what each rank gives, of any size.
-BytesOfRanks gather_bytes(Ranks& ranks, std::span<const std::byte> own);
 
 /// Returns the rank, of `ranks`, that works on a patch. It depends on nothing else. Consecutive roots go to different ranks as
 /// evenly as multiples of the golden ratio, modulo 1, fill an interval (Knuth, The Art of Computer Programming 3, section 6.4);

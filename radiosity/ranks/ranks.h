@@ -43,7 +43,7 @@ class Ranks {
 
   /// Returns how many ranks run on the machine of this one, itself included.
   std::size_t ranks_on_this_machine() const { return ranks_on_this_machine_; }
-  /// What this rank has spent so far on solving with others; all 0 if there are none.
+  /// The time and the bytes that a rank has spent so far on solving together with others; all 0 for a single rank.
   struct Spent {
     double work_s = 0;         ///< wall seconds of work that is dealt to ranks (Deal)
     double collectives_s = 0;  ///< wall seconds in collectives: waiting for others, and bytes on their way

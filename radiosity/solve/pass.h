@@ -22,8 +22,8 @@ enum class RowsToTrace { all, a_part };
 /// The told errors of leaves, each relative to the irradiance there, or to a tenth of the mean irradiance where it is darker.
 struct ErrorByPlace {
   double area_within = 1;  ///< share of the visible area whose error is within the tolerance, in [0, 1]
-  double kept_error =
-      0;  ///< least error that SolveOptions::area_share of the visible area keeps; both areas are of SolveOptions::objects
+  /// Least error that SolveOptions::area_share of the visible area keeps. Both areas are of SolveOptions::objects.
+  double kept_error = 0;
 };
 
 /// Takes a state through one pass. With several ranks every function that does not only read, and balance(), is a collective. The

@@ -2,12 +2,9 @@
 
 #include "radiosity/solve/pass.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 #include <unordered_map>
-#include <utility>
 
 namespace alvor {
 
@@ -18,7 +15,6 @@ namespace {
 constexpr double least_gain = 3;
 // Every fourth hit of a neighbouring row is used, so that eight neighbours tell as much as two whole rows.
 constexpr std::size_t neighbour_stride = 4;
-
 // Rows whose guides are made together, so that what ranks tell each other for it stays small. Chosen.
 constexpr std::size_t rows_guided_at_once = 8192;
 
@@ -29,50 +25,43 @@ struct HitSeen {
   double weight;       ///< mean over bands
 };
 
-/// Returns every n-th hit of a row of this rank.
-std::vector<HitSeen> hits_of(const SolveState& state, NodeIndex row, std::size_t stride) {
+/// Calls body(HitSeen) for every n-th hit of a row of this rank.
+template <class Body>
+void for_each_hit(const SolveState& state, NodeIndex row, std::size_t stride, Body&& body) {
   const TransportRow& traced = state.rows[row];
   const auto leaves = state.rows.leaves_hit(row);
-  std::vector<HitSeen> hits;
   for (std::size_t h = 0; h < leaves.size(); h += stride)
-    hits.push_back({traced.hits[h], leaves[h], traced.hit_weight.empty() ? 1.0 : traced.hit_weight[h].mean()});
-  return hits;
+    body(HitSeen{traced.hits[h], leaves[h], traced.hit_weight.empty() ? 1.0 : traced.hit_weight[h].mean()});
 }
 
-/// Every n-th hit of rows that are on other ranks than rows beside them.
+/// Copies of every n-th hit of some rows, wherever they are: for ranks that guide rows beside them.
 class HitsOfOthers {
  public:
   /// Collective. `wanted` may name rows more than once.
   HitsOfOthers(const SolveState& state, std::vector<NodeIndex> wanted) {
+    if (state.ranks.is_alone()) return;
     std::ranges::sort(wanted);
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    std::vector<std::uint64_t> counts(wanted.size());
-    std::vector<HitSeen> own;
-    for (std::size_t n = 0; n < wanted.size(); ++n) {
-      if (!state.rows.is_own(wanted[n])) continue;
-      const auto hits = hits_of(state, wanted[n], neighbour_stride);
-      own.insert(own.end(), hits.begin(), hits.end());
-      counts[n] = hits.size();
-    }
-    state.ranks.sum(counts);
-    bytes_ = gather_bytes(state.ranks, std::as_bytes(std::span(own)));
-    std::vector<std::size_t> next(bytes_.first);
-    for (std::size_t n = 0; n < wanted.size(); ++n) {
-      std::size_t& begin = next[state.rows.rank_of(wanted[n])];
-      of_row_[wanted[n]] = {begin, counts[n]};
-      begin += counts[n] * sizeof(HitSeen);
-    }
+    hits_ = state.rows.deal(wanted).gather(state.ranks, [&](std::size_t n) {
+      return plain_bytes(
+          [&](PlainWriter& out) { for_each_hit(state, wanted[n], neighbour_stride, [&](const HitSeen& hit) { out.put(hit); }); });
+    });
+    for (std::size_t n = 0; n < wanted.size(); ++n) place_[wanted[n]] = n;
   }
-  std::vector<HitSeen> of(NodeIndex row) const {
-    const auto [begin, count] = of_row_.at(row);
-    std::vector<HitSeen> hits(count);
-    if (count > 0) std::memcpy(hits.data(), bytes_.bytes.data() + begin, count * sizeof(HitSeen));
-    return hits;
+  /// Calls body(HitSeen) for the hits of a row that was wanted.
+  template <class Body>
+  void for_each(NodeIndex row, Body&& body) const {
+    const auto bytes = hits_[place_.at(row)];
+    HitSeen hit;
+    for (std::size_t begin = 0; begin < bytes.size(); begin += sizeof(hit)) {
+      std::memcpy(static_cast<void*>(&hit), bytes.data() + begin, sizeof(hit));
+      body(hit);
+    }
   }
 
  private:
-  BytesOfRanks bytes_;
-  std::unordered_map<NodeIndex, std::pair<std::size_t, std::uint64_t>> of_row_;  // first byte, number of hits
+  BytesOfItems hits_;
+  std::unordered_map<NodeIndex, std::size_t> place_;  // of each row among those that were wanted
 };
 
 /// Adds hits, seen from `from`, to the guide of a row.
@@ -84,15 +73,13 @@ class HitsAround {
     s_ = vec3(receiver.tangent), t_ = vec3(receiver.bitangent), normal_ = vec3(receiver.normal);
   }
 
-  /// Each hit counts for `stride` hits.
-  void add(std::span<const HitSeen> hits, std::size_t stride) {
-    for (const HitSeen& hit : hits) {
-      const PatchShape place = shape_of(mesh_, hit.place);
-      const Uv middle = place.centre();
-      const Vec3 way = mesh_.roots()[place.root].at(middle.u, middle.v) - from_;
-      builder_.add({dot(way, s_), dot(way, t_), dot(way, normal_)}, radiosity_.mean(static_cast<NodeIndex>(hit.leaf)),
-                   hit.weight * double(stride));
-    }
+  /// Adds a hit that counts for `stride` hits.
+  void add(const HitSeen& hit, std::size_t stride) {
+    const PatchShape place = shape_of(mesh_, hit.place);
+    const Uv middle = place.centre();
+    const Vec3 way = mesh_.roots()[place.root].at(middle.u, middle.v) - from_;
+    builder_.add({dot(way, s_), dot(way, t_), dot(way, normal_)}, radiosity_.mean(static_cast<NodeIndex>(hit.leaf)),
+                 hit.weight * double(stride));
   }
 
  private:
@@ -140,10 +127,11 @@ void Pass::guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leavin
     GuideBuilder builder;
     HitsAround around(state_.mesh, leaving, state_.scene.root(state_.forests.rows().id(rows[n]).root_face()),
                       state_.forests.row_centres()[rows[n]], builder);
-    around.add(hits_of(state_, rows[n], 1), 1);
+    for_each_hit(state_, rows[n], 1, [&](const HitSeen& hit) { around.add(hit, 1); });
+    const auto add_of_neighbour = [&](const HitSeen& hit) { around.add(hit, neighbour_stride); };
     for_each_lit(n, [&](NodeIndex neighbour) {
-      around.add(state_.rows.is_own(neighbour) ? hits_of(state_, neighbour, neighbour_stride) : others.of(neighbour),
-                 neighbour_stride);
+      if (state_.rows.is_own(neighbour)) for_each_hit(state_, neighbour, neighbour_stride, add_of_neighbour);
+      else others.for_each(neighbour, add_of_neighbour);
     });
     guides[n] = builder.guide(least_gain);
   });

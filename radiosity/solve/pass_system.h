@@ -25,7 +25,7 @@ class PassSystem {
     return leaves().subspan(patches_[patch].first_leaf, patches_[patch].leaf_count);
   }
 
-  /// Which rank has the hits of each patch's row.
+  /// Returns which rank has the hits of each patch's row.
   const Deal& deal() const { return deal_; }
 
   /// Collective. Returns an exchange of light by the strategy of the options. If rows carry no light it has no patches.

@@ -45,8 +45,8 @@ struct SolveControl {
   /// same on all ranks. Empty: the solve begins anew.
   std::span<const std::byte> checkpoint;
 
-  /// The ranks that solve together, of which this process is one. Must outlive the solve.
-  Ranks& ranks = Ranks::alone();
+  /// The ranks that solve together, of which this process is one. Never null; must outlive the solve.
+  Ranks* ranks = &Ranks::alone();
 };
 
 }  // namespace alvor

@@ -4,6 +4,7 @@
 #include "radiosity/solve/cpu_clock.h"
 #include "radiosity/solve/pass.h"
 #include "radiosity/solve/solve_clock.h"
+#include "radiosity/solve/stop_requests.h"
 
 #include <tbb/task_arena.h>
 
@@ -82,8 +83,8 @@ class Run {
         log_(log),
         control_(control),
         cpu_(cpu),
-        ranks_(control.ranks),
-        budget_([this] { return wishes_here().any(); }),
+        ranks_(*control.ranks),
+        budget_([this] { return requests_.made_here().any(); }),
         state_(mesh, plan, options, budget_, ranks_) {}
 
   SolveOutcome run() {
@@ -104,13 +105,13 @@ class Run {
     for (;;) {
       save_if_due();
       pass_.emplace(state_);
-      if (!pass()) return stop_reason();
+      if (!pass()) return requests_.reason();
       if (error_to_keep() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
-      if (must_break_off()) return stop_reason();
-      const bool is_better = gains() && pass_->refine([this] { return wishes_here().end(); });
-      if (must_stop()) return stop_reason();
+      if (must_break_off()) return requests_.reason();
+      const bool is_better = gains() && pass_->refine([this] { return requests_.made_here().break_off(); });
+      if (must_stop()) return requests_.reason();
       if (!is_better) {
         pass_.emplace(state_);
         pass_->begin_exchange();
@@ -154,7 +155,7 @@ class Run {
       if (must_stop()) return false;
       pass_->add_direct_light([this] {
         ++is_.shots;
-        if (is_.passes == 0 && !wishes_here().any()) publish_if_due();
+        if (is_.passes == 0 && !requests_.made_here().any()) publish_if_due();
         save_if_due();
       });
     }
@@ -164,7 +165,7 @@ class Run {
   /// Exchanges light down to final_remaining, publishes, and returns why the solve ends: `reason`, or that the exchange was
   /// stopped or has stalled.
   StopReason converge(StopReason reason) {
-    if (!exchange_down_to(final_remaining)) return stop_reason();
+    if (!exchange_down_to(final_remaining)) return requests_.reason();
     pass_->show_what_came_since();
     is_.error.unshot = pass_->exchange().remaining_error();
     account();
@@ -222,7 +223,7 @@ class Run {
     log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
-    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return wishes_here().any(); });
+    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return requests_.made_here().any(); });
   }
 
   /// Collective.
@@ -280,36 +281,10 @@ class Run {
   bool may_be_last() const {
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
-  /// Why a solve shall end that could go on.
-  struct Wishes {
-    bool cancelled = false, memory = false, time_limit = false, parked = false;
+  /// Collective. See StopRequests::Made.
+  bool must_break_off() { return requests_.ask().break_off(); }
+  bool must_stop() { return requests_.ask().any(); }
 
-    /// A request to park is not among them: a solve that went on from the middle of an exchange would go on differently.
-    bool end() const { return cancelled || memory || time_limit; }
-    bool any() const { return end() || parked; }
-  };
-  /// Returns what this rank knows of. Safe from any thread. A wish that is true stays true.
-  Wishes wishes_here() const {
-    return {control_.stop.stop_requested(), control_.short_of_memory.stop_requested(),
-            ranks_.is_first() && clock_.elapsed_s() > options_.time_limit_s, control_.park.stop_requested()};
-  }
-  /// Collective. Learns of the wishes of all ranks.
-  const Wishes& ask() {
-    const Wishes here = wishes_here();
-    std::array<std::uint64_t, 4> counts{here.cancelled, here.memory, here.time_limit, here.parked};
-    ranks_.sum(counts);
-    return wishes_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0};
-  }
-  /// Collective. Returns whether to give up even in the middle of an exchange.
-  bool must_break_off() { return ask().end(); }
-  /// Collective.
-  bool must_stop() { return ask().any(); }
-  /// As of the last call of ask().
-  StopReason stop_reason() const {
-    if (wishes_.cancelled) return StopReason::cancelled;
-    if (wishes_.memory) return StopReason::memory;
-    return wishes_.time_limit ? StopReason::time_limit : StopReason::parked;
-  }
   /// Collective. Ends the solve if ranks differ in what they found, as on machines that compute differently.
   void expect_agreement() {
     const std::array<std::uint64_t, 3> here{std::bit_cast<std::uint64_t>(is_.error.total()),
@@ -338,7 +313,7 @@ class Run {
   SolveClock clock_;
   const CpuClock& cpu_;
   Ranks& ranks_;
-  Wishes wishes_;
+  StopRequests requests_{control_, clock_, options_.time_limit_s};
   RayBudget budget_;
   SolveState state_;
   std::optional<Pass> pass_{state_};
@@ -382,9 +357,9 @@ SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const Solv
                               const SolveControl& control) {
   assert(!mesh.roots().empty());
   assert(!control.checkpoint.empty() || log.head() == 0);
-  if (const auto why = why_on_one_rank(options); !why.empty() && !control.ranks.is_alone())
+  if (const auto why = why_on_one_rank(options); !why.empty() && !control.ranks->is_alone())
     throw std::invalid_argument("takes a single rank: " + std::string(why));
-  const int threads = options.threads > 0 ? options.threads : threads_of(control.ranks);
+  const int threads = options.threads > 0 ? options.threads : threads_of(*control.ranks);
   tbb::task_arena arena(threads, 1, priority_of(control.priority));
   const CpuClock cpu(arena);
   return arena.execute([&] {

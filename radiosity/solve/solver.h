@@ -29,7 +29,7 @@ struct SolveOutcome {
 /// Solves on the calling thread and its worker threads; publishes every step to `log`. The first step is published before any ray
 /// is traced. With several ranks all of them call this with the same mesh, plan, options and checkpoint; the first publishes, and
 /// the bytes that it publishes do not depend on the number of ranks. Throws BadBytes if the checkpoint cannot be of this mesh and
-/// these options, and invalid_argument if the strategy or the form factors are made for one rank only (why_on_one_rank).
+/// these options, and invalid_argument with several ranks where why_on_one_rank() says that the options take one.
 /// Requires: !mesh.roots().empty(), log.head() == 0 without a checkpoint; the plan is of this mesh and these options.
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control);

@@ -45,7 +45,7 @@ TransportRow load_row(std::size_t roots, PlainReader& in, std::uint32_t version)
   return row;
 }
 
-/// What all ranks keep of a row that was just traced, or of one round of its rays.
+/// A row that was just traced, or one round of its rays, without the hits: the part of it that every rank keeps.
 struct RowHead {
   std::uint32_t rays;
   std::uint16_t hidden_origins;
@@ -106,10 +106,7 @@ std::vector<NodeIndex> TracedRows::untraced() const {
 bool TracedRows::trace(std::span<const NodeIndex> rows) {
   std::vector<RowSize> sizes;
   for (const NodeIndex row : rows) sizes.push_back(size_of(forests_.rows().id(row)));
-  const bool nothing_to_find = !carry_light() && !plan_.backs_are_seen();
-  auto found = nothing_to_find ? std::optional(std::vector(rows.size(), TransportRow{.rays = rays_per_row}))
-                               : traced(rows, sizes, options_.seed);
-  if (nothing_to_find && budget_.settle(ranks_)) return false;
+  auto found = traced(rows, sizes, options_.seed);
   if (!found) return false;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     rows_[rows[n]] = std::move((*found)[n]);
@@ -152,6 +149,8 @@ Deal TracedRows::deal(std::span<const NodeIndex> rows) const {
 
 std::vector<TransportRow> TracedRows::traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
                                                   std::uint64_t seed) {
+  const bool nothing_to_find = !carry_light() && !plan_.backs_are_seen();
+  if (nothing_to_find) return std::vector(rows.size(), TransportRow{.rays = rays_per_row});
   std::vector<PatchShape> shapes;
   std::vector<PatchId> patches;
   std::vector<const DirectionGuide*> guides;
@@ -225,22 +224,9 @@ void TracedRows::save_rows(PlainWriter& out) const {
 
 /// Collective. Writes some rows of all ranks.
 void TracedRows::save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const {
-  std::vector<std::uint64_t> sizes(rows.size());
-  std::vector<std::byte> own;
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    if (!is_own(rows[n])) continue;
-    const auto bytes = plain_bytes([&](PlainWriter& row) { save(rows_[rows[n]], row); });
-    own.insert(own.end(), bytes.begin(), bytes.end());
-    sizes[n] = bytes.size();
-  }
-  ranks_.sum(sizes);
-  const BytesOfRanks all = gather_bytes(ranks_, own);
-  std::vector<std::size_t> next(all.first);
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    std::size_t& begin = next[rank_of(rows[n])];
-    out.put_bytes(std::span(all.bytes).subspan(begin, sizes[n]));
-    begin += sizes[n];
-  }
+  const BytesOfItems saved =
+      deal(rows).gather(ranks_, [&](std::size_t n) { return plain_bytes([&](PlainWriter& row) { save(rows_[rows[n]], row); }); });
+  for (std::size_t n = 0; n < rows.size(); ++n) out.put_bytes(saved[n]);
 }
 
 void TracedRows::load_rows(PlainReader& in, std::uint32_t version) {

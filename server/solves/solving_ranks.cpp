@@ -2,62 +2,70 @@
 
 #include "proto/codec.h"
 #include "radiosity/ranks/launched_ranks.h"
+#include "server/archive/content.h"
 
 #include <csignal>
 #include <stdexcept>
+#include <type_traits>
 
 namespace alvor {
 
 namespace {
 
-/// What the first rank tells the others: a number of bytes that describe a solve, or that there are no more.
+/// The number of bytes that describe the next solve, which the first rank sends to the others; or that there are no more solves.
 using Order = std::uint64_t;
 constexpr Order end_of_orders = ~Order{0};
 
-std::span<const char> as_chars(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+/// Collective. Returns the order of the first rank.
+Order broadcast(Ranks& ranks, Order order) {
+  ranks.broadcast(std::as_writable_bytes(std::span(&order, 1)));
+  return order;
+}
+
+/// Calls visit(member) for all members that say what is solved: not for the pause between steps, which is the first rank's.
+template <class Options, class Visit>
+void for_each_member(Options& options, Visit&& visit) {
+  visit(options.tolerance);
+  visit(options.area_share);
+  visit(options.max_depth);
+  visit(options.max_leaves);
+  visit(options.min_edge_m);
+  visit(options.time_limit_s);
+  visit(options.threads);
+  visit(options.seed);
+  visit(options.strategy);
+  visit(options.form_factors);
+  visit(options.forced_on);
+}
+
+void put(std::span<const std::byte> bytes, PlainWriter& out) {
+  out.put(std::uint64_t{bytes.size()});
+  out.put_bytes(bytes);
 }
 
 void put(const SolveOptions& options, PlainWriter& out) {
-  out.put(options.tolerance);
-  out.put(options.area_share);
+  for_each_member(options, [&](const auto& member) { out.put_bytes(std::as_bytes(std::span(&member, 1))); });
   out.put(std::uint64_t{options.objects.size()});
-  for (const std::string& name : options.objects) out.put_all(std::span(name));
-  out.put(std::int32_t{options.max_depth});
-  out.put(options.max_leaves);
-  out.put(options.min_edge_m);
-  out.put(options.time_limit_s);
-  out.put(std::int32_t{options.threads});
-  out.put(options.seed);
-  out.put(static_cast<std::uint8_t>(options.strategy));
-  out.put(static_cast<std::uint8_t>(options.form_factors));
-  out.put(options.forced_on);
+  for (const std::string& name : options.objects) put(std::as_bytes(std::span(name)), out);
 }
 
 SolveOptions get_options(PlainReader& in) {
   SolveOptions options;
-  options.tolerance = in.get<double>();
-  options.area_share = in.get<double>();
+  for_each_member(options, [&](auto& member) {
+    using Member = std::remove_reference_t<decltype(member)>;
+    if constexpr (std::is_enum_v<Member>) member = static_cast<Member>(in.get<std::underlying_type_t<Member>>());
+    else member = in.get<Member>();
+  });
   for (auto names = in.get<std::uint64_t>(); names > 0; --names) {
     const auto name = in.get_all<char>();
     options.objects.emplace_back(name.begin(), name.end());
   }
-  options.max_depth = in.get<std::int32_t>();
-  options.max_leaves = in.get<std::uint64_t>();
-  options.min_edge_m = in.get<double>();
-  options.time_limit_s = in.get<double>();
-  options.threads = in.get<std::int32_t>();
-  options.seed = in.get<std::uint64_t>();
-  options.strategy = static_cast<Strategy>(in.get<std::uint8_t>());
-  options.form_factors = static_cast<FormFactorMethod>(in.get<std::uint8_t>());
-  options.forced_on = in.get<FeatureSet>();
   return options;
 }
 
 void put(const Scene& scene, PlainWriter& out) {
-  SceneSlicer slicer(scene);
-  for (v1::GeometryChunk chunk; slicer.next(chunk);) out.put_all(std::span<const char>(chunk.SerializeAsString()));
-  out.put_all(std::span<const char>());
+  for_each_chunk(scene, [&](std::span<const std::byte> chunk) { put(chunk, out); });
+  put(std::span<const std::byte>(), out);
 }
 
 Scene get_scene(PlainReader& in) {
@@ -78,23 +86,9 @@ SolveOutcome solve_together(const BaseMesh& mesh, const Plan& plan, const SolveO
   } catch (const BadBytes&) {
     throw;  // of the checkpoint, which all ranks read
   } catch (const std::exception& fault) {
-    control.ranks.end_all(fault.what());
+    control.ranks->end_all(fault.what());
   }
 }
-
-/// Makes a control that differs in its ranks and checkpoint.
-SolveControl with(const SolveControl& control, Ranks& ranks) {
-  return {.stop = control.stop,
-          .short_of_memory = control.short_of_memory,
-          .park = control.park,
-          .is_checkpoint_due = control.is_checkpoint_due,
-          .save = control.save,
-          .priority = control.priority,
-          .checkpoint = control.checkpoint,
-          .ranks = ranks};
-}
-
-void send(Ranks& ranks, Order order) { ranks.broadcast(std::as_writable_bytes(std::span(&order, 1))); }
 
 }  // namespace
 
@@ -102,7 +96,7 @@ SolvingRanks::SolvingRanks() : SolvingRanks(launched_ranks()) {}
 SolvingRanks::SolvingRanks(std::unique_ptr<Ranks> ranks) : several_(std::move(ranks)) {}
 
 SolvingRanks::~SolvingRanks() {
-  if (several_ && is_first()) send(*several_, end_of_orders);
+  if (several_ && is_first()) broadcast(*several_, end_of_orders);
 }
 
 int SolvingRanks::threads() const { return threads_of(ranks()); }
@@ -112,8 +106,7 @@ void SolvingRanks::follow() {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   for (;;) {
-    Order order = 0;
-    ranks().broadcast(std::as_writable_bytes(std::span(&order, 1)));
+    const Order order = broadcast(ranks(), {});
     if (order == end_of_orders) return;
     std::vector<std::byte> bytes(order);
     ranks().broadcast(bytes);
@@ -124,7 +117,7 @@ void SolvingRanks::follow() {
       const BaseMesh mesh(get_scene(in));
       bytes = {};
       SolutionLog nowhere;
-      const SolveControl control{.checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = ranks()};
+      const SolveControl control{.checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = &ranks()};
       solve_together(mesh, Plan(mesh, options), options, nowhere, control);
     } catch (const BadBytes&) {  // the first rank says it
     } catch (const std::exception& fault) {
@@ -140,13 +133,15 @@ Solver SolvingRanks::solver() {
     if (!why_on_one_rank(options).empty()) return solve_in_process(scene, plan, options, log, control);
     auto bytes = plain_bytes([&](PlainWriter& out) {
       put(options, out);
-      out.put_all(as_chars(control.checkpoint));
+      put(control.checkpoint, out);
       put(scene.scene, out);
     });
-    send(*several_, bytes.size());
+    broadcast(*several_, bytes.size());
     several_->broadcast(bytes);
     bytes = {};
-    return solve_together(scene.mesh, plan, options, log, with(control, *several_));
+    SolveControl together = control;
+    together.ranks = several_.get();
+    return solve_together(scene.mesh, plan, options, log, together);
   };
 }
 

@@ -15,7 +15,7 @@ class SolvingRanks {
   /// As launched_ranks() finds them: a single one if the program was started alone.
   SolvingRanks();
   explicit SolvingRanks(std::unique_ptr<Ranks> ranks);
-  /// Of the first rank: lets the others end. No solve may run.
+  /// Lets follow() return on the other ranks, if this is the first one. No solve may run.
   ~SolvingRanks();
   SolvingRanks(const SolvingRanks&) = delete;
 
@@ -23,10 +23,10 @@ class SolvingRanks {
   bool is_first() const { return ranks().is_first(); }
   /// Returns the most threads that a solve may use on each rank.
   int threads() const;
-  /// Of the others: takes part in solves until the first rank ends.
+  /// Takes part in the solves of the first rank until that one ends. Requires: !is_first().
   void follow();
-  /// Of the first: returns what solves on all ranks, one solve at a time, or in this process alone if the options ask for what
-  /// only one rank can do. This must outlive it.
+  /// Returns a solver for the first rank. It solves on all ranks, one solve at a time, or in this process alone if the options
+  /// ask for what only one rank can do. Must not be called after this was destroyed.
   Solver solver();
 
  private:

@@ -53,7 +53,7 @@ Solved solve_on(Ranks& ranks, const Case& one, const Part& part, const Saved& fr
   Solved solved;
   std::stop_source park;
   int places = part.park_at;
-  SolveControl control{.stop = part.stop, .park = park.get_token(), .checkpoint = from.state, .ranks = ranks};
+  SolveControl control{.stop = part.stop, .park = park.get_token(), .checkpoint = from.state, .ranks = &ranks};
   if (ranks.is_first()) {
     control.is_checkpoint_due = [&] {
       if (places-- == 0) park.request_stop();
