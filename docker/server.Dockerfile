@@ -1,4 +1,5 @@
 # The Alvor server and its page. From the project's root: docker build -f docker/server.Dockerfile -t alvor-server .
+# The same with Open MPI and ssh, for servers of several ranks (docs/cluster.md): docker build -f docker/server.Dockerfile --target ranks -t alvor-ranks .
 
 FROM debian:bookworm-slim AS page
 WORKDIR /alvor
@@ -15,10 +16,10 @@ WORKDIR /alvor
 COPY scripts/setup.sh scripts/
 RUN scripts/setup.sh compile
 COPY . .
-RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import && \
-    strip build/release/bin/alvor build/release/bin/alvord build/release/bin/alvor-import
+RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import alvor-mpi && \
+    cd build/release/bin && strip alvor alvord alvor-import alvor-mpi.so
 
-FROM debian:bookworm-slim
+FROM debian:bookworm-slim AS server
 RUN apt-get update -qq && \
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
       libassimp5 libembree3-3 libgrpc++1.51 libopenexr-3-1-30 libopenmesh1 libprometheus-cpp-pull1.0 libprotobuf32 libseccomp2 libspdlog1.10 \
@@ -37,3 +38,22 @@ VOLUME /var/lib/alvor
 EXPOSE 50051 50052 8080 9464
 HEALTHCHECK --interval=10s --timeout=5s --start-period=30s CMD ["alvord", "--probe", "127.0.0.1:50052"]
 ENTRYPOINT ["alvord"]
+
+# A host that waits for ranks. The one that starts them runs mpirun instead.
+FROM server AS ranks
+USER 0
+RUN apt-get update -qq && \
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libcairo2 openmpi-bin openssh-client openssh-server && \
+    rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* /etc/ssh/ssh_host_* && \
+    sed -i '/^alvor:/s:/usr/sbin/nologin:/bin/sh:' /etc/passwd
+COPY --from=build /alvor/build/release/bin/alvor /alvor/build/release/bin/alvor-mpi.so /usr/local/bin/
+COPY docker/ranks/sshd_config /etc/alvor/
+COPY docker/ranks/ssh_config /etc/ssh/ssh_config.d/alvor.conf
+COPY docker/ranks/openmpi-mca-params.conf /etc/openmpi/
+USER 10001:10001
+RUN mpirun -n 2 --oversubscribe alvor --version > /dev/null
+EXPOSE 2222
+ENTRYPOINT []
+CMD ["/usr/sbin/sshd", "-D", "-e", "-f", "/etc/alvor/sshd_config"]
+
+FROM server

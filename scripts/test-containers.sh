@@ -38,6 +38,7 @@ echo "Building the images"
 why=$(provide_base_image 2>&1) || skip "no base image: ${why##*$'\n'}"
 first=$(podman run --rm --network host "$base_image" true 2>&1) || skip "podman cannot run a container here: ${first##*$'\n'}"
 build_image server
+build_image server ranks
 build_image client
 build_image front
 

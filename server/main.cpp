@@ -128,12 +128,13 @@ class Heartbeat {
 
 // Returns the server of metrics, or null without an address.
 std::unique_ptr<prometheus::Exposer> expose(const std::string& address, const alvor::Service& service,
-                                            const std::shared_ptr<prometheus::Collectable>& door) {
+                                            const std::vector<std::shared_ptr<prometheus::Collectable>>& others) {
   if (address.empty()) return nullptr;
   try {
     auto exposer = std::make_unique<prometheus::Exposer>(address);
     exposer->RegisterCollectable(service.metrics());
-    exposer->RegisterCollectable(door);
+    for (const auto& each : others)
+      if (each) exposer->RegisterCollectable(each);
     return exposer;
   } catch (const std::exception&) {
     throw std::invalid_argument("--metrics: " + alvor::cannot_listen(address));
@@ -163,8 +164,13 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
                                       alvor::Archive* archive, std::shared_ptr<alvor::FrontDoor> door,
                                       alvor::SolvingRanks& ranks) {
   alvor::ServiceOptions service;
-  service.solves.solver = ranks.solver();
-  service.solves.max_running = ranks.size() == 1 ? options.max_solves : 1;
+  service.solves.max_running = options.max_solves;
+  if (ranks.size() > 1) {
+    service.solves.solver_for = [&ranks](std::uint64_t faces, const alvor::SolveOptions& how) {
+      return ranks.solver_for(faces, how);
+    };
+    service.solves.max_running = std::min(options.max_solves, static_cast<int>(ranks.most_gangs()));
+  }
   service.solves.limits.threads = ranks.threads();
   service.solves.logger = logger;
   service.solves.spare_solves = [door] { return door->end_greediest(much_received); };
@@ -183,7 +189,7 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
 }
 
 int serve(const alvor::ServerOptions& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
-  alvor::SolvingRanks ranks;
+  alvor::SolvingRanks ranks({options.gang, alvor::MemoryGuard(options.memory_limit)});
   if (!ranks.is_first()) {
     ranks.follow();
     return 0;
@@ -199,7 +205,8 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
   const auto health = serve_health(options.health, descriptors, *logger);
   const auto rpc = start(service, options, door, *logger);
   const auto door_metrics = std::make_shared<alvor::DoorMetrics>(*door);  // kept here, because the exposer does not keep it
-  const auto exposer = expose(options.metrics, service, door_metrics);
+  const auto rank_metrics = ranks.size() > 1 ? std::make_shared<alvor::RankMetrics>(ranks) : nullptr;
+  const auto exposer = expose(options.metrics, service, {door_metrics, rank_metrics});
   const auto web = serve_web(options, descriptors, rpc->server(), *logger);
   tell_health(true, *rpc, health.get());
   const Heartbeat heartbeat(archive.get());
@@ -209,7 +216,7 @@ int serve(const alvor::ServerOptions& options, const sigset_t& signals, const st
     tell_health(is_answered, *rpc, health.get());
   });
   logger->info("{} descriptors; at most {} connections, {} of one address", descriptors, limits.in_all, limits.by_address);
-  if (ranks.size() > 1) logger->info("{} ranks solve together", ranks.size());
+  if (ranks.size() > 1) logger->info("{} ranks solve at most {} scenes at a time", ranks.size(), ranks.most_gangs());
   logger->info("listening on {}", rpc->address());
   logger->info("stopping: {}", wait_for_stop(signals));
   self_probe.stop();

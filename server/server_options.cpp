@@ -72,6 +72,9 @@ void declare(CLI::App& app, ServerOptions& options) {
   app.add_option("--max-solves", options.max_solves, "Most solves that run at a time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  app.add_option("--gang", options.gang,
+                 "Started as several ranks (mpirun): how many of them share in the work of each solve (by the size of its scene)")
+      ->check(CLI::Range(1, 65535));
   app.add_option(
          "--memory-limit", options.memory_limit,
          "Memory in bytes (also K, M, G) near which new work is refused and solves are ended, before the system would kill the "

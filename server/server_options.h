@@ -24,6 +24,7 @@ struct ServerOptions {
   ConnectionLimits connections;
   std::string directory;
   int max_solves = SolveStoreOptions{}.max_running;
+  std::size_t gang = 0;
   double checkpoint_interval_s = 10;
   std::string metrics;
   std::string health, probe;

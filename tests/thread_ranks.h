@@ -3,10 +3,14 @@
 
 #include "radiosity/ranks/ranks.h"
 
+#include <algorithm>
 #include <barrier>
 #include <cstring>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -20,10 +24,10 @@ class ThreadRanks : public Ranks {
   }
   /// As run(), for bodies that keep their ranks in something else.
   static void run_owning(std::size_t size, const std::function<void(std::unique_ptr<Ranks>)>& body) {
-    Meeting meeting(size);
+    const auto meeting = std::make_shared<Meeting>(size);
     std::vector<std::jthread> threads;
     for (std::size_t rank = 0; rank < size; ++rank)
-      threads.emplace_back([&, rank] { body(std::unique_ptr<Ranks>(new ThreadRanks(rank, size, meeting))); });
+      threads.emplace_back([&, rank] { body(std::unique_ptr<Ranks>(new ThreadRanks(rank, size, true, meeting))); });
   }
 
  private:
@@ -32,9 +36,14 @@ class ThreadRanks : public Ranks {
     explicit Meeting(std::size_t size) : all_are_here(static_cast<std::ptrdiff_t>(size)), given(size) {}
     std::barrier<> all_are_here;
     std::vector<std::span<std::byte>> given;  // by rank
+
+    std::mutex lock;
+    std::map<std::vector<std::size_t>, std::vector<std::shared_ptr<Meeting>>> parts;  // by members, in the order of their calls
+    std::map<std::pair<std::vector<std::size_t>, std::size_t>, std::size_t> calls;    // by members and rank
   };
 
-  ThreadRanks(std::size_t rank, std::size_t size, Meeting& meeting) : Ranks(rank, size, size), meeting_(meeting) {}
+  ThreadRanks(std::size_t rank, std::size_t size, bool first_works, std::shared_ptr<Meeting> meeting)
+      : Ranks({rank, size, size, first_works, "rank " + std::to_string(rank)}), shared_(std::move(meeting)) {}
 
   /// Calls take() while every rank's bytes can be read. They may be changed after it returns.
   void meet(std::span<std::byte> own, const std::function<void()>& take) {
@@ -68,7 +77,17 @@ class ThreadRanks : public Ranks {
     });
   }
 
-  Meeting& meeting_;
+  std::unique_ptr<Ranks> do_part(const Part& part) override {
+    const std::size_t place = static_cast<std::size_t>(std::ranges::find(part.members, rank()) - part.members.begin());
+    const std::lock_guard hold(meeting_.lock);
+    auto& made = meeting_.parts[part.members];
+    const std::size_t call = meeting_.calls[{part.members, rank()}]++;
+    if (made.size() == call) made.push_back(std::make_shared<Meeting>(part.members.size()));
+    return std::unique_ptr<Ranks>(new ThreadRanks(place, part.members.size(), part.first_works, made[call]));
+  }
+
+  const std::shared_ptr<Meeting> shared_;
+  Meeting& meeting_ = *shared_;
 };
 
 }  // namespace alvor::test

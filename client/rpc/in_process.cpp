@@ -17,18 +17,29 @@ ServiceOptions own_options() {
   ServiceOptions options;
   options.upload.bytes = std::uint64_t{16} << 30;
   if (!program_ranks || program_ranks->size() == 1) return options;
-  options.solves.solver = program_ranks->solver();
-  options.solves.max_running = 1;
+  options.solves.solver_for = [](std::uint64_t faces, const SolveOptions& how) { return program_ranks->solver_for(faces, how); };
   options.solves.limits.threads = program_ranks->threads();
   return options;
 }
 
 }  // namespace
 
-ProgramRanks::ProgramRanks() { program_ranks = std::make_unique<SolvingRanks>(); }
+ProgramRanks::ProgramRanks() {
+  constexpr std::size_t all = 65535;
+  program_ranks = std::make_unique<SolvingRanks>(SolvingRanks::Options{.gang = all});
+}
 ProgramRanks::~ProgramRanks() { program_ranks.reset(); }
 bool ProgramRanks::is_first() const { return program_ranks->is_first(); }
 void ProgramRanks::follow() { program_ranks->follow(); }
+
+SolveOutcome solve_on_ranks(const Scene& scene, const BaseMesh& mesh, const SolveOptions& options, SolutionLog& log,
+                            const std::stop_token& stop) {
+  if (!program_ranks || program_ranks->size() == 1) return solve(mesh, options, log, stop);
+  const Solver solver = program_ranks->solver_for(mesh.roots().size(), options);
+  SolveOptions how = options;
+  if (how.threads == 0) how.threads = program_ranks->threads();
+  return solver(SceneContent{scene, mesh}, Plan(mesh, how), how, log, {.stop = stop});
+}
 
 struct InProcessServer::Parts {
   Service service{own_options()};

@@ -66,7 +66,7 @@ class SightOfUnits {
  public:
   /// Collective.
   SightOfUnits(const CoarseUnits& units, const RowHits& hits, Ranks& ranks) : first_(units.count + 1) {
-    const BytesOfItems by_rank = Deal::in_runs(ranks, ranks.size()).gather(ranks, [&](std::size_t) {
+    const BytesOfItems by_rank = Deal::one_each(ranks).gather(ranks, [&](std::size_t) {
       const std::vector<Seen> own = seen_here(units, hits);
       const auto bytes = std::as_bytes(std::span(own));
       return std::vector(bytes.begin(), bytes.end());

@@ -6,7 +6,16 @@ namespace alvor {
 
 Deal Deal::in_runs(const Ranks& ranks, std::size_t items) {
   Deal deal;
-  for (std::size_t r = 0; r <= ranks.size(); ++r) deal.first_.push_back(items * r / ranks.size());
+  for (std::size_t r = 0; r <= ranks.size(); ++r) {
+    const std::size_t workers_before = r - std::min(r, ranks.first_worker());
+    deal.first_.push_back(items * workers_before / ranks.workers());
+  }
+  return deal;
+}
+
+Deal Deal::one_each(const Ranks& ranks) {
+  Deal deal;
+  for (std::size_t r = 0; r <= ranks.size(); ++r) deal.first_.push_back(r);
   return deal;
 }
 

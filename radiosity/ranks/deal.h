@@ -35,8 +35,10 @@ class Deal {
  public:
   /// All items to this rank.
   Deal() = default;
-  /// To each rank a run of consecutive items, all runs of equal length but for one item.
+  /// To each rank that works a run of consecutive items, all runs of equal length but for one item.
   static Deal in_runs(const Ranks& ranks, std::size_t items);
+  /// To each rank the item of its number, whether it works or not.
+  static Deal one_each(const Ranks& ranks);
   /// Item n to rank `rank_of[n]`.
   static Deal by_rank(const Ranks& ranks, std::span<const std::uint16_t> rank_of);
 
@@ -95,12 +97,12 @@ void share_work(Ranks& ranks, std::span<T> values, Body&& body) {
   Deal::in_runs(ranks, values.size()).for_each(ranks, values, body);
 }
 
-/// Returns the rank, of `ranks`, that works on a patch. It depends on nothing else. Consecutive roots go to different ranks as
+/// Returns which of so many workers works on a patch. It depends on nothing else. Consecutive roots go to different ranks as
 /// evenly as multiples of the golden ratio, modulo 1, fill an interval (Knuth, The Art of Computer Programming 3, section 6.4);
 /// the four children of a patch go to different ranks too, and those of different patches are dealt differently.
-inline std::size_t rank_of(PatchId patch, std::size_t ranks) {
+inline std::size_t worker_of(PatchId patch, std::size_t workers) {
   const std::uint64_t root_last = std::rotr(patch.bits(), 32);
-  return static_cast<std::size_t>(((root_last * 0x9e3779b97f4a7c15u >> 32) * ranks) >> 32);
+  return static_cast<std::size_t>(((root_last * 0x9e3779b97f4a7c15u >> 32) * workers) >> 32);
 }
 
 }  // namespace alvor

@@ -39,7 +39,7 @@ std::unique_ptr<Ranks> launched_ranks() {
   using Make = Ranks* (*)();
   const auto make = reinterpret_cast<Make>(dlsym(load_module(), "alvor_make_ranks"));
   std::unique_ptr<Ranks> ranks(make != nullptr ? make() : nullptr);
-  if (!ranks) throw std::runtime_error("MPI cannot be called from more than one thread");
+  if (!ranks) throw std::runtime_error("MPI cannot be called from several threads at a time");
   return ranks->is_alone() ? nullptr : std::move(ranks);
 }
 

@@ -17,8 +17,8 @@ void Ranks::collective(std::size_t bytes_received, Call&& call) {
 
 void Ranks::gather(std::span<std::byte> all, std::span<const std::size_t> first) {
   if (is_alone()) return;
-  assert(first.size() == size_ + 1 && first.front() == 0 && first.back() == all.size());
-  collective(all.size() - (first[rank_ + 1] - first[rank_]), [&] { do_gather(all, first); });
+  assert(first.size() == size() + 1 && first.front() == 0 && first.back() == all.size());
+  collective(all.size() - (first[rank() + 1] - first[rank()]), [&] { do_gather(all, first); });
 }
 
 void Ranks::sum(std::span<std::uint64_t> values) {
@@ -36,7 +36,7 @@ bool Ranks::any_of(bool here) {
 }
 
 void Ranks::end_all(const std::string& why) {
-  std::cerr << "rank " << rank_ << " of " << size_ << ": " << why << std::endl;
+  std::cerr << name() << ": " << why << std::endl;
   do_end_all();
   std::_Exit(1);
 }

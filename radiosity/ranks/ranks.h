@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace alvor {
 
@@ -22,10 +24,13 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
 
-  std::size_t rank() const { return rank_; }  ///< of this process, below size()
-  std::size_t size() const { return size_; }
-  bool is_first() const { return rank_ == 0; }
-  bool is_alone() const { return size_ == 1; }
+  std::size_t rank() const { return place_.rank; }  ///< of this process, below size()
+  std::size_t size() const { return place_.size; }
+  bool is_first() const { return place_.rank == 0; }
+  bool is_alone() const { return place_.size == 1; }
+  /// Returns the lowest rank that shares in the work that is dealt: 0, or 1 where the first rank only decides, reads and speaks.
+  std::size_t first_worker() const { return place_.first_works ? 0 : 1; }
+  std::size_t workers() const { return size() - first_worker(); }
 
   /// Collective. Rank r has set the bytes [first[r], first[r + 1]) of `all`; returns when all bytes are set. Requires: size() + 1
   /// values of `first`, which begin with 0, never fall, and end with the size of `all`.
@@ -37,12 +42,23 @@ class Ranks {
   /// Collective. Returns whether `here` is true on any rank.
   bool any_of(bool here);
 
-  /// Ends all ranks with one line on stderr that names this one, and does not return. For faults in the midst of a solve, when
-  /// the others wait in a collective.
+  /// Some of these ranks, which call collectives of their own.
+  struct Part {
+    std::vector<std::size_t> members;  ///< by their ranks here, rising, at least two
+    bool first_works = true;           ///< whether members[0] shares in the work that is dealt
+    bool is_patient = false;           ///< its waits are long, so that a rank which waits may sleep longer between two looks
+  };
+  /// Collective of the members alone, with equal arguments. Returns them as ranks that are numbered by their places in `members`.
+  /// They may be used on another thread than these ranks. Two calls may overlap only if they have no more than the first rank in
+  /// common, and that one calls one after the other. Requires: several ranks.
+  std::unique_ptr<Ranks> part(const Part& part) { return do_part(part); }
+
+  /// Ends the ranks that the launcher started with one line on stderr that names this one, and does not return. For faults in the
+  /// midst of a solve, when the others wait in a collective.
   [[noreturn]] void end_all(const std::string& why);
 
-  /// Returns how many ranks run on the machine of this one, itself included.
-  std::size_t ranks_on_this_machine() const { return ranks_on_this_machine_; }
+  /// Returns how many of the ranks that the launcher started run on the machine of this one, itself included.
+  std::size_t ranks_on_this_machine() const { return place_.ranks_on_this_machine; }
   /// The time and the bytes that a rank has spent so far on solving together with others; all 0 for a single rank.
   struct Spent {
     double work_s = 0;         ///< wall seconds of work that is dealt to ranks (Deal)
@@ -64,8 +80,13 @@ class Ranks {
   static Ranks& alone();
 
  protected:
-  Ranks(std::size_t rank, std::size_t size, std::size_t ranks_on_this_machine)
-      : rank_(rank), size_(size), ranks_on_this_machine_(ranks_on_this_machine) {}
+  struct Place {
+    std::size_t rank = 0, size = 1, ranks_on_this_machine = 1;
+    bool first_works = true;
+    std::string name = "the only rank";  ///< of this process, as the launcher numbers it
+  };
+  explicit Ranks(Place place) : place_(std::move(place)) {}
+  const std::string& name() const { return place_.name; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -75,9 +96,10 @@ class Ranks {
   virtual void do_gather(std::span<std::byte>, std::span<const std::size_t>) {}
   virtual void do_sum(std::span<std::uint64_t>) {}
   virtual void do_broadcast(std::span<std::byte>) {}
+  virtual std::unique_ptr<Ranks> do_part(const Part&) { return nullptr; }
   virtual void do_end_all() {}
 
-  const std::size_t rank_ = 0, size_ = 1, ranks_on_this_machine_ = 1;
+  const Place place_;
   Spent spent_;
 };
 

@@ -23,7 +23,9 @@ class TracedRows {
   const TransportRow& operator[](NodeIndex row) const { return rows_[row]; }
   bool is_traced(NodeIndex row) const { return is_traced_[row]; }
   /// Returns the rank that traces the row and has its hits.
-  std::size_t rank_of(NodeIndex row) const { return alvor::rank_of(forests_.rows().id(row), ranks_.size()); }
+  std::size_t rank_of(NodeIndex row) const {
+    return ranks_.first_worker() + worker_of(forests_.rows().id(row), ranks_.workers());
+  }
   bool is_own(NodeIndex row) const { return ranks_.is_alone() || rank_of(row) == ranks_.rank(); }
   /// Deals rows to the ranks that have them.
   Deal deal(std::span<const NodeIndex> rows) const;

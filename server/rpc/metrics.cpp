@@ -3,15 +3,16 @@
 #include "proto/status_name.h"
 #include "server/access/front_door.h"
 #include "server/archive/record_codec.h"
+#include "server/base/cpu_time.h"
 #include "server/base/memory_guard.h"
 #include "server/rpc/call_counts.h"
 #include "server/solves/solve_store.h"
+#include "server/solves/solving_ranks.h"
 #include "server/watch/watches.h"
 
 #include <prometheus/metric_family.h>
 
 #include <algorithm>
-#include <ctime>
 
 namespace alvor {
 
@@ -45,12 +46,6 @@ MetricFamily one(const char* name, const char* help, MetricType type, double val
 
 // The step that metrics count for a solve that has published none.
 constexpr Step nothing_known{.unshot_fraction = 0, .estimated_error = 0};
-
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 }  // namespace
 
@@ -130,6 +125,23 @@ std::vector<MetricFamily> DoorMetrics::Collect() const {
   return {one("alvor_connections", "Connections at --listen.", MetricType::Gauge, static_cast<double>(counts.open)),
           one("alvor_connections_refused_total", "Connections that were closed because there were too many.", MetricType::Counter,
               static_cast<double>(counts.refused))};
+}
+
+std::vector<MetricFamily> RankMetrics::Collect() const {
+  MetricFamily memory =
+      family("alvor_rank_memory_bytes", "Memory in use by a rank that the system cannot take back.", MetricType::Gauge);
+  MetricFamily limit = family("alvor_rank_memory_limit_bytes", "Memory that a rank may use; 0 is no limit.", MetricType::Gauge);
+  MetricFamily cpu = family("alvor_rank_cpu_seconds_total", "Processor time of a rank.", MetricType::Counter);
+  MetricFamily solving = family("alvor_rank_solving", "1 if a rank shares in the work of a solve, else 0.", MetricType::Gauge);
+  const std::vector<RankStatus> statuses = ranks_.statuses();
+  for (std::size_t r = 0; r < statuses.size(); ++r) {
+    const std::vector<ClientMetric::Label> label{{"rank", std::to_string(r)}};
+    add(memory, static_cast<double>(statuses[r].held_bytes), label);
+    add(limit, static_cast<double>(statuses[r].memory_limit), label);
+    add(cpu, statuses[r].cpu_s, label);
+    add(solving, statuses[r].is_solving, label);
+  }
+  return {memory, limit, cpu, solving};
 }
 
 }  // namespace alvor

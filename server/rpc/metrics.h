@@ -18,6 +18,7 @@ class Watches;
 class CallCounts;
 class MemoryGuard;
 class FrontDoor;
+class SolvingRanks;
 struct KeepingCounts;
 
 /// Collects the server's metrics. It looks everything up when asked and costs a running solve nothing. Thread-safe; all its
@@ -56,6 +57,16 @@ class DoorMetrics : public prometheus::Collectable {
 
  private:
   const FrontDoor& door_;
+};
+
+/// Collects the metrics of all ranks, which must outlive it. Thread-safe.
+class RankMetrics : public prometheus::Collectable {
+ public:
+  explicit RankMetrics(SolvingRanks& ranks) : ranks_(ranks) {}
+  std::vector<prometheus::MetricFamily> Collect() const override;
+
+ private:
+  SolvingRanks& ranks_;
 };
 
 }  // namespace alvor

@@ -31,6 +31,9 @@ struct SolveStoreOptions {
   /// Ends something else that takes memory, if it can; asked before a solve must end. Returns whether it did.
   std::function<bool()> spare_solves = [] { return false; };
   Solver solver = solve_in_process;
+  /// Returns the solver of one solve of a scene of so many faces, held until that has ended; or an empty one while there is none,
+  /// so that the solve waits until another has ended. Null: `solver` for all.
+  std::function<Solver(std::uint64_t faces, const SolveOptions&)> solver_for;
   Keeping keeping;
   std::chrono::steady_clock::duration patience =
       std::chrono::seconds(7);                               ///< with solves that are to be parked when the server stops
@@ -89,8 +92,9 @@ class SolveStore {
   std::string hungriest_tenant() const ALVOR_REQUIRES(lock_);
   void drop_logs();
   Entry* next_waiting() ALVOR_REQUIRES(lock_);
-  void start(Entry& entry) ALVOR_REQUIRES(lock_);
-  void run(Entry& entry);
+  Solver solver_for(const Entry& entry) const;
+  void start(Entry& entry, Solver solver) ALVOR_REQUIRES(lock_);
+  void run(Entry& entry, Solver solver);
   void settle(const Entry& entry) ALVOR_REQUIRES(lock_);
   void join_finished() ALVOR_REQUIRES(lock_);
 

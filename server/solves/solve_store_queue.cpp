@@ -46,8 +46,10 @@ void SolveStore::start_waiting() {
   while (!stopping_ && running_ < options_.max_running) {
     Entry* const next = next_waiting();
     if (!next || (running_ > 0 && !options_.memory.has_room(least_memory(*next->scene.scene)))) return;
+    Solver solver = solver_for(*next);
+    if (!solver) return;
     try {
-      start(*next);
+      start(*next, std::move(solver));
     } catch (const std::system_error& fault) {
       options_.logger->error("solve {} waits: {}", next->solve->name, fault.what());
       return;
@@ -101,12 +103,16 @@ void SolveStore::drop_logs() {
   for (const auto& solve : all()) solve->drop_log();
 }
 
-void SolveStore::start(Entry& entry) {
+Solver SolveStore::solver_for(const Entry& entry) const {
+  return options_.solver_for ? options_.solver_for(entry.scene.scene->facts.face_count, entry.solve->options) : options_.solver;
+}
+
+void SolveStore::start(Entry& entry, Solver solver) {
   entry.cancel = {};
   entry.park = {};
   entry.short_of_memory = {};
   // It cannot begin before the lock is given back.
-  std::thread thread([this, &entry] { run(entry); });
+  std::thread thread([this, &entry, solver = std::move(solver)]() mutable { run(entry, std::move(solver)); });
   threads_.emplace(thread.get_id(), std::move(thread));
   entry.is_running = true;
   ++running_;
@@ -114,17 +120,17 @@ void SolveStore::start(Entry& entry) {
   options_.logger->info("solve {} started", entry.solve->name);
 }
 
-void SolveStore::run(Entry& entry) {
+void SolveStore::run(Entry& entry, Solver solver) {
   const auto solve = [&] {
     Lock hold(lock_);
     return entry.solve;
   }();
   be_as_nice_as(solve->priority);
   // What the scene has become may be far more than it was: faces of many corners are cut up.
-  const Solver solver = [&](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
-                            const SolveControl& control) {
+  const Solver admitted = [&](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
+                              const SolveControl& control) {
     options_.memory.admit("solve", bytes_a_face * scene.mesh.roots().size() + PatchReflectance::bytes_for(scene.mesh));
-    return options_.solver(scene, plan, how, log, control);
+    return solver(scene, plan, how, log, control);
   };
   const RunControl control{entry.cancel.get_token(), entry.short_of_memory.get_token(), entry.park.get_token(),
                            abandon_.get_token()};
@@ -132,8 +138,9 @@ void SolveStore::run(Entry& entry) {
     Lock hold(lock_);
     return entry.shall_pause;
   };
-  solve->run(solver, control, is_paused,
+  solve->run(admitted, control, is_paused,
              [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", solve->name, fault); });
+  solver = {};
   solve->drop_log();
   trim_heap_soon();
   report_end(*options_.logger, solve->describe());

@@ -1,25 +1,45 @@
 #include "server/solves/solving_ranks.h"
 
 #include "proto/codec.h"
+#include "radiosity/ranks/deal.h"
 #include "radiosity/ranks/launched_ranks.h"
 #include "server/archive/content.h"
+#include "server/base/cpu_time.h"
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <stdexcept>
+#include <stop_token>
+#include <thread>
 #include <type_traits>
 
 namespace alvor {
 
 namespace {
 
-/// The number of bytes that describe the next solve, which the first rank sends to the others; or that there are no more solves.
-using Order = std::uint64_t;
-constexpr Order end_of_orders = ~Order{0};
+// Faces of a scene for which a solve takes another rank into its gang. Chosen.
+constexpr std::uint64_t faces_a_rank = 5000;
 
-/// Collective. Returns the order of the first rank.
-Order broadcast(Ranks& ranks, Order order) {
-  ranks.broadcast(std::as_writable_bytes(std::span(&order, 1)));
-  return order;
+constexpr std::chrono::milliseconds between_looks{50};  // at the memory, as the first rank's store does
+
+/// Collective. Returns the value of the first rank.
+template <class Value>
+Value broadcast(Ranks& ranks, Value value) {
+  ranks.broadcast(std::as_writable_bytes(std::span(&value, 1)));
+  return value;
+}
+
+/// What the first rank asks of the others.
+enum class Order : std::uint8_t { end, go_on };
+
+/// Collective of a line. The first rank gives the members of a gang, by their ranks, and whether it shares in the work itself;
+/// the other returns them.
+Ranks::Part tell(Ranks& line, Ranks::Part part = {}) {
+  part.first_works = broadcast(line, part.first_works);
+  part.members.resize(broadcast(line, std::uint64_t{part.members.size()}));
+  line.broadcast(std::as_writable_bytes(std::span(part.members)));
+  return part;
 }
 
 /// Calls visit(member) for all members that say what is solved: not for the pause between steps, which is the first rank's.
@@ -90,58 +110,169 @@ SolveOutcome solve_together(const BaseMesh& mesh, const Plan& plan, const SolveO
   }
 }
 
+/// Returns a number of bytes from the first rank, and the bytes.
+std::vector<std::byte> receive(Ranks& ranks) {
+  std::vector<std::byte> bytes(broadcast(ranks, std::uint64_t{}));
+  ranks.broadcast(bytes);
+  return bytes;
+}
+
+void send(Ranks& ranks, std::vector<std::byte> bytes) {
+  broadcast(ranks, std::uint64_t{bytes.size()});
+  ranks.broadcast(bytes);
+}
+
 }  // namespace
 
-SolvingRanks::SolvingRanks() : SolvingRanks(launched_ranks()) {}
-SolvingRanks::SolvingRanks(std::unique_ptr<Ranks> ranks) : several_(std::move(ranks)) {}
+/// The ranks that share in the work of one solve, by their numbers. They are free again when this is destroyed.
+class SolvingRanks::Gang {
+ public:
+  Gang(SolvingRanks& all, std::vector<std::size_t> workers) : all_(all), workers_(std::move(workers)) {}
+  ~Gang() { all_.give_back(workers_); }
+  Gang(const Gang&) = delete;
+
+  bool is_first_alone() const { return workers_ == std::vector<std::size_t>{0}; }
+  std::unique_ptr<Ranks> call_together() const { return all_.call_together(workers_); }
+
+ private:
+  SolvingRanks& all_;
+  const std::vector<std::size_t> workers_;
+};
+
+SolvingRanks::SolvingRanks(Options options) : SolvingRanks(launched_ranks(), std::move(options)) {}
+
+SolvingRanks::SolvingRanks(std::unique_ptr<Ranks> ranks, Options options)
+    : options_(std::move(options)), several_(std::move(ranks)), is_free_(size(), true) {
+  if (!several_) return;
+  std::vector<std::size_t> all;
+  for (std::size_t r = 0; r < size(); ++r) all.push_back(r);
+  asking_ = several_->part({.members = all, .is_patient = true});
+  for (std::size_t r = 1; r < size(); ++r)
+    if (is_first() || several_->rank() == r) lines_.push_back(several_->part({.members = {0, r}, .is_patient = true}));
+}
 
 SolvingRanks::~SolvingRanks() {
-  if (several_ && is_first()) broadcast(*several_, end_of_orders);
+  if (!several_ || !is_first()) return;
+  for (const auto& line : lines_) broadcast(*line, Order::end);
+  broadcast(*asking_, Order::end);
 }
 
 int SolvingRanks::threads() const { return threads_of(ranks()); }
+
+std::size_t SolvingRanks::most_gangs() const {
+  return options_.gang == 0 ? size() : std::max<std::size_t>(1, size() / options_.gang);
+}
 
 void SolvingRanks::follow() {
   // A launcher passes on Ctrl-C and requests to end to all ranks. The first one decides, and needs the others until it has ended.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
-  for (;;) {
-    const Order order = broadcast(ranks(), {});
-    if (order == end_of_orders) return;
-    std::vector<std::byte> bytes(order);
-    ranks().broadcast(bytes);
-    try {
-      PlainReader in(bytes);
-      const SolveOptions options = get_options(in);
-      const auto checkpoint = in.get_all<char>();
-      const BaseMesh mesh(get_scene(in));
-      bytes = {};
-      SolutionLog nowhere;
-      const SolveControl control{.checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = &ranks()};
-      solve_together(mesh, Plan(mesh, options), options, nowhere, control);
-    } catch (const BadBytes&) {  // the first rank says it
-    } catch (const std::exception& fault) {
-      ranks().end_all(fault.what());
-    }
+  const std::jthread answering([this] { answer_questions(); });
+  Ranks& line = *lines_.front();
+  while (broadcast(line, Order::end) != Order::end) {
+    const auto gang = several_->part(tell(line));
+    std::stop_source short_of_memory;
+    const std::jthread watching([&](const std::stop_token& ended) {
+      for (; !ended.stop_requested() && !short_of_memory.stop_requested(); std::this_thread::sleep_for(between_looks))
+        if (options_.memory.is_short()) short_of_memory.request_stop();
+    });
+    is_solving_ = true;
+    take_part(*gang, short_of_memory.get_token());
+    is_solving_ = false;
   }
 }
 
-Solver SolvingRanks::solver() {
-  if (!several_) return solve_in_process;
-  return [this](const SceneContent& scene, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+/// Takes part in one solve of the first rank.
+void SolvingRanks::take_part(Ranks& gang, const std::stop_token& short_of_memory) {
+  std::vector<std::byte> bytes = receive(gang);
+  try {
+    PlainReader in(bytes);
+    const SolveOptions options = get_options(in);
+    const auto checkpoint = in.get_all<char>();
+    const BaseMesh mesh(get_scene(in));
+    bytes = {};
+    SolutionLog nowhere;
+    const SolveControl control{
+        .short_of_memory = short_of_memory, .checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = &gang};
+    solve_together(mesh, Plan(mesh, options), options, nowhere, control);
+  } catch (const BadBytes&) {  // the first rank says it
+  } catch (const std::exception& fault) {
+    gang.end_all(fault.what());
+  }
+  trim_heap_soon();
+}
+
+/// Takes part in statuses() of the first rank until that one ends.
+void SolvingRanks::answer_questions() {
+  std::vector<RankStatus> all(size());
+  while (broadcast(*asking_, Order::end) != Order::end) {
+    all[asking_->rank()] = own_status();
+    Deal::one_each(*asking_).share(*asking_, std::span(all));
+  }
+}
+
+RankStatus SolvingRanks::own_status() const { return {held_bytes(), options_.memory.limit(), cpu_seconds(), is_solving_}; }
+
+std::vector<RankStatus> SolvingRanks::statuses() {
+  std::vector<RankStatus> all(size());
+  all[0] = own_status();
+  {
+    Lock hold(lock_);
+    all[0].is_solving = !is_free_[0];
+  }
+  if (!several_) return all;
+  Lock hold(asking_lock_);
+  broadcast(*asking_, Order::go_on);
+  Deal::one_each(*asking_).share(*asking_, std::span(all));
+  return all;
+}
+
+/// Returns ranks that were free and no longer are; none if none was.
+std::vector<std::size_t> SolvingRanks::take_free(std::uint64_t faces) {
+  const std::uint64_t wanted = options_.gang > 0 ? options_.gang : 1 + faces / faces_a_rank;
+  std::vector<std::size_t> taken;
+  Lock hold(lock_);
+  for (std::size_t r = 0; r < is_free_.size() && taken.size() < wanted; ++r)
+    if (is_free_[r]) taken.push_back(r);
+  for (const std::size_t r : taken) is_free_[r] = false;
+  return taken;
+}
+
+void SolvingRanks::give_back(const std::vector<std::size_t>& workers) {
+  Lock hold(lock_);
+  for (const std::size_t r : workers) is_free_[r] = true;
+}
+
+/// Returns the first rank and these workers as ranks of their own.
+std::unique_ptr<Ranks> SolvingRanks::call_together(const std::vector<std::size_t>& workers) {
+  Ranks::Part part{workers, workers.front() == 0};
+  if (!part.first_works) part.members.insert(part.members.begin(), 0);
+  Lock hold(calling_);
+  for (std::size_t k = 1; k < part.members.size(); ++k) {
+    Ranks& line = *lines_[part.members[k] - 1];
+    broadcast(line, Order::go_on);
+    tell(line, part);
+  }
+  return several_->part(part);
+}
+
+Solver SolvingRanks::solver_for(std::uint64_t faces, const SolveOptions& options) {
+  if (!several_ || !why_on_one_rank(options).empty()) return solve_in_process;
+  std::vector<std::size_t> workers = take_free(faces);
+  if (workers.empty()) return {};
+  const auto gang = std::make_shared<const Gang>(*this, std::move(workers));
+  return [gang](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
                 const SolveControl& control) {
-    if (!why_on_one_rank(options).empty()) return solve_in_process(scene, plan, options, log, control);
-    auto bytes = plain_bytes([&](PlainWriter& out) {
-      put(options, out);
+    if (gang->is_first_alone()) return solve_in_process(scene, plan, how, log, control);
+    const auto together = gang->call_together();
+    send(*together, plain_bytes([&](PlainWriter& out) {
+      put(how, out);
       put(control.checkpoint, out);
       put(scene.scene, out);
-    });
-    broadcast(*several_, bytes.size());
-    several_->broadcast(bytes);
-    bytes = {};
-    SolveControl together = control;
-    together.ranks = several_.get();
-    return solve_together(scene.mesh, plan, options, log, together);
+    }));
+    SolveControl of_gang = control;
+    of_gang.ranks = together.get();
+    return solve_together(scene.mesh, plan, how, log, of_gang);
   };
 }
 

@@ -47,6 +47,14 @@ TEST_P(EqualBytes, OfOneToFourRanks) {
   }
 }
 
+TEST_F(RanksOfACommand, BakeTheSameLight) {
+  const std::string bake = "bake " ALVOR_SCENES "/cornell_box.obj --size 128 -o ";
+  ASSERT_EQ(run(bake + "alone.glb").status, 0);
+  const Ran ran = run_on(2, bake + "several.glb");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(text_of(file("several.glb")) == text_of(file("alone.glb")));
+}
+
 TEST_F(RanksOfACommand, OnlyTheFirstSpeaks) {
   const Ran ran = run_on(3, "--version");
   EXPECT_EQ(ran.status, 0);

@@ -23,9 +23,9 @@ class Server(Host):
   """alvord, on a volume that a later one finds as it was left."""
   VOLUME = "alvor-test-data"
 
-  def __init__(self, *command, options=()):
+  def __init__(self, *command, options=(), image="alvor-server"):
     storage = ["--volume", f"{self.VOLUME}:/var/lib/alvor"]
-    super().__init__("server", "alvor-server", ["--metrics", "0.0.0.0:9464", *command], [*storage, *options])
+    super().__init__("server", image, command, [*storage, "--env=ALVORD_METRICS=0.0.0.0:9464", *options])
     self.await_health()
 
   def await_health(self):
@@ -38,11 +38,14 @@ class Server(Host):
     super().start()
     self.await_health()
 
-  def metric(self, name):
+  def metrics(self):
     with urllib.request.urlopen(f"http://{address_of('server')}:9464/metrics", timeout=5) as page:
-      for line in page.read().decode().splitlines():
-        if line.startswith(name + " "):
-          return float(line.split()[-1])
+      return page.read().decode()
+
+  def metric(self, name):
+    for line in self.metrics().splitlines():
+      if line.startswith(name + " "):
+        return float(line.split()[-1])
     raise AssertionError(f"no metric {name}")
 
 
@@ -67,6 +70,10 @@ class World:
     made = Server(*command, **more)
     self.hosts.append(made)
     return made
+
+  def add(self, host):
+    self.hosts.append(host)
+    return host
 
   def client(self, *command, **more):
     made = Client(f"client{next(self.numbers)}", self.folder, *command, **more)

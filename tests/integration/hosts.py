@@ -31,7 +31,7 @@ def until(condition, seconds, what):
   return time.monotonic() - begin
 
 
-KNOWN = {"server": 200, "front": 201}  # hosts that all others know by these names, by the last part of the address
+KNOWN = {"server": 200, "front": 201, "worker": 202}  # hosts that all others know by these names, by the last part of the address
 
 
 def address_of(name):
@@ -45,10 +45,9 @@ class Host:
 
   def __init__(self, name, image, command=(), options=()):
     self.name = name
+    address = [word for known in KNOWN if known != name for word in ("--add-host", f"{known}:{address_of(known)}")]
     if name in KNOWN:  # the same card too: others remember it with the address for half a minute
-      address = ["--ip", address_of(name), "--mac-address", f"02:00:00:00:00:{KNOWN[name]:02x}"]
-    else:
-      address = [word for known in KNOWN for word in ("--add-host", f"{known}:{address_of(known)}")]
+      address += ["--hostname", name, "--ip", address_of(name), "--mac-address", f"02:00:00:00:00:{KNOWN[name]:02x}"]
     podman("run", "--detach", "--name", name, "--network", NETWORK, *address, *SHIPPED, *options, image, *command)
 
   def inspect(self, field):
@@ -61,6 +60,10 @@ class Host:
     """Its exit status."""
     until(lambda: not self.is_running(), seconds, f"{self.name} ends; it says: {self.log()[-1000:]}")
     return int(self.inspect(".State.ExitCode"))
+
+  def runs(self, program):
+    """Whether a process of this name runs on it."""
+    return program in podman("top", self.name, "comm").splitlines()
 
   def log(self):
     done = subprocess.run(["podman", "logs", self.name], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

@@ -80,12 +80,13 @@ provide_base_image() {
   rm -rf "$root"
 }
 
-# build_image NAME: from docker/NAME.Dockerfile, with the certificates, npm's registry and the compiler's cache of this machine.
+# build_image NAME [TARGET]: alvor-NAME, or alvor-TARGET, from docker/NAME.Dockerfile, with the certificates, npm's registry and the compiler's cache of this machine.
 build_image() {
-  local ccache=${CCACHE_DIR:-$HOME/.cache/ccache}
+  local image=${2:-$1} ccache=${CCACHE_DIR:-$HOME/.cache/ccache}
   mkdir -p "$ccache"
   printf 'registry=%s\ncafile=/etc/ssl/certs/ca-certificates.crt\n' "$(npm config get registry 2> /dev/null || echo https://registry.npmjs.org/)" > "$work/npmrc"
   podman build --quiet --jobs 2 --network host --format docker --pull=never --volume /etc/ssl/certs:/etc/ssl/certs:ro \
     --volume "$work/npmrc:/root/.npmrc:ro" --volume "$ccache:/root/.cache/ccache" \
-    -f "docker/$1.Dockerfile" -t "alvor-$1" . > "$work/build-$1.log" 2>&1 || { tail -30 "$work/build-$1.log" >&2; return 1; }
+    -f "docker/$1.Dockerfile" ${2:+--target "$2"} -t "alvor-$image" . > "$work/build-$image.log" 2>&1 ||
+    { tail -30 "$work/build-$image.log" >&2; return 1; }
 }

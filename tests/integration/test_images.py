@@ -1,5 +1,6 @@
 """The images as they ship."""
 
+import contextlib
 import pathlib
 import subprocess
 
@@ -32,19 +33,39 @@ def test_refuses_to_be_open_by_accident(world, observed):
   observed.append("exit status 2, and says what to do")
 
 
-def test_compose(observed):
-  """docker/compose.yaml: server, page, metrics, and a client that writes pictures, as it stands."""
-  compose = ["podman-compose", "--project-name", "alvor-compose", "--file", "docker/compose.yaml"]
+@contextlib.contextmanager
+def composed(file):
+  """Services of a file of docker/, up to the end of their client. Returns the folder of what that wrote."""
+  compose = ["podman-compose", "--project-name", "alvor-compose", "--file", f"docker/{file}"]
   try:
     run(*compose, "up", "--detach", "--no-build", timeout=120)
     client = podman("ps", "--all", "--filter", "name=alvor-compose_client", "--format", "{{.Names}}")
     until(lambda: podman("inspect", "--format", "{{.State.Status}}", client) == "exited", 60, "the client ends")
     assert podman("inspect", "--format", "{{.State.ExitCode}}", client) == "0", podman("logs", client)
-    out = pathlib.Path(podman("volume", "inspect", "--format", "{{.Mountpoint}}", "alvor-compose_pictures"))
+    yield pathlib.Path(podman("volume", "inspect", "--format", "{{.Mountpoint}}", "alvor-compose_pictures"))
+  finally:
+    run(*compose, "down", "--volumes", timeout=120, check=False)
+
+
+def metrics():
+  return run("curl", "--silent", "--fail", "http://127.0.0.1:9464/metrics")
+
+
+def test_compose(observed):
+  """docker/compose.yaml: server, page, metrics, and a client that writes pictures, as it stands."""
+  with composed("compose.yaml") as out:
     pictures = list(out.glob("film/*.png"))
     assert len(pictures) > 5 and (out / "cornell_box.glb").exists()
     assert "<title>" in run("curl", "--silent", "--fail", "http://127.0.0.1:8080/")
-    assert "alvor_scenes 1" in run("curl", "--silent", "--fail", "http://127.0.0.1:9464/metrics")
+    assert "alvor_scenes 1" in metrics()
     observed.append(f"{len(pictures)} pictures and a GLB; page and metrics answer")
-  finally:
-    run(*compose, "down", "--volumes", timeout=120, check=False)
+
+
+def test_compose_of_ranks(observed):
+  """docker/compose.ranks.yaml: a server of two ranks on two hosts, and a client that solves there, as it stands."""
+  run("docker/ranks/key.sh", "docker/secrets/ssh")
+  with composed("compose.ranks.yaml") as out:
+    assert (out / "cornell_box.glb").exists()
+    busy = [line for line in metrics().splitlines() if line.startswith("alvor_rank_cpu_seconds_total{")]
+    assert len(busy) == 2, busy
+    observed.append("a GLB; metrics of two ranks")

@@ -179,7 +179,7 @@ TEST(Ranks, HoldEachRowsHitsOnOneOfThem) {
 /// Returns the largest number of these patches that one rank gets, over the mean.
 double unevenness(std::span<const PatchId> patches, std::size_t ranks) {
   std::vector<std::size_t> count(ranks);
-  for (const PatchId patch : patches) ++count[rank_of(patch, ranks)];
+  for (const PatchId patch : patches) ++count[worker_of(patch, ranks)];
   return static_cast<double>(std::ranges::max(count) * ranks) / static_cast<double>(patches.size());
 }
 

@@ -7,6 +7,7 @@
 #include "client/command/output/notes.h"
 #include "client/command/output/numbers.h"
 #include "client/command/output/status_line.h"
+#include "client/rpc/in_process.h"
 #include "solution/solution_mirror.h"
 
 #include <array>
@@ -48,7 +49,7 @@ SolvedHere solve_here(const Scene& scene, const SolveOptions& options, const std
   const auto handle = log.listen([&] {
     if (line.due()) show(log.last_step());
   });
-  const SolveOutcome outcome = solve(mesh, options, log, interrupt.token());
+  const SolveOutcome outcome = solve_on_ranks(scene, mesh, options, log, interrupt.token());
   log.forget(handle);
   show(log.last_step());
   if (outcome.reason == StopReason::cancelled) throw Failure(ExitStatus::failed, "the solve was cancelled");

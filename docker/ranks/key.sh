@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# key.sh DIRECTORY: makes the key by which hosts of ranks reach each other, id_rsa and id_rsa.pub, to be mounted at /etc/alvor/ssh on all of them.
+# Leaves alone what is there.
+set -euo pipefail
+mkdir -p "$1"
+[ -e "$1/id_rsa" ] || ssh-keygen -q -t ed25519 -N '' -C alvor -f "$1/id_rsa"
+# The containers' user, 10001, must read it: keep others out by the rights of the directory above.
+chmod 644 "$1/id_rsa"
