@@ -29,7 +29,8 @@ void write(const Measurements& measured, const Settings& settings) {
   for (const SceneContest& held : measured.contests) runs.insert(runs.end(), held.runs.begin(), held.runs.end());
   write_whole_file(settings.figure_folder / "runs.csv", runs_csv(runs));
   write_curves(settings.curve_folder, measured.contests);
-  write_whole_file(settings.page, page(measured, settings, read_whole_file(settings.figure_folder / "tried.md")));
+  write_whole_file(settings.page, page(measured, settings, read_whole_file(settings.figure_folder / "missed.md"),
+                                       read_whole_file(settings.figure_folder / "tried.md")));
   std::cout << "wrote " << settings.page.string() << '\n';
 }
 

@@ -80,8 +80,9 @@ Spread Measurements::two_threads_faster() const {
   return spread_of(std::move(gains));
 }
 
-std::string page(const Measurements& measured, const Settings& settings, const std::string& tried) {
-  std::string text = head(measured) + targets_section(measured) + method(settings) + truth_section(measured);
+std::string page(const Measurements& measured, const Settings& settings, const std::string& missed, const std::string& tried) {
+  std::string text = head(measured) + targets_section(measured) + "## What the missed ones would take\n\n" + missed + '\n' +
+                     method(settings) + truth_section(measured);
   for (const SceneContest& held : measured.contests) text += scene_section(held, measured.yardstick_s());
   text += estimate_section(measured) + path_tracing_section(measured) + fixed_mesh_section(measured);
   return text + "## Tried and did not pay\n\n" + tried;

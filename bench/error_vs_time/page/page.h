@@ -17,8 +17,8 @@ struct Measurements {
   Spread two_threads_faster() const;
 };
 
-/// Returns the text of the page. `tried` is inserted unchanged. The page refers to pictures in the folder error-vs-time beside
-/// it.
-std::string page(const Measurements& measured, const Settings& settings, const std::string& tried);
+/// Returns the text of the page. `missed`, what missed targets would take, and `tried` are inserted unchanged. The page refers to
+/// pictures in the folder error-vs-time beside it.
+std::string page(const Measurements& measured, const Settings& settings, const std::string& missed, const std::string& tried);
 
 }  // namespace alvor::bench
