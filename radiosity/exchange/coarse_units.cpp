@@ -1,9 +1,7 @@
 #include "radiosity/exchange/coarse_units.h"
 
-#include "radiosity/ranks/deal.h"
-
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <unordered_map>
 #include <utility>
 
@@ -15,6 +13,9 @@ constexpr std::uint32_t none = ~0u;
 // Share of the units that a round of pairing must remove; if it removes less, unpaired units join pairs. Chosen; half and double
 // give the same solutions (docs/design/constants.md).
 constexpr double least_decrease = 0.1;
+// Units of which a patch says that it sees them. Few, because each takes 8 bytes of memory and of traffic between ranks for every
+// patch, and pairs are made of those that are seen most. Chosen.
+constexpr std::size_t most_seen = 8;
 
 /// Returns units of patches with equal names (`names` is by patch), numbered in the order of their first patches.
 CoarseUnits numbered(std::span<const std::uint64_t> names) {
@@ -42,78 +43,63 @@ CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
   return numbered(names);
 }
 
-/// Tells which patches a patch sees, and how much of its irradiance would come from each if all were equally bright. That light
-/// is a share of the area of all patches, in fixed point.
-class SightOfPatches {
- public:
-  explicit SightOfPatches(const RowHits& hits) : hits_(hits) {
-    for (const ShootingPatch& patch : hits.patches) area_ += patch.area;
-  }
-  /// Calls body(patch seen, light from it).
-  template <class Body>
-  void for_each(std::uint32_t patch, Body&& body) const {
-    const double share_of_area = hits_.patches[patch].area / area_;
-    hits_.for_each(patch, [&](std::uint32_t hit, const Rgb& share) { body(hit, fixed_point(share_of_area * share.mean())); });
-  }
-
- private:
-  const RowHits& hits_;
-  double area_ = 0;
+/// The units that a patch sees most of, brightest first, and the part of its irradiance that would come from each if all were
+/// equally bright, times its area. Unused places have the unit `none`.
+struct MostSeen {
+  std::array<std::uint32_t, most_seen> unit;
+  std::array<float, most_seen> light;
 };
 
-/// Tells which units a unit sees, as SightOfPatches does for patches, from the hits of all ranks.
-class SightOfUnits {
- public:
-  /// Collective.
-  SightOfUnits(const CoarseUnits& units, const RowHits& hits, Ranks& ranks) : first_(units.count + 1) {
-    const BytesOfItems by_rank = Deal::one_each(ranks).gather(ranks, [&](std::size_t) {
-      const std::vector<Seen> own = seen_here(units, hits);
-      const auto bytes = std::as_bytes(std::span(own));
-      return std::vector(bytes.begin(), bytes.end());
-    });
-    std::vector<Seen> of_all(by_rank.all().size() / sizeof(Seen));
-    if (!of_all.empty()) std::memcpy(of_all.data(), by_rank.all().data(), by_rank.all().size());
-    for (const Seen& seen : of_all) ++first_[seen.unit + 1];
-    for (std::size_t u = 0; u < units.count; ++u) first_[u + 1] += first_[u];
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    seen_.resize(of_all.size());
-    for (const Seen& seen : of_all) seen_[next[seen.unit]++] = seen;
+MostSeen most_seen_by(std::uint32_t patch, const CoarseUnits& units, const RowHits& hits) {
+  std::vector<std::pair<std::uint32_t, double>> seen;
+  hits.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {
+    if (units.of_patch[hit] != units.of_patch[patch]) seen.emplace_back(units.of_patch[hit], share.mean());
+  });
+  std::ranges::sort(seen, {}, [](const auto& each) { return each.first; });
+  std::size_t count = 0;
+  for (const auto& [unit, light] : seen) {
+    if (count > 0 && seen[count - 1].first == unit) seen[count - 1].second += light;
+    else seen[count++] = {unit, light};
   }
+  seen.resize(count);
+  const auto kept = std::min(count, most_seen);
+  std::ranges::partial_sort(seen, seen.begin() + static_cast<std::ptrdiff_t>(kept), [](const auto& a, const auto& b) {
+    return a.second != b.second ? a.second > b.second : a.first < b.first;
+  });
+  MostSeen most;
+  most.unit.fill(none);
+  most.light.fill(0);
+  for (std::size_t k = 0; k < kept; ++k) {
+    most.unit[k] = seen[k].first;
+    most.light[k] = static_cast<float>(hits.patches[patch].area * seen[k].second);
+  }
+  return most;
+}
+
+/// Tells which units a unit sees, as far as they are among those that its patches see most of.
+class Sight {
+ public:
+  /// Collective. `patches` tells which rank has the hits of each patch.
+  Sight(const CoarseUnits& units, const RowHits& hits, Ranks& ranks, const Deal& patches)
+      : members_(units.members()), most_(units.of_patch.size()) {
+    patches.for_each(ranks, std::span(most_),
+                     [&](std::size_t p) { most_[p] = most_seen_by(static_cast<std::uint32_t>(p), units, hits); });
+  }
+  /// Calls body(unit seen, light from it), several times for the same unit.
   template <class Body>
   void for_each(std::uint32_t unit, Body&& body) const {
-    for (std::size_t k = first_[unit]; k < first_[unit + 1]; ++k) body(seen_[k].there, seen_[k].light);
+    for (const std::uint32_t patch : members_[unit])
+      for (std::size_t k = 0; k < most_seen && most_[patch].unit[k] != none; ++k)
+        body(most_[patch].unit[k], most_[patch].light[k]);
   }
 
  private:
-  struct Seen {
-    std::uint32_t unit, there;
-    std::uint64_t light;
-  };
-  static std::vector<Seen> seen_here(const CoarseUnits& units, const RowHits& hits) {
-    const SightOfPatches sight(hits);
-    const auto members = units.members();
-    std::vector<std::uint64_t> light(units.count);
-    std::vector<Seen> seen;
-    for (std::uint32_t unit = 0; unit < units.count; ++unit) {
-      const std::size_t first = seen.size();
-      for (const std::uint32_t patch : members[unit])
-        sight.for_each(patch, [&](std::uint32_t hit, std::uint64_t from_there) {
-          const std::uint32_t there = units.of_patch[hit];
-          if (light[there] == 0 && from_there > 0) seen.push_back({unit, there, 0});
-          light[there] += from_there;
-        });
-      for (Seen& each : std::span(seen).subspan(first)) each.light = std::exchange(light[each.there], 0);
-    }
-    return seen;
-  }
-
-  std::vector<std::size_t> first_;  // by unit
-  std::vector<Seen> seen_;
+  const std::vector<std::vector<std::uint32_t>> members_;
+  std::vector<MostSeen> most_;  // by patch
 };
 
 /// Joins each unit, in turn, to the unit that it sees most of; of several, to the first. Results are group names by unit, for
-/// grouped(). `Sight` tells what the items see of which the units are made.
-template <class Sight>
+/// grouped(). The patches of `units` are the units of `sight`.
 class PairFinder {
  public:
   PairFinder(const CoarseUnits& units, const Sight& sight)
@@ -153,7 +139,7 @@ class PairFinder {
   std::uint32_t strongest(std::uint32_t unit, MayTake&& may_take) {
     std::vector<std::uint32_t> seen;
     for (const std::uint32_t item : members_[unit])
-      sight_.for_each(item, [&](std::uint32_t other, std::uint64_t from_there) {
+      sight_.for_each(item, [&](std::uint32_t other, double from_there) {
         const std::uint32_t there = units_.of_patch[other];
         if (there == unit || !may_take(there)) return;
         if (light_[there] == 0) seen.push_back(there);
@@ -170,11 +156,10 @@ class PairFinder {
   const CoarseUnits& units_;
   const Sight& sight_;
   std::vector<std::vector<std::uint32_t>> members_;
-  std::vector<std::uint64_t> light_;  // by unit: light from the unit that strongest() looks from; 0 between calls
+  std::vector<double> light_;  // by unit: light from the unit that strongest() looks from; 0 between calls
   std::vector<std::uint32_t> partner_;
 };
 
-template <class Sight>
 int join(CoarseUnits& units, const Sight& sight, std::size_t most) {
   int rounds = 0;
   while (units.count > most) {
@@ -207,10 +192,9 @@ CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most) {
   return units;
 }
 
-int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most, Ranks& ranks) {
+int join_pairs(CoarseUnits& units, const RowHits& hits, std::size_t most, Ranks& ranks, const Deal& patches) {
   if (units.count <= most) return 0;
-  if (ranks.is_alone()) return join(units, SightOfPatches(hits), most);
-  const SightOfUnits sight(units, hits, ranks);
+  const Sight sight(units, hits, ranks, patches);
   CoarseUnits of_unit{{}, units.count};
   for (std::uint32_t unit = 0; unit < units.count; ++unit) of_unit.of_patch.push_back(unit);
   const int rounds = join(of_unit, sight, most);

@@ -34,6 +34,8 @@ class Exchange {
   virtual std::size_t patch_count() const = 0;
   /// Returns the radiosity that each leaf has shot, patch after patch. Empty if light is gathered.
   virtual std::vector<RelativeLight> shot() const { return {}; }
+  /// Gives back memory that only makes later sweeps gain more.
+  virtual void forget_directions() {}
 
   /// Returns a bound on the radiosity that is still to come: its RMS over the mean radiosity, in the worst band. Where nearly all
   /// light is reflected it is far more than the unshot radiosity: a small residual is no small error. It holds as far as rows are

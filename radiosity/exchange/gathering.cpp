@@ -1,6 +1,8 @@
 #include "radiosity/exchange/gathering.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <cmath>
 
@@ -23,6 +25,20 @@ constexpr std::size_t sweeps_looked_at = 4;
 // Share of the squared residual that is left after these sweeps if each halves the residual: (1/2)^(2 * 4) = 1/256. A system with
 // more left is slow.
 constexpr double slow = 0.004;
+
+// Patches of one part of a sum, so few that threads share the parts evenly. Sums depend on it, but not on the threads. Chosen.
+constexpr std::size_t patches_a_part = 4096;
+
+/// Returns the sum of term(n) over [0, count). In parallel, in an order that does not depend on the threads.
+template <class Sum, class Term>
+Sum sum_of(std::size_t count, Term&& term) {
+  const auto add_part = [&](const tbb::blocked_range<std::size_t>& part, Sum sum) {
+    for (std::size_t n = part.begin(); n < part.end(); ++n) sum += term(n);
+    return sum;
+  };
+  return tbb::parallel_deterministic_reduce(tbb::blocked_range<std::size_t>(0, count, patches_a_part), Sum{}, add_part,
+                                            [](Sum a, const Sum& b) { return a += b; });
+}
 
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
@@ -68,7 +84,7 @@ void Gathering::coarsen(CoarseUnits units) {
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
       patch_of_leaf_[leaf_of_place_[k]] = p;
   const RowHits hits{patches_, hit_leaf_, patch_of_leaf_};
-  join_pairs(units, hits, many_units, of_ranks_.ranks);
+  join_pairs(units, hits, many_units, of_ranks_.ranks, of_ranks_.patches);
   if (units.count <= many_units) coarse_.emplace(std::move(units), hits, of_ranks_.ranks);
 }
 
@@ -117,9 +133,7 @@ std::vector<Rgb> Gathering::albedo_seen() {
 }
 
 Rgb Gathering::product(std::span<const RelativeLight> a, std::span<const RelativeLight> b) const {
-  Rgb sum;
-  for (std::size_t p = 0; p < a.size(); ++p) sum += patches_[p].area * alvor::product(a[p], b[p]);
-  return sum;
+  return sum_of<Rgb>(a.size(), [&](std::size_t p) { return patches_[p].area * alvor::product(a[p], b[p]); });
 }
 
 // All leaves of a patch are taken to have the same area, because the sum only tells how much light there is.
@@ -130,25 +144,22 @@ void Gathering::find_own_power() {
 }
 
 void Gathering::find_unshot() {
-  unshot_power_ = 0;
-  unshot_sum_ = {};
-  Rgb squares;
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
-    const RelativeLight unshot = power_weight_[p] * residual_[p];
-    unshot_power_ += absolute(unshot).sum();
-    unshot_sum_ += unshot;
-    if (patches_[p].area > 0) squares += (1 / patches_[p].area) * alvor::product(unshot, unshot);
-  }
+  const auto unshot = [this](std::size_t p) { return power_weight_[p] * residual_[p]; };
+  unshot_power_ = sum_of<double>(patches_.size(), [&](std::size_t p) { return absolute(unshot(p)).sum(); });
+  unshot_sum_ = sum_of<RelativeLight>(patches_.size(), unshot);
+  const Rgb squares = sum_of<Rgb>(patches_.size(), [&](std::size_t p) {
+    return patches_[p].area > 0 ? (1 / patches_[p].area) * alvor::product(unshot(p), unshot(p)) : Rgb{};
+  });
   unshot_rms_ = {std::sqrt(squares.r / area_), std::sqrt(squares.g / area_), std::sqrt(squares.b / area_)};
 }
 
 void Gathering::make_conjugate(Direction& next) const {
   for (const Direction& other : directions_) {
     const Rgb overlap = ratio(product(next.change, other.change), other.norm);
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
+    tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
       next.change[p] -= overlap * other.change[p];
       next.step[p] -= overlap * other.step[p];
-    }
+    });
   }
   next.norm = product(next.change, next.change);
 }
@@ -173,7 +184,7 @@ void Gathering::conjugate_step() {
   if (coarse_) coarse_->correct(residual_, next.step);
   spread(next.step);
   gather(next.change);
-  for (std::size_t p = 0; p < patches_.size(); ++p) next.change[p] = next.step[p] - next.change[p];
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { next.change[p] = next.step[p] - next.change[p]; });
   const Direction plain = next;
   make_conjugate(next);
   const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
@@ -189,10 +200,10 @@ Rgb Gathering::helps(const Rgb& length, const Rgb& overlap) const {
 }
 
 void Gathering::advance(const Rgb& length, std::span<const RelativeLight> step, std::span<const RelativeLight> change) {
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     irradiance_[p] += length * step[p];
     residual_[p] -= length * change[p];
-  }
+  });
 }
 
 // A band that took the step without combination starts anew: its part of all remembered directions is ignored.
@@ -204,6 +215,11 @@ void Gathering::remember(Direction direction, const Rgb& in_bands) {
   ++steps_;
 }
 
+void Gathering::forget_directions() {
+  directions_ = {};
+  steps_ = 0;
+}
+
 RelativeLight Gathering::mean_radiosity() const {
   RelativeLight power = own_power_;
   for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
@@ -212,7 +228,7 @@ RelativeLight Gathering::mean_radiosity() const {
 
 std::vector<RelativeLight> Gathering::irradiance() const {
   std::vector<RelativeLight> all(patches_.size());
-  for (std::size_t p = 0; p < patches_.size(); ++p) all[p] = upper(irradiance_[p] + residual_[p], {});
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { all[p] = upper(irradiance_[p] + residual_[p], {}); });
   return all;
 }
 

@@ -57,6 +57,7 @@ class Gathering : public Exchange {
   std::vector<RelativeLight> irradiance() const override;
   RelativeLight ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
   std::size_t patch_count() const override { return patches_.size(); }
+  void forget_directions() override;
 
  private:
   /// A search direction, by patch: a step of the irradiance, and the change that it takes away from the residual.

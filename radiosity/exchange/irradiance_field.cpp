@@ -13,6 +13,9 @@ namespace alvor {
 
 namespace {
 
+// Fits that are made before they are taken: a few MB. Chosen.
+constexpr std::size_t fits_at_a_time = 1 << 15;
+
 // Radii of the windows of a plane and of a quadratic, in edges of the row's patch. Measured for wide_window: 5 or 6.5 gave an
 // error of 1.1 % where 3.5 gives 0.9 % (Cornell box, a million rays, docs/error-vs-time/tried.md). narrow_window is chosen; half:
 // error +39 %, rays +66 %, double: error -4 %, rays +6 % (docs/design/constants.md).
@@ -84,7 +87,13 @@ class Fitter {
  public:
   Fitter(const PatchForest& forest, std::span<const NodeIndex> rows, std::span<const SmoothNeighbours> neighbours,
          std::span<const RowSamples> samples, std::span<const Vec3> centre)
-      : forest_(forest), rows_(rows), neighbours_(neighbours), centre_(centre), place_(forest.node_count()), known_(rows.size()) {
+      : forest_(forest),
+        rows_(rows),
+        neighbours_(neighbours),
+        samples_(samples),
+        centre_(centre),
+        place_(forest.node_count()),
+        known_(rows.size()) {
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
       place_[rows[n]] = static_cast<std::uint32_t>(n);
       learn(forest.shape(rows[n]), samples[n], known_[n]);
@@ -104,13 +113,17 @@ class Fitter {
  private:
   /// Properties of a row that do not depend on its neighbours.
   struct Known {
-    std::array<Sample, 4> quarters;
+    std::array<Vec3, 4> quarter_at;
     Sample whole;
     Vec3 normal;
     double edge = 0;
     double noise = -1;  ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
     bool is_dark = true;
   };
+
+  Sample quarter_of(std::size_t row, std::size_t k) const {
+    return {known_[row].quarter_at[k], samples_[row][k].irradiance, samples_[row][k].rays};
+  }
 
   void learn(const PatchShape& shape, const RowSamples& samples, Known& known) const {
     const RootPatch& root = forest_.mesh().roots()[shape.root];
@@ -119,9 +132,9 @@ class Fitter {
     RelativeLight sum;
     for (int k = 0; k < 4; ++k) {
       const Uv c = shape.quarter_centre(k);
-      known.quarters[k] = {root.at(c.u, c.v), samples[k].irradiance, samples[k].rays};
+      known.quarter_at[k] = root.at(c.u, c.v);
       known.whole.rays += samples[k].rays;
-      known.whole.at += samples[k].rays * known.quarters[k].at;
+      known.whole.at += samples[k].rays * known.quarter_at[k];
       sum += samples[k].rays * samples[k].irradiance;
     }
     if (known.whole.rays == 0) return;
@@ -158,7 +171,7 @@ class Fitter {
     for (std::size_t next = 0; next < rows.size(); ++next) {
       const Known& row = known_[rows[next]];
       const Vec3 d = row.whole.at - field.centre;
-      add_samples(row, dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
+      add_samples(rows[next], dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
       if (row.noise >= 0) noise += row.noise, noisy += 1;
       for (const NodeIndex other : neighbours_[rows[next]]) {
         const Known& candidate = known_[place_[other]];
@@ -169,9 +182,10 @@ class Fitter {
     }
     if (noisy > 0) window.noise = noise / noisy;
   }
-  static void add_samples(const Known& row, bool is_near, FieldFit& field, Window& window) {
-    if (!is_near) return add_sample(row.whole, field, window);
-    for (const Sample& quarter : row.quarters) {
+  void add_samples(std::size_t row, bool is_near, FieldFit& field, Window& window) const {
+    if (!is_near) return add_sample(known_[row].whole, field, window);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Sample quarter = quarter_of(row, k);
       if (quarter.rays == 0) continue;
       add_sample(quarter, field, window);
       field.low = lower(field.low, quarter.irradiance);
@@ -198,7 +212,8 @@ class Fitter {
   /// Returns the mean square difference of the row's own quarters from the fit, less their noise.
   double misfit_of(std::size_t n, const Window& window, const FieldFit& field) const {
     double squares = 0, count = 0;
-    for (const Sample& quarter : known_[n].quarters) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Sample quarter = quarter_of(n, k);
       if (quarter.rays == 0) continue;
       const double difference = (quarter.irradiance - field.at(quarter.at)).mean();
       squares += difference * difference - residual_noise * window.noise / quarter.rays;
@@ -221,6 +236,7 @@ class Fitter {
   const PatchForest& forest_;
   std::span<const NodeIndex> rows_;
   std::span<const SmoothNeighbours> neighbours_;
+  std::span<const RowSamples> samples_;
   std::span<const Vec3> centre_;
   std::vector<std::uint32_t> place_;  // place in rows_ of each node
   std::vector<Known> known_;          // by place
@@ -238,13 +254,16 @@ RelativeLight FieldFit::at(Vec3 point) const {
   return {within(value.r, low.r, high.r), within(value.g, low.g, high.g), within(value.b, low.b, high.b)};
 }
 
-std::vector<FieldFit> fit_field(const PatchForest& forest, std::span<const NodeIndex> rows,
-                                std::span<const SmoothNeighbours> neighbours, std::span<const RowSamples> samples,
-                                std::span<const Vec3> centre, Ranks& ranks) {
+void fit_field(const PatchForest& forest, std::span<const NodeIndex> rows, std::span<const SmoothNeighbours> neighbours,
+               std::span<const RowSamples> samples, std::span<const Vec3> centre,
+               const std::function<void(std::size_t, std::span<const FieldFit>)>& take, Ranks& ranks) {
   const Fitter fitter(forest, rows, neighbours, samples, centre);
-  std::vector<FieldFit> fits(rows.size());
-  share_work(ranks, std::span(fits), [&](std::size_t n) { fits[n] = fitter.fit_at(n); });
-  return fits;
+  std::vector<FieldFit> fits;
+  for (std::size_t first = 0; first < rows.size(); first += fits.size()) {
+    fits.resize(std::min(fits_at_a_time, rows.size() - first));
+    share_work(ranks, std::span(fits), [&](std::size_t n) { fits[n] = fitter.fit_at(first + n); });
+    take(first, fits);
+  }
 }
 
 }  // namespace alvor

@@ -2,6 +2,8 @@
 
 #include "radiosity/solve/saved_nodes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -97,13 +99,14 @@ std::vector<NodeIndex> DirectField::unlit_leaves() const {
 }
 
 std::vector<Receiver> DirectField::receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const {
-  std::vector<Receiver> receivers;
-  for (const NodeIndex leaf : leaves) {
+  std::vector<Receiver> receivers(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    const NodeIndex leaf = leaves[n];
     const NodeIndex row = forests_.row_of(leaf);
     const PatchId id = forests_.leaves().id(leaf);
     const auto none = static_cast<std::uint16_t>(rows[row].is_hidden() ? 0xffff : 0);
-    receivers.push_back({id, forests_.leaves().shape(leaf), forests_.rows().id(row) == id ? rows[row].hidden_origins : none});
-  }
+    receivers[n] = {id, forests_.leaves().shape(leaf), forests_.rows().id(row) == id ? rows[row].hidden_origins : none};
+  });
   return receivers;
 }
 

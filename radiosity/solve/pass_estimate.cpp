@@ -109,8 +109,10 @@ void Pass::show_smoothly() {
   const auto leaving = system_->radiosity();
   std::vector<RowSamples> samples(rows.size());
   system_->deal().for_each(state_.ranks, std::span(samples), [&](std::size_t p) { samples[p] = samples_of(rows[p], leaving); });
-  state_.field.set_fits(rows,
-                        fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres(), state_.ranks));
+  const auto take = [&](std::size_t first, std::span<const FieldFit> fits) {
+    state_.field.set_fits(std::span(rows).subspan(first, fits.size()), fits);
+  };
+  fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres(), take, state_.ranks);
 }
 
 bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
@@ -270,13 +272,14 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
 /// Turns `leaf_squares_`, which holds the interpolation's part integrated over each leaf, into mean squares of all local parts.
 void Pass::tell_leaves(double share_of_interpolation) {
   const auto patches = system_->patches();
-  for (std::size_t p = 0; p < patches.size(); ++p)
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t p) {
     for (std::size_t n = patches[p].first_leaf; n < patches[p].first_leaf + patches[p].leaf_count; ++n) {
       const NodeIndex leaf = system_->leaves()[n];
       const double area = state_.visible_area(leaf);
       leaf_squares_[n] = (area > 0 ? share_of_interpolation * leaf_squares_[n] / area : 0) +
                          noise_in_display * state_.direct[leaf].variance + row_squares_[p];
     }
+  });
 }
 
 /// Returns the told error of the leaf at a place in the system's list, where this irradiance arrives; in emission units.
@@ -310,6 +313,7 @@ void Pass::drop_rays_that_do_not_help(double lasting_error) {
 ErrorEstimate Pass::estimate() {
   assert(stage_ == Stage::exchanging);
   stage_ = Stage::estimated;
+  exchange_->forget_directions();  // memory is highest from here on, and only the last pass goes on exchanging
   show_smoothly();
   candidates_.clear();
   lasting_error_ = 0;

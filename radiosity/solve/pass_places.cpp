@@ -3,6 +3,8 @@
 #include "meshing/face_object.h"
 #include "radiosity/solve/pass.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 
@@ -40,12 +42,14 @@ std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) con
   const auto leaves = system_->leaves();
   std::vector<PlaceError> places(leaves.size());
   const std::vector<std::uint8_t> counts = counting_roots(state_.mesh, state_.options.objects);
-  double power = 0, area = 0;
-  for (std::size_t n = 0; n < leaves.size(); ++n) {
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     places[n].area = state_.rows.may_be_lit(state_.forests.row_of(leaves[n])) ? state_.visible_area(leaves[n]) : 0;
     const RelativeLight irradiance = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
     places[n].irradiance = irradiance.mean();
     places[n].error = told_error(n, irradiance, error);
+  });
+  double power = 0, area = 0;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
     power += places[n].area * places[n].irradiance, area += places[n].area;
     if (!counts[state_.forests.leaves().id(leaves[n]).root_face()]) places[n].area = 0;
   }
@@ -60,17 +64,21 @@ std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) con
 ErrorByPlace Pass::error_by_place(const ErrorEstimate& error) const {
   assert(stage_ == Stage::estimated);
   std::vector<PlaceError> places = place_errors(error);
-  std::ranges::sort(places, {}, &PlaceError::error);
-  double area = 0, so_far = 0;
-  for (const PlaceError& place : places) area += place.area;
+  double area = 0, within = 0;
+  for (const PlaceError& place : places) {
+    area += place.area;
+    if (place.error <= state_.options.tolerance) within += place.area;
+  }
   ErrorByPlace by_place;
   if (!(area > 0)) return by_place;
-  by_place.area_within = 0;
+  by_place.area_within = std::min(1.0, within / area);
+  if (!state_.options.is_by_place()) return by_place;
+  std::ranges::sort(places, {}, &PlaceError::error);
+  double so_far = 0;
   for (const PlaceError& place : places) {
-    const bool is_kept = so_far < state_.options.area_share * area;
+    if (so_far >= state_.options.area_share * area) break;
     so_far += place.area;
-    if (place.error <= state_.options.tolerance) by_place.area_within = std::min(1.0, so_far / area);
-    if (is_kept) by_place.kept_error = place.error;
+    by_place.kept_error = place.error;
   }
   return by_place;
 }

@@ -2,6 +2,8 @@
 
 #include "radiosity/solve/saved_nodes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -34,10 +36,10 @@ void RowField::set(std::span<const NodeIndex> rows, std::span<const RelativeLigh
 
 void RowField::move_to(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance) {
   assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
-  for (std::size_t n = 0; n < rows.size(); ++n) {
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     fit_[rows[n]].add(irradiance[n] - irradiance_[rows[n]]);
     irradiance_[rows[n]] = irradiance[n];
-  }
+  });
 }
 
 void RowField::set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits) {

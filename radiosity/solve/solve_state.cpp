@@ -2,6 +2,8 @@
 
 #include "radiosity/solve/saved_nodes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 
@@ -60,12 +62,13 @@ void SolveState::fit_to_nodes() {
 }
 
 std::vector<LeafValue> SolveState::leaf_values() const {
-  std::vector<LeafValue> values;
-  values.reserve(leaf_count());
-  for (const NodeIndex leaf : forests.leaves().leaves()) {
+  const auto leaves = forests.leaves().leaves();
+  std::vector<LeafValue> values(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    const NodeIndex leaf = leaves[n];
     const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf));
-    values.push_back({forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))});
-  }
+    values[n] = {forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))};
+  });
   return values;
 }
 

@@ -44,7 +44,10 @@ struct Rows {
     return samples;
   }
   std::vector<FieldFit> fit(std::span<const RowSamples> samples) const {
-    return fit_field(forest, nodes, neighbours, samples, centre_of_node);
+    std::vector<FieldFit> all;
+    const auto take = [&](std::size_t, std::span<const FieldFit> fits) { all.insert(all.end(), fits.begin(), fits.end()); };
+    fit_field(forest, nodes, neighbours, samples, centre_of_node, take);
+    return all;
   }
 };
 
