@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures solves on several ranks of this machine and writes docs/ranks.md. About ten minutes, during which nothing else should run.
+# Measures solves on several ranks of this machine and writes docs/ranks.md. About twenty minutes, and 24 GB of memory, during which nothing else should run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,5 +1,6 @@
 // The main program of alvord, the Alvor server.
 
+#include "radiosity/ranks/launched_ranks.h"
 #include "server/access/listening.h"
 #include "server/base/descriptor_limit.h"
 #include "server/base/memory_guard.h"
@@ -188,8 +189,11 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
   return service;
 }
 
-int serve(const alvor::ServerOptions& options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
-  alvor::SolvingRanks ranks({options.gang, alvor::MemoryGuard(options.memory_limit)});
+int serve(alvor::ServerOptions options, const sigset_t& signals, const std::shared_ptr<spdlog::logger>& logger) {
+  auto launched = alvor::launched_ranks();
+  // Ranks of one machine share its memory, unless somebody said what each may use.
+  if (launched && options.memory_limit == alvor::allowed_memory()) options.memory_limit /= launched->ranks_on_this_machine();
+  alvor::SolvingRanks ranks(std::move(launched), {options.gang, alvor::MemoryGuard(options.memory_limit)});
   if (!ranks.is_first()) {
     ranks.follow();
     return 0;

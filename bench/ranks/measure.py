@@ -108,11 +108,29 @@ def cluster(title, two):
           table(["ranks", "time, s", "of it dealt work", "of it network", "efficiency"], rows)), model
 
 
+def first_light_of(faces, ranks):
+  return solve(ranks, 1, office(faces), "--tolerance", "0.5", "--max-depth", "0", "--max-elements", "5000000")
+
+
+def many_faces(run, model):
+  """A solve of more faces than one process would like to hold, and what ten million would take on four machines."""
+  largest_gb = [share["largest_mb"] / 1e3 for share in run["shares"]]
+  times = 1e7 / 1e6  # the model is of a million faces
+  machine_gb = max(largest_gb) * 1e7 / run["faces"]
+  return (f"{run['faces'] / 1e6:.1f} million faces, each one leaf, solved to first light and gathered once on {run['ranks']} ranks of this machine: "
+          f"{run['wall_s']:.0f} s, {run['rays'] / 1e6:.0f} M rays, {sum(largest_gb):.1f} GB in all ranks together (at most {max(largest_gb):.1f} in "
+          f"one): {verdict(sum(largest_gb) <= 24)} (24 GB).\n\nTen million on four machines with one rank each would take {machine_gb:.0f} GB a machine, "
+          f"{model.work * times / 4:.0f} s of dealt and {model.replicated * times:.0f} s of repeated work on one thread; threads divide the first and "
+          f"some of the second. A rank would receive {received(run) * 1e7 / run['faces'] / 1e9:.0f} GB, which take "
+          f"{received(run) * 1e7 / run['faces'] / BANDWIDTH:.0f} s.")
+
+
 def main():
   OUT.mkdir(parents=True, exist_ok=True)
   furnished = compare("Furnished room at 3 %", ROOT / "scenes/furnished_room.obj", "--tolerance", "0.03")
   middle = compare("Office block of 50 000 faces at 10 %", office(50_000), "--tolerance", "0.1")
-  first_light = solve(2, 1, office(1_000_000), "--tolerance", "0.5", "--max-depth", "0", "--max-elements", "2000000")
+  first_light = first_light_of(1_000_000, 2)
+  huge = first_light_of(2_500_000, 4)
   small, _ = cluster("Office block of 50 000 faces at 10 %", middle[2][1])
   large, model_large = cluster("Office block of a million faces, each face one leaf", first_light)
   print(f"""# Solving on several ranks
@@ -131,6 +149,10 @@ of the scene and the solution is on each.
 {comparison(*middle)}
 
 With more ranks than cores, ranks take turns, so three and four take longer here than two.
+
+## Many faces
+
+{many_faces(huge, model_large)}
 
 ## A simulated cluster
 

@@ -98,6 +98,16 @@ Scene get_scene(PlainReader& in) {
   return assembler.take();
 }
 
+/// Calls body() and returns what it returns. An exception ends all ranks, because the others wait in a collective.
+template <class Body>
+auto or_end_all(Ranks& ranks, Body&& body) {
+  try {
+    return body();
+  } catch (const std::exception& fault) {
+    ranks.end_all(fault.what());
+  }
+}
+
 /// Collective. Solves as the others do, and ends all of them if something is wrong that the others do not know of.
 SolveOutcome solve_together(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                             const SolveControl& control) {
@@ -127,12 +137,36 @@ void send(Ranks& ranks, std::vector<std::byte> bytes) {
 /// The ranks that share in the work of one solve, by their numbers. They are free again when this is destroyed.
 class SolvingRanks::Gang {
  public:
-  Gang(SolvingRanks& all, std::vector<std::size_t> workers) : all_(all), workers_(std::move(workers)) {}
+  /// Takes ranks that are free; none if none is.
+  Gang(SolvingRanks& all, std::uint64_t faces) : all_(all), workers_(all.take_free(faces)) {}
   ~Gang() { all_.give_back(workers_); }
   Gang(const Gang&) = delete;
 
+  bool is_empty() const { return workers_.empty(); }
   bool is_first_alone() const { return workers_ == std::vector<std::size_t>{0}; }
-  std::unique_ptr<Ranks> call_together() const { return all_.call_together(workers_); }
+  /// Solves together. An order that was given must be carried out: if that fails, all ranks end.
+  SolveOutcome solve(const SceneContent& scene, const Plan& plan, const SolveOptions& options, SolutionLog& log,
+                     const SolveControl& control) const {
+    SolveOptions of_others = options;
+    if (options.threads == all_.threads()) of_others.threads = 0;  // of machines that may have more or fewer
+    std::vector<std::byte> order = plain_bytes([&](PlainWriter& out) {
+      put(of_others, out);
+      put(control.checkpoint, out);
+      put(scene.scene, out);
+    });
+    const auto together = or_end_all(all_.ranks(), [&] {
+      auto called = all_.call_together(workers_);
+      send(*called, std::move(order));
+      return called;
+    });
+    SolveControl of_gang = control;
+    of_gang.ranks = together.get();
+    if (control.save)
+      of_gang.save = [&](const SolveControl::Write& write) {
+        control.save([&](PlainWriter& out) { or_end_all(*together, [&] { write(out); }); });
+      };
+    return solve_together(scene.mesh, plan, options, log, of_gang);
+  }
 
  private:
   SolvingRanks& all_;
@@ -169,35 +203,36 @@ void SolvingRanks::follow() {
   std::signal(SIGTERM, SIG_IGN);
   const std::jthread answering([this] { answer_questions(); });
   Ranks& line = *lines_.front();
-  while (broadcast(line, Order::end) != Order::end) {
-    const auto gang = several_->part(tell(line));
-    std::stop_source short_of_memory;
-    const std::jthread watching([&](const std::stop_token& ended) {
-      for (; !ended.stop_requested() && !short_of_memory.stop_requested(); std::this_thread::sleep_for(between_looks))
-        if (options_.memory.is_short()) short_of_memory.request_stop();
+  while (broadcast(line, Order::end) != Order::end)
+    or_end_all(*several_, [&] {
+      const auto gang = several_->part(tell(line));
+      is_solving_ = true;
+      take_part(*gang);
+      is_solving_ = false;
     });
-    is_solving_ = true;
-    take_part(*gang, short_of_memory.get_token());
-    is_solving_ = false;
-  }
 }
 
 /// Takes part in one solve of the first rank.
-void SolvingRanks::take_part(Ranks& gang, const std::stop_token& short_of_memory) {
+void SolvingRanks::take_part(Ranks& gang) {
   std::vector<std::byte> bytes = receive(gang);
+  std::stop_source short_of_memory;
+  const std::jthread watching([&](const std::stop_token& ended) {
+    for (; !ended.stop_requested() && !short_of_memory.stop_requested(); std::this_thread::sleep_for(between_looks)) {
+      options_.memory.make_room(0);
+      if (options_.memory.is_short()) short_of_memory.request_stop();
+    }
+  });
+  PlainReader in(bytes);
+  const SolveOptions options = get_options(in);
+  const auto checkpoint = in.get_all<char>();
+  const BaseMesh mesh(get_scene(in));
+  bytes = {};
+  SolutionLog nowhere;
+  const SolveControl control{
+      .short_of_memory = short_of_memory.get_token(), .checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = &gang};
   try {
-    PlainReader in(bytes);
-    const SolveOptions options = get_options(in);
-    const auto checkpoint = in.get_all<char>();
-    const BaseMesh mesh(get_scene(in));
-    bytes = {};
-    SolutionLog nowhere;
-    const SolveControl control{
-        .short_of_memory = short_of_memory, .checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = &gang};
     solve_together(mesh, Plan(mesh, options), options, nowhere, control);
   } catch (const BadBytes&) {  // the first rank says it
-  } catch (const std::exception& fault) {
-    gang.end_all(fault.what());
   }
   trim_heap_soon();
 }
@@ -258,22 +293,13 @@ std::unique_ptr<Ranks> SolvingRanks::call_together(const std::vector<std::size_t
 
 Solver SolvingRanks::solver_for(std::uint64_t faces, const SolveOptions& options) {
   if (!several_ || !why_on_one_rank(options).empty()) return solve_in_process;
-  std::vector<std::size_t> workers = take_free(faces);
-  if (workers.empty()) return {};
-  const auto gang = std::make_shared<const Gang>(*this, std::move(workers));
+  const auto gang = std::make_shared<const Gang>(*this, faces);
+  if (gang->is_empty()) return {};
+  if (gang->is_first_alone())
+    return [gang](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
+                  const SolveControl& control) { return solve_in_process(scene, plan, how, log, control); };
   return [gang](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
-                const SolveControl& control) {
-    if (gang->is_first_alone()) return solve_in_process(scene, plan, how, log, control);
-    const auto together = gang->call_together();
-    send(*together, plain_bytes([&](PlainWriter& out) {
-      put(how, out);
-      put(control.checkpoint, out);
-      put(scene.scene, out);
-    }));
-    SolveControl of_gang = control;
-    of_gang.ranks = together.get();
-    return solve_together(scene.mesh, plan, how, log, of_gang);
-  };
+                const SolveControl& control) { return gang->solve(scene, plan, how, log, control); };
 }
 
 }  // namespace alvor

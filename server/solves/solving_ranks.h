@@ -60,7 +60,7 @@ class SolvingRanks {
   std::vector<std::size_t> take_free(std::uint64_t faces);
   void give_back(const std::vector<std::size_t>& workers);
   std::unique_ptr<Ranks> call_together(const std::vector<std::size_t>& workers);
-  void take_part(Ranks& gang, const std::stop_token& short_of_memory);
+  void take_part(Ranks& gang);
   void answer_questions();
 
   const Options options_;

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <string>
 
@@ -107,8 +108,7 @@ class StoredSolve {
   void settle_end();
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
   std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
-  void save(const SolveControl::Write& write);
-  void save_in_memory(const SolveControl::Write& write);
+  void save_in_memory(std::span<const std::string> state);
   void keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change = {});
   std::vector<std::byte> take_checkpoint();
   void keep_row();

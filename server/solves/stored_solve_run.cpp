@@ -101,12 +101,14 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
   control.save = [&](const SolveControl::Write& write) {
     const auto begun = Clock::now();
+    const std::vector<std::string> state = pieces_of(write);
     try {
-      save(write);
+      if (keeping_.archive) keep_checkpoint(state);
+      else save_in_memory(state);
     } catch (const std::exception& fault) {
       ++keeping_.counts->failures;
       complain(fault.what());
-      if (run.park.stop_requested()) save_in_memory(write);
+      if (run.park.stop_requested()) save_in_memory(state);
     }
     const auto taken = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - begun);
     keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
@@ -115,13 +117,9 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   return solver(*content, plan, options, *log(), control);
 }
 
-void StoredSolve::save(const SolveControl::Write& write) {
-  if (keeping_.archive) keep_checkpoint(pieces_of(write));
-  else save_in_memory(write);
-}
-
-void StoredSolve::save_in_memory(const SolveControl::Write& write) {
-  std::vector<std::byte> bytes = plain_bytes(write);
+void StoredSolve::save_in_memory(std::span<const std::string> state) {
+  std::vector<std::byte> bytes;
+  for (const std::string& piece : state) append_piece(piece, bytes);
   Lock hold(lock_);
   state_in_memory_ = std::move(bytes);
 }
