@@ -19,7 +19,7 @@ namespace alvor {
 /// that solves. If a rank is lost, a collective does not return: the process ends.
 class Ranks {
  public:
-  Ranks() = default;
+  Ranks() : Ranks(Place()) {}
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
   virtual ~Ranks() = default;
