@@ -166,13 +166,7 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
                                       alvor::SolvingRanks& ranks) {
   alvor::ServiceOptions service;
   service.solves.max_running = options.max_solves;
-  if (ranks.size() > 1) {
-    service.solves.solver_for = [&ranks](std::uint64_t faces, const alvor::SolveOptions& how) {
-      return ranks.solver_for(faces, how);
-    };
-    service.solves.max_running = std::min(options.max_solves, static_cast<int>(ranks.most_gangs()));
-  }
-  service.solves.limits.threads = ranks.threads();
+  ranks.solve_for(service.solves);
   service.solves.logger = logger;
   service.solves.spare_solves = [door] { return door->end_greediest(much_received); };
   service.flooding = [door, logger](const std::string& peer) {

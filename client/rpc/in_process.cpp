@@ -16,9 +16,7 @@ std::unique_ptr<SolvingRanks> program_ranks;  // null without a ProgramRanks, as
 ServiceOptions own_options() {
   ServiceOptions options;
   options.upload.bytes = std::uint64_t{16} << 30;
-  if (!program_ranks || program_ranks->size() == 1) return options;
-  options.solves.solver_for = [](std::uint64_t faces, const SolveOptions& how) { return program_ranks->solver_for(faces, how); };
-  options.solves.limits.threads = program_ranks->threads();
+  if (program_ranks) program_ranks->solve_for(options.solves);
   return options;
 }
 

@@ -50,6 +50,7 @@ struct MostSeen {
   std::array<float, most_seen> light;
 };
 
+/// Returns what a patch, whose row's hits are on this rank, sees of other units than its own.
 MostSeen most_seen_by(std::uint32_t patch, const CoarseUnits& units, const RowHits& hits) {
   std::vector<std::pair<std::uint32_t, double>> seen;
   hits.for_each(patch, [&](std::uint32_t hit, const Rgb& share) {

@@ -40,6 +40,20 @@ Sum sum_of(std::size_t count, Term&& term) {
                                             [](Sum a, const Sum& b) { return a += b; });
 }
 
+/// Unshot light of some patches: |power|, power, and squared power by area.
+struct UnshotSums {
+  double power = 0;
+  RelativeLight sum;
+  Rgb squares;
+
+  UnshotSums& operator+=(const UnshotSums& other) {
+    power += other.power;
+    sum += other.sum;
+    squares += other.squares;
+    return *this;
+  }
+};
+
 Rgb ratio(const Rgb& a, const Rgb& b) {
   const auto band = [](double x, double y) { return y > 0 ? x / y : 0; };
   return {band(a.r, b.r), band(a.g, b.g), band(a.b, b.b)};
@@ -144,12 +158,14 @@ void Gathering::find_own_power() {
 }
 
 void Gathering::find_unshot() {
-  const auto unshot = [this](std::size_t p) { return power_weight_[p] * residual_[p]; };
-  unshot_power_ = sum_of<double>(patches_.size(), [&](std::size_t p) { return absolute(unshot(p)).sum(); });
-  unshot_sum_ = sum_of<RelativeLight>(patches_.size(), unshot);
-  const Rgb squares = sum_of<Rgb>(patches_.size(), [&](std::size_t p) {
-    return patches_[p].area > 0 ? (1 / patches_[p].area) * alvor::product(unshot(p), unshot(p)) : Rgb{};
+  const auto all = sum_of<UnshotSums>(patches_.size(), [this](std::size_t p) {
+    const RelativeLight unshot = power_weight_[p] * residual_[p];
+    const double area = patches_[p].area;
+    return UnshotSums{absolute(unshot).sum(), unshot, area > 0 ? (1 / area) * alvor::product(unshot, unshot) : Rgb{}};
   });
+  unshot_power_ = all.power;
+  unshot_sum_ = all.sum;
+  const Rgb& squares = all.squares;
   unshot_rms_ = {std::sqrt(squares.r / area_), std::sqrt(squares.g / area_), std::sqrt(squares.b / area_)};
 }
 

@@ -13,12 +13,6 @@ Deal Deal::in_runs(const Ranks& ranks, std::size_t items) {
   return deal;
 }
 
-Deal Deal::one_each(const Ranks& ranks) {
-  Deal deal;
-  for (std::size_t r = 0; r <= ranks.size(); ++r) deal.first_.push_back(r);
-  return deal;
-}
-
 Deal Deal::by_rank(const Ranks& ranks, std::span<const std::uint16_t> rank_of) {
   Deal deal;
   if (ranks.is_alone()) return deal;

@@ -37,8 +37,6 @@ class Deal {
   Deal() = default;
   /// To each rank that works a run of consecutive items, all runs of equal length but for one item.
   static Deal in_runs(const Ranks& ranks, std::size_t items);
-  /// To each rank the item of its number, whether it works or not.
-  static Deal one_each(const Ranks& ranks);
   /// Item n to rank `rank_of[n]`.
   static Deal by_rank(const Ranks& ranks, std::span<const std::uint16_t> rank_of);
 

@@ -1,6 +1,7 @@
 #pragma once
 // Limits the server's memory: work is refused before the system would kill the process.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -43,6 +44,8 @@ class MemoryGuard {
   bool is_short() const;
 
   std::uint64_t limit() const { return limit_; }
+  /// Time between looks at the memory of a process that solves. It grows by less than 1 MB in a millisecond.
+  static constexpr std::chrono::milliseconds between_looks{50};
 
   /// Registers a function that frees memory nobody needs. It stays registered until the returned handle is destroyed.
   std::shared_ptr<void> relieve_by(std::function<void()> give_back) const;

@@ -17,10 +17,6 @@ namespace alvor {
 
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto between_looks = 50ms;  // at the memory, which grows by less than 1 MB/ms
-
 bool goes_before(const StoredSolve& a, const StoredSolve& b) {
   return a.priority != b.priority ? a.priority > b.priority : a.number < b.number;
 }
@@ -68,7 +64,7 @@ SolveStore::Entry* SolveStore::next_waiting() {
 void SolveStore::watch_memory() {
   options_.memory.make_room(0);
   if (options_.memory.is_short()) relieve_memory();
-  watching_memory_->post_at(TaskQueue::Clock::now() + between_looks, [this] { watch_memory(); });
+  watching_memory_->post_at(TaskQueue::Clock::now() + MemoryGuard::between_looks, [this] { watch_memory(); });
 }
 
 /// Makes room when memory is short: asks options_.spare_solves to end something else; if that ends nothing, ends the youngest

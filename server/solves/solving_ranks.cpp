@@ -1,18 +1,17 @@
 #include "server/solves/solving_ranks.h"
 
-#include "proto/codec.h"
 #include "radiosity/ranks/deal.h"
 #include "radiosity/ranks/launched_ranks.h"
-#include "server/archive/content.h"
 #include "server/base/cpu_time.h"
+#include "server/solves/solve_order.h"
+#include "server/solves/solve_store.h"
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <stop_token>
 #include <thread>
-#include <type_traits>
+#include <utility>
 
 namespace alvor {
 
@@ -21,8 +20,6 @@ namespace {
 // Faces of a scene for which a solve takes another rank into its gang. Chosen.
 constexpr std::uint64_t faces_a_rank = 5000;
 
-constexpr std::chrono::milliseconds between_looks{50};  // at the memory, as the first rank's store does
-
 /// Collective. Returns the value of the first rank.
 template <class Value>
 Value broadcast(Ranks& ranks, Value value) {
@@ -30,7 +27,7 @@ Value broadcast(Ranks& ranks, Value value) {
   return value;
 }
 
-/// What the first rank asks of the others.
+/// The byte by which the first rank tells another one to stop waiting: because the program ends, or for a gang or a status.
 enum class Order : std::uint8_t { end, go_on };
 
 /// Collective of a line. The first rank gives the members of a gang, by their ranks, and whether it shares in the work itself;
@@ -40,62 +37,6 @@ Ranks::Part tell(Ranks& line, Ranks::Part part = {}) {
   part.members.resize(broadcast(line, std::uint64_t{part.members.size()}));
   line.broadcast(std::as_writable_bytes(std::span(part.members)));
   return part;
-}
-
-/// Calls visit(member) for all members that say what is solved: not for the pause between steps, which is the first rank's.
-template <class Options, class Visit>
-void for_each_member(Options& options, Visit&& visit) {
-  visit(options.tolerance);
-  visit(options.area_share);
-  visit(options.max_depth);
-  visit(options.max_leaves);
-  visit(options.min_edge_m);
-  visit(options.time_limit_s);
-  visit(options.threads);
-  visit(options.seed);
-  visit(options.strategy);
-  visit(options.form_factors);
-  visit(options.forced_on);
-}
-
-void put(std::span<const std::byte> bytes, PlainWriter& out) {
-  out.put(std::uint64_t{bytes.size()});
-  out.put_bytes(bytes);
-}
-
-void put(const SolveOptions& options, PlainWriter& out) {
-  for_each_member(options, [&](const auto& member) { out.put_bytes(std::as_bytes(std::span(&member, 1))); });
-  out.put(std::uint64_t{options.objects.size()});
-  for (const std::string& name : options.objects) put(std::as_bytes(std::span(name)), out);
-}
-
-SolveOptions get_options(PlainReader& in) {
-  SolveOptions options;
-  for_each_member(options, [&](auto& member) {
-    using Member = std::remove_reference_t<decltype(member)>;
-    if constexpr (std::is_enum_v<Member>) member = static_cast<Member>(in.get<std::underlying_type_t<Member>>());
-    else member = in.get<Member>();
-  });
-  for (auto names = in.get<std::uint64_t>(); names > 0; --names) {
-    const auto name = in.get_all<char>();
-    options.objects.emplace_back(name.begin(), name.end());
-  }
-  return options;
-}
-
-void put(const Scene& scene, PlainWriter& out) {
-  for_each_chunk(scene, [&](std::span<const std::byte> chunk) { put(chunk, out); });
-  put(std::span<const std::byte>(), out);
-}
-
-Scene get_scene(PlainReader& in) {
-  SceneAssembler assembler;
-  for (auto bytes = in.get_all<char>(); !bytes.empty(); bytes = in.get_all<char>()) {
-    v1::GeometryChunk chunk;
-    if (!chunk.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) || assembler.add(chunk))
-      throw std::runtime_error("the scene from the first rank cannot be read");
-  }
-  return assembler.take();
 }
 
 /// Calls body() and returns what it returns. An exception ends all ranks, because the others wait in a collective.
@@ -143,17 +84,14 @@ class SolvingRanks::Gang {
   Gang(const Gang&) = delete;
 
   bool is_empty() const { return workers_.empty(); }
-  bool is_first_alone() const { return workers_ == std::vector<std::size_t>{0}; }
-  /// Solves together. An order that was given must be carried out: if that fails, all ranks end.
+  /// Solves together, or in this process if the gang is the first rank alone. An order that was given must be carried out: if
+  /// that fails, all ranks end.
   SolveOutcome solve(const SceneContent& scene, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                      const SolveControl& control) const {
+    if (workers_ == std::vector<std::size_t>{0}) return solve_in_process(scene, plan, options, log, control);
     SolveOptions of_others = options;
     if (options.threads == all_.threads()) of_others.threads = 0;  // of machines that may have more or fewer
-    std::vector<std::byte> order = plain_bytes([&](PlainWriter& out) {
-      put(of_others, out);
-      put(control.checkpoint, out);
-      put(scene.scene, out);
-    });
+    std::vector<std::byte> order = bytes_of_order(of_others, control.checkpoint, scene.scene);
     const auto together = or_end_all(all_.ranks(), [&] {
       auto called = all_.call_together(workers_);
       send(*called, std::move(order));
@@ -217,21 +155,20 @@ void SolvingRanks::take_part(Ranks& gang) {
   std::vector<std::byte> bytes = receive(gang);
   std::stop_source short_of_memory;
   const std::jthread watching([&](const std::stop_token& ended) {
-    for (; !ended.stop_requested() && !short_of_memory.stop_requested(); std::this_thread::sleep_for(between_looks)) {
+    for (; !ended.stop_requested() && !short_of_memory.stop_requested();
+         std::this_thread::sleep_for(MemoryGuard::between_looks)) {
       options_.memory.make_room(0);
       if (options_.memory.is_short()) short_of_memory.request_stop();
     }
   });
-  PlainReader in(bytes);
-  const SolveOptions options = get_options(in);
-  const auto checkpoint = in.get_all<char>();
-  const BaseMesh mesh(get_scene(in));
+  SolveOrder order = read_order(bytes);
   bytes = {};
+  const BaseMesh mesh(std::exchange(order.scene, {}));
   SolutionLog nowhere;
   const SolveControl control{
-      .short_of_memory = short_of_memory.get_token(), .checkpoint = std::as_bytes(std::span(checkpoint)), .ranks = &gang};
+      .short_of_memory = short_of_memory.get_token(), .checkpoint = std::as_bytes(std::span(order.checkpoint)), .ranks = &gang};
   try {
-    solve_together(mesh, Plan(mesh, options), options, nowhere, control);
+    solve_together(mesh, Plan(mesh, order.options), order.options, nowhere, control);
   } catch (const BadBytes&) {  // the first rank says it
   }
   trim_heap_soon();
@@ -239,26 +176,26 @@ void SolvingRanks::take_part(Ranks& gang) {
 
 /// Takes part in statuses() of the first rank until that one ends.
 void SolvingRanks::answer_questions() {
-  std::vector<RankStatus> all(size());
-  while (broadcast(*asking_, Order::end) != Order::end) {
-    all[asking_->rank()] = own_status();
-    Deal::one_each(*asking_).share(*asking_, std::span(all));
-  }
+  while (broadcast(*asking_, Order::end) != Order::end) tell_statuses();
 }
 
-RankStatus SolvingRanks::own_status() const { return {held_bytes(), options_.memory.limit(), cpu_seconds(), is_solving_}; }
+/// Collective. Returns what each rank tells of its process.
+std::vector<RankStatus> SolvingRanks::tell_statuses() {
+  std::vector<RankStatus> all(size());
+  share_work(asking_ ? *asking_ : Ranks::alone(), std::span(all), [&](std::size_t r) {
+    all[r] = {held_bytes(), options_.memory.limit(), cpu_seconds(), is_solving_};
+  });
+  return all;
+}
 
 std::vector<RankStatus> SolvingRanks::statuses() {
-  std::vector<RankStatus> all(size());
-  all[0] = own_status();
-  {
-    Lock hold(lock_);
-    all[0].is_solving = !is_free_[0];
-  }
-  if (!several_) return all;
-  Lock hold(asking_lock_);
-  broadcast(*asking_, Order::go_on);
-  Deal::one_each(*asking_).share(*asking_, std::span(all));
+  std::vector<RankStatus> all = [&] {
+    Lock hold(asking_lock_);
+    if (asking_) broadcast(*asking_, Order::go_on);
+    return tell_statuses();
+  }();
+  Lock hold(lock_);
+  all[0].is_solving = !is_free_[0];
   return all;
 }
 
@@ -291,13 +228,17 @@ std::unique_ptr<Ranks> SolvingRanks::call_together(const std::vector<std::size_t
   return several_->part(part);
 }
 
+void SolvingRanks::solve_for(SolveStoreOptions& options) {
+  options.limits.threads = threads();
+  if (!several_) return;
+  options.solver_for = [this](std::uint64_t faces, const SolveOptions& how) { return solver_for(faces, how); };
+  options.max_running = std::min(options.max_running, static_cast<int>(most_gangs()));
+}
+
 Solver SolvingRanks::solver_for(std::uint64_t faces, const SolveOptions& options) {
   if (!several_ || !why_on_one_rank(options).empty()) return solve_in_process;
   const auto gang = std::make_shared<const Gang>(*this, faces);
   if (gang->is_empty()) return {};
-  if (gang->is_first_alone())
-    return [gang](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
-                  const SolveControl& control) { return solve_in_process(scene, plan, how, log, control); };
   return [gang](const SceneContent& scene, const Plan& plan, const SolveOptions& how, SolutionLog& log,
                 const SolveControl& control) { return gang->solve(scene, plan, how, log, control); };
 }

@@ -11,9 +11,9 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 namespace alvor {
 
@@ -108,7 +108,7 @@ class StoredSolve {
   void settle_end();
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
   std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
-  void save_in_memory(std::span<const std::string> state);
+  void save_in_memory(std::vector<std::string> state);
   void keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change = {});
   std::vector<std::byte> take_checkpoint();
   void keep_row();
@@ -124,7 +124,8 @@ class StoredSolve {
   SolveRecord facts_ ALVOR_GUARDED_BY(lock_);  ///< its last step is that of the checkpoint
   SolveStatus wish_ ALVOR_GUARDED_BY(lock_) = SolveStatus::running;
   std::map<std::string, std::uint64_t> lineage_ ALVOR_GUARDED_BY(lock_);
-  std::vector<std::byte> state_in_memory_ ALVOR_GUARDED_BY(lock_);  ///< of a paused solve where it is not in the archive
+  /// Checkpoint of a paused solve where it is not in the archive, as the pieces that the archive would have.
+  std::vector<std::string> state_in_memory_ ALVOR_GUARDED_BY(lock_);
 };
 
 }  // namespace alvor

@@ -28,12 +28,16 @@ SolveOutcome solve_in_process(const SceneContent& scene, const Plan& plan, const
 }
 
 std::vector<std::byte> StoredSolve::take_checkpoint() {
+  std::vector<std::string> pieces;
   {
     Lock hold(lock_);
-    if (!state_in_memory_.empty()) return std::exchange(state_in_memory_, {});
-    if (!facts_.checkpoint_time) return {};
+    pieces = std::exchange(state_in_memory_, {});
+    if (pieces.empty() && !facts_.checkpoint_time) return {};
   }
-  return keeping_.archive->state(number);
+  if (pieces.empty()) return keeping_.archive->state(number);
+  std::vector<std::byte> bytes;
+  for (const std::string& piece : pieces) append_piece(piece, bytes);
+  return bytes;
 }
 
 void StoredSolve::run(const Solver& solver, const RunControl& control, const std::function<bool()>& is_paused,
@@ -117,11 +121,9 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   return solver(*content, plan, options, *log(), control);
 }
 
-void StoredSolve::save_in_memory(std::span<const std::string> state) {
-  std::vector<std::byte> bytes;
-  for (const std::string& piece : state) append_piece(piece, bytes);
+void StoredSolve::save_in_memory(std::vector<std::string> state) {
   Lock hold(lock_);
-  state_in_memory_ = std::move(bytes);
+  state_in_memory_ = std::move(state);
 }
 
 /// `state` is empty once the solve has ended, as `change` then says.

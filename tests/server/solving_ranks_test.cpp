@@ -20,8 +20,7 @@ using Solutions = std::vector<std::vector<LeafValue>>;
 
 SolveStoreOptions store_of(SolvingRanks& ranks) {
   SolveStoreOptions options;
-  options.max_running = static_cast<int>(ranks.most_gangs());
-  options.solver_for = [&](std::uint64_t faces, const SolveOptions& how) { return ranks.solver_for(faces, how); };
+  ranks.solve_for(options);
   return options;
 }
 

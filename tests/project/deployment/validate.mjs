@@ -58,6 +58,7 @@ const mpiJob = {
   },
 };
 
+// Formats are not checked: those of the Compose Specification are its own.
 function checkAgainst(schema, content) {
   const validate = new Ajv2019({ strict: false, allErrors: true, validateFormats: false }).compile(schema);
   if (!validate(content)) throw new Error(validate.errors.map(({ instancePath, message }) => `${instancePath} ${message}`).join("\n"));
@@ -85,7 +86,7 @@ async function check(resources) {
 }
 
 function checkCompose({ name, ...content }) {  // the schema is older than names of projects
-  // Its formats are its own. It names drafts and ids as no draft does.
+  // It names drafts and ids as no draft does.
   const schema = JSON.parse(JSON.stringify(composeSchema), (name, value) => (name === "$schema" || (name === "id" && typeof value === "string") ? undefined : value));
   checkAgainst(schema, content);
 }

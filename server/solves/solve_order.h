@@ -1,0 +1,25 @@
+#pragma once
+// The bytes that tell other ranks what to solve.
+
+#include "meshing/scene.h"
+#include "radiosity/plan/solve_options.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// A solve as the first rank orders it from the others.
+struct SolveOrder {
+  SolveOptions options;          ///< without the pause between steps, which is the first rank's
+  std::vector<char> checkpoint;  ///< SolveControl::checkpoint
+  Scene scene;
+};
+
+/// Returns the bytes of an order.
+std::vector<std::byte> bytes_of_order(const SolveOptions& options, std::span<const std::byte> checkpoint, const Scene& scene);
+/// Reads what bytes_of_order() of the same program returned. Throws BadBytes or runtime_error.
+SolveOrder read_order(std::span<const std::byte> bytes);
+
+}  // namespace alvor
