@@ -100,27 +100,46 @@ void add_sofa(ObjWriter& obj, Place place) {
   for (const double x : {0.21, 0.955}) obj.box("blue", {x, 0.455, 0.23}, {x + 0.735, 0.90, 0.36});
 }
 
+/// Adds five chairs around the table.
+void add_chairs(ObjWriter& obj) {
+  const Place places[]{{1.9, 2.0}, {1.9, 3.42, 180}, {2.7, 2.0}, {2.7, 3.42, 160}, {1.05, 2.7, 90}};
+  int number = 0;
+  for (const Place& place : places) {
+    obj.object("chair.00" + std::to_string(++number));
+    add_chair(obj, "walnut", place);
+  }
+}
+
 ObjWriter furnished_room() {
   ObjWriter obj;
+  obj.object("room");
   add_room(obj);
+  obj.object("lamp.001");
   add_lamp(obj, {2.5, height, 2.6}, 1.4, 0.3);
+  obj.object("lamp.002");
   add_lamp(obj, {4.7, height, 2.6}, 0.6, 0.6);
+  obj.object("bookcase");
   add_bookcase(obj, {0.3, 0.02});
+  obj.object("cupboard");
   add_cupboard(obj, {2.3, 0.02});
+  obj.object("picture");
   add_picture(obj, {2.45, 0});
+  obj.object("door");
   add_door(obj, {4.2, 0});
+  obj.object("table");
   add_table(obj, "oak", {2.3, 2.7}, 1.7, 0.9, 0.75);
-  for (const double x : {1.9, 2.7}) {
-    add_chair(obj, "walnut", {x, 2.0});
-    add_chair(obj, "walnut", {x, 3.42, x < 2 ? 180.0 : 160.0});
-  }
-  add_chair(obj, "walnut", {1.05, 2.7, 90});
+  add_chairs(obj);
+  obj.object("bowl");
   obj.stand_at({2.3, 2.7});
   obj.box("clay", {-0.12, 0.75, -0.12}, {0.12, 0.83, 0.12}, bottom);
+  obj.object("sofa");
   add_sofa(obj, {5.96, 1.6, -90});
+  obj.object("rug");
   obj.stand_at({4.45, 2.55});
   obj.box("rug", {-0.55, 0, -1.1}, {0.55, 0.012, 1.1}, bottom);
+  obj.object("side_table");
   add_table(obj, "oak", {3.75, 0.8}, 0.45, 0.45, 0.5);
+  obj.object("low_table");
   add_table(obj, "oak", {.x = 4.45, .z = 2.55, .y = 0.012}, 0.5, 1.0, 0.42);
   return obj;
 }

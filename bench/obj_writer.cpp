@@ -35,6 +35,8 @@ void ObjWriter::stand_at(const Place& place) {
   sine_ = std::sin(radians(place.turn_degrees));
 }
 
+void ObjWriter::object(const std::string& name) { text_.append("o ").append(name).append("\n"); }
+
 void ObjWriter::box(const char* material, Vec3 low, Vec3 high, unsigned left_out, bool inwards) {
   const int first = vertex_count_ + 1;
   for (const double y : {low.y, high.y}) {

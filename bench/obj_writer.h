@@ -35,6 +35,9 @@ class ObjWriter {
   /// Coordinates of later calls are relative to this place.
   void stand_at(const Place& place);
 
+  /// Begins an object of this name, which no other has: later faces belong to it.
+  void object(const std::string& name);
+
   /// Adds a box: a solid with its fronts outwards, or a room with its fronts inwards. `left_out` names faces to leave out.
   void box(const char* material, Vec3 low, Vec3 high, unsigned left_out = 0, bool inwards = false);
 

@@ -89,7 +89,11 @@ class NeighbourFinder {
  public:
   explicit NeighbourFinder(std::span<const RootPatch> roots)
       : roots_(roots), first_corner_(roots.size()), face_of_root_(roots.size()) {
-    omerr().disable();
+    // Once: the first call of omerr() is not safe from several threads, and what it says of bad edges nobody wants to read.
+    [[maybe_unused]] static const bool is_silent = [] {
+      omerr().disable();
+      return true;
+    }();
   }
 
   std::size_t add_all(const std::stop_token& stop) {
@@ -302,6 +306,15 @@ void BaseMesh::add_backs() {
           Neighbour{roots_[other->root].twin, roots_[other->root].corner_count - 1 - other->edge, other->smooth};
     }
   }
+}
+
+BaseMesh BaseMesh::relit_as(const Scene& scene) const {
+  BaseMesh relit = *this;
+  relit.materials_ = scene.materials;
+  relit.lights_ = scene.lights;
+  relit.absorption_ = scene.absorption;
+  for (RootPatch& root : relit.roots_) root.material = scene.faces[root.input.first].material;
+  return relit;
 }
 
 std::optional<Neighbour> BaseMesh::across(std::uint32_t root, int edge) const { return neighbours_[root][edge]; }

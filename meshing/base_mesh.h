@@ -82,6 +82,10 @@ class BaseMesh {
   /// the order of the scene's faces; a quad joined from two triangles takes the place of the first. A two-sided face gives two
   /// roots: its back comes after all fronts. If all faces are degenerate, there are no roots.
   explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
+  /// Returns this mesh with the materials, lights and medium of `scene`. Requires: !find_fault(scene); it differs from the scene
+  /// of this mesh only in these and in the materials of faces, and no face has gained or lost its second side, a texture or
+  /// colours.
+  BaseMesh relit_as(const Scene& scene) const;
 
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }

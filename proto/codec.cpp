@@ -100,6 +100,8 @@ v1::Step encode(const Step& step) {
   message.set_displayed_error(step.displayed_error);
   message.set_unlit_fraction(step.unlit_fraction);
   message.set_area_within(step.area_within);
+  message.set_edits(step.edits);
+  message.set_is_provisional(step.is_provisional);
   return message;
 }
 
@@ -117,6 +119,8 @@ Step decode(const v1::Step& message) {
   step.displayed_error = message.displayed_error();
   step.unlit_fraction = message.unlit_fraction();
   step.area_within = message.area_within();
+  step.edits = message.edits();
+  step.is_provisional = message.is_provisional();
   return step;
 }
 

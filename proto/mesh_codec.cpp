@@ -39,19 +39,32 @@ void append(const BaseMesh& mesh, std::uint32_t index, v1::ReadMeshResponse& mes
 
 bool MeshSlicer::next(v1::ReadMeshResponse& message) {
   message.Clear();
-  const bool is_first = next_ == 0 && next_material_ == 0;
+  const bool is_first = next_ + next_material_ + next_light_ + next_object_ == 0;
   if (is_first) message.set_up_axis(encode(mesh_.up())), message.set_quantity(encode(mesh_.quantity()));
   const std::span<const Material> materials = mesh_.materials();
   std::size_t bytes = 0;  // counted because names may be long
+  const auto is_full = [&](int items) { return static_cast<std::size_t>(items) == items_at_a_time_ || bytes > most_bytes; };
   for (; next_material_ < materials.size(); ++next_material_) {
-    if (static_cast<std::size_t>(message.scene_materials_size()) == items_at_a_time_ || bytes > most_bytes) return true;
+    if (is_full(message.scene_materials_size())) return true;
     v1::Material& material = *message.add_scene_materials();
     material = encode(materials[next_material_]);
     images_.encode_texture(materials[next_material_], material);
     bytes += material.ByteSizeLong();
   }
+  if (parts_ == MeshParts::all) {
+    for (; next_light_ < mesh_.lights().size(); ++next_light_) {
+      if (is_full(message.scene_lights_size())) return true;
+      *message.add_scene_lights() = encode(mesh_.lights()[next_light_]);
+      bytes += message.scene_lights().rbegin()->ByteSizeLong();
+    }
+    for (; next_object_ < mesh_.objects().size(); ++next_object_) {
+      if (is_full(message.scene_objects_size())) return true;
+      *message.add_scene_objects() = encode(mesh_.objects()[next_object_]);
+      bytes += message.scene_objects().rbegin()->ByteSizeLong();
+    }
+  }
   const std::size_t end = std::min(mesh_.roots().size(), next_ + items_at_a_time_);
-  if (next_ == end) return message.scene_materials_size() > 0;
+  if (next_ == end) return message.scene_materials_size() + message.scene_lights_size() + message.scene_objects_size() > 0;
   for (; next_ < end; ++next_) append(mesh_, static_cast<std::uint32_t>(next_), message);
   return true;
 }

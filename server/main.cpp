@@ -173,6 +173,7 @@ alvor::ServiceOptions service_options(const alvor::ServerOptions& options, const
     if (door->end(peer)) logger->warn("closed the connection of {}: it began too many calls", peer);
   };
   service.solves.keeping.interval = seconds(options.checkpoint_interval_s);
+  service.solves.keeping.keeps_live = true;
   service.quota = options.quota;
   service.memory = alvor::MemoryGuard(options.memory_limit);
   service.archive = archive;

@@ -29,9 +29,11 @@ struct Step {
   /// The displayed irradiance of a leaf may differ from the solution by this fraction of the leaf's irradiance, or of an eighth
   /// of the mean irradiance where that is larger.
   double displayed_error = 0;
-  double unlit_fraction = 0;  ///< fraction of the area that light may reach whose irradiance is still unknown, published as 0
-  double area_within = 0;     ///< share of the visible area whose told error is within the tolerance, see ErrorByPlace
-  Rgb ambient_irradiance;     ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
+  double unlit_fraction = 0;    ///< fraction of the area that light may reach whose irradiance is still unknown, published as 0
+  double area_within = 0;       ///< share of the visible area whose told error is within the tolerance, see ErrorByPlace
+  std::uint64_t edits = 0;      ///< revision of the newest edits of the scene that this state heeds; 0: of none
+  bool is_provisional = false;  ///< shows an edit at once, before the light that it changes has gone round; replaced soon
+  Rgb ambient_irradiance;       ///< display only: add to every leaf's irradiance (Cohen et al. 1988), W/m2
   friend bool operator==(const Step&, const Step&) = default;
 };
 

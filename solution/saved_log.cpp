@@ -1,6 +1,6 @@
 // Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Version 3 does not tell errors of
-// leaves nor Step::area_within. Logs that were saved before there were versions begin with the number of their steps, which is
-// never as large as the mark.
+// leaves nor Step::area_within, version 4 not Step::edits. Logs that were saved before there were versions begin with the number
+// of their steps, which is never as large as the mark.
 
 #include "solution/solution_log.h"
 
@@ -12,7 +12,7 @@ namespace alvor {
 namespace {
 
 constexpr std::uint64_t mark = 0x676f'6c72'6f76'6c61;  // "alvorlog"
-constexpr std::uint32_t newest_version = 4;
+constexpr std::uint32_t newest_version = 5;
 constexpr std::uint32_t oldest_marked = 3;
 // Version 2 was written before marks were. Version 1, older still, does not have Step::unlit_fraction.
 constexpr std::uint32_t unmarked_versions[] = {2, 1};
@@ -67,6 +67,8 @@ void put(const Step& step, PlainWriter& out) {
   out.put(step.displayed_error);
   out.put(step.unlit_fraction);
   out.put(step.area_within);
+  out.put(step.edits);
+  out.put(std::uint8_t{step.is_provisional});
   put(step.ambient_irradiance, out);
 }
 
@@ -83,6 +85,10 @@ Step get_step(PlainReader& in, std::uint32_t version) {
   step.displayed_error = in.get<double>();
   if (version >= 2) step.unlit_fraction = in.get<double>();
   if (version >= 4) step.area_within = in.get<double>();
+  if (version >= 5) {
+    step.edits = in.get<std::uint64_t>();
+    step.is_provisional = in.get<std::uint8_t>() != 0;
+  }
   step.ambient_irradiance = get_rgb(in);
   return step;
 }

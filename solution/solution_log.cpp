@@ -32,8 +32,12 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::sp
     ++head_;
     make_room_for(changed);
     std::vector<std::size_t> places;
+    std::vector<LeafValue> finer;
+    std::vector<float> their_errors;
     if (!find_places(leaves_.patch, changed, places)) {
-      split_for(changed);
+      finer = on_held_leaves(changed, errors, their_errors);
+      changed = finer;
+      if (!find_places(leaves_.patch, changed, places)) split_for(changed);
       find_places(leaves_.patch, changed, places);
     }
     const double mean = leaves_.patch.empty() ? 0 : sum_ / static_cast<double>(leaves_.patch.size());
@@ -51,6 +55,26 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::sp
     changed_.notify_all();
   }
   wake_listeners();
+}
+
+/// Returns `changed` with the leaves that the log holds in place of each patch that contains them. Makes `errors` those of the
+/// result, in `room`.
+std::vector<LeafValue> SolutionLog::on_held_leaves(std::span<const LeafValue> changed, std::span<const float>& errors,
+                                                   std::vector<float>& room) const {
+  std::vector<LeafValue> values;
+  values.reserve(changed.size());
+  auto held = leaves_.patch.begin();
+  for (std::size_t n = 0; n < changed.size(); ++n) {
+    const PatchId patch = changed[n].patch;
+    held = std::lower_bound(held, leaves_.patch.end(), patch.range_min());
+    const bool is_whole = held == leaves_.patch.end() || *held > patch.range_max() || *held == patch;
+    if (is_whole) values.push_back(changed[n]);
+    for (; !is_whole && held != leaves_.patch.end() && *held <= patch.range_max(); ++held)
+      values.push_back({*held, changed[n].irradiance});
+    if (!errors.empty()) room.resize(values.size(), errors[n]);
+  }
+  errors = room;
+  return values;
 }
 
 /// Splits leaves so that each patch of `changed` is a leaf. New leaves count as changed in this revision, whatever their values;
@@ -140,6 +164,11 @@ void SolutionLog::note_change(Tier& tier, std::size_t leaf) {
   tier.changed_at[leaf] = tier.newest[leaf / leaves_per_block] = static_cast<Revision>(head_);
 }
 
+void SolutionLog::reopen() {
+  std::scoped_lock hold(lock_);
+  closed_ = false;
+}
+
 void SolutionLog::close() {
   {
     std::scoped_lock hold(lock_);
@@ -161,6 +190,7 @@ Delta SolutionLog::since(const Cursor& cursor, Detail detail, std::size_t max_va
   delta.next = done ? Cursor{.base = goal} : Cursor{cursor.base, goal, delta.values.back().patch.bits(), {}};
   delta.next.errors = cursor.errors;
   delta.to_revision = done ? goal : cursor.base;
+  if (cursor.base > 0) delta.edits_before = steps_[cursor.base - 1].edits;
   if (delta.whole()) delta.state_hash = tier(detail).hash.bits();
   delta.steps.assign(steps_.begin() + static_cast<std::ptrdiff_t>(delta.from_revision),
                      steps_.begin() + static_cast<std::ptrdiff_t>(delta.to_revision));

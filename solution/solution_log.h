@@ -55,6 +55,7 @@ struct Delta {
   SharedExponent coding{0};                 ///< represents every value of the display detail exactly
   std::uint64_t from_revision = 0;          ///< the mirror must be at this revision
   std::uint64_t to_revision = 0;            ///< the mirror is then complete up to this revision
+  std::uint64_t edits_before = 0;           ///< Step::edits at `from_revision`; 0 at none
   std::uint64_t head = 0;                   ///< newest revision when the delta was made
   std::optional<std::uint64_t> state_hash;  ///< StateHash of all leaves at this detail; set if whole()
   Cursor next;                              ///< the position at which the next page starts
@@ -73,18 +74,22 @@ class SolutionLog {
   static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
   SolutionLog() = default;
-  /// Restores a log that save() wrote, of this version of the program or an older one; publishing continues from there. Throws BadBytes.
+  /// Restores a log that save() wrote, of this version of the program or an older one; publishing continues from there. Throws
+  /// BadBytes.
   explicit SolutionLog(PlainReader& saved);
   /// Writes everything except whether the log is closed. Other calls wait until it has returned.
   void save(PlainWriter& out) const;
 
   /// Makes the next revision. A value for a patch deeper than the log holds splits the ancestor; siblings that this implies, and
-  /// that are not in `changed`, inherit the ancestor's value. Fills in `step.revision` and `step.step`. Requires: `changed`
-  /// ascends; no patch of it contains another, or a smaller leaf that the log holds; irradiance is finite and not negative.
-  /// `errors` are the told errors of the patches in `changed` (see ErrorCoding), or nothing if they were not estimated anew.
+  /// that are not in `changed`, inherit the ancestor's value. A value for a patch within which the log holds leaves, as a solve
+  /// of an edited scene that begins anew may publish, goes to each of these. Fills in `step.revision` and `step.step`. Requires:
+  /// the log is open; `changed` ascends; no patch of it contains another; irradiance is finite and not negative. `errors` are the
+  /// told errors of the patches in `changed` (see ErrorCoding), or nothing if they were not estimated anew.
   void publish(std::span<const LeafValue> changed, Step step, std::span<const float> errors = {});
   /// Says that no revision will follow. Wakes the listeners.
   void close();
+  /// Takes close() back: further revisions may follow.
+  void reopen();
 
   /// Returns at most `max_values` (1 or more) values of the round at `cursor`, or of the next round. Requires: cursor.base <=
   /// head(). If the cursor wants errors and the delta is whole(), it holds at most errors_per_page(max_values) of them.
@@ -127,6 +132,8 @@ class SolutionLog {
   void load(PlainReader& saved, std::uint32_t version);
   void load_errors(PlainReader& saved);
   void split_for(std::span<const LeafValue> changed);
+  std::vector<LeafValue> on_held_leaves(std::span<const LeafValue> changed, std::span<const float>& errors,
+                                        std::vector<float>& room) const;
   void make_room_for(std::span<const LeafValue> changed);
   /// Returns whether `irradiance` differs from the held value, or the leaf is new in this revision.
   bool has_changed(std::size_t leaf, const RgbF& irradiance) const {
@@ -153,7 +160,7 @@ class SolutionLog {
   bool has_coding_ = false;
   ErrorCoding error_coding_{0};
   std::uint64_t errors_revision_ = 0;  ///< the newest revision that told errors; 0: none did
-  double sum_ = 0;  ///< sum over all leaves of the mean of the bands
+  double sum_ = 0;                     ///< sum over all leaves of the mean of the bands
   /// At the last look at all leaves, every displayed value was within this error. That still holds while the mean is at least
   /// `checked_mean_`.
   double checked_error_ = std::numeric_limits<double>::infinity(), checked_mean_ = 0;

@@ -34,6 +34,7 @@ void add_commands(CLI::App& app) {
   app.require_subcommand(1);
   add_solve_command(app);
   add_watch_command(app);
+  add_edit_command(app);
   add_probe_command(app);
   add_render_command(app);
   add_verify_command(app);

@@ -292,6 +292,21 @@ v1::Solve Client::resume_solve(const std::string& name) {
   return by_name<v1::ResumeSolveRequest, v1::Solve>(name, [this](auto&... call) { return solves_->ResumeSolve(call...); });
 }
 
+v1::EditSolveResponse Client::edit_solve(const std::string& name, const v1::EditStep& step,
+                                         std::optional<std::uint64_t> base_revision) {
+  v1::EditSolveRequest request;
+  request.set_name(name);
+  *request.mutable_step() = step;
+  request.set_request_id(random_id());
+  if (base_revision) request.set_base_revision(*base_revision);
+  return with_patience([&] {
+    Deadline context;
+    v1::EditSolveResponse response;
+    check(solves_->EditSolve(&context, request, &response));
+    return response;
+  });
+}
+
 void Client::delete_solve(const std::string& name) {
   by_name<v1::DeleteSolveRequest, google::protobuf::Empty>(name, [this](auto&... call) { return solves_->DeleteSolve(call...); });
 }

@@ -88,6 +88,9 @@ class Client {
   v1::Solve pause_solve(const std::string& name);
   v1::Solve resume_solve(const std::string& name);
   void delete_solve(const std::string& name);
+  /// Edits the scene of a solve; see EditSolve. Never makes the step twice.
+  v1::EditSolveResponse edit_solve(const std::string& name, const v1::EditStep& step,
+                                   std::optional<std::uint64_t> base_revision = std::nullopt);
 
   /// The state of a watch; keep it to continue after a lost connection.
   struct Watch {

@@ -22,6 +22,15 @@ struct DirectLight {
   std::array<float, origins_per_patch> at_origin{};
   float variance = 0;         ///< noise of `irradiance` from shadow rays: variance, mean over bands, emission units squared
   float origin_variance = 0;  ///< noise of `at_origin` from shadow rays: variance, mean over origins, emission units squared
+
+  /// Adds what other lights bring.
+  DirectLight& operator+=(const DirectLight& other) {
+    irradiance += other.irradiance;
+    for (std::size_t o = 0; o < at_origin.size(); ++o) at_origin[o] += other.at_origin[o];
+    variance += other.variance;
+    origin_variance += other.origin_variance;
+    return *this;
+  }
 };
 
 /// A patch that receives direct light. `hidden_origins` has the bits of TransportRow::hidden_origins.

@@ -33,6 +33,8 @@ class LightMaker {
     else if (light.is_distant()) make<DistantLight>(light, unit_.from_watts_per_m2(light.intensity));
     else add_lamp(light);
   }
+  /// Keeps the number of a lamp or a sun that is black, so that those of the others do not change when it is switched off.
+  void skip(const Light& light) { number_ += light.kind != LightKind::sky && light.kind != LightKind::environment; }
   OwnedLights take() { return std::move(lights_); }
 
  private:
@@ -127,8 +129,7 @@ OwnedLights lights_of_faces(const LocalScene& scene, const EmissionUnit& unit,
 
 OwnedLights lights_beside_faces(const LocalScene& scene, const EmissionUnit& unit) {
   LightMaker maker(scene, unit);
-  for (const Light& light : scene.mesh().lights())
-    if (!light.intensity.is_zero()) maker.add(light);
+  for (const Light& light : scene.mesh().lights()) light.intensity.is_zero() ? maker.skip(light) : maker.add(light);
   return maker.take();
 }
 

@@ -23,7 +23,8 @@ OwnedLights lights_of_faces(
     const LocalScene& scene, const EmissionUnit& unit,
     const std::function<double(std::uint32_t root)>& cover = [](std::uint32_t) { return 1.0; });
 
-/// Returns the lights of the mesh that are not faces and not black, in their order. Their numbers follow those of the roots.
+/// Returns the lights of the mesh that are not faces and not black, in their order. Their numbers follow those of the roots;
+/// in a scene without skies and surroundings, that of a light is the number of roots and its place among the mesh's lights.
 OwnedLights lights_beside_faces(const LocalScene& scene, const EmissionUnit& unit);
 
 }  // namespace alvor

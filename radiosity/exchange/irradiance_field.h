@@ -36,6 +36,13 @@ struct FieldFit {
     low += irradiance;
     high += irradiance;
   }
+  /// Multiplies the irradiance by a factor for each band; noise and misfit by the square of their mean.
+  void scale(const Rgb& factor) {
+    for (RelativeLight& each : coefficient) each = factor * each;
+    low = factor * low;
+    high = factor * high;
+    for (double* const square : {&variance, &window_misfit, &squared_misfit}) *square *= factor.mean() * factor.mean();
+  }
   /// Returns the irradiance at a point. It is kept within the range [low, high], widened by half of its width
   /// on both sides, but not below a quarter of `low` nor below 0.
   RelativeLight at(Vec3 point) const;

@@ -77,6 +77,7 @@ double DirectField::emitted_power() const {
 void DirectField::fit_to_nodes() {
   const std::size_t count = forests_.leaves().node_count();
   light_.resize(count);
+  shares_.resize(count);
   if (has_distant_lights_) from_afar_.resize(count);
   is_known_.resize(count);
   is_lit_.resize(count);
@@ -117,7 +118,7 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
     const NodeIndex row = forests_.row_of(leaf);
     return !rows.is_traced(row) && rows.may_be_lit(row);
   });
-  spread_out(forests_.leaves(), leaves);
+  if (light_tree_) spread_out(forests_.leaves(), leaves);  // else all leaves get the light of a light at once
   const std::vector<Receiver> receivers = receivers_of(leaves, rows);
   std::vector<DirectLight> light(leaves.size());
   if (has_distant_lights_)
@@ -174,17 +175,48 @@ void DirectField::share(std::span<const Receiver> receivers, std::span<DirectLig
   deal.share(ranks_, light);
 }
 
+/// Adds what one light brings, by tracing rays or exactly.
+void DirectField::trace_one(const LightSource& next, std::span<const Receiver> receivers, std::span<DirectLight> light) {
+  const LightSource* const lights[]{&next};
+  share(receivers, light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
+    add_direct_light(scene_, lights, own, options_.seed, budget_, own_light, shadow_needs());
+  });
+}
+
+/// Adds what one light brings, traced only where its share is not known.
+void DirectField::add_from_shares(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
+                                  std::span<DirectLight> light) {
+  std::vector<std::uint8_t> is_missing(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    const auto brought = shares_.brought(next, leaves[n]);
+    is_missing[n] = !brought;
+    if (brought) light[n] += *brought;
+  });
+  std::vector<std::size_t> missing;
+  std::vector<Receiver> missing_receivers;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    if (!is_missing[n]) continue;
+    missing.push_back(n);
+    missing_receivers.push_back(receivers[n]);
+  }
+  std::vector<DirectLight> found(missing.size());
+  trace_one(next, missing_receivers, found);
+  if (budget_.is_out()) return;  // what was found is not complete
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    shares_.set(next, leaves[missing[k]], found[k]);
+    light[missing[k]] += found[k];
+  }
+}
+
 /// Adds one light to the light of `receivers`, which are these leaves.
 void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                           std::span<DirectLight> light) {
-  const LightSource* const lights[]{&next};
   const bool is_distant = !next.extent();
   if (is_distant)
     for (std::size_t n = 0; n < leaves.size(); ++n)
       from_afar_[leaves[n]] -= static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
-  share(receivers, light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
-    add_direct_light(scene_, lights, own, options_.seed, budget_, own_light, shadow_needs());
-  });
+  if (shares_.keeps(next)) add_from_shares(next, receivers, leaves, light);
+  else trace_one(next, receivers, light);
   if (is_distant)
     for (std::size_t n = 0; n < leaves.size(); ++n)
       from_afar_[leaves[n]] += static_cast<float>(stopped_by(leaves[n], light[n].irradiance));

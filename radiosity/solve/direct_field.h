@@ -3,10 +3,12 @@
 
 #include "radiosity/direct/direct_light.h"
 #include "radiosity/direct/lights_of_scene.h"
+#include "radiosity/solve/light_shares.h"
 #include "radiosity/solve/traced_rows.h"
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,7 +46,18 @@ class DirectField {
   /// where the ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
   /// Makes the next add_new() find the leaf's light again.
-  void forget(NodeIndex leaf) { is_known_[leaf] = false; }
+  void forget(NodeIndex leaf) {
+    is_known_[leaf] = false;
+    shares_.forget(leaf);
+  }
+
+  /// Keeps from now on what each light brings, where there are two to LightShares::most_lights, none of them a sky or
+  /// surroundings, and one rank.
+  void keep_shares();
+  /// Takes the lights of the mesh, after its materials and lights have changed. If all have changed by one factor, so has the
+  /// light of leaves, and the factor is returned, in emission units; else the next add_new() finds it again, from shares where
+  /// they are known. `unit_change` is the emission unit of before as a multiple of the present one.
+  std::optional<Rgb> note_relit(double unit_change);
 
   /// Makes room for new nodes of the leaf forest.
   void fit_to_nodes();
@@ -60,6 +73,12 @@ class DirectField {
 
  private:
   void choose_lights();
+  std::vector<LightForm> forms_of_lights() const;
+  void choose_shares();
+  void scale(const Rgb& factor);
+  void trace_one(const LightSource& next, std::span<const Receiver> receivers, std::span<DirectLight> light);
+  void add_from_shares(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
+                       std::span<DirectLight> light);
   ShadowNeeds shadow_needs() const;
   void add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                std::span<DirectLight> light);
@@ -79,10 +98,13 @@ class DirectField {
   Ranks& ranks_;
   std::vector<RelativeLight> emission_;  ///< by material
   OwnedLights owned_lights_;
+  std::vector<LightForm> forms_;                 ///< of owned_lights_; none unless keep_shares() was called
   std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first
   std::vector<const LightSource*> tree_lights_;  ///< the others
   std::unique_ptr<LightTree> light_tree_;        ///< null if there are no others
-  std::unique_ptr<BlockerTree> blockers_;        ///< null until shadows are exact
+  bool keeps_shares_ = false;
+  LightShares shares_;
+  std::unique_ptr<BlockerTree> blockers_;  ///< null until shadows are exact
   bool is_exact_ = false;
   bool has_distant_lights_ = false;
   double near_power_ = 0;                 ///< of faces and lamps

@@ -84,7 +84,7 @@ void Forests::split_to_show_textures(const Plan& plan) {
   const auto has_contrast = [&](const PatchShape& shape) {
     Rgb low{1, 1, 1}, high;
     for (int k = 0; k < 4; ++k) {
-      const MeanSurface quarter = reflectance_.of(shape.child(k));
+      const MeanSurface quarter = reflectance_->of(shape.child(k));
       if (quarter.cover == 0) continue;
       low = lower(low, quarter.reflectance), high = upper(high, quarter.reflectance);
     }
@@ -93,7 +93,7 @@ void Forests::split_to_show_textures(const Plan& plan) {
   std::vector<NodeIndex> split;
   for (NodeIndex node = 0; node < leaves_.node_count(); ++node) {
     const std::uint32_t root = leaves_.id(node).root_face();
-    if (!leaves_.is_leaf(node) || !reflectance_.varies(root) || !plan.may_be_lit(root)) continue;
+    if (!leaves_.is_leaf(node) || !reflectance_->varies(root) || !plan.may_be_lit(root)) continue;
     const PatchShape shape = leaves_.shape(node);
     if (longest_edge(mesh_, shape) > start_textured_edge * mesh_.extent() && has_contrast(shape))
       leaves_.split(node, limits_, split);
@@ -107,7 +107,7 @@ void Forests::fit_to_nodes() {
     const PatchShape shape = leaves_.shape(leaf);
     leaf_centre_.push_back(centre_of(mesh_, shape));
     leaf_area_.push_back(area_of(mesh_, shape));
-    if (mesh_.has_varying_reflectance()) leaf_surface_.push_back(reflectance_.of(shape));
+    if (mesh_.has_varying_reflectance()) leaf_surface_.push_back(reflectance_->of(shape));
   }
 }
 
@@ -140,6 +140,12 @@ bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
   const bool is_done = rows_.split(row, limits_, split);
   fit_to_nodes();
   return is_done;
+}
+
+void Forests::note_relit() {
+  if (!mesh_.has_varying_reflectance()) return;
+  reflectance_.emplace(mesh_);
+  for (NodeIndex leaf = 0; leaf < leaf_surface_.size(); ++leaf) leaf_surface_[leaf] = reflectance_->of(leaves_.shape(leaf));
 }
 
 void Forests::save(PlainWriter& out) const {

@@ -7,6 +7,7 @@
 #include "radiosity/plan/plan.h"
 #include "solution/plain_bytes.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,9 @@ class Forests {
   /// Splits a leaf of the row forest, as split_leaf() does in the leaf forest.
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
 
+  /// Finds the reflectances of nodes again, after the materials of the mesh have changed.
+  void note_relit();
+
   void save(PlainWriter& out) const;
   /// Reads what save() wrote. Throws BadBytes if the leaves are not those of this scene. Requires: no split since construction.
   void load(PlainReader& in);
@@ -73,8 +77,8 @@ class Forests {
   NeighbourTable row_neighbours_{rows_}, leaf_neighbours_{leaves_};
   std::vector<Vec3> row_centre_, leaf_centre_;
   std::vector<double> leaf_area_;
-  const PatchReflectance reflectance_;
-  std::vector<MeanSurface> leaf_surface_;  // by leaf node; none if no reflectance varies
+  std::optional<PatchReflectance> reflectance_;  // never empty
+  std::vector<MeanSurface> leaf_surface_;        // by leaf node; none if no reflectance varies
 };
 
 /// Sorts patches so that any first part of them is spread over the scene and holds much of its area. One patch of each face comes

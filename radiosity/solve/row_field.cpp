@@ -47,6 +47,11 @@ void RowField::set_fits(std::span<const NodeIndex> rows, std::span<const FieldFi
   for (std::size_t n = 0; n < rows.size(); ++n) fit_[rows[n]] = fits[n];
 }
 
+void RowField::scale(const Rgb& factor) {
+  for (RelativeLight& irradiance : irradiance_) irradiance = factor * irradiance;
+  for (FieldFit& fit : fit_) fit.scale(factor);
+}
+
 void RowField::fit_to_nodes() {
   if (!has_rows_) return;
   irradiance_.resize(forests_.rows().node_count());

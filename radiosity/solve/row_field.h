@@ -28,6 +28,9 @@ class RowField {
   /// Replaces the field of each row by a fit; irradiance(row) does not change. Requires: as many fits as rows; rows carry light.
   void set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits);
 
+  /// Multiplies the field by a factor for each band.
+  void scale(const Rgb& factor);
+
   /// Makes room for new nodes of the row forest.
   void fit_to_nodes();
   /// Copies the field of a row that was split to its children.

@@ -7,19 +7,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <stop_token>
 
 namespace alvor {
 
 /// Versions of checkpoints, which each checkpoint begins with. Version 1 does not say which leaves have light; since version 3
-/// rows say whether they are closed (TransportRow::is_closed); since version 4 there are guides of rays. A solve goes on from the
+/// rows say whether they are closed (TransportRow::is_closed); since version 4 there are guides of rays;
+/// since version 5 they say which edits of the scene they heed. A solve goes on from the
 /// oldest and later ones, and writes the newest.
-inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 4;
+inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 5;
+
+/// Returns the SolveControl::edits of the mesh that a checkpoint is of. Throws BadBytes.
+std::uint64_t edits_of_checkpoint(std::span<const std::byte> checkpoint);
 
 /// Priority among the solves of a process. Worker threads go to the highest first; each solve has at least the thread that called
 /// it.
 enum class SolvePriority { low, normal, high };
+
+class BaseMesh;
+class LiveSolve;
 
 /// Requests to a solve and the functions that it calls, all on the thread that solves. With several ranks each has its own, which
 /// differ: a request that reaches any rank counts for all; the clock of the first rank counts; and only the first rank is asked
@@ -31,6 +39,10 @@ struct SolveControl {
   std::stop_token short_of_memory;
   /// Ends the solve at the next place from which it can go on as if it had not been interrupted, after one more call of `save`.
   std::stop_token park;
+
+  /// Returns whether the scene was edited since the solve began; ends the solve as `park` does, with the reason
+  /// StopReason::edited and without a call of `save`. Called from any thread; quick. Null: never.
+  std::function<bool()> is_edited;
 
   /// Called at such places; returns whether `save` is to be called. Null: never.
   std::function<bool()> is_checkpoint_due;
@@ -44,6 +56,15 @@ struct SolveControl {
   /// A checkpoint of this mesh, plan and options to go on from, with the log as it was saved then, by any number of ranks. The
   /// same on all ranks. Empty: the solve begins anew.
   std::span<const std::byte> checkpoint;
+
+  /// The mesh that the checkpoint is of, where the scene was edited since. Null: the mesh that is solved. Needs `live`.
+  const BaseMesh* checkpoint_mesh = nullptr;
+  /// Revision of the newest edits of the scene that the mesh has, for Step::edits.
+  std::uint64_t edits = 0;
+  /// What the solve is to keep in memory when it ends, so that it can go on, also after an edit; a solve goes on from it if it is
+  /// not null, whatever the checkpoint. Where an edit asks for more than a new exchange of light and new direct light, the solve
+  /// begins anew, and publishes once its first pass is done. Null: nothing is kept. With one rank only.
+  std::shared_ptr<LiveSolve>* live = nullptr;
 
   /// The ranks that solve together, of which this process is one. Never null; must outlive the solve.
   Ranks* ranks = &Ranks::alone();

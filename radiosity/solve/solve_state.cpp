@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace alvor {
 
@@ -119,6 +120,17 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   forests.append_leaves_of_row(row, leaves);
   for (const NodeIndex leaf : leaves) direct.forget(leaf);
   if (rows[row].crosses_contact() && leaves.size() > 1) split_row(row);
+}
+
+void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
+  const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
+  const double change = unit_before.to_watts(1) / unit_.to_watts(1);
+  plan = std::move(new_plan);
+  largest_irradiance_ = largest_irradiance(mesh);
+  forests.note_relit();
+  for (RelativeLight& light : shot) light = change * light;
+  const auto factor = direct.note_relit(change);
+  field.scale(factor && reflects_as_before ? *factor : Rgb{change, change, change});
 }
 
 void SolveState::save(PlainWriter& out) const {

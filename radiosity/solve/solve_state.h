@@ -27,7 +27,7 @@ class SolveState {
   SolveState(const SolveState&) = delete;  // the parts refer to each other
 
   const BaseMesh& mesh;
-  const Plan plan;
+  Plan plan;
   const SolveOptions options;
   RayBudget& budget;
   Ranks& ranks;
@@ -80,6 +80,13 @@ class SolveState {
   /// which points are hidden.
   void heed_hidden_origins(NodeIndex row);
 
+  /// Keeps what later edits of lights can use, see DirectField::keep_shares().
+  void keep_shares() { direct.keep_shares(); }
+  /// Takes the materials and lights of the mesh, which have changed, with a plan of the mesh as it is now. What is not known any
+  /// more is found by the next pass. `reflects_as_before` says that only emission and lights have changed: where all of them have
+  /// by one factor, indirect light has, too. Requires: rows and forests are those of the mesh as it is now.
+  void note_relit(Plan new_plan, bool reflects_as_before);
+
   /// Collective. Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on, with
   /// any number of ranks; all else is computed again.
   void save(PlainWriter& out) const;
@@ -88,8 +95,8 @@ class SolveState {
   void load(PlainReader& in, std::uint32_t version);
 
  private:
-  const EmissionUnit unit_{mesh};
-  const Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
+  EmissionUnit unit_{mesh};
+  Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
   void follow_contact(NodeIndex split_leaf);
 };

@@ -2,7 +2,7 @@
 
 #include "radiosity/ranks/launched_ranks.h"
 #include "radiosity/solve/cpu_clock.h"
-#include "radiosity/solve/pass.h"
+#include "radiosity/solve/live_solve.h"
 #include "radiosity/solve/solve_clock.h"
 #include "radiosity/solve/stop_requests.h"
 
@@ -17,6 +17,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace alvor {
 
@@ -50,18 +51,6 @@ constexpr double publishing_share = 0.1;
 // (docs/design/constants.md).
 constexpr std::uint64_t always_published = 12;
 
-/// The progress of a run that is not part of its state. Saved with checkpoints.
-struct Progress {
-  double elapsed_s = 0, cpu_s = 0, traversal_s = 0;
-  std::uint64_t rays = 0, shots = 0;
-  std::uint64_t passes = 0;  ///< passes that came to their end
-  ErrorEstimate error{.unshot = 1};
-  PowerBalance balance;
-  double lowest_error = 0;
-  std::uint64_t leaves_before = 0;  ///< leaves in the last pass that gained something
-  std::uint64_t idle_passes = 0;    ///< passes since then
-};
-
 /// Publishes one step: every face, and no light on any.
 SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
   std::vector<LeafValue> values;
@@ -76,28 +65,32 @@ SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLo
 /// One run of the solver, on a scene with light.
 class Run {
  public:
-  Run(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const CpuClock& cpu, SolutionLog& log,
-      const SolveControl& control)
-      : plan_(plan),
-        options_(options),
-        log_(log),
-        control_(control),
-        cpu_(cpu),
-        ranks_(*control.ranks),
-        budget_([this] { return requests_.made_here().any(); }),
-        state_(mesh, plan, options, budget_, ranks_) {}
+  Run(LiveSolve& live, const CpuClock& cpu, SolutionLog& log, const SolveControl& control)
+      : live_(live), log_(log), control_(control), cpu_(cpu), ranks_(*control.ranks) {
+    clock_.add_elapsed(is_.elapsed_s);
+    live_.is_out = [this] { return requests_.made_here().any(); };
+    requests_.heed_edits(!live_.error_before_edit && !live_.is_refreshing);
+  }
+  ~Run() {
+    live_.is_out = [] { return false; };
+  }
+  Run(const Run&) = delete;
 
   SolveOutcome run() {
-    if (control_.checkpoint.empty()) publish();
-    else load();
+    if (log_.head() == 0) publish();
     const StopReason reason = pass_until_done();
     if (reason == StopReason::parked) save();
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
     // instead of 1.8 %).
-    if (reason == StopReason::time_limit && is_.passes == 0) publish();
+    if (reason == StopReason::time_limit && is_.passes == 0) {
+      live_.is_refreshing = false;
+      publish();
+    }
     const double cpu = cpu_s_of_all();
-    return {reason, clock_.elapsed_s(), cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
+    note_time();
+    is_.cpu_s = cpu;
+    return {reason, is_.elapsed_s, cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
   }
 
  private:
@@ -109,7 +102,7 @@ class Run {
       if (error_to_keep() <= options_.tolerance) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
-      if (must_break_off()) return requests_.reason();
+      if (const auto& made = requests_.ask(); made.break_off() || made.edited) return requests_.reason();
       const bool is_better = gains() && pass_->refine([this] { return requests_.made_here().break_off(); });
       if (must_stop()) return requests_.reason();
       if (!is_better) {
@@ -134,12 +127,15 @@ class Run {
   /// Makes a pass up to its estimate and publishes it. Returns false if it was stopped: then the last published step stands.
   bool pass() {
     if (!light()) return false;
+    if (live_.error_before_edit) publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
     pass_->begin_exchange();
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
     is_.error = pass_->estimate();
+    live_.error_before_edit.reset();
     account();
     expect_agreement();
     by_place_ = pass_->error_by_place(is_.error);
+    live_.is_refreshing = false;
     publish();
     ++is_.passes;
     return true;
@@ -148,14 +144,14 @@ class Run {
   /// Traces rows and adds direct light, in the first pass part by part, so that all of the scene soon shows some light. Returns
   /// false if it was stopped.
   bool light() {
-    state_.direct.heed_error(error_to_keep());
+    state_.direct.heed_error(live_.error_before_edit.value_or(error_to_keep()));
     bool is_more = true;
     while (is_more && !must_stop()) {
       is_more = pass_->trace_rows([this] { save_if_due(); }, is_.passes == 0 ? RowsToTrace::a_part : RowsToTrace::all);
       if (must_stop()) return false;
       pass_->add_direct_light([this] {
         ++is_.shots;
-        if (is_.passes == 0 && !requests_.made_here().any()) publish_if_due();
+        if ((is_.passes == 0 || live_.error_before_edit) && !requests_.made_here().any()) publish_if_due();
         save_if_due();
       });
     }
@@ -187,7 +183,7 @@ class Run {
     double published = exchange.unshot_power();
     const Settling end = settle(exchange, remaining_error, [&](std::size_t steps) {
       is_.shots += steps;
-      if (must_break_off()) return false;
+      if (const auto& made = requests_.ask(); made.break_off() || made.edited) return false;
       if (exchange.unshot_power() >= publish_when * published) return true;
       published = exchange.unshot_power();
       pass_->show_what_came_since();
@@ -207,7 +203,7 @@ class Run {
   }
 
   void publish() {
-    if (!ranks_.is_first()) return;
+    if (!ranks_.is_first() || live_.is_refreshing) return;
     const double before = clock_.elapsed_s();
     Step step;
     step.elapsed_s = before;
@@ -218,9 +214,12 @@ class Run {
     step.estimated_error = is_.error.total();
     step.unlit_fraction = state_.direct.unlit_fraction();
     step.area_within = by_place_.area_within;
+    step.edits = control_.edits;
+    step.is_provisional = live_.error_before_edit.has_value();
     step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
-    if (plan_.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
+    if (state_.plan.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
     log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
+    requests_.heed_edits(true);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return requests_.made_here().any(); });
@@ -239,35 +238,17 @@ class Run {
       state_.save(nowhere);
       return;
     }
-    Progress now = is_;
-    now.elapsed_s = clock_.elapsed_s();
-    now.cpu_s = cpu_s();
-    now.traversal_s = budget_.traversal_s();
-    now.rays = budget_.rays();
-    control_.save([&](PlainWriter& out) {
-      out.put(newest_checkpoint);
-      out.put(now);
-      out.put(by_place_);
-      state_.save(out);
-    });
+    note_time();
+    const double cpu_before = std::exchange(is_.cpu_s, cpu_s());
+    control_.save([&](PlainWriter& out) { live_.save(out); });
+    is_.cpu_s = cpu_before;
   }
 
-  void load() {
-    PlainReader in(control_.checkpoint);
-    const auto version = in.get<std::uint32_t>();
-    if (version < oldest_checkpoint || version > newest_checkpoint)
-      throw BadBytes("is of version " + std::to_string(version) + "; " + std::to_string(oldest_checkpoint) + " to " +
-                     std::to_string(newest_checkpoint) + " are known");
-    is_ = in.get<Progress>();
-    if (version >= 4) by_place_ = in.get<ErrorByPlace>();
-    const double numbers[] = {is_.elapsed_s,    is_.cpu_s,         is_.traversal_s,       is_.error.total(),
-                              is_.lowest_error, is_.balance.gap(), by_place_.area_within, by_place_.kept_error};
-    if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || is_.elapsed_s < 0)
-      throw BadBytes("progress: cannot be");
-    state_.load(in, version);
-    in.expect_end();
-    clock_.add_elapsed(is_.elapsed_s);
-    budget_.add_spent(is_.rays, is_.traversal_s);
+  /// Notes in the progress what was spent so far, but for CPU time.
+  void note_time() {
+    is_.elapsed_s = clock_.elapsed_s();
+    is_.traversal_s = budget_.traversal_s();
+    is_.rays = budget_.rays();
   }
 
   /// Returns the error that has to be within the tolerance.
@@ -279,10 +260,10 @@ class Run {
   /// Returns whether this pass may be the last and its exchange is cheap. It then goes on to the end, so that all of the light is
   /// smoothed.
   bool may_be_last() const {
+    if (live_.error_before_edit) return false;  // the sooner the estimate comes; converge() goes on to the end
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
-  /// Collective. See StopRequests::Made.
-  bool must_break_off() { return requests_.ask().break_off(); }
+  /// Collective.
   bool must_stop() { return requests_.ask().any(); }
 
   /// Collective. Ends the solve if ranks differ in what they found, as on machines that compute differently.
@@ -306,19 +287,19 @@ class Run {
     return state_.leaf_count() + more > options_.max_leaves ? StopReason::max_leaves : StopReason::max_depth;
   }
 
-  const Plan& plan_;
-  SolveOptions options_;
+  LiveSolve& live_;
+  SolveState& state_ = live_.state;
+  const SolveOptions& options_ = state_.options;
+  RayBudget& budget_ = live_.budget;
+  Progress& is_ = live_.progress;
+  ErrorByPlace& by_place_ = live_.by_place;
   SolutionLog& log_;
   const SolveControl& control_;
   SolveClock clock_;
   const CpuClock& cpu_;
   Ranks& ranks_;
-  StopRequests requests_{control_, clock_, options_.time_limit_s};
-  RayBudget budget_;
-  SolveState state_;
+  StopRequests requests_{control_, clock_, options_.time_limit_s + live_.edited_at_s};
   std::optional<Pass> pass_{state_};
-  Progress is_;
-  ErrorByPlace by_place_{.area_within = 0, .kept_error = 1};
   bool has_stalled_ = false;  // the last exchange ended before it converged
   double published_at_ = 0, publishing_s_ = 0;
 };
@@ -344,6 +325,7 @@ std::string_view text(StopReason reason) {
     case StopReason::dark: return "no light";
     case StopReason::stalled: return "light goes round too slowly";
     case StopReason::parked: return "parked";
+    case StopReason::edited: return "edited";
   }
   return "unknown";
 }
@@ -356,7 +338,7 @@ std::string_view why_on_one_rank(const SolveOptions& options) {
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control) {
   assert(!mesh.roots().empty());
-  assert(!control.checkpoint.empty() || log.head() == 0);
+  assert(!control.checkpoint.empty() || control.live || log.head() == 0);
   if (const auto why = why_on_one_rank(options); !why.empty() && !control.ranks->is_alone())
     throw std::invalid_argument("takes a single rank: " + std::string(why));
   const int threads = options.threads > 0 ? options.threads : threads_of(*control.ranks);
@@ -364,7 +346,8 @@ SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const Solv
   const CpuClock cpu(arena);
   return arena.execute([&] {
     if (!plan.has_light()) return show_darkness(mesh, cpu, log);  // on every rank, each in its own log
-    return Run(mesh, plan, options, cpu, log, control).run();
+    const auto live = live_solve(mesh, plan, options, log, control);
+    return Run(*live, cpu, log, control).run();
   });
 }
 

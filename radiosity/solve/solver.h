@@ -13,8 +13,8 @@
 namespace alvor {
 
 /// Why a solve ended. `stalled`: the exchange of light converged too slowly, or rounding began too early, to meet the tolerance;
-/// the estimated error includes what is left. `parked`: SolveControl::park was obeyed.
-enum class StopReason { tolerance, max_leaves, max_depth, time_limit, memory, cancelled, dark, stalled, parked };
+/// the estimated error includes what is left. `parked`: SolveControl::park was obeyed. `edited`: so was SolveControl::is_edited.
+enum class StopReason { tolerance, max_leaves, max_depth, time_limit, memory, cancelled, dark, stalled, parked, edited };
 /// Returns the reason in words for people: "tolerance reached", "leaf limit reached", ...
 std::string_view text(StopReason reason);
 

@@ -5,6 +5,7 @@
 #include "radiosity/solve/solver.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 
 namespace alvor {
@@ -17,36 +18,42 @@ class StopRequests {
 
   /// Some requests. One that was made stays made.
   struct Made {
-    bool cancelled = false, memory = false, time_limit = false, parked = false;
+    bool cancelled = false, memory = false, time_limit = false, parked = false, edited = false;
 
     /// Returns whether to give up even in the middle of an exchange. A request to park is none: a solve that went on from the
     /// middle of an exchange would go on differently.
     bool break_off() const { return cancelled || memory || time_limit; }
-    bool any() const { return break_off() || parked; }
+    bool any() const { return break_off() || parked || edited; }
   };
   /// Returns the requests that this rank knows of. Safe from any thread.
   Made made_here() const {
     return {control_.stop.stop_requested(), control_.short_of_memory.stop_requested(),
-            control_.ranks->is_first() && clock_.elapsed_s() > time_limit_s_, control_.park.stop_requested()};
+            control_.ranks->is_first() && clock_.elapsed_s() > time_limit_s_, control_.park.stop_requested(),
+            heeds_edits_ && control_.is_edited && control_.is_edited()};
   }
   /// Collective. Returns the requests that any rank knows of.
   const Made& ask() {
     const Made here = made_here();
-    std::array<std::uint64_t, 4> counts{here.cancelled, here.memory, here.time_limit, here.parked};
+    std::array<std::uint64_t, 5> counts{here.cancelled, here.memory, here.time_limit, here.parked, here.edited};
     control_.ranks->sum(counts);
-    return made_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0};
+    return made_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0, counts[4] > 0};
   }
+  /// Makes edits count or not. A solve that has just taken one does not heed another before it has shown something, else a stream
+  /// of edits would never be seen.
+  void heed_edits(bool heeds) { heeds_edits_ = heeds; }
   /// Returns why the solve ends, by the last call of ask().
   StopReason reason() const {
     if (made_.cancelled) return StopReason::cancelled;
     if (made_.memory) return StopReason::memory;
-    return made_.time_limit ? StopReason::time_limit : StopReason::parked;
+    if (made_.time_limit) return StopReason::time_limit;
+    return made_.parked ? StopReason::parked : StopReason::edited;
   }
 
  private:
   const SolveControl& control_;
   const SolveClock& clock_;
   const double time_limit_s_;
+  std::atomic<bool> heeds_edits_ = true;
   Made made_;
 };
 

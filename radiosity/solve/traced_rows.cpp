@@ -89,7 +89,7 @@ void TracedRows::fit_to_nodes() {
   const std::size_t count = forests_.rows().node_count();
   rows_.resize(count);
   is_traced_.resize(count);
-  if (carry_light()) hit_leaves_.resize(count);
+  if (carry_light()) hit_leaves_.resize(count), found_among_.resize(count);
 }
 
 void TracedRows::forget(NodeIndex row) {
@@ -110,6 +110,7 @@ bool TracedRows::trace(std::span<const NodeIndex> rows) {
   if (!found) return false;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     rows_[rows[n]] = std::move((*found)[n]);
+    if (carry_light()) found_among_[rows[n]] = 0;
     is_traced_[rows[n]] = true;
     guides_.erase(rows[n]);
   }
@@ -204,6 +205,9 @@ void TracedRows::find_hit_leaves(NodeIndex row) {
   if (!is_own(row)) return;
   const auto& hits = rows_[row].hits;
   auto& found = hit_leaves_[row];
+  const std::size_t nodes = forests_.leaves().node_count();
+  if (found.size() == hits.size() && found_among_[row] == nodes) return;  // no leaf was split since
+  found_among_[row] = nodes;
   if (found.size() != hits.size()) {
     found.clear();
     for (const PatchId hit : hits) found.push_back(hit.root_face());

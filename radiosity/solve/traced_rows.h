@@ -102,6 +102,7 @@ class TracedRows {
   std::vector<TransportRow> rows_;
   std::vector<bool> is_traced_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;
+  std::vector<std::size_t> found_among_;        ///< by row: the number of leaf nodes when find_hit_leaves() was called last
   std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
   std::uint64_t rounds_of_rays_ = 0;            ///< each adds independent rays
   std::vector<NodeIndex> wanting_;              ///< rows that have not got the rays of the newest round

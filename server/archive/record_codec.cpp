@@ -1,6 +1,7 @@
 #include "server/archive/record_codec.h"
 
 #include "proto/codec.h"
+#include "proto/edit_codec.h"
 #include "server/archive/database.h"
 #include "server/archive/versioned.h"
 
@@ -113,6 +114,23 @@ void decode_restarts(const v1::Solve& message, SolveRecord& record) {
   if (message.has_work_lost())
     record.work_lost = std::chrono::microseconds(std::llround(1e6 * decode_seconds(message.work_lost())));
   if (message.has_checkpoint_time()) record.checkpoint_time = decode_time(message.checkpoint_time());
+}
+
+v1::EditStep encode(const KeptEdit& edit) {
+  v1::EditStep message;
+  encode(edit.step, message);
+  message.set_revision(edit.revision);
+  message.set_author(as_utf8(edit.author));
+  message.set_request_id(edit.request_id);
+  message.set_continues(edit.continues);
+  *message.mutable_time() = encode_time(edit.time);
+  return message;
+}
+
+KeptEdit decode_kept(const v1::EditStep& message) {
+  const auto step = alvor::decode(message);
+  if (!step) throw invalid_argument("edits: of a kind that is not known to this server");
+  return {message.revision(), *step, message.author(), message.request_id(), decode_time(message.time()), message.continues()};
 }
 
 /// The messages of the API, as facts of scenes and solves.
@@ -228,6 +246,7 @@ v1::Solve encode(const SolveRecord& record) {
   if (!record.plan.empty()) *message.mutable_plan() = encode(record.plan);
   encode_end(record, message);
   encode_restarts(record, message);
+  for (const KeptEdit& edit : record.edits) *message.add_edits() = encode(edit);
   return message;
 }
 
@@ -242,6 +261,7 @@ SolveRecord decode(const v1::Solve& message) {
   record.plan = decode(message.plan());
   decode_end(message, record);
   decode_restarts(message, record);
+  for (const v1::EditStep& edit : message.edits()) record.edits.push_back(decode_kept(edit));
   return record;
 }
 

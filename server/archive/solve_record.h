@@ -1,6 +1,7 @@
 #pragma once
 // The record of a solve: what was asked, its status and its newest step, without its solution.
 
+#include "meshing/edit/scene_edit.h"
 #include "radiosity/plan/solve_options.h"
 #include "radiosity/solve/power_balance.h"
 #include "radiosity/solve/solve_control.h"
@@ -54,6 +55,18 @@ struct SolveSpec {
   friend bool operator==(const SolveSpec&, const SolveSpec&) = default;
 };
 
+/// A step of edits of a solve's scene, as it was made.
+struct KeptEdit {
+  std::uint64_t revision = 0;  ///< they ascend from 1; those of steps that were replaced are missing
+  EditStep step;
+  std::string author, request_id;
+  std::chrono::system_clock::time_point time;
+  bool continues = false;  ///< it could take the place of the step before
+};
+
+/// Returns the revision of the newest step; 0 if there is none.
+inline std::uint64_t newest_revision(const std::vector<KeptEdit>& edits) { return edits.empty() ? 0 : edits.back().revision; }
+
 /// A solve: what was asked, how far it is, and how it ended.
 struct SolveRecord {
   using Clock = std::chrono::system_clock;
@@ -80,6 +93,10 @@ struct SolveRecord {
   /// Computing time that the last restart lost, at most; unset where none was lost or nobody knows.
   std::optional<std::chrono::microseconds> work_lost;
   std::optional<Time> checkpoint_time;  ///< of the newest checkpoint
+  std::vector<KeptEdit> edits;          ///< of its scene, oldest first
+
+  /// Returns whether there are edits that the newest step does not heed.
+  bool has_edits_to_heed() const { return newest_revision(edits) > last_step.value_or(Step()).edits; }
 };
 
 }  // namespace alvor

@@ -10,15 +10,20 @@
 
 namespace alvor {
 
-SceneService::SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools,
-                           spdlog::logger& logger)
-    : scenes_(scenes), tenants_(tenants), limits_(limits), pools_(pools), logger_(logger) {
+SceneService::SceneService(SceneStore& scenes, const SolveStore& solves, const Tenants& tenants, const UploadLimits& limits,
+                           CallPools& pools, spdlog::logger& logger)
+    : scenes_(scenes), solves_(solves), tenants_(tenants), limits_(limits), pools_(pools), logger_(logger) {
   relief_ = limits_.memory.relieve_by([this] { uploads_.clear(); });
 }
 
 namespace {
 
 bool next(SceneSlicer& slicer, v1::ReadSceneResponse& message) { return slicer.next(*message.mutable_chunk()); }
+/// Cuts a mesh with its lights and objects.
+class WholeMeshSlicer : public MeshSlicer {
+ public:
+  explicit WholeMeshSlicer(const BaseMesh& mesh) : MeshSlicer(mesh, 10'000, MeshParts::all) {}
+};
 bool next(MeshSlicer& slicer, v1::ReadMeshResponse& message) { return slicer.next(message); }
 
 /// Cuts the images of a scene's textures.
@@ -126,14 +131,16 @@ SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::Del
 }
 
 template <class Message, class Slicer, class Part>
-grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& scene, Part part) {
+grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& name, Part part) {
   std::string tenant;
   const grpc::Status refusal = attempt(logger_, call, [&] { tenant = tenants_.of(context); });
   if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(refusal);
-  const auto load = [this, scene, tenant](const CallStop& stop) {
-    const auto stored = scenes_.find(scene, tenant);
+  const auto load = [this, name, tenant](const CallStop& stop) {
+    const auto end_of_scene = name.find("/solves/");
+    const auto solve = end_of_scene == std::string::npos ? nullptr : solves_.find(name, tenant);
+    const auto stored = scenes_.find(name.substr(0, end_of_scene), tenant);
     limits_.memory.admit("scene", 2 * stored->facts.content_bytes);
-    return stored->content(stop);
+    return solve ? solve->content(stop) : stored->content(stop);
   };
   return new SendCall<Message, Slicer, Part>(context, pools_, limits_.patience, turn_of(tenant, context), logger_, call, part,
                                              load);
@@ -144,7 +151,7 @@ grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context
 }
 
 grpc::ServerWriteReactor<v1::ReadMeshResponse>* SceneService::ReadMesh(Context* context, const v1::ReadMeshRequest* request) {
-  return send<v1::ReadMeshResponse, MeshSlicer>(*context, "ReadMesh", request->name(), &SceneContent::mesh);
+  return send<v1::ReadMeshResponse, WholeMeshSlicer>(*context, "ReadMesh", request->name(), &SceneContent::mesh);
 }
 
 grpc::ServerWriteReactor<v1::ReadImagesResponse>* SceneService::ReadImages(Context* context,

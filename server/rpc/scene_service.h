@@ -6,6 +6,7 @@
 #include "server/rpc/call_pools.h"
 #include "server/scenes/scene_upload.h"
 #include "server/scenes/uploads.h"
+#include "server/solves/solve_store.h"
 
 namespace spdlog {
 class logger;
@@ -16,7 +17,8 @@ namespace alvor {
 /// Implements the RPCs. All its arguments must outlive the server's calls.
 class SceneService final : public v1::SceneService::CallbackService {
  public:
-  SceneService(SceneStore& scenes, const Tenants& tenants, const UploadLimits& limits, CallPools& pools, spdlog::logger& logger);
+  SceneService(SceneStore& scenes, const SolveStore& solves, const Tenants& tenants, const UploadLimits& limits, CallPools& pools,
+               spdlog::logger& logger);
 
  private:
   using Context = grpc::CallbackServerContext;
@@ -38,11 +40,13 @@ class SceneService final : public v1::SceneService::CallbackService {
   /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
-  /// Streams the part of the scene's content that `part` returns, cut into messages by a Slicer.
+  /// Streams the part of the content of a scene, or of a solve with its edits, that `part` returns, cut into messages by a
+  /// Slicer.
   template <class Message, class Slicer, class Part>
-  grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& scene, Part part);
+  grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& name, Part part);
 
   SceneStore& scenes_;
+  const SolveStore& solves_;
   const Tenants& tenants_;
   const UploadLimits limits_;
   Uploads uploads_;

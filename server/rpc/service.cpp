@@ -47,7 +47,7 @@ struct Service::Parts {
         scenes(options.archive, options.quota, options.memory),
         solves(solve_store_options, scenes),
         tenants(options.tokens, options.identity_header),
-        scene_service(scenes, tenants, upload_limits(options), pools, *logger),
+        scene_service(scenes, solves, tenants, upload_limits(options), pools, *logger),
         solve_service(scenes, solves, watches, tenants, pools, *logger),
         metrics(std::make_shared<Metrics>(scenes, solves, watches, calls, *solve_store_options.keeping.counts,
                                           solve_store_options.memory)) {}

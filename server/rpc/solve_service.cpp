@@ -1,5 +1,6 @@
 #include "server/rpc/solve_service.h"
 
+#include "proto/edit_codec.h"
 #include "server/archive/record_codec.h"
 #include "server/base/status_error.h"
 #include "server/rpc/answer.h"
@@ -55,7 +56,10 @@ SolveService::Reactor* SolveService::ListSolves(Context* context, const v1::List
   return keep(context, "ListSolves", [this, request, response](const std::string& tenant) {
     if (request->parent() != "scenes/-") scenes_.find(request->parent(), tenant);
     const auto page = solves_.list(request->parent(), tokens_.request(request->page_size(), request->page_token()), tenant);
-    for (const auto& solve : page.items) *response->add_solves() = encode(solve->describe());
+    for (const auto& solve : page.items) {
+      *response->add_solves() = encode(solve->describe());
+      response->mutable_solves()->rbegin()->clear_edits();
+    }
     response->set_next_page_token(tokens_.token(page.next_before));
   });
 }
@@ -75,6 +79,18 @@ SolveService::Reactor* SolveService::PauseSolve(Context* context, const v1::Paus
 SolveService::Reactor* SolveService::ResumeSolve(Context* context, const v1::ResumeSolveRequest* request, v1::Solve* solve) {
   return keep(context, "ResumeSolve", [this, request, solve](const std::string& tenant) {
     *solve = encode(solves_.resume(request->name(), tenant)->describe());
+  });
+}
+
+SolveService::Reactor* SolveService::EditSolve(Context* context, const v1::EditSolveRequest* request,
+                                               v1::EditSolveResponse* response) {
+  return keep(context, "EditSolve", [this, request, response](const std::string& tenant) {
+    auto step = decode(request->step());
+    if (!step) throw invalid_argument("step: an edit has no part, or the step is of a kind that this server does not know");
+    EditRequest edit{std::move(*step), request->step().author(), request->request_id(), request->step().continues(), {}};
+    if (request->has_base_revision()) edit.base_revision = request->base_revision();
+    response->set_revision(solves_.edit(request->name(), edit, tenant));
+    response->set_state(encode(solves_.find(request->name(), tenant)->describe()).state());
   });
 }
 

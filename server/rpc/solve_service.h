@@ -26,6 +26,7 @@ class SolveService final : public v1::SolveService::WithRawCallbackMethod_WatchS
   Reactor* CancelSolve(Context*, const v1::CancelSolveRequest* request, v1::Solve* solve) override;
   Reactor* PauseSolve(Context*, const v1::PauseSolveRequest* request, v1::Solve* solve) override;
   Reactor* ResumeSolve(Context*, const v1::ResumeSolveRequest* request, v1::Solve* solve) override;
+  Reactor* EditSolve(Context*, const v1::EditSolveRequest* request, v1::EditSolveResponse* response) override;
   Reactor* DeleteSolve(Context*, const v1::DeleteSolveRequest* request, google::protobuf::Empty*) override;
   grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSolve(Context*, const grpc::ByteBuffer* request) override;
   Reactor* AcknowledgeFrame(Context*, const v1::AcknowledgeFrameRequest* request, v1::AcknowledgeFrameResponse*) override;

@@ -33,6 +33,7 @@ WatchPlan plan_of(const v1::WatchSolveRequest& request) {
   if (!v1::Detail_IsValid(request.detail())) throw invalid_argument("detail: is not one");
   plan.detail = decode(request.detail());
   plan.start.errors.are_wanted = request.with_errors();
+  plan.follows_edits = request.follow_edits();
   plan.min_interval = interval_of(request.max_rate_hertz());
   if (const std::uint64_t bytes = request.max_bytes_per_second(); bytes > 0) {
     if (bytes < least_bytes_per_s) throw invalid_argument("max_bytes_per_second: must be 0 or at least 1000");

@@ -89,7 +89,7 @@ std::shared_ptr<StoredSolve> SolveStore::create(SceneUse scene, const SolveSpec&
   Lock hold(lock_);
   if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
   if (auto known = repeated(caller, scene.scene->facts.name, spec)) return known;
-  check_capacity(caller.tenant, how);
+  check_capacity(caller.tenant, how, true);
   options_.memory.refuse_without_room("solve", least_memory(*scene.scene));
   auto solve = std::make_shared<StoredSolve>(next_number_, scene.scene, caller, spec, how, options_.keeping);
   solve->keep();
@@ -110,7 +110,7 @@ std::shared_ptr<StoredSolve> SolveStore::repeated(const Caller& caller, const st
   return known;
 }
 
-void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next) {
+void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& next, bool is_new) {
   std::uint64_t waiting = 0, own = 1, ended = 0, leaves = next.max_leaves;
   for (const auto& [name, entry] : solves_) {
     const bool is_own = entry.solve->creator.tenant == tenant;
@@ -129,7 +129,7 @@ void SolveStore::check_capacity(const std::string& tenant, const SolveOptions& n
     refuse(std::to_string(waiting) + " solves are waiting, as many as this server allows");
   if (own > options_.quota.solves)
     refuse("solves: " + std::to_string(options_.quota.solves) + " have not ended, as many as are allowed");
-  if (ended >= options_.quota.ended_solves)
+  if (is_new && ended >= options_.quota.ended_solves)
     refuse("solves: " + std::to_string(ended) + " that have ended are kept, as many as are allowed: delete some");
   if (leaves > options_.quota.leaves)
     refuse("solve.spec.max_elements: with the other solves that have not ended " + std::to_string(leaves) + ", " +
@@ -205,14 +205,52 @@ std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const s
   return resumed.solve;
 }
 
+std::uint64_t SolveStore::edit(const std::string& name, const EditRequest& request, const std::string& tenant) {
+  check_request_id(request.request_id);
+  std::shared_ptr<StoredSolve> solve;
+  {
+    Lock hold(lock_);
+    if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
+    ++entry(name, tenant).editors;
+    solve = entry(name, tenant).solve;
+  }
+  const auto leave = [&] {
+    Lock hold(lock_);
+    --entry(name, tenant).editors;
+    start_waiting();
+    changed_.notify_all();
+  };
+  const auto admit = [&] {
+    if (!solve->ended()) return;
+    Lock hold(lock_);
+    check_capacity(tenant, solve->options, false);
+  };
+  try {
+    const std::uint64_t revision = solve->edit(request, admit);
+    leave();
+    return revision;
+  } catch (...) {
+    leave();
+    throw;
+  }
+}
+
 void SolveStore::remove(const std::string& name, const std::string& tenant) {
   decltype(solves_)::node_type removed;  // freed after the lock is
   Lock hold(lock_);
-  if (!entry(name, tenant).solve->ended()) throw StatusError(grpc::FAILED_PRECONDITION, name + " has not ended: cancel it first");
-  changed_.wait(hold, [&]() ALVOR_REQUIRES(lock_) { return !entry(name, tenant).is_running; });  // it is just ending
+  const auto refuse_active = [&]() ALVOR_REQUIRES(lock_) {
+    if (!entry(name, tenant).solve->ended())
+      throw StatusError(grpc::FAILED_PRECONDITION, name + " has not ended: cancel it first");
+  };
+  refuse_active();
+  // It is just ending, or being edited.
+  changed_.wait(hold,
+                [&]() ALVOR_REQUIRES(lock_) { return !entry(name, tenant).is_running && entry(name, tenant).editors == 0; });
+  refuse_active();
   const StoredSolve& old = *entry(name, tenant).solve;
   if (options_.keeping.archive) options_.keeping.archive->remove_solve(old.number);
   requests_.remove(old.creator);
+  entry(name, tenant).solve->note_removed();
   removed = solves_.extract(name);
   trim_heap_soon();
 }

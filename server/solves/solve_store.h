@@ -60,6 +60,9 @@ class SolveStore {
   /// NOT_FOUND; FAILED_PRECONDITION when it has ended.
   std::shared_ptr<StoredSolve> pause(const std::string& name, const std::string& tenant = {});
   std::shared_ptr<StoredSolve> resume(const std::string& name, const std::string& tenant = {});
+  /// Edits the scene of a solve, see StoredSolve::edit(), and returns the revision of the step. NOT_FOUND; RESOURCE_EXHAUSTED as
+  /// for create(), where the solve had ended.
+  std::uint64_t edit(const std::string& name, const EditRequest& request, const std::string& tenant = {});
   /// NOT_FOUND; FAILED_PRECONDITION before it has ended. Those who hold the solve may go on reading it.
   void remove(const std::string& name, const std::string& tenant = {});
   /// Nothing runs when it returns, and later creates are UNAVAILABLE. With an archive, what runs is parked, to go on when the
@@ -75,6 +78,7 @@ class SolveStore {
     std::shared_ptr<StoredSolve> solve;
     std::stop_source cancel, park, short_of_memory;
     bool is_running = false;
+    int editors = 0;  ///< calls that are editing it: it is not removed
     bool shall_pause = false, shall_cancel = false;
   };
   Entry& entry(const std::string& name, const std::string& tenant) ALVOR_REQUIRES(lock_);
@@ -85,7 +89,8 @@ class SolveStore {
   void restore(Archive::SolveRow row, const SceneStore& scenes) ALVOR_REQUIRES(lock_);
   std::shared_ptr<StoredSolve> repeated(const Caller& caller, const std::string& scene, const SolveSpec& spec)
       ALVOR_REQUIRES(lock_);
-  void check_capacity(const std::string& tenant, const SolveOptions& next) ALVOR_REQUIRES(lock_);
+  void check_capacity(const std::string& tenant, const SolveOptions& next, bool is_new) ALVOR_REQUIRES(lock_);
+  void note_live(const std::shared_ptr<StoredSolve>& solve) ALVOR_REQUIRES(lock_);
   void start_waiting() ALVOR_REQUIRES(lock_);
   void watch_memory();
   void relieve_memory();
@@ -108,9 +113,10 @@ class SolveStore {
   bool stopping_ ALVOR_GUARDED_BY(lock_) = false;
   std::stop_source abandon_;
   std::map<std::thread::id, std::thread> threads_ ALVOR_GUARDED_BY(lock_);
-  std::vector<std::thread::id> finished_ ALVOR_GUARDED_BY(lock_);  ///< have nothing left to do but to end
-  std::shared_ptr<void> relief_;                                   ///< registered with the memory guard
-  std::unique_ptr<TaskQueue> watching_memory_;                     ///< uses all of the above; null without a limit
+  std::vector<std::weak_ptr<StoredSolve>> live_ ALVOR_GUARDED_BY(lock_);  ///< those that ended last, which may be kept live
+  std::vector<std::thread::id> finished_ ALVOR_GUARDED_BY(lock_);         ///< have nothing left to do but to end
+  std::shared_ptr<void> relief_;                                          ///< registered with the memory guard
+  std::unique_ptr<TaskQueue> watching_memory_;                            ///< uses all of the above; null without a limit
 };
 
 }  // namespace alvor

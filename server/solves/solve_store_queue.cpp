@@ -96,7 +96,10 @@ std::string SolveStore::hungriest_tenant() const {
 }
 
 void SolveStore::drop_logs() {
-  for (const auto& solve : all()) solve->drop_log();
+  for (const auto& solve : all()) {
+    solve->drop_live();
+    solve->drop_log();
+  }
 }
 
 Solver SolveStore::solver_for(const Entry& entry) const {
@@ -142,6 +145,7 @@ void SolveStore::run(Entry& entry, Solver solver) {
   report_end(*options_.logger, solve->describe());
   Lock hold(lock_);
   settle(entry);
+  note_live(solve);
   entry.is_running = false;
   --running_;
   finished_.push_back(std::this_thread::get_id());
@@ -153,12 +157,23 @@ void SolveStore::run(Entry& entry, Solver solver) {
 void SolveStore::settle(const Entry& entry) {
   const auto status = entry.solve->status();
   const auto wanted = entry.shall_cancel ? SolveStatus::cancelled : entry.shall_pause ? SolveStatus::paused : SolveStatus::queued;
-  if (entry.solve->ended() || status == wanted) return;
   try {
+    if (!entry.shall_cancel) entry.solve->go_on_if_edited();
+    if (entry.solve->ended() || status == wanted) return;
     entry.solve->set_waiting_status(wanted);
   } catch (const StatusError& fault) {
     options_.logger->error("solve {} cannot be kept: {}", entry.solve->name, fault.what());
   }
+}
+
+/// What a solve knew takes much memory: it is kept for the few that ended last.
+void SolveStore::note_live(const std::shared_ptr<StoredSolve>& solve) {
+  constexpr std::size_t most_live = 4;
+  std::erase_if(live_, [&](const auto& each) { return each.expired() || each.lock() == solve; });
+  live_.push_back(solve);
+  if (live_.size() <= most_live) return;
+  if (const auto oldest = live_.front().lock()) oldest->drop_live();
+  live_.erase(live_.begin());
 }
 
 /// All that a finished thread could still be at is to give the lock back, so this does not wait.

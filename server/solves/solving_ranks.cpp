@@ -91,13 +91,18 @@ class SolvingRanks::Gang {
     if (workers_ == std::vector<std::size_t>{0}) return solve_in_process(scene, plan, options, log, control);
     SolveOptions of_others = options;
     if (options.threads == all_.threads()) of_others.threads = 0;  // of machines that may have more or fewer
-    std::vector<std::byte> order = bytes_of_order(of_others, control.checkpoint, scene.scene);
+    // A solve on several ranks begins anew after an edit.
+    const auto checkpoint = control.checkpoint_mesh ? std::span<const std::byte>() : control.checkpoint;
+    std::vector<std::byte> order = bytes_of_order(of_others, checkpoint, scene.scene);
     const auto together = or_end_all(all_.ranks(), [&] {
       auto called = all_.call_together(workers_);
       send(*called, std::move(order));
       return called;
     });
     SolveControl of_gang = control;
+    of_gang.live = nullptr;
+    of_gang.checkpoint = checkpoint;
+    of_gang.checkpoint_mesh = nullptr;
     of_gang.ranks = together.get();
     if (control.save)
       of_gang.save = [&](const SolveControl::Write& write) {

@@ -50,6 +50,7 @@ StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScen
       keeping_(std::move(keeping)),
       facts_(std::move(row.facts)),
       lineage_(std::move(row.lineage)) {
+  newest_edits_ = newest_revision(facts_.edits);
   if (!facts_.checkpoint_time) log_ = std::make_shared<SolutionLog>();
   is_log_kept_ = facts_.checkpoint_time && is_final(facts_.status);
   if (is_final(facts_.status)) return;

@@ -1,11 +1,13 @@
 #pragma once
 // One solve: what was asked, the log it fills, how it ended, and what is kept of it.
 
+#include "alvor/v1/solve_service.pb.h"
 #include "radiosity/solve/solver.h"
 #include "server/archive/archive.h"
 #include "server/base/memory_guard.h"
 #include "server/base/mutex.h"
 #include "server/scenes/scene_store.h"
+#include "server/solves/edited_content.h"
 
 #include <atomic>
 #include <chrono>
@@ -34,6 +36,7 @@ struct Keeping {
   Archive* archive = nullptr;  ///< null: in memory, and only what a paused solve needs
   std::string epoch;           ///< of this run of the server
   MemoryGuard memory = {};     ///< admits solutions that are loaded again
+  bool keeps_live = false;     ///< what a solve knew stays in memory when it has SUCCEEDED, for edits, until drop_live()
   std::shared_ptr<KeepingCounts> counts = std::make_shared<KeepingCounts>();
   std::chrono::steady_clock::duration interval =
       std::chrono::seconds(10);  ///< between checkpoints, if they take a twentieth of it or less
@@ -88,6 +91,22 @@ class StoredSolve {
   /// Throws StatusError where that cannot be kept; it holds all the same once something else is.
   void keep_wish(SolveStatus status);
 
+  /// Makes a step of edits and returns its revision; the same one for a repeated request. A running solve goes on with it by
+  /// itself; one that has SUCCEEDED is QUEUED again. `admit` is called before anything is changed, and may throw. Throws
+  /// StatusError, also what with_step() does; then nothing has changed.
+  std::uint64_t edit(const EditRequest& request, const std::function<void()>& admit);
+  /// Returns the content with the newest edits.
+  std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const;
+  /// Returns how the scene looks after the newest edits.
+  v1::Look look() const;
+  /// Of one that has SUCCEEDED without heeding all edits: it is QUEUED again.
+  void go_on_if_edited();
+  /// Gives back what is kept in memory for edits.
+  void drop_live();
+  /// Says that the server does not hold it any more; those who do may go on reading it.
+  void note_removed() { is_removed_ = true; }
+  bool is_removed() const { return is_removed_; }
+
   SolveStatus status() const;
   /// The status will not change and the log will not grow. Listeners of the log are woken after this became true.
   bool ended() const;
@@ -107,7 +126,13 @@ class StoredSolve {
   void change_waiting(const std::function<void(SolveRecord&)>& change);
   void settle_end();
   SolveOutcome solve(const Solver& solver, const RunControl& control, const std::function<void(const std::string&)>& complain);
-  std::shared_ptr<const SceneContent> load_content(const std::stop_token& cancel) const;
+  std::shared_ptr<const SceneContent> load_content(std::span<const KeptEdit> edits, const CallStop& stop) const;
+  std::shared_ptr<const SceneContent> content_of_checkpoint(std::vector<std::byte>& checkpoint, std::span<const KeptEdit> edits,
+                                                            const CallStop& stop) const;
+  std::shared_ptr<LiveSolve> take_live();
+  void keep_live(std::shared_ptr<LiveSolve> live);
+  std::shared_ptr<const SceneContent> content_of(std::span<const KeptEdit> edits, const CallStop& stop) const;
+  std::vector<KeptEdit> edits() const;
   void save_in_memory(std::vector<std::string> state);
   void keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change = {});
   std::vector<std::byte> take_checkpoint();
@@ -126,6 +151,12 @@ class StoredSolve {
   std::map<std::string, std::uint64_t> lineage_ ALVOR_GUARDED_BY(lock_);
   /// Checkpoint of a paused solve where it is not in the archive, as the pieces that the archive would have.
   std::vector<std::string> state_in_memory_ ALVOR_GUARDED_BY(lock_);
+  std::shared_ptr<LiveSolve> live_ ALVOR_GUARDED_BY(lock_);  ///< null: none is kept, or it runs
+  std::atomic<bool> is_removed_ = false;
+  std::atomic<std::uint64_t> newest_edits_ = 0;              ///< newest_revision()
+  mutable Mutex editing_lock_;                               ///< one is edited after the other; before all others
+  /// The newest content that was edited, and the revision of its edits.
+  mutable std::pair<std::uint64_t, std::shared_ptr<const SceneContent>> edited_ ALVOR_GUARDED_BY(lock_);
 };
 
 }  // namespace alvor

@@ -46,7 +46,8 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
   std::string reason;
   SolveOutcome outcome;
   try {
-    outcome = solve(solver, control, complain);
+    do outcome = solve(solver, control, complain);
+    while (outcome.reason == StopReason::edited);
     reason = text(outcome.reason);
     const bool is_cancelled = outcome.reason == StopReason::cancelled;
     const bool goes_on = outcome.reason == StopReason::parked || (is_cancelled && control.abandon.stop_requested());
@@ -72,22 +73,41 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
 }
 
 /// Null where it was cancelled meanwhile.
-std::shared_ptr<const SceneContent> StoredSolve::load_content(const std::stop_token& cancel) const {
-  CallStop stop;
-  const std::stop_callback cancelled(cancel, [&] { stop.stop({grpc::CANCELLED, "cancelled"}); });
+std::shared_ptr<const SceneContent> StoredSolve::load_content(std::span<const KeptEdit> edits, const CallStop& stop) const {
   try {
-    return scene_->content(stop);
+    return content_of(edits, stop);
   } catch (const StatusError& refusal) {
     if (refusal.code == grpc::CANCELLED) return nullptr;
     throw;
   }
 }
 
+/// Returns the content that a checkpoint is of, where that is not the newest. Empties the checkpoint where the content is not
+/// known any more, because its newest step was replaced by others: then the solve begins anew.
+std::shared_ptr<const SceneContent> StoredSolve::content_of_checkpoint(std::vector<std::byte>& checkpoint,
+                                                                       std::span<const KeptEdit> edits,
+                                                                       const CallStop& stop) const {
+  if (checkpoint.empty() || edits.empty()) return nullptr;
+  const std::uint64_t revision = edits_of_checkpoint(checkpoint), newest = edits.back().revision;
+  if (revision == newest) return nullptr;
+  const auto after = std::ranges::upper_bound(edits, revision, {}, &KeptEdit::revision);
+  const auto known = edits.first(static_cast<std::size_t>(after - edits.begin()));
+  if (known.empty() ? revision == 0 : known.back().revision == revision) return content_of(known, stop);
+  checkpoint.clear();
+  return nullptr;
+}
+
 SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
                                 const std::function<void(const std::string&)>& complain) {
-  const auto content = load_content(run.cancel);
+  const std::vector<KeptEdit> edits = this->edits();
+  CallStop stop;
+  const std::stop_callback cancelled(run.cancel, [&] { stop.stop({grpc::CANCELLED, "cancelled"}); });
+  const auto content = load_content(edits, stop);
   if (!content) return {.reason = StopReason::cancelled};
-  const std::vector<std::byte> from = take_checkpoint();
+  std::shared_ptr<LiveSolve> live = take_live();
+  std::vector<std::byte> from;
+  if (!live) from = take_checkpoint();
+  const auto of_checkpoint = content_of_checkpoint(from, edits, stop);
   const Plan plan(content->mesh, options);
   show(plan);
   try {
@@ -101,6 +121,10 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
   control.short_of_memory = run.short_of_memory;
   control.park = run.park;
   control.checkpoint = from;
+  if (of_checkpoint) control.checkpoint_mesh = &of_checkpoint->mesh;
+  control.edits = newest_revision(edits);
+  control.is_edited = [&] { return newest_edits_ > control.edits; };
+  if (keeping_.keeps_live) control.live = &live;
   control.priority = priority;
   if (keeping_.archive) control.is_checkpoint_due = [&] { return Clock::now() >= next_checkpoint; };
   control.save = [&](const SolveControl::Write& write) {
@@ -118,7 +142,12 @@ SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
     keeping_.counts->microseconds += static_cast<std::uint64_t>(taken.count());
     next_checkpoint = Clock::now() + std::max(keeping_.interval, least_share * (Clock::now() - begun));
   };
-  return solver(*content, plan, options, *log(), control);
+  const auto solution = log();
+  solution->reopen();
+  const SolveOutcome outcome = solver(*content, plan, options, *solution, control);
+  const bool may_be_edited = outcome.reason != StopReason::cancelled && outcome.reason != StopReason::parked;
+  if (may_be_edited) keep_live(std::move(live));
+  return outcome;
 }
 
 void StoredSolve::save_in_memory(std::vector<std::string> state) {

@@ -11,8 +11,9 @@ namespace alvor {
 FrameSource::FrameSource(std::shared_ptr<StoredSolve> solve, std::string epoch, std::size_t max_leaves)
     : solve_(std::move(solve)), log_(solve_->log()), epoch_(std::move(epoch)), max_leaves_(max_leaves) {}
 
-bool FrameSource::has_news(const Cursor& cursor) const {
-  return cursor.is_inside_round() || log_->head() > cursor.base || log_->has_errors_after(cursor.errors) || solve_->ended();
+bool FrameSource::has_news(const Cursor& cursor, bool has_told_end) const {
+  return cursor.is_inside_round() || log_->head() > cursor.base || log_->has_errors_after(cursor.errors) ||
+         (solve_->ended() && !has_told_end);
 }
 
 std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Detail detail) {
@@ -37,6 +38,8 @@ std::shared_ptr<const Frame> FrameSource::encode_frame(const Cursor& cursor, Det
   encode(delta, message);
   const bool is_complete = delta.whole() && !delta.has_more_errors, last = ended && is_complete;
   message.set_ended(last);
+  const std::uint64_t edits = delta.steps.empty() ? delta.edits_before : delta.steps.back().edits;
+  if (edits != delta.edits_before) *message.mutable_look() = solve_->look();
   if (last) *message.mutable_solve() = encode(solve_->describe());
   return std::make_shared<const Frame>(Frame{grpc::Slice(message.SerializeAsString()), detail, cursor, delta.next,
                                              delta.to_revision, delta.head, is_complete, last});

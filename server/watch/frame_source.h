@@ -34,8 +34,9 @@ class FrameSource {
   StoredSolve& solve() const { return *solve_; }
   /// Returns the newest revision of the log.
   std::uint64_t head() const { return log_->head(); }
-  /// Returns whether frame_after(cursor) would hold anything new for a watcher at `cursor`.
-  bool has_news(const Cursor& cursor) const;
+  /// Returns whether frame_after(cursor) would hold anything new for a watcher at `cursor`, to which the end of the solve has
+  /// been told already or not.
+  bool has_news(const Cursor& cursor, bool has_told_end = false) const;
   /// Returns the frame that follows `cursor`. Watchers at the same cursor get the same frame, for as long as one of them keeps
   /// it.
   std::shared_ptr<const Frame> frame_after(const Cursor& cursor, Detail detail);

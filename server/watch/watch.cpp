@@ -37,7 +37,7 @@ std::optional<Watch::Clock::time_point> Watch::take_turn(Clock::time_point now) 
 
 Watch::Clock::time_point Watch::next_due() const {
   if (sent_ == 0) return Clock::time_point::min();
-  return frames_->has_news(cursor_) ? next_frame_ : std::max(next_frame_, last_write_ + bookmark_interval);
+  return frames_->has_news(cursor_, has_told_end_) ? next_frame_ : std::max(next_frame_, last_write_ + bookmark_interval);
 }
 
 std::optional<Watch::Clock::time_point> Watch::see_to_write(Clock::time_point now) {
@@ -71,7 +71,8 @@ void Watch::send(Clock::time_point now) {
   // The pages of a round are sent without a pause, because a mirror between revisions is of little use.
   const auto by_rate = frame->next.is_between_pages() ? Clock::duration::zero() : plan_.min_interval;
   next_frame_ = now + std::max(by_rate, std::chrono::duration_cast<Clock::duration>(by_bytes));
-  if (frame->last) end_ = grpc::Status::OK;
+  if (frame->last && (!plan_.follows_edits || frames_->solve().is_removed())) end_ = grpc::Status::OK;
+  has_told_end_ = frame->last;
   write(std::move(frame), now);
 }
 

@@ -35,6 +35,7 @@ struct WatchPlan {
   Detail detail = Detail::exact;
   Cursor start;
   std::chrono::steady_clock::duration min_interval{};  ///< least time between rounds
+  bool follows_edits = false;                          ///< goes on when the solve has ended
   double max_bytes_per_s = std::numeric_limits<double>::infinity();
 };
 
@@ -90,6 +91,7 @@ class Watch {
   Cursor cursor_ ALVOR_GUARDED_BY(lock_);
   std::uint64_t sent_ ALVOR_GUARDED_BY(lock_) = 0, acknowledged_ ALVOR_GUARDED_BY(lock_) = 0, bytes_ ALVOR_GUARDED_BY(lock_) = 0;
   std::uint64_t acknowledged_revision_ ALVOR_GUARDED_BY(lock_);
+  bool has_told_end_ ALVOR_GUARDED_BY(lock_) = false;               ///< the newest frame said that the solve has ended
   std::uint64_t sent_revision_ ALVOR_GUARDED_BY(lock_);             ///< to_revision of the newest frame
   std::shared_ptr<const Frame> under_way_ ALVOR_GUARDED_BY(lock_);  ///< the frame being written, from write() to written()
   std::optional<grpc::Status> end_ ALVOR_GUARDED_BY(lock_);         ///< the status to finish with once no frame is being written

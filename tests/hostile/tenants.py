@@ -30,14 +30,14 @@ def requests_for(owner):
   scene, solve = owner.scene, owner.solve
   reading = [
       ("GetScene", scenes.GetSceneRequest(name=scene)), ("ReadScene", scenes.ReadSceneRequest(name=scene)),
-      ("ReadMesh", scenes.ReadMeshRequest(name=scene)), ("ReadImages", scenes.ReadImagesRequest(name=scene)),
+      ("ReadMesh", scenes.ReadMeshRequest(name=solve)), ("ReadImages", scenes.ReadImagesRequest(name=scene)),
       ("GetSolve", solves.GetSolveRequest(name=solve)),
       ("ListSolves", solves.ListSolvesRequest(parent=scene)),
       ("AcknowledgeFrame", solves.AcknowledgeFrameRequest(watch_id=owner.frame.watch_id, revision=owner.frame.to_revision, frame_count=1))]
   changing = [
       ("DeleteScene", scenes.DeleteSceneRequest(name=owner.spare_scene)), ("CreateSolve", solves.CreateSolveRequest(parent=scene)),
       ("CancelSolve", solves.CancelSolveRequest(name=solve)), ("PauseSolve", solves.PauseSolveRequest(name=solve)),
-      ("ResumeSolve", solves.ResumeSolveRequest(name=solve)), ("DeleteSolve", solves.DeleteSolveRequest(name=solve)),
+      ("ResumeSolve", solves.ResumeSolveRequest(name=solve)), ("EditSolve", solves.EditSolveRequest(name=solve)), ("DeleteSolve", solves.DeleteSolveRequest(name=solve)),
       ("WatchSolve", solves.WatchSolveRequest(name=solve))]
   return reading, changing
 

@@ -53,6 +53,7 @@ void put_steps(Layout& out, int version) {
     out << n + 1 << 0.5 << n << u64{10} << u64{1000} << u64{3} << 0.25 << 0.125 << 0.0;
     if (version >= 2) out << 0.75;
     if (version >= 4) out << 0.625;
+    if (version >= 5) out << u64{9} << u8{1};
     out << 1.0 << 2.0 << 3.0;
   }
 }
@@ -75,6 +76,8 @@ struct SavedLogTest : testing::Test {
     Step step{.elapsed_s = 0.5, .shots = 10, .rays = 1000, .leaves = 3, .unshot_fraction = 0.25, .estimated_error = 0.125};
     step.unlit_fraction = 0.75;
     step.area_within = 0.625;
+    step.edits = 9;
+    step.is_provisional = true;
     step.ambient_irradiance = {1, 2, 3};
     log.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 2, 4}}}, step, std::vector{0.5f});
     log.publish(std::vector<LeafValue>{{PatchId::root(7), {0.5, 0.25, 0.125}}}, step);
@@ -98,22 +101,24 @@ struct SavedLogTest : testing::Test {
 TEST_F(SavedLogTest, IsAMarkAVersionAndNumbersOneAfterTheOther) {
   Layout expected;
   for (const char letter : {'a', 'l', 'v', 'o', 'r', 'l', 'o', 'g'}) expected << letter;
-  expected << u32{4};
-  put_steps(expected, 4);
-  put_leaves(expected, log, 4);
+  expected << u32{5};
+  put_steps(expected, 5);
+  put_leaves(expected, log, 5);
   EXPECT_EQ(plain_bytes([&](PlainWriter& out) { log.save(out); }), expected.bytes);
 }
 
 TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
-  for (const int version : {1, 2, 3}) {
+  for (const int version : {1, 2, 3, 4}) {
     const auto again = loaded(as_version(version, log));
-    EXPECT_FALSE(again->has_errors_after({.are_wanted = true})) << version;
+    EXPECT_EQ(again->has_errors_after({.are_wanted = true}), version >= 4) << version;
     EXPECT_EQ(again->leaves(Detail::exact), log.leaves(Detail::exact)) << version;
     EXPECT_EQ(again->leaves(Detail::display), log.leaves(Detail::display)) << version;
     EXPECT_EQ(again->since({.base = 1}).values, log.since({.base = 1}).values) << version;
     auto expected = log.steps();
     for (Step& step : expected) {
-      step.area_within = 0;
+      if (version < 4) step.area_within = 0;
+      step.edits = 0;
+      step.is_provisional = false;
       if (version == 1) step.unlit_fraction = 0;
     }
     EXPECT_EQ(again->steps(), expected) << version;
@@ -121,7 +126,7 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
 }
 
 TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
-  for (const int version : {1, 2, 3}) {
+  for (const int version : {1, 2, 3, 4}) {
     const Bytes whole = as_version(version, log);
     for (std::size_t size = 0; size < whole.size(); ++size)
       EXPECT_THROW(loaded(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), BadBytes) << size;
@@ -130,12 +135,12 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
 
 TEST_F(SavedLogTest, NewerVersionIsRefusedByItsNumber) {
   Bytes bytes = plain_bytes([&](PlainWriter& out) { log.save(out); });
-  bytes[8] = std::byte{5};
+  bytes[8] = std::byte{6};
   try {
     loaded(bytes);
     FAIL() << "it was read";
   } catch (const BadBytes& fault) {
-    EXPECT_STREQ(fault.what(), "is of version 5, and this program reads versions up to 4");
+    EXPECT_STREQ(fault.what(), "is of version 6, and this program reads versions up to 5");
   }
 }
 

@@ -30,6 +30,52 @@ TEST(SolutionLog, SplitReplacesTheAncestor) {
   EXPECT_EQ(log.leaves(), children(root, 2));
 }
 
+TEST(SolutionLog, AValueOfACoarserPatchGoesToAllLeavesInIt) {
+  SolutionLog log;
+  log.publish(children(root, 1), {});
+  log.publish(children(root.child(1), 2), {}, std::vector{1.0f, 1.0f, 1.0f, 1.0f});
+  log.publish(std::vector{value(root, 7)}, {}, std::vector{0.5f});
+  ASSERT_EQ(log.leaves().size(), 7u);
+  for (const LeafValue& leaf : log.leaves()) EXPECT_EQ(leaf.irradiance, value(root, 7).irradiance);
+  const Delta delta = log.since({.errors = {.are_wanted = true}});
+  ASSERT_TRUE(delta.errors);
+  for (const std::uint8_t code : delta.errors->codes) EXPECT_NEAR(delta.errors->coding.unpack(code), 0.5, 0.03);
+}
+
+TEST(SolutionLog, CoarserAndFinerPatchesComeTogether) {
+  SolutionLog log;
+  log.publish(children(root, 1), {});
+  log.publish(children(root.child(1), 2), {});
+  std::vector<LeafValue> mixed = children(root.child(0), 3);
+  mixed.push_back(value(root.child(1), 4));
+  mixed.push_back(value(root.child(2), 5));
+  mixed.push_back(value(root.child(3), 6));
+  log.publish(mixed, {});
+  std::vector<float> values;
+  for (const LeafValue& leaf : log.leaves()) values.push_back(leaf.irradiance.r);
+  EXPECT_EQ(values, (std::vector<float>{3, 3, 3, 3, 4, 4, 4, 4, 5, 6}));
+  EXPECT_EQ(log.since({.base = 2}).state_hash, log.since({}).state_hash);
+}
+
+TEST(SolutionLog, TellsTheEditsOfTheStateBeforeADelta) {
+  SolutionLog log;
+  log.publish(std::vector{value(root, 1)}, {});
+  log.publish(std::vector{value(root, 2)}, {.edits = 4});
+  EXPECT_EQ(log.since({}).edits_before, 0u);
+  EXPECT_EQ(log.since({.base = 1}).edits_before, 0u);
+  EXPECT_EQ(log.since({.base = 2}).edits_before, 4u);
+}
+
+TEST(SolutionLog, GoesOnAfterItWasReopened) {
+  SolutionLog log;
+  log.publish(std::vector{value(root, 1)}, {});
+  log.close();
+  log.reopen();
+  EXPECT_FALSE(log.closed());
+  log.publish(std::vector{value(root, 2)}, {});
+  EXPECT_EQ(log.head(), 2u);
+}
+
 TEST(SolutionLog, SinceGivesOnlyWhatChanged) {
   SolutionLog log;
   log.publish(children(root, 1), {});

@@ -7,6 +7,7 @@ namespace alvor {
 
 void add_solve_command(CLI::App& app);
 void add_watch_command(CLI::App& app);
+void add_edit_command(CLI::App& app);
 void add_probe_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_verify_command(CLI::App& app);

@@ -66,11 +66,11 @@ void prepare_outputs(const OutputOptions& options) {
   if (!options.frames.empty()) make_folder(options.frames, "frame_0000.png", "--frames");
 }
 
-void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings) {
+void deliver(const OutputOptions& options, const BaseMesh& mesh, const Followed& followed,
+             std::span<const std::string> warnings) {
   // Files to stdout are written last, because the reader may have gone.
   const auto write_report = [&] { write_output(options.report, step_table(followed.mirror.steps())); };
   if (!options.report.empty() && !is_stream(options.report)) write_report();
-  const BaseMesh mesh(scene);
   write_pictures(options, mesh, followed);
   const MeanLight light = mean_light(mesh, followed.mirror.leaves());
   if (is_stream(options.report)) write_report();

@@ -4,7 +4,7 @@
 #include "client/command/commands/follow.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/output_file.h"
-#include "meshing/scene.h"
+#include "meshing/base_mesh.h"
 
 #include <CLI/CLI.hpp>
 
@@ -31,6 +31,6 @@ void prepare_outputs(const OutputOptions& options);
 
 /// Writes the files, then prints the JSON object or a summary for people. Throws FileError or SolutionFileError if
 /// something could not be written, and Failure (failed) after all that if the solve did not end well.
-void deliver(const OutputOptions& options, const Scene& scene, const Followed& followed, std::span<const std::string> warnings);
+void deliver(const OutputOptions& options, const BaseMesh& mesh, const Followed& followed, std::span<const std::string> warnings);
 
 }  // namespace alvor

@@ -1,6 +1,7 @@
 #include "client/command/commands/served_solution.h"
 
 #include "client/command/commands/connection.h"
+#include "client/command/commands/edited_mesh.h"
 #include "client/command/options/solve_name.h"
 #include "client/command/output/display.h"
 #include "client/command/output/failure.h"
@@ -45,11 +46,11 @@ DisplayMesh mesh_of(const BaseMesh& base, const State& state, bool ambient) {
 }  // namespace
 
 DisplayMesh read_served_solution(const ServedSolution& source) {
-  const std::string scene_name = scene_name_of(source.solve);
+  scene_name_of(source.solve);  // before a server is asked
   Connection connection(source.server);
   const State state = newest_state(connection.client(), source.solve);
   require_published(state, source.solve);
-  const BaseMesh base(connection.client().read_scene(scene_name));
+  const BaseMesh base = read_edited_mesh(connection.client(), source.solve);
   return decode_glb(encode_glb(mesh_of(base, state, source.ambient)));
 }
 

@@ -114,7 +114,7 @@ v1::Scene submit(Client& client, RawScene scene, const SceneImport& import, cons
 
 /// A solve that has been followed to its end.
 struct Solved {
-  Scene scene;
+  std::optional<BaseMesh> mesh;  ///< with the edits that somebody made meanwhile
   std::vector<std::string> warnings;
   Followed followed;
 };
@@ -128,11 +128,13 @@ Solved solve_and_follow(const SolveCommand& command, RawScene bytes) {
   Solved solved;
   solved.warnings.assign(scene.warnings().begin(), scene.warnings().end());
   warn(solved.warnings);
-  solved.scene = client.with_patience([&] { return client.read_scene(scene.name()); });
+  solved.mesh.emplace(client.with_patience([&] { return client.read_scene(scene.name()); }));
   const FollowOptions options{std::chrono::steady_clock::now(), !command.outputs.frames.empty()};
   const v1::Solve solve = client.create_solve(scene.name(), spec_of(command));
   if (connection.remote()) progress() << solve.name() << '\n';
   solved.followed = follow_own(client, solve, options, interrupt.token());
+  const auto& steps = solved.followed.mirror.steps();
+  if (!steps.empty() && steps.back().edits > 0) solved.mesh = solved.mesh->relit_as(client.read_scene(solve.name()));
   return solved;
 }
 
@@ -140,7 +142,7 @@ void run_solve(const SolveCommand& command) {
   require_inputs({{InputKind::scene, command.scene}}, command.format);
   prepare_outputs(command.outputs);
   const Solved solved = solve_and_follow(command, scene_bytes(command.scene, command.format));
-  deliver(command.outputs, solved.scene, solved.followed, solved.warnings);
+  deliver(command.outputs, *solved.mesh, solved.followed, solved.warnings);
 }
 
 void add_limits(CLI::App& command, SolveCommand& options) {
@@ -155,7 +157,8 @@ void add_limits(CLI::App& command, SolveCommand& options) {
       ->check(above_up_to(0, 1));
   command
       .add_option("--for", options.objects,
-                  "Keep the tolerance on this object of the scene and what hangs from it, on --area-share of their area (0.95), and refine "
+                  "Keep the tolerance on this object of the scene and what hangs from it, on --area-share of their area (0.95), "
+                  "and refine "
                   "nothing else; repeatable")
       ->type_name("OBJECT")
       ->allow_extra_args(false);

@@ -2,6 +2,7 @@
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
+#include "client/command/commands/edited_mesh.h"
 #include "client/command/commands/interrupt.h"
 #include "client/command/commands/outputs.h"
 #include "client/command/options/solve_name.h"
@@ -9,6 +10,7 @@
 #include "client/command/output/notes.h"
 
 #include <memory>
+#include <optional>
 
 namespace alvor {
 
@@ -20,9 +22,9 @@ struct WatchCommand {
   OutputOptions outputs;
 };
 
-/// The result of a watch, and the scene of the solve.
+/// The result of a watch, and the mesh of the solve with its edits.
 struct Watched {
-  Scene scene;
+  std::optional<BaseMesh> mesh;
   std::vector<std::string> warnings;
   Followed followed;
 };
@@ -33,9 +35,10 @@ Watched join_and_follow(const WatchCommand& command, const std::string& scene_na
   Client& client = connection.client();
   const FollowOptions options{std::chrono::steady_clock::now(), !command.outputs.frames.empty()};
   const v1::Scene scene = client.get_scene(scene_name);
-  Watched watched{client.read_scene(scene_name), {scene.warnings().begin(), scene.warnings().end()}, {}};
+  Watched watched{{}, {scene.warnings().begin(), scene.warnings().end()}, {}};
   warn(watched.warnings);
   watched.followed = follow(client, client.get_solve(command.solve), options, interrupt.token());
+  watched.mesh = read_edited_mesh(client, command.solve);
   return watched;
 }
 
@@ -43,7 +46,7 @@ void run_watch(const WatchCommand& command) {
   const std::string scene_name = scene_name_of(command.solve);
   prepare_outputs(command.outputs);
   const Watched watched = join_and_follow(command, scene_name);
-  deliver(command.outputs, watched.scene, watched.followed, watched.warnings);
+  deliver(command.outputs, *watched.mesh, watched.followed, watched.warnings);
 }
 
 }  // namespace

@@ -19,6 +19,16 @@ export type ToWorker =
   | { kind: "drawn" }
   | { kind: "probe"; origin: Vector; direction: Vector };
 
+export type Bands = [number, number, number];
+
+/** What of a scene can be edited, as it was submitted. */
+export interface Parts {
+  lights: { name: string; intensity: Bands; position?: Bands }[];
+  /** Objects of which faces emit. */
+  lamps: string[];
+  materials: { name: string; emission: Bands; reflectance: Bands; hasTexture: boolean }[];
+}
+
 /** Of the lit surfaces, for exposure and scales; 0 where nothing is lit. */
 export interface Brightness {
   exposure: number;
@@ -41,6 +51,8 @@ export interface Counters {
 export interface Reading {
   /** Numbers of the scene's faces there: one, or the two triangles that the server joined to a quad. */
   faces: number[];
+  /** The name of the object that it belongs to. */
+  object?: string;
   level: number;
   material: string;
   place: Vector;
@@ -62,7 +74,10 @@ export type FromWorker =
       transmittances?: Float32Array;
       isZUp: boolean;
       isPhotometric: boolean;
+      parts: Parts;
     }
+  /** Edits have changed materials: those of "mesh" anew. */
+  | { kind: "look"; materials: Float32Array; transmittances?: Float32Array }
   | { kind: "change"; change: SurfaceChange; brightness: Brightness; counters: Counters }
   /** The images of the mesh's textures are here, and come piece by piece. `table`: see tableOf(). */
   | { kind: "sheet"; sheet: Sheet; table: Uint32Array<ArrayBuffer> }
@@ -71,6 +86,7 @@ export type FromWorker =
   | { kind: "no images"; reason: string }
   | { kind: "steps"; steps: Step[]; isFirst: boolean }
   | { kind: "connection"; state: "connected" | "lost" | "resumed" | "begun anew" | "closing"; reason: string }
+  /** The solve has ended. It may be edited, and goes on then. */
   | { kind: "ended" }
   | { kind: "refused"; reason: string; needsToken: boolean }
   | { kind: "probed"; reading: Reading | null };

@@ -3,13 +3,14 @@
 import { Code, ConnectError } from "@connectrpc/connect";
 import { connect, mayPass, reasonOf, sceneOf, type Api } from "./api";
 import type { ReadMeshResponse } from "./gen/alvor/v1/scene_service_pb";
-import { Detail, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
+import { Detail, type Look, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
 import { brightnessOf } from "./mirror/brightness";
 import { decodeErrors } from "./mirror/errors";
 import { BadFrame, decodeLeaves } from "./mirror/leaves";
 import { Mirror } from "./mirror/mirror";
+import { partsOf } from "./mirror/parts";
 import { probe } from "./mirror/probe";
 import { Surface } from "./mirror/surface";
 import { readSolution } from "./solution_file";
@@ -24,6 +25,20 @@ const pause = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 const LONGEST_UNSEEN_MS = 250; // a state of many pages is shown in parts
 const LONGEST_WAIT_MS = 5000;
 const LONGEST_SILENCE_MS = 30_000; // there is a bookmark every ten seconds
+
+/** Returns the tables of materials that the shaders read: see materialTable(). */
+function tablesOf(mesh: BaseMesh): { materials: Float32Array; transmittances?: Float32Array } {
+  const materials = Float32Array.from(
+    mesh.materials.flatMap(({ emission: e, reflectance: r, regularTransmittance: t }) => {
+      const through = t ? (t.r + t.g + t.b) / 3 : 0;
+      return [e!.r, e!.g, e!.b, through, r!.r, r!.g, r!.b, 0];
+    }),
+  );
+  const transmittances = mesh.isTranslucent
+    ? Float32Array.from(mesh.materials.flatMap(({ diffuseTransmittance: t }) => [t?.r ?? 0, t?.g ?? 0, t?.b ?? 0, 0, 0, 0, 0, 0]))
+    : undefined;
+  return { materials, transmittances };
+}
 
 /** What is drawn: a mesh, the light on it, and its textures. */
 abstract class Shown {
@@ -58,18 +73,17 @@ abstract class Shown {
     this.mesh = new BaseMesh(messages);
     this.forget();
     const { centre, extent, isZUp, isPhotometric } = this.mesh;
-    const materials = Float32Array.from(
-      this.mesh.materials.flatMap(({ emission: e, reflectance: r, regularTransmittance: t }) => {
-        const through = t ? (t.r + t.g + t.b) / 3 : 0;
-        return [e!.r, e!.g, e!.b, through, r!.r, r!.g, r!.b, 0];
-      }),
-    );
-    const transmittances = this.mesh.isTranslucent
-      ? Float32Array.from(this.mesh.materials.flatMap(({ diffuseTransmittance: t }) => [t?.r ?? 0, t?.g ?? 0, t?.b ?? 0, 0, 0, 0, 0, 0]))
-      : undefined;
     const counts = Uint8Array.from({ length: this.mesh.rootCount }, (_, root) => this.mesh.cornersOf(root));
     const corners = Float32Array.from(this.mesh.corners);
-    tell({ kind: "mesh", centre, extent, corners, counts, materials, transmittances, isZUp, isPhotometric });
+    tell({ kind: "mesh", centre, extent, corners, counts, isZUp, isPhotometric, parts: partsOf(this.mesh), ...tablesOf(this.mesh) });
+  }
+
+  /** Shows how edits have made surfaces look. */
+  protected setLook(look: Look): void {
+    this.surface.onMaterials(this.mesh.applyLook(look));
+    this.surface.onTransmittances();
+    tell({ kind: "look", ...tablesOf(this.mesh) });
+    this.isChanged = true;
   }
 
   protected forget(): void {
@@ -128,6 +142,7 @@ class Watch extends Shown {
   private epoch = "";
   private revision = 0n;
   private isWhole = true;
+  private hasEnded = false;
   private silence?: ReturnType<typeof setTimeout>;
   private readonly api: Api;
   private readonly solve: string;
@@ -153,7 +168,7 @@ class Watch extends Shown {
           wait = 100;
           lost = false;
         };
-        if (await this.follow(onFirst)) return;
+        await this.follow(onFirst);
         lost = true;
       } catch (error) {
         if (!this.canTryAgain(error)) throw error;
@@ -193,19 +208,19 @@ class Watch extends Shown {
     tell({ kind: "connection", state, reason: `revision ${this.revision}` });
   }
 
-  /** Until the solve has ended (true) or the server closes the watch (false). */
-  private async follow(onFirst: () => void): Promise<boolean> {
+  /** Until the server closes the watch. */
+  private async follow(onFirst: () => void): Promise<void> {
     if (!this.isWhole) this.forget(); // between two revisions: equal to none that a server knows
     const givenUp = new AbortController();
     try {
-      return await this.takeFrames(givenUp, onFirst);
+      await this.takeFrames(givenUp, onFirst);
     } finally {
       clearTimeout(this.silence);
       givenUp.abort(); // a stream that nobody reads would hold its connection, of which there are six
     }
   }
 
-  private async takeFrames(givenUp: AbortController, onFirst: () => void): Promise<boolean> {
+  private async takeFrames(givenUp: AbortController, onFirst: () => void): Promise<void> {
     const request = {
       name: this.solve,
       epoch: this.epoch,
@@ -213,6 +228,7 @@ class Watch extends Shown {
       detail: Detail.DISPLAY,
       maxRateHertz: this.rate,
       withErrors: true,
+      followEdits: true,
     };
     let count = 0n;
     for await (const frame of this.api.solves.watchSolve(request, { signal: givenUp.signal })) {
@@ -221,14 +237,14 @@ class Watch extends Shown {
       if (++count === 1n) onFirst();
       if (frame.closing) {
         tell({ kind: "connection", state: "closing", reason: frame.closing.reason });
-        return false;
+        return;
       }
       this.take(frame);
-      if (frame.ended) {
+      if (frame.ended && !this.hasEnded) {
         this.show();
         tell({ kind: "ended" });
-        return true;
       }
+      this.hasEnded = frame.ended;
       // Of a frame that is not acknowledged the server would wait for ever; a watch that broke off meanwhile needs no answer.
       this.api.solves
         .acknowledgeFrame({ watchId: frame.watchId, revision: frame.toRevision, frameCount: count })
@@ -254,6 +270,7 @@ class Watch extends Shown {
     this.revision = frame.toRevision;
     if (frame.stateHash !== undefined && frame.stateHash !== this.mirror.stateHash)
       throw new BadFrame("the state has another hash than the server's");
+    if (frame.look) this.setLook(frame.look);
     if (frame.errors) {
       this.mirror.takeErrors(decodeErrors(frame.errors));
       this.isChanged = true;

@@ -1,6 +1,7 @@
 // The root patches that patch ids refer to, as ReadMesh sends them.
 
-import { Quantity, UpAxis, type Material, type ReadMeshResponse, type Rgb } from "../gen/alvor/v1/scene_service_pb";
+import { Quantity, UpAxis, type Light, type Material, type ReadMeshResponse, type Rgb, type SceneObject } from "../gen/alvor/v1/scene_service_pb";
+import type { Look } from "../gen/alvor/v1/solve_service_pb";
 import { type Blend, blendOnQuad } from "./blend";
 import { GRID } from "./mirror";
 
@@ -21,7 +22,10 @@ export class BaseMesh {
   readonly isZUp: boolean;
   /** Light is in lumens and lx, not in watts and W/m2. */
   readonly isPhotometric: boolean;
-  readonly materials: Material[];
+  materials: Material[];
+  /** Lights of the scene that are not faces, and its objects, in the order of their faces. */
+  readonly lights: Light[];
+  readonly objects: SceneObject[];
   /** Some material has a texture, and so corners have texture coordinates. */
   readonly hasTextures: boolean;
   /** Some face has colours at its corners; corners of the other faces are white then. They multiply the reflectance. */
@@ -43,6 +47,8 @@ export class BaseMesh {
   private readonly meanColours: Float32Array;
   /** Of each translucent root the one on its other side, -1 elsewhere; empty if none is translucent. */
   private readonly otherSide: Int32Array;
+  /** Before all edits. */
+  private readonly submitted: { materials: Material[]; material: Uint32Array };
   private readonly point = new Float64Array(3);
 
   constructor(messages: ReadMeshResponse[]) {
@@ -56,6 +62,9 @@ export class BaseMesh {
     this.isZUp = messages[0]?.upAxis === UpAxis.Z;
     this.isPhotometric = messages[0]?.quantity === Quantity.PHOTOMETRIC;
     this.materials = messages.flatMap((message) => message.sceneMaterials);
+    this.lights = messages.flatMap((message) => message.sceneLights);
+    this.objects = messages.flatMap((message) => message.sceneObjects);
+    this.submitted = { materials: this.materials, material: this.material.slice() };
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
     const cornerCount = this.firstCorner[this.rootCount];
@@ -96,6 +105,26 @@ export class BaseMesh {
   sceneFacesOf(root: number): number[] {
     const second = this.secondSceneFace[root] ?? 0;
     return second > 0 ? [this.sceneFace[root], second - 1] : [this.sceneFace[root]];
+  }
+
+  /** Returns the object that a face of the scene belongs to. */
+  objectOfFace(face: number): SceneObject | undefined {
+    return this.objects.find(({ firstFace, faceCount }) => face >= firstFace && face < firstFace + faceCount);
+  }
+
+  /** Makes surfaces look as edits have made them, and returns which roots have other materials than before. */
+  applyLook(look: Look): Set<number> {
+    const before = this.material.slice();
+    this.materials = this.submitted.materials.slice();
+    for (const { number, material } of look.materials)
+      this.materials[number] = { ...material!, texture: this.materials[number]?.texture };
+    const others = [...look.faces].sort((a, b) => a.firstFace - b.firstFace);
+    for (let root = 0; root < this.rootCount; ++root) {
+      const run = others.findLast(({ firstFace }) => firstFace <= this.sceneFace[root]);
+      const isOther = run !== undefined && this.sceneFace[root] < run.firstFace + run.faceCount;
+      this.material[root] = isOther ? run.material : this.submitted.material[root];
+    }
+    return new Set([...before.keys()].filter((root) => before[root] !== this.material[root]));
   }
 
   /** Writes x, y, z of a point of a root, u = i / GRID and v = j / GRID, to `out[at]`. Neighbours agree on shared points. */

@@ -29,6 +29,7 @@ export function probe(mesh: BaseMesh, mirror: Mirror, origin: Vector, direction:
   const along = (x: "x" | "y" | "z", n: number) => mesh.centre[n] + origin[x] + hit.distance * direction[x];
   return {
     faces: mesh.sceneFacesOf(hit.root),
+    object: mesh.objectOfFace(mesh.sceneFace[hit.root])?.name,
     level: mirror.levelOf(node),
     material: material.name,
     place: { x: along("x", 0), y: along("y", 1), z: along("z", 2) },

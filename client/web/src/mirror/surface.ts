@@ -91,6 +91,17 @@ export class Surface implements MirrorListener {
     this.setSlot(slot, first);
   }
 
+  /** The materials of these roots are other ones. */
+  onMaterials(roots: Set<number>): void {
+    for (let slot = 0; slot < this.slotCount; ++slot)
+      if (roots.has(this.mirror.root[this.nodeOfSlot[slot]])) this.dirtySlots.add(slot, VALUES);
+  }
+
+  /** The transmittances of materials are other ones. */
+  onTransmittances(): void {
+    for (let slot = 0; this.mesh.isTranslucent && slot < this.slotCount; ++slot) this.dirtySlots.add(slot, TRANSMITTED);
+  }
+
   /** What must be drawn anew. */
   flush(): SurfaceChange {
     for (const point of this.dirtyPoints.list) {

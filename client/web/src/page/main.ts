@@ -3,7 +3,7 @@
 import { Code, ConnectError } from "@connectrpc/connect";
 import { connect, reasonOf, sceneOf } from "../api";
 import type { Scene } from "../gen/alvor/v1/scene_service_pb";
-import { Solve_State, type Solve } from "../gen/alvor/v1/solve_service_pb";
+import { Solve_State, type EditStep, type Solve } from "../gen/alvor/v1/solve_service_pb";
 import { MissingParts, sendSceneFiles, sendWithoutParts } from "../scene_files";
 import type { Brightness, Counters, FromWorker, ToWorker } from "../messages";
 import { Cameras } from "../view/cameras";
@@ -14,6 +14,7 @@ import { button, byId, input, listItem, save, select } from "./dom";
 import { glbOf, reportOf } from "./downloads";
 import { showCounters, showPlan, showReading } from "./figures";
 import { listenToDrops } from "./drops";
+import { Editing } from "./editing";
 import { addressOf, applyView, solveIn, viewIn } from "./link";
 import { takeImages, withdrawWarning } from "./textures";
 import { setPhotometric } from "./units";
@@ -33,6 +34,7 @@ const api = connect(location.origin, () => token);
 const room = new Room(byId<HTMLCanvasElement>("room"));
 const chart = new Chart(byId("chart"));
 let isStale = true;
+const editing = new Editing((step) => attempt(() => edit(step)));
 const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), viewChanged);
 
 let scene: Scene | undefined;
@@ -198,6 +200,7 @@ function attach(next: Solve): void {
 /** Shows a solution that was written to a file; no server takes part. */
 function openSolution(file: File): void {
   scene = solve = undefined;
+  editing.setSteps([], false);
   framedScene = "";
   history.pushState(null, "", location.pathname + location.search);
   byId("title").textContent = file.name;
@@ -322,6 +325,7 @@ function setSolve(next: Solve): void {
   button("cancel").disabled = hasEnded;
   button("pause").textContent = next.state === Solve_State.PAUSED ? "Resume" : "Pause";
   if (isNews) say(stateText(next));
+  editing.setSteps(next.edits, ![Solve_State.CANCELLED, Solve_State.FAILED].includes(next.state));
   if (next.plan) showPlan(next.plan);
 }
 
@@ -348,6 +352,14 @@ setInterval(() => {
   update(api.solves.getSolve({ name: solve.name })).catch(() => undefined); // the watch says that the connection is lost
 }, POLL_MS);
 
+// Edits
+
+async function edit(step: EditStep): Promise<void> {
+  const { name } = solve!;
+  await api.solves.editSolve({ name, step });
+  await update(api.solves.getSolve({ name }));
+}
+
 // The worker
 
 function take(message: FromWorker): void {
@@ -359,11 +371,18 @@ function take(message: FromWorker): void {
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
       isZUp = message.isZUp;
       setPhotometric(message.isPhotometric);
+      editing.setParts(message.parts);
       room.setUp(isZUp);
       if (!solve || framedScene !== sceneOf(solve.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
       framedScene = solve ? sceneOf(solve.name) : "";
       goToCamera();
       return;
+    case "look":
+      materials = message.materials as Float32Array<ArrayBuffer>;
+      room.setMaterials(materials, message.transmittances);
+      isStale = true;
+      measured.hasEnded = false;
+      return void update(api.solves.getSolve({ name: solve!.name })).catch(() => undefined);
     case "change":
       room.take(message.change);
       ({ brightness, counters } = message);
@@ -393,6 +412,7 @@ function take(message: FromWorker): void {
       if (message.needsToken) byId("token-label").hidden = false;
       return say(message.reason, "bad");
     case "probed":
+      if (message.reading) editing.choose(message.reading.material, message.reading.object);
       return showReading(message.reading);
   }
 }
@@ -451,7 +471,7 @@ function listen(): void {
       if (solve && !measured.hasEnded) attach(solve);
     });
   });
-  for (const id of ["scene-form", "view-form"]) byId(id).addEventListener("submit", (event) => event.preventDefault());
+  for (const id of ["scene-form", "view-form", "edit-form"]) byId(id).addEventListener("submit", (event) => event.preventDefault());
   byId("solve-form").addEventListener("submit", (event) => {
     event.preventDefault();
     void attempt(start);

@@ -1,0 +1,273 @@
+// edits --scene S.obj [--tolerance T] [--threads N]: prints the table of docs/edits.md for edits of the finished furnished room.
+// Each is asked of a server in this process; a watch that follows edits sees when the first state with it comes, and when one is
+// within the tolerance again. Compared with a solve of the edited scene from nothing.
+
+#include "client/rpc/client.h"
+#include "import/apart/scene_file.h"
+#include "proto/codec.h"
+#include "server/rpc/service.h"
+
+#include <CLI/CLI.hpp>
+
+#include <sys/resource.h>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <iostream>
+#include <mutex>
+#include <thread>
+
+namespace alvor::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// The processor time of this process, s.
+double cpu_s() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// A server in this process that keeps what its solves know.
+class Server {
+ public:
+  Server() : service_(options()) {
+    grpc::ServerBuilder builder;
+    service_.register_with(builder);
+    server_ = builder.BuildAndStart();
+  }
+  ~Server() {
+    service_.shut_down();
+    server_->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(1));
+  }
+  std::shared_ptr<grpc::Channel> channel() { return server_->InProcessChannel({}); }
+
+ private:
+  static ServiceOptions options() {
+    ServiceOptions options;
+    options.solves.keeping.keeps_live = true;
+    return options;
+  }
+  Service service_;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+/// Follows a solve through its edits on a thread of its own.
+class Follower {
+ public:
+  Follower(const std::shared_ptr<grpc::Channel>& channel, std::string solve)
+      : stub_(v1::SolveService::NewStub(channel)), solve_(std::move(solve)), thread_([this] { follow(); }) {}
+  ~Follower() {
+    context_.TryCancel();
+    thread_.join();
+  }
+
+  /// Waits until a state fits and returns its step.
+  Step wait_for(const std::function<bool(const Step&)>& fits) {
+    std::unique_lock hold(lock_);
+    changed_.wait(hold, [&] { return fits(last_); });
+    return last_;
+  }
+
+ private:
+  void follow() {
+    v1::WatchSolveRequest request;
+    request.set_name(solve_);
+    request.set_detail(v1::DETAIL_DISPLAY);
+    request.set_follow_edits(true);
+    request.set_max_rate_hertz(1000);
+    const auto reader = stub_->WatchSolve(&context_, request);
+    std::uint64_t frames = 0;
+    for (v1::WatchSolveResponse frame; reader->Read(&frame);) {
+      {
+        const std::lock_guard hold(lock_);
+        if (frame.steps_size() > 0) last_ = decode(*frame.steps().rbegin());
+      }
+      changed_.notify_all();
+      grpc::ClientContext context;
+      v1::AcknowledgeFrameRequest acknowledgement;
+      acknowledgement.set_watch_id(frame.watch_id());
+      acknowledgement.set_revision(frame.to_revision());
+      acknowledgement.set_frame_count(++frames);
+      v1::AcknowledgeFrameResponse nothing;
+      stub_->AcknowledgeFrame(&context, acknowledgement, &nothing);
+    }
+  }
+
+  std::unique_ptr<v1::SolveService::Stub> stub_;
+  const std::string solve_;
+  grpc::ClientContext context_;
+  std::mutex lock_;
+  std::condition_variable changed_;
+  Step last_;
+  std::thread thread_;  // uses all of the above
+};
+
+v1::EditStep dim_object(const std::string& name, double factor) {
+  v1::EditStep step;
+  step.add_edits()->mutable_object()->set_name(name);
+  step.mutable_edits(0)->mutable_object()->set_dim(factor);
+  return step;
+}
+
+v1::EditStep recolour(const std::string& name, const Rgb& reflectance) {
+  v1::EditStep step;
+  step.add_edits()->mutable_material()->set_name(name);
+  *step.mutable_edits(0)->mutable_material()->mutable_reflectance() = encode(reflectance);
+  return step;
+}
+
+v1::EditStep undo() {
+  v1::EditStep step;
+  step.set_kind(v1::EditStep::UNDO);
+  return step;
+}
+
+struct Measured {
+  std::uint64_t rays = 0;
+  double first_s = 0, within_s = 0;
+};
+
+class Bench {
+ public:
+  Bench(const Scene& scene, double tolerance, int threads) : client_(server_.channel()), tolerance_(tolerance) {
+    spec_.set_tolerance(tolerance);
+    spec_.set_threads(threads);
+    spec_.set_max_elements(1'000'000);  // no edit is to end at the limit
+    scene_ = client_.create_scene(scene, "").name();
+    Client::Watch watch;
+    const auto begin = Clock::now();
+    solve_ = client_.create_solve(scene_, spec_).name();
+    fresh_ = decode(client_.watch_solve(solve_, watch, [](auto&) {}).last_step());
+    fresh_s_ = seconds_since(begin);
+    follower_ = std::make_unique<Follower>(server_.channel(), solve_);
+    follower_->wait_for([&](const Step& step) { return step.revision == fresh_.revision; });
+  }
+
+  /// Waits until the solve rests at the tolerance.
+  void rest() {
+    Client::Watch watch;
+    client_.watch_solve(solve_, watch, [](auto&) {});
+  }
+
+  Measured edit(const v1::EditStep& step) {
+    rest();
+    const std::uint64_t rays = decode(client_.get_solve(solve_).last_step()).rays;
+    const auto begin = Clock::now();
+    const std::uint64_t revision = client_.edit_solve(solve_, step).revision();
+    Measured measured;
+    follower_->wait_for([&](const Step& now) { return now.edits >= revision; });
+    measured.first_s = seconds_since(begin);
+    const Step last = follower_->wait_for(
+        [&](const Step& now) { return now.edits >= revision && !now.is_provisional && now.estimated_error <= tolerance_; });
+    measured.within_s = seconds_since(begin);
+    measured.rays = last.rays - rays;
+    rest();
+    return measured;
+  }
+
+  void row(const std::string& name, const v1::EditStep& step) {
+    const Measured once = edit(step), back = edit(undo());
+    std::printf("| %s | %llu | %.0f ms | %.0f ms | %.1f %% |\n", name.c_str(), static_cast<unsigned long long>(once.rays),
+                1e3 * once.first_s, 1e3 * once.within_s, 100 * once.within_s / fresh_s_);
+    std::printf("| ... taken back | %llu | %.0f ms | %.0f ms | %.1f %% |\n", static_cast<unsigned long long>(back.rays),
+                1e3 * back.first_s, 1e3 * back.within_s, 100 * back.within_s / fresh_s_);
+    std::fflush(stdout);
+  }
+
+  /// Thirty edits a second for ten seconds, as a slider makes them.
+  void slide(const std::string& object) {
+    rest();
+    constexpr int count = 300;
+    constexpr auto between = std::chrono::microseconds(1'000'000 / 30);
+    std::vector<Clock::time_point> sent(count + 1);
+    std::vector<double> behind;
+    const std::uint64_t before = follower_->wait_for([](const Step&) { return true; }).edits;
+    std::atomic<std::uint64_t> newest = before;
+    std::mutex lock;
+    std::atomic<bool> is_over = false;
+    std::thread watching([&] {
+      std::uint64_t seen = before;
+      while (!is_over) {
+        const Step step = follower_->wait_for([&](const Step& now) { return now.edits > seen || is_over; });
+        if (step.edits <= seen) continue;
+        seen = step.edits;
+        const std::lock_guard hold(lock);
+        // How old is what is shown: when the edit that it heeds was asked for.
+        behind.push_back(seconds_since(sent[static_cast<std::size_t>(seen - before)]));
+      }
+    });
+    const double cpu = cpu_s();
+    const auto begin = Clock::now();
+    for (int n = 1; n <= count; ++n) {
+      {
+        const std::lock_guard hold(lock);
+        sent[static_cast<std::size_t>(n)] = Clock::now();
+      }
+      v1::EditStep step = dim_object(object, 0.5 + 0.5 * n / count);
+      step.set_continues(true);
+      newest = client_.edit_solve(solve_, step).revision();
+      std::this_thread::sleep_until(begin + n * between);
+    }
+    const double took = seconds_since(begin), spent = cpu_s() - cpu;
+    follower_->wait_for([&](const Step& now) { return now.edits >= newest; });
+    is_over = true;
+    edit(undo());
+    watching.join();
+    std::ranges::sort(behind);
+    std::printf("slider: %d edits in %.1f s, %zu states shown, behind by %.0f ms (median), %.0f ms (most); %.2f cores\n", count,
+                took, behind.size(), 1e3 * behind[behind.size() / 2], 1e3 * behind.back(), spent / took);
+  }
+
+  void tell_fresh() const {
+    std::printf("A solve from nothing: %.2f s, %llu rays, %llu leaves, estimated error %.2f %%.\n\n", fresh_s_,
+                static_cast<unsigned long long>(fresh_.rays), static_cast<unsigned long long>(fresh_.leaves),
+                100 * fresh_.estimated_error);
+  }
+
+ private:
+  Server server_;
+  Client client_;
+  const double tolerance_;
+  v1::SolveSpec spec_;
+  std::string scene_, solve_;
+  Step fresh_;
+  double fresh_s_ = 0;
+  std::unique_ptr<Follower> follower_;
+};
+
+int run(int count, char** arguments) {
+  CLI::App app("Measures edits of a finished solve");
+  std::string path;
+  double tolerance = 0.02;
+  int threads = 0;
+  app.add_option("--scene", path)->required();
+  app.add_option("--tolerance", tolerance);
+  app.add_option("--threads", threads);
+  CLI11_PARSE(app, count, arguments);
+  Bench bench(read_scene_file(path).scene, tolerance, threads);
+  bench.tell_fresh();
+  std::puts("| edit | rays | first state | at the tolerance again | of a solve from nothing |\n|---|---|---|---|---|");
+  bench.row("dim one of two lamps to a half", dim_object("lamp.001", 0.5));
+  bench.row("switch it off", dim_object("lamp.001", 0));
+  v1::EditStep both = dim_object("lamp.001", 0.5);
+  *both.add_edits() = dim_object("lamp.002", 0.5).edits(0);
+  bench.row("dim both lamps to a half", both);
+  bench.row("recolour all walls", recolour("wall", {0.35, 0.45, 0.7}));
+  bench.row("recolour the rug", recolour("rug", {0.1, 0.3, 0.1}));
+  std::puts("");
+  bench.slide("lamp.002");
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace alvor::bench
+
+int main(int count, char** arguments) { return alvor::bench::run(count, arguments); }

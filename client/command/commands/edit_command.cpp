@@ -1,0 +1,91 @@
+// alvor edit SOLVE: changes the scene of a solve on a server.
+
+#include "client/command/commands/commands.h"
+#include "client/command/commands/connection.h"
+#include "client/command/commands/follow.h"
+#include "client/command/commands/interrupt.h"
+#include "client/command/options/edit_option.h"
+#include "client/command/options/solve_name.h"
+#include "client/command/output/failure.h"
+#include "client/command/output/notes.h"
+#include "client/command/output/numbers.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+namespace {
+
+struct EditCommand {
+  std::string solve;
+  ServerChoice server;
+  std::vector<std::string> settings, dims;
+  std::string script, author;
+  bool undo = false, redo = false, wait = false;
+  std::optional<std::uint64_t> base_revision;
+};
+
+v1::EditStep step_of(const EditCommand& command) {
+  v1::EditStep step;
+  if (!command.script.empty()) step = step_of_script(command.script);
+  for (const std::string& setting : command.settings) *step.add_edits() = edit_of_setting(setting);
+  for (const std::string& dim : command.dims) *step.add_edits() = edit_of_dim(dim);
+  if (command.undo || command.redo) step.set_kind(command.undo ? v1::EditStep::UNDO : v1::EditStep::REDO);
+  const bool is_edit = step.kind() != v1::EditStep::UNDO && step.kind() != v1::EditStep::REDO;
+  if (is_edit == (step.edits_size() == 0))
+    throw Failure(ExitStatus::usage,
+                  is_edit ? "nothing to edit: give --set, --dim, --script, --undo or --redo" : "--undo and --redo stand alone");
+  step.set_author(command.author);
+  return step;
+}
+
+void run_edit(const EditCommand& command) {
+  scene_name_of(command.solve);
+  const v1::EditStep step = step_of(command);
+  Interrupt interrupt;
+  Connection connection(command.server);
+  Client& client = connection.client();
+  const v1::EditSolveResponse edited = client.edit_solve(command.solve, step, command.base_revision);
+  notes() << "edits of revision " << edited.revision() << '\n';
+  if (!command.wait || edited.state() == v1::Solve::PAUSED) return;
+  const FollowOptions options{std::chrono::steady_clock::now(), false};
+  const Followed followed = follow(client, client.get_solve(command.solve), options, interrupt.token());
+  if (followed.solve.state() == v1::Solve::FAILED)
+    throw Failure(ExitStatus::failed, "the solve failed: " + followed.solve.end_reason());
+  const Step last = followed.mirror.steps().empty() ? Step{} : followed.mirror.steps().back();
+  notes() << "estimated error " << percent(last.estimated_error) << ", " << compact(static_cast<double>(last.rays))
+          << " rays: " << (followed.solve.end_reason().empty() ? "still running" : followed.solve.end_reason()) << '\n';
+}
+
+}  // namespace
+
+void add_edit_command(CLI::App& app) {
+  const auto options = std::make_shared<EditCommand>();
+  CLI::App& command =
+      *app.add_subcommand("edit", "Change materials and lights of a solve on a server, while it runs or afterwards");
+  command.add_option("solve", options->solve, "Name of the solve: scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
+  add_server_option(command, options->server, "Server that holds the solve").required();
+  command
+      .add_option("--set", options->settings,
+                  "material:NAME.FIELD=R,G,B with emission, reflectance or diffuse_transmittance, or light:NAME.FIELD=X,Y,Z with "
+                  "intensity, position or direction")
+      ->type_name("SETTING");
+  command
+      .add_option("--dim", options->dims,
+                  "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off")
+      ->type_name("DIM");
+  command.add_option("--script", options->script, "A step of edits as JSON, with the fields of EditStep")
+      ->type_name("EDITS.json");
+  command.add_flag("--undo", options->undo, "Take back the newest step that holds");
+  command.add_flag("--redo", options->redo, "Make the step that was taken back last hold again")->excludes("--undo");
+  command.add_option("--author", options->author, "Who makes the edits, for people")->type_name("NAME");
+  command.add_option("--base-revision", options->base_revision, "Refuse if there are newer edits than this revision")
+      ->type_name("N");
+  command.add_flag("--wait", options->wait, "Follow the solve until it has ended");
+  command.callback([options] { run_edit(*options); });
+}
+
+}  // namespace alvor

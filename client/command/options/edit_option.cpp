@@ -1,0 +1,118 @@
+#include "client/command/options/edit_option.h"
+
+#include "client/command/output/failure.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+namespace alvor {
+
+namespace {
+
+/// `PART:NAME` and what is to be set of it.
+struct Named {
+  std::string part, name, value;
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& reason) {
+  throw Failure(ExitStatus::usage, option + " '" + text + "': " + reason);
+}
+
+/// Names may contain colons, dots and signs of equality: the first colon and the last '=' count.
+Named split(const std::string& option, const std::string& text) {
+  const auto colon = text.find(':'), equals = text.rfind('=');
+  if (colon == std::string::npos || equals == std::string::npos || equals < colon)
+    refuse(option, text, "must be PART:NAME...=VALUE, with a part of material, light, object");
+  return {text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
+}
+
+std::vector<double> numbers_of(const std::string& option, const std::string& text, const std::string& value, std::size_t count) {
+  std::vector<double> numbers;
+  const char *at = value.data(), *const end = at + value.size();
+  while (at < end) {
+    double number = 0;
+    const auto [after, fault] = std::from_chars(at, end, number);
+    if (fault != std::errc()) break;
+    numbers.push_back(number);
+    at = after;
+    if (at < end && *at != ',') break;
+    if (at < end) ++at;
+  }
+  if (at != end || numbers.size() != count || value.ends_with(','))
+    refuse(option, text, count == 1 ? "the value must be a number" : "the value must be three numbers with commas between them");
+  return numbers;
+}
+
+}  // namespace
+
+v1::Edit edit_of_setting(const std::string& setting) {
+  const std::string option = "--set";
+  Named named = split(option, setting);
+  const auto dot = named.name.rfind('.');
+  if (dot == std::string::npos) refuse(option, setting, "names no field: PART:NAME.FIELD=VALUE");
+  const std::string field = named.name.substr(dot + 1);
+  named.name.resize(dot);
+  const auto three = [&] { return numbers_of(option, setting, named.value, 3); };
+  const auto set_colour = [&](v1::Rgb& colour) {
+    const auto n = three();
+    colour.set_r(n[0]), colour.set_g(n[1]), colour.set_b(n[2]);
+  };
+  const auto set_vector = [&](v1::Vector3& vector) {
+    const auto n = three();
+    vector.set_x(n[0]), vector.set_y(n[1]), vector.set_z(n[2]);
+  };
+  v1::Edit edit;
+  if (named.part == "material") {
+    v1::MaterialEdit& material = *edit.mutable_material();
+    material.set_name(named.name);
+    if (field == "emission") set_colour(*material.mutable_emission());
+    else if (field == "reflectance") set_colour(*material.mutable_reflectance());
+    else if (field == "diffuse_transmittance") set_colour(*material.mutable_diffuse_transmittance());
+    else refuse(option, setting, "a material has the fields emission, reflectance, diffuse_transmittance");
+  } else if (named.part == "light") {
+    v1::LightEdit& light = *edit.mutable_light();
+    light.set_name(named.name);
+    if (field == "intensity") set_colour(*light.mutable_intensity());
+    else if (field == "position") set_vector(*light.mutable_position());
+    else if (field == "direction") set_vector(*light.mutable_direction());
+    else refuse(option, setting, "a light has the fields intensity, position, direction");
+  } else {
+    refuse(option, setting, "the part must be material or light");
+  }
+  return edit;
+}
+
+v1::Edit edit_of_dim(const std::string& dim) {
+  const std::string option = "--dim";
+  const Named named = split(option, dim);
+  const double factor = numbers_of(option, dim, named.value, 1)[0];
+  v1::Edit edit;
+  if (named.part == "light") {
+    edit.mutable_light()->set_name(named.name);
+    edit.mutable_light()->set_dim(factor);
+  } else if (named.part == "object") {
+    edit.mutable_object()->set_name(named.name);
+    edit.mutable_object()->set_dim(factor);
+  } else {
+    refuse(option, dim, "the part must be light or object");
+  }
+  return edit;
+}
+
+v1::EditStep step_of_script(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) throw Failure(ExitStatus::usage, "--script " + path + ": cannot be read");
+  v1::EditStep step;
+  const auto status = google::protobuf::util::JsonStringToMessage(text.str(), &step);
+  if (!status.ok()) throw Failure(ExitStatus::usage, "--script " + path + ": " + std::string(status.message()));
+  return step;
+}
+
+}  // namespace alvor

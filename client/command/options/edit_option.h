@@ -1,0 +1,18 @@
+#pragma once
+// Edits of a solve's scene on the command line.
+
+#include "alvor/v1/solve_service.pb.h"
+
+#include <string>
+
+namespace alvor {
+
+/// Returns the edit of `--set PART:NAME.FIELD=VALUE`. Throws Failure (usage) that names the option.
+v1::Edit edit_of_setting(const std::string& setting);
+/// Returns the edit of `--dim PART:NAME=FACTOR`. Throws Failure (usage) that names the option.
+v1::Edit edit_of_dim(const std::string& dim);
+/// Returns the step of a JSON file: {"edits": [{"material": {"name": "wall", "reflectance": {"r": 0.2, "g": 0.2, "b": 0.2}}}]},
+/// with the fields of EditStep. Throws Failure (usage) that names the file.
+v1::EditStep step_of_script(const std::string& path);
+
+}  // namespace alvor

@@ -1,0 +1,172 @@
+// The controls by which a person edits the scene of a solve: brightness, colour and place of one part at a time.
+
+import { create } from "@bufbuild/protobuf";
+import { EditSchema, EditStep_Kind, EditStepSchema, type Edit, type EditStep } from "../gen/alvor/v1/solve_service_pb";
+import type { Bands, Parts } from "../messages";
+import { button, byId, input, select } from "./dom";
+import { editsThatHold, textOfStep, undoAndRedo } from "./edits";
+import { colourOf, linearOf } from "./srgb";
+
+/** Sends a step to the server. */
+type Send = (step: EditStep) => Promise<void>;
+
+const rgb = ([r, g, b]: Bands) => ({ r, g, b });
+const largest = (bands: Bands) => Math.max(...bands);
+const scaled = (bands: Bands, factor: number) => bands.map((band) => factor * band) as Bands;
+
+export class Editing {
+  private parts: Parts = { lights: [], lamps: [], materials: [] };
+  private steps: EditStep[] = [];
+  /** A slide that has not been sent, because what was sent before it has not been answered. */
+  private waiting?: Edit;
+  private isSending = false;
+
+  constructor(private readonly send: Send) {
+    select("edit-part").addEventListener("change", () => this.showPart());
+    input("edit-dim").addEventListener("input", () => this.slide(this.dimmed(input("edit-dim").valueAsNumber)));
+    input("edit-colour").addEventListener("input", () => this.slide(this.coloured(linearOf(input("edit-colour").value))));
+    for (const id of ["edit-x", "edit-y", "edit-z"]) input(id).addEventListener("input", () => this.move());
+    button("undo").addEventListener("click", () => this.step(EditStep_Kind.UNDO));
+    button("redo").addEventListener("click", () => this.step(EditStep_Kind.REDO));
+    input("edit-author").value = sessionStorage.getItem("author") ?? "";
+    input("edit-author").addEventListener("change", () => sessionStorage.setItem("author", input("edit-author").value));
+  }
+
+  setParts(parts: Parts): void {
+    this.parts = parts;
+    const group = (label: string, kind: string, names: string[]) => {
+      const options = document.createElement("optgroup");
+      options.label = label;
+      options.append(...names.map((name) => new Option(name, `${kind}:${name}`)));
+      return names.length > 0 ? [options] : [];
+    };
+    select("edit-part").replaceChildren(
+      ...group("Lights", "light", parts.lights.map(({ name }) => name)),
+      ...group("Lamps", "object", parts.lamps),
+      ...group("Materials", "material", parts.materials.map(({ name }) => name)),
+    );
+    this.showPart();
+  }
+
+  /** The steps that the solve has; none where no solve is shown. */
+  setSteps(steps: EditStep[], isEditable: boolean): void {
+    const before = this.steps.at(-1)?.revision ?? 0n;
+    const newest = steps.at(-1);
+    this.steps = steps;
+    byId("edit-form").hidden = !isEditable;
+    const { undo, redo } = undoAndRedo(steps);
+    button("undo").disabled = !undo;
+    button("redo").disabled = !redo;
+    byId("edit-news").textContent = newest ? textOfStep(newest) : "";
+    if (newest && newest.revision > before && !this.isSending && !this.waiting) this.showPart();
+  }
+
+  /** Chooses what a person clicked at: a lamp, or a surface by its material. */
+  choose(material: string, object: string | undefined): void {
+    const wanted = object && this.parts.lamps.includes(object) ? `object:${object}` : `material:${material}`;
+    if (![...select("edit-part").options].some(({ value }) => value === wanted)) return;
+    select("edit-part").value = wanted;
+    this.showPart();
+  }
+
+  private get chosen(): { kind: string; name: string } {
+    const { value } = select("edit-part");
+    const colon = value.indexOf(":");
+    return { kind: value.slice(0, colon), name: value.slice(colon + 1) };
+  }
+
+  /** What holds of the chosen part now. */
+  private present(): { dim: number; colour?: Bands; position?: Bands; emission?: Bands } {
+    const { kind, name } = this.chosen;
+    const light = this.parts.lights.find((one) => kind === "light" && one.name === name);
+    const material = this.parts.materials.find((one) => kind === "material" && one.name === name);
+    let dim = 1;
+    let intensity = light?.intensity;
+    let position = light?.position;
+    let reflectance = material?.hasTexture ? undefined : material?.reflectance;
+    let emission = material?.emission;
+    const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
+    for (const { part } of editsThatHold(this.steps)) {
+      if (part.case !== kind || part.value.name !== name) continue;
+      if (part.case !== "material") dim = part.value.dim ?? dim;
+      if (part.case === "light" && part.value.intensity) intensity = bands(part.value.intensity);
+      if (part.case === "light" && part.value.position) position = [part.value.position.x, part.value.position.y, part.value.position.z];
+      if (part.case === "material" && part.value.reflectance && reflectance) reflectance = bands(part.value.reflectance);
+      if (part.case === "material" && part.value.emission) emission = bands(part.value.emission);
+    }
+    const shines = material && largest(material.emission) > 0;
+    if (shines) dim = largest(emission!) / largest(material.emission);
+    const tint = intensity && largest(intensity) > 0 ? scaled(intensity, 1 / largest(intensity)) : undefined;
+    return { dim, colour: light ? tint : shines ? undefined : reflectance, position, emission: shines ? material.emission : undefined };
+  }
+
+  private showPart(): void {
+    const { kind } = this.chosen;
+    const { dim, colour, position, emission } = this.present();
+    byId("edit-dim-label").hidden = kind === "material" && !emission;
+    byId("edit-colour-label").hidden = !colour;
+    byId("edit-place").hidden = !position;
+    input("edit-dim").value = String(dim);
+    this.tellDim();
+    if (colour) input("edit-colour").value = colourOf(colour);
+    if (position) ["edit-x", "edit-y", "edit-z"].forEach((id, n) => (input(id).value = String(Number(position[n].toFixed(3)))));
+  }
+
+  private tellDim(): void {
+    byId("edit-dim-percent").textContent = `${Math.round(100 * input("edit-dim").valueAsNumber)} %`;
+  }
+
+  private dimmed(dim: number): Edit {
+    this.tellDim();
+    const { kind, name } = this.chosen;
+    const { emission } = this.present();
+    if (kind === "material")
+      return create(EditSchema, { part: { case: "material", value: { name, emission: rgb(scaled(emission!, dim)) } } });
+    return create(EditSchema, { part: { case: kind === "light" ? "light" : "object", value: { name, dim } } });
+  }
+
+  private coloured(colour: Bands): Edit {
+    const { kind, name } = this.chosen;
+    if (kind === "light") {
+      const brightest = largest(this.parts.lights.find((light) => light.name === name)!.intensity);
+      const tint = scaled(colour, brightest / (largest(colour) || 1));
+      return create(EditSchema, { part: { case: "light", value: { name, intensity: rgb(tint) } } });
+    }
+    const reflectance = rgb(colour.map((band) => Math.min(0.95, band)) as Bands);
+    return create(EditSchema, { part: { case: "material", value: { name, reflectance } } });
+  }
+
+  private move(): void {
+    const [x, y, z] = ["edit-x", "edit-y", "edit-z"].map((id) => input(id).valueAsNumber);
+    if (![x, y, z].every(Number.isFinite)) return;
+    this.slide(create(EditSchema, { part: { case: "light", value: { name: this.chosen.name, position: { x, y, z } } } }));
+  }
+
+  /** Sends the newest of the edits of a slide as soon as the one before was answered. */
+  private slide(edit: Edit): void {
+    this.waiting = edit;
+    if (!this.isSending) void this.sendWaiting();
+  }
+
+  private async sendWaiting(): Promise<void> {
+    this.isSending = true;
+    try {
+      while (this.waiting) {
+        const edits = [this.waiting];
+        this.waiting = undefined;
+        await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits, author: this.author, continues: true }));
+      }
+    } finally {
+      this.waiting = undefined;
+      this.isSending = false;
+    }
+  }
+
+  private step(kind: EditStep_Kind): void {
+    void this.send(create(EditStepSchema, { kind, author: this.author }));
+  }
+
+  private get author(): string {
+    return input("edit-author").value;
+  }
+}

@@ -1,0 +1,47 @@
+// What the steps of a solve's edits say.
+
+import { EditStep_Kind, type Edit, type EditStep } from "../gen/alvor/v1/solve_service_pb";
+
+/** Returns the edits that hold after all undos and redos, oldest first. */
+export function editsThatHold(steps: EditStep[]): Edit[] {
+  const hold: EditStep[] = [];
+  let undone: EditStep[] = [];
+  for (const step of steps) {
+    if (step.kind === EditStep_Kind.UNDO) undone.push(hold.pop()!);
+    else if (step.kind === EditStep_Kind.REDO) hold.push(undone.pop()!);
+    else {
+      hold.push(step);
+      undone = [];
+    }
+  }
+  return hold.flatMap(({ edits }) => edits);
+}
+
+/** Returns whether there is a step to take back, and one to repeat. */
+export function undoAndRedo(steps: EditStep[]): { undo: boolean; redo: boolean } {
+  let hold = 0;
+  let undone = 0;
+  for (const { kind } of steps) {
+    if (kind === EditStep_Kind.UNDO) [hold, undone] = [hold - 1, undone + 1];
+    else if (kind === EditStep_Kind.REDO) [hold, undone] = [hold + 1, undone - 1];
+    else [hold, undone] = [hold + 1, 0];
+  }
+  return { undo: hold > 0, redo: undone > 0 };
+}
+
+const percent = (share: number) => `${Math.round(100 * share)} %`;
+
+function textOfEdit({ part }: Edit): string {
+  if (part.case === undefined) return "something";
+  const { name } = part.value;
+  const dim = part.case !== "material" ? part.value.dim : undefined;
+  return dim === undefined ? name : `${name} at ${percent(dim)}`;
+}
+
+/** Returns a sentence about who did what in a step. */
+export function textOfStep(step: EditStep): string {
+  const who = step.author || "Somebody";
+  if (step.kind === EditStep_Kind.UNDO) return `${who} took the last edit back`;
+  if (step.kind === EditStep_Kind.REDO) return `${who} made the last edit again`;
+  return `${who} edited ${step.edits.map(textOfEdit).join(", ")}`;
+}

@@ -1,0 +1,101 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { Server } from "./server";
+import { openBrowser, openPage, pixelAt, waitForEnd, waitForState, type Page } from "./viewer";
+
+const SCENES = new URL("../../../../scenes/", import.meta.url);
+const CORNELL = ["cornell_box.obj", "cornell_box.mtl"].map((name) => new URL(name, SCENES).pathname);
+const RED_WALL = [0.32, 0.35] as const;
+const BACK_WALL = [0.53, 0.35] as const;
+
+let server: Server;
+let browser: Browser;
+beforeAll(async () => {
+  server = new Server();
+  await server.start();
+  browser = await openBrowser();
+});
+afterAll(async () => {
+  await browser?.close();
+  await server?.stop();
+});
+
+/** Two who watch one solve that has ended. */
+async function two(): Promise<{ name: string; ann: Page; ben: Page }> {
+  const ann = await openPage(browser, server.url);
+  await ann.setInputFiles("#files", CORNELL);
+  await waitForState(ann, "Done");
+  const name = new URL(ann.url()).hash.slice(1).split("?")[0];
+  const ben = await openPage(browser, `${server.url}#${name}`);
+  await waitForEnd(ben, name);
+  await ann.fill("#edit-author", "Ann");
+  return { name, ann, ben };
+}
+
+const click = async (page: Page, [x, y]: readonly [number, number]) => {
+  const box = (await page.locator("#room").boundingBox())!;
+  await page.locator("#room").click({ position: { x: x * box.width, y: y * box.height } });
+};
+const slide = (page: Page, id: string, value: string) =>
+  page.locator(id).evaluate((control, to) => {
+    (control as HTMLInputElement).value = to;
+    control.dispatchEvent(new Event("input", { bubbles: true }));
+  }, value);
+const redness = async (page: Page) => {
+  const [r, , b] = await pixelAt(page, ...RED_WALL);
+  return r - b;
+};
+
+describe("edits on the page", () => {
+  it("are seen by everyone, with who made them, and taken back", async () => {
+    const { name, ann, ben } = await two();
+    await click(ann, RED_WALL);
+    await expect.poll(() => ann.inputValue("#edit-part")).toBe("material:red");
+    expect(await redness(ben)).toBeGreaterThan(50);
+    await slide(ann, "#edit-colour", "#3050e0");
+    for (const page of [ann, ben]) await expect.poll(() => redness(page)).toBeLessThan(-50);
+    await expect.poll(() => ben.textContent("#edit-news")).toBe("Ann edited red");
+    await waitForState(ben, "Done");
+    await ben.click("#undo");
+    for (const page of [ann, ben]) await expect.poll(() => redness(page)).toBeGreaterThan(50);
+    await expect.poll(() => ann.textContent("#edit-news")).toBe("Somebody took the last edit back");
+    await expect.poll(() => ann.isEnabled("#redo")).toBe(true);
+    expect((await server.api.solves.getSolve({ name })).edits).toHaveLength(2);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
+  it("dim a lamp with a slider, which is one step, by keys, too", async () => {
+    const { name, ann, ben } = await two();
+    await ben.uncheck("#automatic");
+    const before = (await pixelAt(ben, ...BACK_WALL))[1];
+    await ann.selectOption("#edit-part", "material:light");
+    for (const value of ["0.9", "0.7", "0.5", "0.3"]) await slide(ann, "#edit-dim", value);
+    await expect.poll(async () => (await pixelAt(ben, ...BACK_WALL))[1]).toBeLessThan(0.75 * before);
+    await ann.focus("#edit-dim");
+    await ann.keyboard.press("ArrowRight");
+    await expect.poll(async () => (await server.api.solves.getSolve({ name })).edits.at(-1)!.edits[0].part.value!.name).toBe("light");
+    await waitForState(ann, "Done");
+    expect((await server.api.solves.getSolve({ name })).edits).toHaveLength(1);
+    await ann.click("#undo");
+    await expect.poll(async () => (await pixelAt(ben, ...BACK_WALL))[1]).toBeGreaterThan(0.95 * before);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
+  it("come to who joins later, and to who comes back", async () => {
+    const { name, ann, ben } = await two();
+    await ann.selectOption("#edit-part", "material:red");
+    await slide(ann, "#edit-colour", "#3050e0");
+    await waitForState(ben, "Done");
+    const late = await openPage(browser, `${server.url}#${name}`);
+    await waitForEnd(late, name);
+    await expect.poll(() => redness(late)).toBeLessThan(-50);
+    await server.kill();
+    await server.start();
+    for (const page of [ann, ben, late]) await expect.poll(() => redness(page)).toBeLessThan(-50);
+    await late.selectOption("#edit-part", "material:red");
+    expect(await late.inputValue("#edit-colour")).toBe("#3050e0");
+    await slide(late, "#edit-colour", "#e03020");
+    for (const page of [ann, ben, late]) await expect.poll(() => redness(page), { timeout: 20_000 }).toBeGreaterThan(50);
+    await Promise.all([ann.close(), ben.close(), late.close()]);
+  });
+});

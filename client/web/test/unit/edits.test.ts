@@ -1,0 +1,87 @@
+import { create } from "@bufbuild/protobuf";
+import { describe, expect, it } from "vitest";
+import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
+import { EditStep_Kind, EditStepSchema, LookSchema } from "../../src/gen/alvor/v1/solve_service_pb";
+import { BaseMesh } from "../../src/mirror/base_mesh";
+import { partsOf } from "../../src/mirror/parts";
+import { editsThatHold, textOfStep, undoAndRedo } from "../../src/page/edits";
+import { colourOf, linearOf } from "../../src/page/srgb";
+
+const dim = (name: string, share: number) =>
+  create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [{ part: { case: "object", value: { name, dim: share } } }], author: "Ann" });
+const undo = create(EditStepSchema, { kind: EditStep_Kind.UNDO });
+const redo = create(EditStepSchema, { kind: EditStep_Kind.REDO });
+
+describe("steps of edits", () => {
+  it("hold unless they were taken back", () => {
+    const steps = [dim("a", 0.1), dim("b", 0.2), undo, dim("c", 0.3), undo, redo];
+    expect(editsThatHold(steps).map(({ part }) => part.value!.name)).toEqual(["a", "c"]);
+  });
+
+  it("tell whether there is something to take back or to repeat", () => {
+    expect(undoAndRedo([])).toEqual({ undo: false, redo: false });
+    expect(undoAndRedo([dim("a", 1), undo])).toEqual({ undo: false, redo: true });
+    expect(undoAndRedo([dim("a", 1), undo, dim("b", 1)])).toEqual({ undo: true, redo: false });
+  });
+
+  it("are told with who made them", () => {
+    expect(textOfStep(dim("lamp", 0.5))).toBe("Ann edited lamp at 50 %");
+    expect(textOfStep(undo)).toBe("Somebody took the last edit back");
+  });
+});
+
+describe("colours of controls", () => {
+  it("are linear bands and back", () => {
+    for (const colour of ["#000000", "#ffffff", "#804020", "#010203"]) expect(colourOf(linearOf(colour))).toBe(colour);
+    expect(linearOf("#bcbcbc")[0]).toBeCloseTo(0.5, 2);
+  });
+});
+
+describe("a mesh with a look", () => {
+  const rgb = (x: number) => ({ r: x, g: x, b: x });
+  const mesh = () =>
+    new BaseMesh([
+      create(ReadMeshResponseSchema, {
+        cornerCounts: [3, 3, 3],
+        materials: [0, 1, 1],
+        sceneFaces: [0, 1, 2],
+        cornerCoordinates: [0, 1, 2].flatMap((z) => [0, 0, z, 1, 0, z, 0, 1, z]),
+        neighbours: Array<bigint>(9).fill(0n),
+        sceneMaterials: [
+          { name: "wall", emission: rgb(0), reflectance: rgb(0.5) },
+          { name: "lamp", emission: rgb(9), reflectance: rgb(0) },
+        ],
+        sceneObjects: [
+          { name: "left", firstFace: 1, faceCount: 1 },
+          { name: "right", firstFace: 2, faceCount: 1 },
+        ],
+        sceneLights: [{ name: "bulb", kind: 1, intensity: rgb(3), position: { x: 1, y: 2, z: 3 } }],
+      }),
+    ]);
+  const look = create(LookSchema, {
+    edits: 1n,
+    materials: [
+      { number: 0, material: { name: "wall", emission: rgb(0), reflectance: rgb(0.1) } },
+      { number: 2, material: { name: "lamp of right", emission: rgb(4), reflectance: rgb(0) } },
+    ],
+    faces: [{ firstFace: 2, faceCount: 1, material: 2 }],
+  });
+
+  it("takes the materials of edits, and gives them back when they were taken back", () => {
+    const edited = mesh();
+    expect([...edited.applyLook(look)]).toEqual([2]);
+    expect(edited.materials[0].reflectance!.r).toBe(0.1);
+    expect(edited.materials[edited.material[2]].emission!.r).toBe(4);
+    expect(edited.materials[edited.material[1]].emission!.r).toBe(9);
+    expect([...edited.applyLook(create(LookSchema, { edits: 2n }))]).toEqual([2]);
+    expect(edited.materials[0].reflectance!.r).toBe(0.5);
+    expect(edited.material[2]).toBe(1);
+  });
+
+  it("has lights, lamps and materials to edit", () => {
+    const parts = partsOf(mesh());
+    expect(parts.lights).toEqual([{ name: "bulb", intensity: [3, 3, 3], position: [1, 2, 3] }]);
+    expect(parts.lamps).toEqual(["left", "right"]);
+    expect(parts.materials.map(({ name }) => name)).toEqual(["wall", "lamp"]);
+  });
+});

@@ -1,0 +1,30 @@
+#pragma once
+// The scene that follows from edits.
+
+#include "meshing/edit/scene_edit.h"
+#include "meshing/scene.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace alvor {
+
+/// Why an edit cannot be made: the place of the edit, its field, and the reason.
+struct EditFault {
+  std::size_t edit = 0;
+  std::string field;  ///< as the API calls it: "material.reflectance"
+  std::string reason;
+};
+
+/// Returns the first fault of the edits. Looks at each edit by itself: names, ranges.
+std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene);
+
+/// Returns the scene with these edits. Objects whose faces are dimmed get materials of their own, named "MATERIAL of OBJECT",
+/// after all others. The numbers of faces, objects, lights and materials stay. Requires: !fault_in(edits, scene),
+/// !find_fault(scene). The result may have a fault: a material that reflects and lets through more than all light.
+Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits);
+
+}  // namespace alvor

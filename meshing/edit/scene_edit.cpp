@@ -1,0 +1,25 @@
+#include "meshing/edit/scene_edit.h"
+
+namespace alvor {
+
+std::optional<std::vector<SceneEdit>> edits_that_hold(std::span<const EditStep> steps) {
+  std::vector<const EditStep*> hold, undone;
+  const auto move_last = [](std::vector<const EditStep*>& from, std::vector<const EditStep*>& to) {
+    if (from.empty()) return false;
+    to.push_back(from.back());
+    from.pop_back();
+    return true;
+  };
+  for (const EditStep& step : steps) {
+    if (step.kind == EditStep::Kind::undo && !move_last(hold, undone)) return std::nullopt;
+    if (step.kind == EditStep::Kind::redo && !move_last(undone, hold)) return std::nullopt;
+    if (step.kind != EditStep::Kind::edit) continue;
+    hold.push_back(&step);
+    undone.clear();
+  }
+  std::vector<SceneEdit> edits;
+  for (const EditStep* step : hold) edits.insert(edits.end(), step->edits.begin(), step->edits.end());
+  return edits;
+}
+
+}  // namespace alvor

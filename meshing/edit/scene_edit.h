@@ -1,0 +1,56 @@
+#pragma once
+// Edits of a scene while it is solved.
+
+#include "meshing/vec3.h"
+#include "solution/rgb.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace alvor {
+
+/// Sets what is given of a material; see Material.
+struct MaterialEdit {
+  std::string name;
+  std::optional<Rgb> emission, reflectance, diffuse_transmittance;
+  friend bool operator==(const MaterialEdit&, const MaterialEdit&) = default;
+};
+
+/// Sets what is given of a light that is no face; see Light.
+struct LightEdit {
+  std::string name;
+  std::optional<double> dim;  ///< multiplies its intensity, in [0, 1e6]; 0 is off
+  std::optional<Rgb> intensity;
+  std::optional<Vec3> position, direction;
+  friend bool operator==(const LightEdit&, const LightEdit&) = default;
+};
+
+/// Sets what is given of an object and of those that hang from it.
+struct ObjectEdit {
+  std::string name;
+  std::optional<double> dim;  ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
+  friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
+};
+
+/// A change of a scene. It says what a part of the scene is to be, whatever edits before it said: made twice it is as good as
+/// once.
+using SceneEdit = std::variant<MaterialEdit, LightEdit, ObjectEdit>;
+
+/// Edits that were made together.
+struct EditStep {
+  /// `undo` takes back the newest step that holds, `redo` makes the step that was taken back last hold again, unless another was
+  /// made since.
+  enum class Kind : std::uint8_t { edit, undo, redo };
+  Kind kind = Kind::edit;
+  std::vector<SceneEdit> edits;  ///< of Kind::edit
+  friend bool operator==(const EditStep&, const EditStep&) = default;
+};
+
+/// Returns the edits of the steps that hold, in order; nothing where a step takes back or repeats what is not there.
+std::optional<std::vector<SceneEdit>> edits_that_hold(std::span<const EditStep> steps);
+
+}  // namespace alvor

@@ -1,0 +1,91 @@
+#include "proto/edit_codec.h"
+
+#include "proto/codec.h"
+
+namespace alvor {
+
+namespace {
+
+v1::Vector3 vector_of(Vec3 v) {
+  v1::Vector3 message;
+  message.set_x(v.x);
+  message.set_y(v.y);
+  message.set_z(v.z);
+  return message;
+}
+Vec3 vector_of(const v1::Vector3& message) { return {message.x(), message.y(), message.z()}; }
+
+v1::Edit message_of(const SceneEdit& edit) {
+  v1::Edit message;
+  if (const auto* material = std::get_if<MaterialEdit>(&edit)) {
+    v1::MaterialEdit& part = *message.mutable_material();
+    part.set_name(material->name);
+    if (material->emission) *part.mutable_emission() = encode(*material->emission);
+    if (material->reflectance) *part.mutable_reflectance() = encode(*material->reflectance);
+    if (material->diffuse_transmittance) *part.mutable_diffuse_transmittance() = encode(*material->diffuse_transmittance);
+  } else if (const auto* light = std::get_if<LightEdit>(&edit)) {
+    v1::LightEdit& part = *message.mutable_light();
+    part.set_name(light->name);
+    if (light->dim) part.set_dim(*light->dim);
+    if (light->intensity) *part.mutable_intensity() = encode(*light->intensity);
+    if (light->position) *part.mutable_position() = vector_of(*light->position);
+    if (light->direction) *part.mutable_direction() = vector_of(*light->direction);
+  } else if (const auto* object = std::get_if<ObjectEdit>(&edit)) {
+    v1::ObjectEdit& part = *message.mutable_object();
+    part.set_name(object->name);
+    if (object->dim) part.set_dim(*object->dim);
+  }
+  return message;
+}
+
+MaterialEdit material_of(const v1::MaterialEdit& message) {
+  MaterialEdit edit{.name = message.name(), .emission = {}, .reflectance = {}, .diffuse_transmittance = {}};
+  if (message.has_emission()) edit.emission = decode(message.emission());
+  if (message.has_reflectance()) edit.reflectance = decode(message.reflectance());
+  if (message.has_diffuse_transmittance()) edit.diffuse_transmittance = decode(message.diffuse_transmittance());
+  return edit;
+}
+
+LightEdit light_of(const v1::LightEdit& message) {
+  LightEdit edit{.name = message.name(), .dim = {}, .intensity = {}, .position = {}, .direction = {}};
+  if (message.has_dim()) edit.dim = message.dim();
+  if (message.has_intensity()) edit.intensity = decode(message.intensity());
+  if (message.has_position()) edit.position = vector_of(message.position());
+  if (message.has_direction()) edit.direction = vector_of(message.direction());
+  return edit;
+}
+
+ObjectEdit object_of(const v1::ObjectEdit& message) {
+  ObjectEdit edit{.name = message.name(), .dim = {}};
+  if (message.has_dim()) edit.dim = message.dim();
+  return edit;
+}
+
+}  // namespace
+
+void encode(const EditStep& step, v1::EditStep& message) {
+  message.set_kind(step.kind == EditStep::Kind::undo   ? v1::EditStep::UNDO
+                   : step.kind == EditStep::Kind::redo ? v1::EditStep::REDO
+                                                       : v1::EditStep::EDIT);
+  for (const SceneEdit& edit : step.edits) *message.add_edits() = message_of(edit);
+}
+
+std::optional<EditStep> decode(const v1::EditStep& message) {
+  EditStep step;
+  switch (message.kind()) {
+    case v1::EditStep::KIND_UNSPECIFIED:
+    case v1::EditStep::EDIT: break;
+    case v1::EditStep::UNDO: step.kind = EditStep::Kind::undo; break;
+    case v1::EditStep::REDO: step.kind = EditStep::Kind::redo; break;
+    default: return std::nullopt;
+  }
+  for (const v1::Edit& edit : message.edits()) {
+    if (edit.has_material()) step.edits.emplace_back(material_of(edit.material()));
+    else if (edit.has_light()) step.edits.emplace_back(light_of(edit.light()));
+    else if (edit.has_object()) step.edits.emplace_back(object_of(edit.object()));
+    else return std::nullopt;
+  }
+  return step;
+}
+
+}  // namespace alvor

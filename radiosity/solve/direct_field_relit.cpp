@@ -1,0 +1,122 @@
+// The part of DirectField that takes edited lights.
+
+#include "radiosity/direct/mesh_light.h"
+#include "radiosity/solve/direct_field.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+namespace alvor {
+
+namespace {
+
+/// The lights that a field adds: by number, each one's form and colour.
+using KnownLights = std::map<std::uint32_t, std::pair<LightForm, RelativeLight>>;
+
+/// Returns the factor, per band, by which all lights have changed; nothing if there is none.
+std::optional<Rgb> common_factor(const KnownLights& before, const KnownLights& now) {
+  constexpr double same = 1e-12;
+  std::optional<Rgb> factor;
+  if (before.size() != now.size()) return std::nullopt;
+  for (auto old = before.begin(), next = now.begin(); old != before.end(); ++old, ++next) {
+    if (old->first != next->first || old->second.first != next->second.first) return std::nullopt;
+    const RelativeLight &from = old->second.second, &to = next->second.second;
+    const auto ratio = [](double was, double is) { return was == 0 && is == 0 ? 1.0 : is / was; };
+    const Rgb change{ratio(from.r, to.r), ratio(from.g, to.g), ratio(from.b, to.b)};
+    if (!change.is_finite() || (factor && absolute(change - *factor).max() > same * factor->max())) return std::nullopt;
+    if (!factor) factor = change;
+  }
+  return factor;
+}
+
+}  // namespace
+
+/// Returns the form of each light, in the order of owned_lights_.
+std::vector<LightForm> DirectField::forms_of_lights() const {
+  const auto lamps = lamps_of_faces(scene_);
+  std::unordered_map<std::uint32_t, std::size_t> lamp_of_root;
+  for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp)
+    for (const std::uint32_t root : lamps[lamp]) lamp_of_root[root] = lamp;
+  const auto others = forests_.mesh().lights();
+  const std::size_t root_count = forests_.mesh().roots().size();
+  std::vector<LightForm> forms;
+  for (const auto& light : owned_lights_) {
+    LightForm& form = forms.emplace_back();
+    const std::size_t number = light->number();
+    if (number < root_count) {
+      form.roots = lamps[lamp_of_root.at(light->number())];
+    } else if (number - root_count < others.size()) {
+      form.light = others[number - root_count];
+      form.light->intensity = {};
+    }
+  }
+  return forms;
+}
+
+void DirectField::keep_shares() {
+  keeps_shares_ = ranks_.is_alone();
+  forms_ = forms_of_lights();
+  choose_shares();
+}
+
+/// Skies and surroundings are many lights, whose numbers change with those of the others.
+void DirectField::choose_shares() {
+  const bool is_lamps_and_suns = std::ranges::none_of(forests_.mesh().lights(), [](const Light& light) {
+    return light.kind == LightKind::sky || light.kind == LightKind::environment;
+  });
+  const bool may_keep = keeps_shares_ && is_lamps_and_suns && !light_tree_;
+  const auto is_shining = [this](std::uint32_t number) {
+    return std::ranges::any_of(owned_lights_, [&](const auto& light) { return light->number() == number; });
+  };
+  const auto count_all = [&] {
+    std::size_t dark = shares_.light_count();
+    for (const auto& light : owned_lights_) dark -= shares_.keeps(*light);
+    return dark + owned_lights_.size();
+  };
+  if (count_all() > LightShares::most_lights) shares_.keep_only(is_shining);
+  if (!may_keep || count_all() < 2 || count_all() > LightShares::most_lights)
+    return shares_.keep_only([](std::uint32_t) { return false; });
+  for (std::size_t n = 0; n < forms_.size(); ++n) shares_.keep(*owned_lights_[n], forms_[n]);
+}
+
+std::optional<Rgb> DirectField::note_relit(double unit_change) {
+  const auto known_lights = [this] {
+    KnownLights known;
+    for (std::size_t n = 0; n < forms_.size(); ++n) known[owned_lights_[n]->number()] = {forms_[n], owned_lights_[n]->colour()};
+    return known;
+  };
+  const KnownLights before = known_lights();
+  const double share_waiting = power_ > 0 ? waiting_power_ / power_ : 0;
+  owned_lights_.clear();
+  lights_.clear();
+  tree_lights_.clear();
+  light_tree_.reset();
+  power_ = near_power_ = 0;
+  choose_lights();
+  forms_ = forms_of_lights();
+  choose_shares();
+  fit_to_nodes();
+  const KnownLights now = known_lights();
+  const auto factor = before.empty() ? std::nullopt : common_factor(before, now);
+  scale(factor.value_or(Rgb{unit_change, unit_change, unit_change}));
+  if (factor) waiting_power_ = share_waiting * power_;
+  else is_known_.assign(is_known_.size(), false);
+  return factor;
+}
+
+/// Multiplies the light of all leaves; that at origins and the noise by the mean of the factors.
+void DirectField::scale(const Rgb& factor) {
+  const auto mean = static_cast<float>(factor.mean());
+  for (DirectLight& light : light_) {
+    light.irradiance = factor * light.irradiance;
+    for (float& at : light.at_origin) at *= mean;
+    light.variance *= mean * mean;
+    light.origin_variance *= mean * mean;
+  }
+  for (float& light : from_afar_) light *= mean;
+}
+
+}  // namespace alvor

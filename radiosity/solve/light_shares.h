@@ -1,0 +1,64 @@
+#pragma once
+// What each of a few lights brings to each leaf, so that a light can be dimmed without a ray.
+
+#include "meshing/light.h"
+#include "meshing/patch_forest.h"
+#include "radiosity/direct/direct_light.h"
+#include "radiosity/direct/light_source.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace alvor {
+
+/// A light apart from how bright it is: the root patches of a lamp of faces, or a light that is no face, with intensity 0.
+struct LightForm {
+  std::vector<std::uint32_t> roots;
+  std::optional<Light> light;
+  friend bool operator==(const LightForm&, const LightForm&) = default;
+};
+
+/// The direct light of leaves by light, as multiples of the light's colour: 84 bytes for each node of the leaf forest and light.
+/// Lights are known by their numbers; indices are by leaf node. Used by one thread at a time, but for brought().
+class LightShares {
+ public:
+  /// Scenes of more lights than this keep no shares.
+  static constexpr std::size_t most_lights = 4;
+
+  bool keeps(const LightSource& light) const { return by_light_.contains(light.number()); }
+  /// Keeps the shares of a light from now on. Those that are there stay if they are of the same form.
+  void keep(const LightSource& light, const LightForm& form);
+  /// Forgets lights that this returns false for.
+  template <class Stays>
+  void keep_only(Stays&& stays) {
+    std::erase_if(by_light_, [&](const auto& kept) { return !stays(kept.first); });
+  }
+  std::size_t light_count() const { return by_light_.size(); }
+  /// Makes room for new nodes.
+  void resize(std::size_t nodes);
+  /// Sets the share of a light at a leaf from what it brings there. Requires: keeps(light).
+  void set(const LightSource& light, NodeIndex leaf, const DirectLight& brought);
+  void forget(NodeIndex leaf);
+  /// Returns what the light brings to a leaf at its present colour; nothing where its share is not known.
+  std::optional<DirectLight> brought(const LightSource& light, NodeIndex leaf) const;
+
+ private:
+  static constexpr float unknown = -1;
+  /// Multiples of the colour; `unknown` in a band of which the colour had nothing.
+  struct Share {
+    RgbF irradiance{unknown, unknown, unknown};
+    std::array<float, origins_per_patch> at_origin{};  ///< of the mean of the bands
+    float variance = 0, origin_variance = 0;           ///< of its square
+  };
+  struct Kept {
+    LightForm form;
+    std::vector<Share> shares;
+  };
+  std::size_t nodes_ = 0;
+  std::map<std::uint32_t, Kept> by_light_;
+};
+
+}  // namespace alvor

@@ -1,0 +1,135 @@
+#include "radiosity/solve/live_solve.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+namespace alvor {
+
+namespace {
+
+bool has_same_roots(const BaseMesh& before, const BaseMesh& after) {
+  return std::ranges::equal(before.roots(), after.roots(), [&](const RootPatch& a, const RootPatch& b) {
+    const Material &was = before.materials()[a.material], &is = after.materials()[b.material];
+    return a.corner_count == b.corner_count &&
+           std::equal(a.corners.begin(), a.corners.begin() + a.corner_count, b.corners.begin()) && a.twin == b.twin &&
+           was.regular_transmittance == is.regular_transmittance && was.is_translucent() == is.is_translucent() &&
+           was.texture.has_value() == is.texture.has_value();
+  });
+}
+
+/// Requires: has_same_roots().
+bool reflects_alike(const BaseMesh& before, const BaseMesh& after) {
+  return std::ranges::equal(before.roots(), after.roots(), [&](const RootPatch& a, const RootPatch& b) {
+    const Material &was = before.materials()[a.material], &is = after.materials()[b.material];
+    return was.reflectance == is.reflectance && was.diffuse_transmittance == is.diffuse_transmittance;
+  });
+}
+
+/// Returns whether what is known from solving `before` is of use for solving `after`, because rows, forests and what they need to
+/// tell are the same.
+bool may_go_on(const BaseMesh& before, const Plan& plan_before, const BaseMesh& after, const Plan& plan_after) {
+  constexpr std::array of_rows{Feature::indirect_rows, Feature::back_sides, Feature::medium, Feature::panes};
+  if (std::ranges::any_of(of_rows, [&](Feature f) { return plan_before.needs(f) != plan_after.needs(f); })) return false;
+  if (plan_before.emission_by_rows() != plan_after.emission_by_rows() || !plan_after.has_light()) return false;
+  if (plan_after.backs_are_seen() && !plan_before.backs_are_seen()) return false;
+  if (before.absorption() != after.absorption() || !has_same_roots(before, after)) return false;
+  for (std::uint32_t root = 0; root < after.roots().size(); ++root)
+    if (plan_after.may_be_lit(root) && !plan_before.may_be_lit(root)) return false;
+  return true;
+}
+
+}  // namespace
+
+LiveSolve::LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, Ranks& ranks, bool keeps_mesh)
+    : own_mesh_(keeps_mesh ? std::optional(mesh) : std::nullopt),
+      state(own_mesh_ ? *own_mesh_ : mesh, plan, options, budget, ranks) {
+  if (keeps_mesh) state.keep_shares();
+}
+
+bool LiveSolve::take_edit(const BaseMesh& edited) {
+  assert(own_mesh_);
+  if (state.options.strategy != Strategy::automatic) return false;  // what was shot is not known
+  Plan plan(edited, state.options);
+  if (!may_go_on(*own_mesh_, state.plan, edited, plan)) return false;
+  const bool is_alike = reflects_alike(*own_mesh_, edited);
+  *own_mesh_ = edited;
+  state.note_relit(std::move(plan), is_alike);
+  if (!error_before_edit) error_before_edit = progress.error.total();
+  edited_at_s = progress.elapsed_s;
+  progress.error.unshot = 1;
+  progress.leaves_before = progress.idle_passes = 0;
+  return true;
+}
+
+void LiveSolve::save(PlainWriter& out) const {
+  out.put(newest_checkpoint);
+  out.put(edits);
+  out.put(progress);
+  out.put(by_place);
+  out.put(edited_at_s);
+  state.save(out);
+}
+
+void LiveSolve::load(std::span<const std::byte> checkpoint) {
+  PlainReader in(checkpoint);
+  const auto version = in.get<std::uint32_t>();
+  if (version < oldest_checkpoint || version > newest_checkpoint)
+    throw BadBytes("is of version " + std::to_string(version) + "; " + std::to_string(oldest_checkpoint) + " to " +
+                   std::to_string(newest_checkpoint) + " are known");
+  if (version >= 5) edits = in.get<std::uint64_t>();
+  progress = in.get<Progress>();
+  if (version >= 4) by_place = in.get<ErrorByPlace>();
+  if (version >= 5) edited_at_s = in.get<double>();
+  const double numbers[] = {progress.elapsed_s,     progress.cpu_s,        progress.traversal_s,
+                            progress.error.total(), progress.lowest_error, progress.balance.gap(),
+                            by_place.area_within,   by_place.kept_error,   edited_at_s};
+  if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }) || progress.elapsed_s < 0)
+    throw BadBytes("progress: cannot be");
+  state.load(in, version);
+  in.expect_end();
+  budget.add_spent(progress.rays, progress.traversal_s);
+}
+
+namespace {
+
+/// Begins a solve of which the log may show an older solution.
+std::shared_ptr<LiveSolve> begin(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,
+                                 const SolveControl& control) {
+  auto live = std::make_shared<LiveSolve>(mesh, plan, options, *control.ranks, control.live != nullptr);
+  const Step last = log.last_step();
+  constexpr std::uint64_t first_revision = 1;  // shows darkness
+  live->is_refreshing = last.revision > first_revision;
+  live->progress.elapsed_s = live->edited_at_s = last.elapsed_s;
+  live->progress.shots = last.shots;
+  live->budget.add_spent(last.rays, 0);
+  return live;
+}
+
+}  // namespace
+
+std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,
+                                      const SolveControl& control) {
+  std::shared_ptr<LiveSolve> live = control.live ? *control.live : nullptr;
+  if (!live && !control.checkpoint.empty()) {
+    const bool is_of_other = control.checkpoint_mesh != nullptr;
+    const BaseMesh& of = is_of_other ? *control.checkpoint_mesh : mesh;
+    live =
+        std::make_shared<LiveSolve>(of, is_of_other ? Plan(of, options) : plan, options, *control.ranks, control.live != nullptr);
+    live->load(control.checkpoint);
+  }
+  if (live && live->edits != control.edits && !live->take_edit(mesh)) live.reset();
+  if (!live) live = begin(mesh, plan, options, log, control);
+  live->edits = control.edits;
+  if (control.live) *control.live = live;
+  return live;
+}
+
+std::uint64_t edits_of_checkpoint(std::span<const std::byte> checkpoint) {
+  PlainReader in(checkpoint);
+  return in.get<std::uint32_t>() >= 5 ? in.get<std::uint64_t>() : 0;
+}
+
+}  // namespace alvor

@@ -1,0 +1,64 @@
+#pragma once
+// What a solve holds from pass to pass and keeps in memory when it has ended, so that it can go on after an edit.
+
+#include "radiosity/solve/pass.h"
+#include "radiosity/solve/solve_control.h"
+#include "radiosity/solve/solve_state.h"
+#include "solution/solution_log.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace alvor {
+
+/// The progress of a run that is not part of its state. Saved with checkpoints as it lies in memory.
+struct Progress {
+  double elapsed_s = 0, cpu_s = 0, traversal_s = 0;
+  std::uint64_t rays = 0, shots = 0;
+  std::uint64_t passes = 0;  ///< passes that came to their end
+  ErrorEstimate error{.unshot = 1};
+  PowerBalance balance;
+  double lowest_error = 0;
+  std::uint64_t leaves_before = 0;  ///< leaves in the last pass that gained something
+  std::uint64_t idle_passes = 0;    ///< passes since then
+};
+
+/// The state and the progress of one solve. Used by one thread at a time.
+class LiveSolve {
+ public:
+  /// Begins a solve. If `keeps_mesh`, it has a copy of the mesh and can take edits; else the mesh must outlive it. The ranks
+  /// must.
+  LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, Ranks& ranks, bool keeps_mesh);
+  LiveSolve(const LiveSolve&) = delete;  // its parts refer to each other
+
+  /// Goes on with the materials, lights and medium of `edited`. Returns false, and changes nothing, where a solve from the
+  /// beginning is needed. Requires: keeps_mesh.
+  bool take_edit(const BaseMesh& edited);
+
+  /// Collective.
+  void save(PlainWriter& out) const;
+  /// Reads what save() wrote. Throws BadBytes; then this must not be used. Requires: newly made.
+  void load(std::span<const std::byte> checkpoint);
+
+ private:
+  std::optional<BaseMesh> own_mesh_;
+
+ public:
+  std::function<bool()> is_out = [] { return false; };  ///< asked by the budget, from any thread
+  RayBudget budget{[this] { return is_out(); }};
+  SolveState state;
+  Progress progress;
+  ErrorByPlace by_place{.area_within = 0, .kept_error = 1};
+  std::uint64_t edits = 0;  ///< SolveControl::edits of the mesh
+  double edited_at_s = 0;   ///< elapsed seconds when the last edit was taken
+  /// Until the first estimate after an edit: the estimated error of before.
+  std::optional<double> error_before_edit;
+  bool is_refreshing = false;  ///< the log shows an older solution, and nothing is published before the first pass is done
+};
+
+/// Returns the state from which a solve of `mesh` goes on, or a new one. Throws BadBytes.
+std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,
+                                      const SolveControl& control);
+
+}  // namespace alvor

@@ -1,0 +1,102 @@
+#include "server/solves/edited_content.h"
+
+#include "meshing/edit/edited_scene.h"
+#include "server/base/status_error.h"
+
+#include <algorithm>
+
+namespace alvor {
+
+namespace {
+
+constexpr std::size_t most_steps = 10'000, most_edits_of_step = 1000, most_bytes = 1 << 20, longest_author = 256;
+
+std::optional<std::vector<SceneEdit>> that_hold(std::span<const KeptEdit> edits) {
+  std::vector<EditStep> steps;
+  for (const KeptEdit& edit : edits) steps.push_back(edit.step);
+  return edits_that_hold(steps);
+}
+
+/// Returns an edit without its values: two are alike if they set the same fields of the same part.
+SceneEdit without_values(SceneEdit edit) {
+  const auto clear = [](auto& field) {
+    if (field) field.emplace();
+  };
+  if (auto* material = std::get_if<MaterialEdit>(&edit)) {
+    clear(material->emission), clear(material->reflectance), clear(material->diffuse_transmittance);
+  } else if (auto* light = std::get_if<LightEdit>(&edit)) {
+    clear(light->dim), clear(light->intensity), clear(light->position), clear(light->direction);
+  } else if (auto* object = std::get_if<ObjectEdit>(&edit)) {
+    clear(object->dim);
+  }
+  return edit;
+}
+
+bool are_alike(const EditStep& a, const EditStep& b) {
+  return a.kind == EditStep::Kind::edit && a.kind == b.kind &&
+         std::ranges::equal(a.edits, b.edits, [](const SceneEdit& one, const SceneEdit& other) {
+           return without_values(one) == without_values(other);
+         });
+}
+
+std::size_t bytes_of(const KeptEdit& edit) {
+  std::size_t bytes = 100 + edit.author.size() + edit.request_id.size();
+  for (const SceneEdit& each : edit.step.edits)
+    bytes += 150 + std::visit([](const auto& part) { return part.name.size(); }, each);
+  return bytes;
+}
+
+bool shines(const Scene& scene) {
+  return std::ranges::any_of(scene.lights, [](const Light& light) { return !light.intensity.is_zero(); }) ||
+         std::ranges::any_of(scene.faces, [&](const Face& face) { return !scene.materials[face.material].emission.is_zero(); });
+}
+
+void check(const EditRequest& request, const Scene& submitted) {
+  const EditStep& step = request.step;
+  if (request.author.size() > longest_author)
+    throw invalid_argument("step.author: " + std::to_string(request.author.size()) + " bytes, at most 256 are allowed");
+  const bool is_edit = step.kind == EditStep::Kind::edit;
+  if (is_edit && step.edits.empty()) throw invalid_argument("step.edits: there are none");
+  if (!is_edit && !step.edits.empty()) throw invalid_argument("step.edits: an undo or redo has none");
+  if (step.edits.size() > most_edits_of_step)
+    throw invalid_argument("step.edits: " + std::to_string(step.edits.size()) + ", at most 1000 are allowed");
+  if (const auto fault = fault_in(step.edits, submitted))
+    throw invalid_argument("step.edits[" + std::to_string(fault->edit) + "]." + fault->field + ": " + fault->reason);
+}
+
+}  // namespace
+
+std::vector<KeptEdit> with_step(std::vector<KeptEdit> edits, const EditRequest& request, const Scene& submitted) {
+  const std::uint64_t newest = newest_revision(edits);
+  if (request.base_revision && *request.base_revision != newest)
+    throw StatusError(grpc::ABORTED, "base_revision: " + std::to_string(*request.base_revision) +
+                                         ", but the newest edits are of revision " + std::to_string(newest));
+  check(request, submitted);
+  const bool replaces =
+      request.continues && !edits.empty() && edits.back().author == request.author && are_alike(edits.back().step, request.step);
+  if (replaces) edits.pop_back();
+  edits.push_back(
+      {newest + 1, request.step, request.author, request.request_id, std::chrono::system_clock::now(), request.continues});
+  std::size_t bytes = 0;
+  for (const KeptEdit& edit : edits) bytes += bytes_of(edit);
+  if (edits.size() > most_steps || bytes > most_bytes)
+    throw StatusError(grpc::RESOURCE_EXHAUSTED,
+                      "the solve has " + std::to_string(edits.size() - 1) + " steps of edits, as many as are kept");
+  const auto hold = that_hold(edits);
+  if (!hold) throw StatusError(grpc::FAILED_PRECONDITION, "step.kind: there is nothing to undo or redo");
+  const Scene edited = edited_scene(submitted, *hold);
+  if (const auto fault = find_fault(edited)) throw invalid_argument("step.edits: then " + fault->text());
+  if (!shines(edited) && shines(submitted)) throw invalid_argument("step.edits: then nothing in the scene would shine");
+  return edits;
+}
+
+std::shared_ptr<const SceneContent> edited_content(std::shared_ptr<const SceneContent> submitted,
+                                                   std::span<const KeptEdit> edits) {
+  const auto hold = that_hold(edits);
+  if (!hold || hold->empty()) return submitted;
+  Scene scene = edited_scene(submitted->scene, *hold);
+  BaseMesh mesh = submitted->mesh.relit_as(scene);
+  return std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
+}
+
+}  // namespace alvor

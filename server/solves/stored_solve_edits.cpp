@@ -1,0 +1,145 @@
+// The part of StoredSolve that takes edits of its scene.
+
+#include "proto/codec.h"
+#include "server/base/status_error.h"
+#include "server/solves/stored_solve.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace alvor {
+
+namespace {
+
+/// Appends runs of faces that have other materials than before.
+void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
+  v1::FaceMaterials* run = nullptr;
+  for (std::uint32_t face = 0; face < after.faces.size(); ++face) {
+    const std::uint32_t material = after.faces[face].material;
+    if (material == before.faces[face].material) {
+      run = nullptr;
+      continue;
+    }
+    if (!run || run->material() != material) {
+      run = look.add_faces();
+      run->set_first_face(face);
+      run->set_material(material);
+    }
+    run->set_face_count(run->face_count() + 1);
+  }
+}
+
+bool look_alike(const Material& a, const Material& b) {
+  return a.emission == b.emission && a.reflectance == b.reflectance && a.diffuse_transmittance == b.diffuse_transmittance;
+}
+
+void queue_again(SolveRecord& facts) {
+  facts.status = SolveStatus::queued;
+  facts.end_reason.clear();
+  facts.end_time.reset();
+  facts.balance.reset();
+}
+
+}  // namespace
+
+std::vector<KeptEdit> StoredSolve::edits() const {
+  Lock hold(lock_);
+  return facts_.edits;
+}
+
+std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<void()>& admit) {
+  Lock alone(editing_lock_);
+  const std::vector<KeptEdit> before = edits();
+  if (!request.request_id.empty())
+    for (const KeptEdit& known : before)
+      if (known.request_id == request.request_id) {
+        if (known.step != request.step)
+          throw invalid_argument("request_id: '" + request.request_id + "' was used for another request");
+        return known.revision;
+      }
+  const auto submitted = scene_->content();
+  std::vector<KeptEdit> after = with_step(before, request, submitted->scene);
+  const std::uint64_t revision = newest_revision(after);
+  auto edited = edited_content(submitted, after);
+  admit();
+  Lock keep(keeping_lock_);
+  Archive::SolveRow next = row();
+  if (next.facts.status == SolveStatus::cancelled || next.facts.status == SolveStatus::failed)
+    throw StatusError(grpc::FAILED_PRECONDITION, name + " was cancelled or has failed");
+  next.facts.edits = after;
+  if (is_final(next.facts.status)) queue_again(next.facts);
+  if (keeping_.archive) keeping_.archive->update(next);
+  {
+    Lock log(log_lock_);
+    is_log_kept_ = false;
+  }
+  Lock hold(lock_);
+  facts_.edits = std::move(after);
+  if (is_final(facts_.status)) queue_again(facts_);
+  edited_ = {revision, std::move(edited)};
+  newest_edits_ = revision;
+  return revision;
+}
+
+void StoredSolve::go_on_if_edited() {
+  Lock alone(editing_lock_);
+  {
+    const SolveRecord facts = describe();
+    if (facts.status != SolveStatus::succeeded || !facts.has_edits_to_heed()) return;
+  }
+  change_waiting(queue_again);
+}
+
+std::shared_ptr<const SceneContent> StoredSolve::content_of(std::span<const KeptEdit> edits, const CallStop& stop) const {
+  if (edits.empty()) return scene_->content(stop);
+  const std::uint64_t revision = edits.back().revision;
+  {
+    Lock hold(lock_);
+    if (edited_.first == revision && edited_.second) return edited_.second;
+  }
+  auto edited = edited_content(scene_->content(stop), edits);
+  Lock hold(lock_);
+  if (revision >= edited_.first) edited_ = {revision, edited};
+  return edited;
+}
+
+std::shared_ptr<const SceneContent> StoredSolve::content(const CallStop& stop) const { return content_of(edits(), stop); }
+
+v1::Look StoredSolve::look() const {
+  const std::vector<KeptEdit> newest = edits();
+  const auto before = scene_->content(), after = content_of(newest, {});
+  v1::Look look;
+  look.set_edits(newest_revision(newest));
+  for (std::uint32_t n = 0; n < after->scene.materials.size(); ++n) {
+    const Material& material = after->scene.materials[n];
+    if (n < before->scene.materials.size() && look_alike(before->scene.materials[n], material)) continue;
+    v1::LookOfMaterial& changed = *look.add_materials();
+    changed.set_number(n);
+    *changed.mutable_material() = encode(material);
+    changed.mutable_material()->clear_texture();
+  }
+  add_faces(before->scene, after->scene, look);
+  return look;
+}
+
+std::shared_ptr<LiveSolve> StoredSolve::take_live() {
+  Lock hold(lock_);
+  return std::exchange(live_, nullptr);
+}
+
+void StoredSolve::keep_live(std::shared_ptr<LiveSolve> live) {
+  Lock hold(lock_);
+  live_ = std::move(live);
+}
+
+void StoredSolve::drop_live() {
+  std::shared_ptr<LiveSolve> dropped;  // freed after the lock is
+  {
+    Lock hold(lock_);
+    if (is_final(facts_.status)) dropped = std::exchange(live_, nullptr);
+    if (facts_.edits.empty() || is_final(facts_.status)) edited_ = {};
+  }
+  if (dropped) trim_heap_soon();
+}
+
+}  // namespace alvor

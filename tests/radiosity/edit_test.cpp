@@ -1,0 +1,285 @@
+// Edits of materials and lights: a solve goes on from what it knows, and ends where a solve of the edited scene ends.
+
+#include "meshing/patch_place.h"
+#include "radiosity/solve/live_solve.h"
+#include "radiosity/solve/solver.h"
+#include "tests/radiosity/solve_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace alvor {
+namespace {
+
+using Change = std::function<void(Scene&)>;
+
+/// A solve of a scene that is edited, all in memory.
+class EditedSolve {
+ public:
+  EditedSolve(const Scene& scene, const SolveOptions& options) : options_(options), mesh_(scene), scene_(scene) { run(); }
+
+  void edit(const Change& change) {
+    change(scene_);
+    mesh_ = mesh_.relit_as(scene_);
+    ++edits_;
+    run();
+  }
+  const Scene& scene() const { return scene_; }
+  const BaseMesh& mesh() const { return mesh_; }
+  SolutionLog& log() { return log_; }
+  std::shared_ptr<LiveSolve>& live() { return live_; }
+  Step last() const { return log_.last_step(); }
+  std::vector<LeafValue> leaves() const { return log_.leaves(); }
+
+  void run() {
+    SolveControl control;
+    control.live = &live_;
+    control.edits = edits_;
+    outcome = solve_as_planned(mesh_, Plan(mesh_, options_), options_, log_, control);
+  }
+  SolveOutcome outcome;
+
+ private:
+  SolveOptions options_;
+  BaseMesh mesh_;
+  Scene scene_;
+  std::uint64_t edits_ = 0;
+  SolutionLog log_;
+  std::shared_ptr<LiveSolve> live_;
+};
+
+/// Returns the root mean square of the differences over the leaves, as a share of the mean; each leaf counts for the same.
+double difference(const std::vector<LeafValue>& a, const std::vector<LeafValue>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double squares = 0, sum = 0;
+  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
+    EXPECT_EQ(a[n].patch, b[n].patch);
+    squares += std::pow(a[n].irradiance.mean() - b[n].irradiance.mean(), 2);
+    sum += b[n].irradiance.mean();
+  }
+  return std::sqrt(squares / static_cast<double>(a.size())) / (sum / static_cast<double>(a.size()));
+}
+
+/// Returns a room with two lamps of different materials, so that each can be dimmed.
+Scene room_with_two_lamps() {
+  Scene scene = test::room_with_contacts();
+  scene.materials.push_back(test::grey(30, 0));
+  test::add_polygon(scene, {{0.3, 2.9, 0.5}, {0.6, 2.9, 0.5}, {0.6, 2.9, 1}, {0.3, 2.9, 1}},
+                    static_cast<std::uint32_t>(scene.materials.size() - 1));
+  return scene;
+}
+
+// No leaf is split, so that the edited solve and a new one have the same leaves and, from the same seed, the same rows.
+const SolveOptions unsplit{.tolerance = 1e-6, .max_depth = 0};
+
+struct Case {
+  std::string name;
+  Scene (*scene)();
+  Change change;
+};
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+class Edit : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Cases, Edit,
+                         testing::Values(Case{"Reflectance", test::coloured_room,
+                                              [](Scene& s) {
+                                                s.materials[0].reflectance = {0.1, 0.7, 0.3};
+                                              }},
+                                         Case{"ReflectanceOfGreyRoom", room_with_two_lamps,
+                                              [](Scene& s) {
+                                                s.materials[0].reflectance = {0.2, 0.5, 0.8};
+                                              }},
+                                         Case{"Emission", test::coloured_room,
+                                              [](Scene& s) {
+                                                s.materials[1].emission = {1, 5, 9};
+                                              }},
+                                         Case{"OneOfTwoLamps", room_with_two_lamps,
+                                              [](Scene& s) {
+                                                s.materials.back().emission = {0, 10, 20};
+                                              }},
+                                         Case{"ALampIsSwitchedOff", room_with_two_lamps,
+                                              [](Scene& s) { s.materials.back().emission = {}; }},
+                                         Case{"AWallBeginsToShine", room_with_two_lamps,
+                                              [](Scene& s) {
+                                                s.materials[2].emission = {3, 2, 1};
+                                              }},
+                                         Case{"ABulb", test::room_with_lamps_and_sun,
+                                              [](Scene& s) {
+                                                s.lights[0].intensity = {1, 1, 20};
+                                              }},
+                                         Case{"ABulbMoves", test::room_with_lamps_and_sun,
+                                              [](Scene& s) {
+                                                s.lights[0].position = {1, 1.5, 1};
+                                              }},
+                                         Case{"TheSunGoesOn", test::room_with_lamps_and_sun,
+                                              [](Scene& s) {
+                                                s.lights[2].direction = normalized(Vec3{-0.3, -1, 0.3});
+                                              }},
+                                         Case{"ManyLamps", test::room_with_many_lamps,
+                                              [](Scene& s) {
+                                                s.materials[1].emission = {3, 3, 3};
+                                              }},
+                                         Case{"Curtain", test::curtained_room,
+                                              [](Scene& s) {
+                                                s.materials[3].diffuse_transmittance = {0.1, 0.1, 0.5};
+                                              }},
+                                         Case{"AllSurfacesShine", [] { return test::furnace(1, 0.5); },
+                                              [](Scene& s) {
+                                                s.materials[0].reflectance = {0.2, 0.4, 0.6};
+                                              }}),
+                         [](const auto& one) { return one.param.name; });
+
+TEST_P(Edit, EndsWhereASolveOfTheEditedSceneEnds) {
+  EditedSolve edited(GetParam().scene(), unsplit);
+  edited.edit(GetParam().change);
+  const EditedSolve anew(edited.scene(), unsplit);
+  EXPECT_LT(difference(edited.leaves(), anew.leaves()), 2e-5);
+  EXPECT_EQ(edited.last().edits, 1u);
+  EXPECT_FALSE(edited.last().is_provisional);
+}
+
+TEST_P(Edit, TakenBackLeadsToTheFirstState) {
+  const Scene first = GetParam().scene();
+  EditedSolve edited(first, unsplit);
+  const auto before = edited.leaves();
+  edited.edit(GetParam().change);
+  edited.edit([&](Scene& scene) { scene = first; });
+  EXPECT_LT(difference(edited.leaves(), before), 2e-5);
+}
+
+TEST_P(Edit, WithinWhatBothEstimatesSayWhereLeavesAreSplit) {
+  const SolveOptions options{.tolerance = 0.03, .max_leaves = 20'000};
+  EditedSolve edited(GetParam().scene(), options);
+  edited.edit(GetParam().change);
+  const EditedSolve anew(edited.scene(), options);
+  // Both as means over the roots, which both have.
+  const auto means = [](const EditedSolve& solve) {
+    std::vector<double> power(solve.mesh().roots().size());
+    for (const LeafValue& leaf : solve.leaves())
+      power[leaf.patch.root_face()] += area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch)) * leaf.irradiance.mean();
+    return power;
+  };
+  const auto a = means(edited), b = means(anew);
+  double squares = 0, area = 0, sum = 0;
+  for (std::size_t root = 0; root < a.size(); ++root) {
+    const double own = edited.mesh().roots()[root].area;
+    squares += std::pow(a[root] - b[root], 2) / own;
+    sum += b[root];
+    area += own;
+  }
+  const double off = std::sqrt(squares / area) / (sum / area);
+  EXPECT_LT(off, edited.last().estimated_error + anew.last().estimated_error);
+}
+
+TEST(EditedSolve, RecoloursAndDimsAllLampsWithoutARay) {
+  EditedSolve edited(test::coloured_room(), {.tolerance = 0.05});
+  const std::uint64_t rays = edited.last().rays;
+  const auto before = edited.leaves();
+  edited.edit([](Scene& scene) { scene.materials[1].emission = 0.5 * scene.materials[1].emission; });
+  EXPECT_EQ(edited.last().rays, rays);
+  auto half = before;
+  for (LeafValue& leaf : half) leaf.irradiance = 0.5f * leaf.irradiance;
+  EXPECT_LT(difference(edited.leaves(), half), 1e-5);
+}
+
+TEST(EditedSolve, DimsOneOfTwoLampsWithoutARayAndShowsItBeforeLightHasGoneRound) {
+  EditedSolve edited(room_with_two_lamps(), {.tolerance = 0.06});
+  const Step before = edited.last();
+  edited.edit([](Scene& scene) { scene.materials.back().emission = {15, 15, 15}; });
+  const auto steps = edited.log().steps();
+  const Step& first = steps.at(before.revision);
+  EXPECT_EQ(first.rays, before.rays);
+  EXPECT_TRUE(first.is_provisional);
+  EXPECT_EQ(first.edits, 1u);
+  EXPECT_GT(first.estimated_error, 0.06);  // it does not claim what it does not know yet
+  EXPECT_FALSE(edited.last().is_provisional);
+  EXPECT_LE(edited.last().estimated_error, 0.06);
+}
+
+TEST(EditedSolve, BeginsAnewWhereNothingReflectedAndShowsNoDarknessMeanwhile) {
+  EditedSolve edited(test::black_room(), {.tolerance = 0.05});
+  const Step before = edited.last();
+  edited.edit([](Scene& scene) {
+    for (Material& material : scene.materials) material.reflectance = {0.5, 0.5, 0.5};
+  });
+  const EditedSolve anew(edited.scene(), {.tolerance = 0.05});
+  const auto steps = edited.log().steps();
+  for (auto revision = before.revision; revision < steps.size(); ++revision) EXPECT_EQ(steps[revision].unlit_fraction, 0);
+  EXPECT_GE(steps.back().rays, before.rays);
+  EXPECT_GE(steps.back().elapsed_s, before.elapsed_s);
+  const auto mean = [](const EditedSolve& solve) {
+    double sum = 0, area = 0;
+    for (const LeafValue& leaf : solve.leaves()) {
+      const double own = area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch));
+      sum += own * leaf.irradiance.mean();
+      area += own;
+    }
+    return sum / area;
+  };
+  EXPECT_NEAR(mean(edited), mean(anew), 0.05 * mean(anew));
+}
+
+TEST(EditedSolve, GoesOnFromACheckpointOfBeforeTheEdit) {
+  const Scene scene = test::coloured_room();
+  const BaseMesh mesh(scene);
+  const SolveOptions options{.tolerance = 0.03};
+  SolutionLog log;
+  std::vector<std::byte> state;
+  std::stop_source park;
+  SolveControl control;
+  control.park = park.get_token();
+  control.is_checkpoint_due = [&, n = 4]() mutable {
+    if (n-- == 0) park.request_stop();
+    return false;
+  };
+  control.save = [&](const SolveControl::Write& write) { state = plain_bytes(write); };
+  ASSERT_EQ(solve_as_planned(mesh, Plan(mesh, options), options, log, control).reason, StopReason::parked);
+  EXPECT_EQ(edits_of_checkpoint(state), 0u);
+
+  Scene changed = scene;
+  changed.materials[0].reflectance = {0.1, 0.1, 0.4};
+  const BaseMesh edited = mesh.relit_as(changed);
+  std::shared_ptr<LiveSolve> live;
+  SolveControl on;
+  on.checkpoint = state;
+  on.checkpoint_mesh = &mesh;
+  on.edits = 7;
+  on.live = &live;
+  EXPECT_EQ(solve_as_planned(edited, Plan(edited, options), options, log, on).reason, StopReason::tolerance);
+  EXPECT_EQ(log.last_step().edits, 7u);
+  SolutionLog anew;
+  solve(edited, options, anew, {});
+  const auto mean = [](const SolutionLog& of) {
+    double sum = 0;
+    for (const LeafValue& leaf : of.leaves()) sum += leaf.irradiance.mean();
+    return sum / static_cast<double>(of.leaves().size());
+  };
+  EXPECT_NEAR(mean(log), mean(anew), 0.1 * mean(anew));
+}
+
+TEST(EditedSolve, IsInterruptedByAnEditAndTellsIt) {
+  const BaseMesh mesh(test::coloured_room());
+  const SolveOptions options{.tolerance = 1e-3};
+  SolutionLog log;
+  SolveControl control;
+  std::shared_ptr<LiveSolve> live;
+  control.live = &live;
+  control.is_edited = [&] { return log.head() > 5; };
+  EXPECT_EQ(solve_as_planned(mesh, Plan(mesh, options), options, log, control).reason, StopReason::edited);
+  ASSERT_TRUE(live);
+  EXPECT_EQ(live->edits, 0u);
+}
+
+TEST(EditedSolve, GivesTheTimeLimitAnewToEachEdit) {
+  EditedSolve edited(test::coloured_room(), {.tolerance = 1e-4, .time_limit_s = 0.3});
+  EXPECT_EQ(edited.outcome.reason, StopReason::time_limit);
+  edited.edit([](Scene& scene) { scene.materials[0].reflectance = {0.2, 0.2, 0.2}; });
+  EXPECT_EQ(edited.outcome.reason, StopReason::time_limit);
+  EXPECT_FALSE(edited.last().is_provisional);
+}
+
+}  // namespace
+}  // namespace alvor
