@@ -175,22 +175,25 @@ void DirectField::share(std::span<const Receiver> receivers, std::span<DirectLig
   deal.share(ranks_, light);
 }
 
-/// Adds what one light brings, by tracing rays or exactly.
-void DirectField::trace_one(const LightSource& next, std::span<const Receiver> receivers, std::span<DirectLight> light) {
+/// Returns what one light brings, by rays or exactly. Not complete where the ray budget is out.
+std::vector<DirectLight> DirectField::trace_one(const LightSource& next, std::span<const Receiver> receivers) {
+  std::vector<DirectLight> found(receivers.size());
   const LightSource* const lights[]{&next};
-  share(receivers, light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
+  share(receivers, std::span(found), [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
     add_direct_light(scene_, lights, own, options_.seed, budget_, own_light, shadow_needs());
   });
+  return found;
 }
 
-/// Adds what one light brings, traced only where its share is not known.
-void DirectField::add_from_shares(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
-                                  std::span<DirectLight> light) {
+/// Returns what one light brings, traced only where its share is not known.
+std::vector<DirectLight> DirectField::trace_unknown(const LightSource& next, std::span<const Receiver> receivers,
+                                                    std::span<const NodeIndex> leaves) {
+  std::vector<DirectLight> brought(leaves.size());
   std::vector<std::uint8_t> is_missing(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    const auto brought = shares_.brought(next, leaves[n]);
-    is_missing[n] = !brought;
-    if (brought) light[n] += *brought;
+    const auto known = shares_.brought(next, leaves[n]);
+    is_missing[n] = !known;
+    if (known) brought[n] = *known;
   });
   std::vector<std::size_t> missing;
   std::vector<Receiver> missing_receivers;
@@ -199,13 +202,13 @@ void DirectField::add_from_shares(const LightSource& next, std::span<const Recei
     missing.push_back(n);
     missing_receivers.push_back(receivers[n]);
   }
-  std::vector<DirectLight> found(missing.size());
-  trace_one(next, missing_receivers, found);
-  if (budget_.is_out()) return;  // what was found is not complete
+  const std::vector<DirectLight> found = trace_one(next, missing_receivers);
+  const bool is_complete = !budget_.is_out();
   for (std::size_t k = 0; k < missing.size(); ++k) {
-    shares_.set(next, leaves[missing[k]], found[k]);
-    light[missing[k]] += found[k];
+    brought[missing[k]] = found[k];
+    if (is_complete) shares_.set(next, leaves[missing[k]], found[k]);
   }
+  return brought;
 }
 
 /// Adds one light to the light of `receivers`, which are these leaves.
@@ -215,8 +218,9 @@ void DirectField::add_one(const LightSource& next, std::span<const Receiver> rec
   if (is_distant)
     for (std::size_t n = 0; n < leaves.size(); ++n)
       from_afar_[leaves[n]] -= static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
-  if (shares_.keeps(next)) add_from_shares(next, receivers, leaves, light);
-  else trace_one(next, receivers, light);
+  // Summed apart from the other lights, so that the bits are the same whether shares are kept or not.
+  const auto brought = shares_.keeps(next) ? trace_unknown(next, receivers, leaves) : trace_one(next, receivers);
+  for (std::size_t n = 0; n < leaves.size(); ++n) light[n] += brought[n];
   if (is_distant)
     for (std::size_t n = 0; n < leaves.size(); ++n)
       from_afar_[leaves[n]] += static_cast<float>(stopped_by(leaves[n], light[n].irradiance));

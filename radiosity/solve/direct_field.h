@@ -76,9 +76,9 @@ class DirectField {
   std::vector<LightForm> forms_of_lights() const;
   void choose_shares();
   void scale(const Rgb& factor);
-  void trace_one(const LightSource& next, std::span<const Receiver> receivers, std::span<DirectLight> light);
-  void add_from_shares(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
-                       std::span<DirectLight> light);
+  std::vector<DirectLight> trace_one(const LightSource& next, std::span<const Receiver> receivers);
+  std::vector<DirectLight> trace_unknown(const LightSource& next, std::span<const Receiver> receivers,
+                                         std::span<const NodeIndex> leaves);
   ShadowNeeds shadow_needs() const;
   void add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                std::span<DirectLight> light);

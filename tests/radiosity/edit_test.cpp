@@ -174,6 +174,18 @@ TEST_P(Edit, WithinWhatBothEstimatesSayWhereLeavesAreSplit) {
   EXPECT_LT(off, edited.last().estimated_error + anew.last().estimated_error);
 }
 
+TEST_P(Edit, KeepingWhatEditsNeedChangesNoBit) {
+  const SolveOptions options{.tolerance = 0.04, .max_leaves = 20'000};
+  const BaseMesh mesh(GetParam().scene());
+  EditedSolve kept(GetParam().scene(), options);
+  SolutionLog log;
+  solve(mesh, options, log, {});
+  EXPECT_EQ(kept.leaves(), log.leaves());
+  EXPECT_EQ(kept.last().estimated_error, log.last_step().estimated_error);
+  const auto errors_of = [](const SolutionLog& of) { return of.since({.errors = {.are_wanted = true}}).errors.value().codes; };
+  EXPECT_EQ(errors_of(kept.log()), errors_of(log));
+}
+
 TEST(EditedSolve, RecoloursAndDimsAllLampsWithoutARay) {
   EditedSolve edited(test::coloured_room(), {.tolerance = 0.05});
   const std::uint64_t rays = edited.last().rays;
