@@ -7,4 +7,4 @@ scripts/setup.sh
 scripts/build.sh alvord
 scripts/build_page.sh
 cd client/web
-npx vitest run --config vitest.browser.config.ts test/measure/
+npx vitest run --config vitest.browser.config.ts test/measure/measure.test.ts
