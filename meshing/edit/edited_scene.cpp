@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <unordered_map>
 #include <utility>
 
 namespace alvor {
@@ -12,24 +13,31 @@ namespace {
 
 constexpr double most_dim = 1e6, most_emission = 1e30, farthest = 1e9;
 
-/// Returns the part of this name; null if there is none.
+/// Finds the parts of one kind by their names. Of two that have one name the first counts.
 template <class Part>
-Part* named(std::vector<Part>& parts, const std::string& name) {
-  const auto found = std::ranges::find(parts, name, &Part::name);
-  return found == parts.end() ? nullptr : &*found;
-}
-template <class Part>
-const Part* named(const std::vector<Part>& parts, const std::string& name) {
-  return named(const_cast<std::vector<Part>&>(parts), name);
-}
+class Named {
+ public:
+  explicit Named(std::span<Part> parts) : parts_(parts) {}
+  /// Returns the part of this name; null if there is none.
+  Part* find(const std::string& name) {
+    if (places_.empty())
+      for (std::size_t n = 0; n < parts_.size(); ++n) places_.try_emplace(parts_[n].name, n);
+    const auto found = places_.find(name);
+    return found == places_.end() ? nullptr : &parts_[found->second];
+  }
+
+ private:
+  std::span<Part> parts_;
+  std::unordered_map<std::string, std::size_t> places_;  // filled when something is looked for
+};
 
 /// Finds the fault of one edit.
 class Check {
  public:
-  explicit Check(const Scene& scene) : scene_(scene) {}
+  explicit Check(const Scene& scene) : materials_(scene.materials), lights_(scene.lights), objects_(scene.objects) {}
 
   std::optional<EditFault> operator()(const MaterialEdit& edit) {
-    const Material* material = named(scene_.materials, edit.name);
+    const Material* material = materials_.find(edit.name);
     if (!material) return unknown("material", edit.name);
     if (!edit.emission && !edit.reflectance && !edit.diffuse_transmittance) return EditFault{0, "material", "sets nothing"};
     if (edit.emission && !is_within(*edit.emission, most_emission))
@@ -45,7 +53,7 @@ class Check {
   }
 
   std::optional<EditFault> operator()(const LightEdit& edit) {
-    const Light* light = named(scene_.lights, edit.name);
+    const Light* light = lights_.find(edit.name);
     if (!light) return unknown("light", edit.name);
     if (!edit.dim && !edit.intensity && !edit.position && !edit.direction) return EditFault{0, "light", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "light.dim", "must be in [0, 1e6]"};
@@ -64,7 +72,7 @@ class Check {
   }
 
   std::optional<EditFault> operator()(const ObjectEdit& edit) {
-    if (!named(scene_.objects, edit.name)) return unknown("object", edit.name);
+    if (!objects_.find(edit.name)) return unknown("object", edit.name);
     if (!edit.dim) return EditFault{0, "object", "sets nothing"};
     if (!is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
     return {};
@@ -78,7 +86,9 @@ class Check {
   static bool is_share(const Rgb& value) { return value.is_finite() && value.min() >= 0 && value.max() < 1; }
   static bool is_dim(double dim) { return dim >= 0 && dim <= most_dim; }
 
-  const Scene& scene_;
+  Named<const Material> materials_;
+  Named<const Light> lights_;
+  Named<const SceneObject> objects_;
 };
 
 /// Makes the edits of one scene. What multiplies is applied at the end, so that the order of edits of different fields does not
@@ -86,22 +96,23 @@ class Check {
 class Editor {
  public:
   explicit Editor(Scene scene) : scene_(std::move(scene)) {}
+  Editor(const Editor&) = delete;  // its parts refer to each other
 
   void operator()(const MaterialEdit& edit) {
-    Material& material = *named(scene_.materials, edit.name);
+    Material& material = *materials_.find(edit.name);
     if (edit.emission) material.emission = *edit.emission;
     if (edit.reflectance) material.reflectance = *edit.reflectance;
     if (edit.diffuse_transmittance) material.diffuse_transmittance = *edit.diffuse_transmittance;
   }
   void operator()(const LightEdit& edit) {
-    Light& light = *named(scene_.lights, edit.name);
+    Light& light = *lights_.find(edit.name);
     if (edit.intensity) light.intensity = *edit.intensity;
     if (edit.position) light.position = *edit.position;
     if (edit.direction) light.direction = normalized(*edit.direction);
     if (edit.dim) light_dim_[&light] = *edit.dim;
   }
   void operator()(const ObjectEdit& edit) {
-    if (edit.dim) object_dim_[named(scene_.objects, edit.name)] = *edit.dim;
+    if (edit.dim) object_dim_[objects_.find(edit.name)] = *edit.dim;
   }
 
   Scene take() {
@@ -137,6 +148,9 @@ class Editor {
   }
 
   Scene scene_;
+  Named<Material> materials_{scene_.materials};
+  Named<Light> lights_{scene_.lights};
+  Named<SceneObject> objects_{scene_.objects};
   std::map<Light*, double> light_dim_;
   std::map<const SceneObject*, double> object_dim_;
 };

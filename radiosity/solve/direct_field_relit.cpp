@@ -26,7 +26,9 @@ std::optional<Rgb> common_factor(const KnownLights& before, const KnownLights& n
     const RelativeLight &from = old->second.second, &to = next->second.second;
     const auto ratio = [](double was, double is) { return was == 0 && is == 0 ? 1.0 : is / was; };
     const Rgb change{ratio(from.r, to.r), ratio(from.g, to.g), ratio(from.b, to.b)};
-    if (!change.is_finite() || (factor && absolute(change - *factor).max() > same * factor->max())) return std::nullopt;
+    constexpr double least = 1e-6, most = 1e6;  // so that squares stay within the range of float32
+    if (!change.is_finite() || change.min() < least || change.max() > most) return std::nullopt;
+    if (factor && absolute(change - *factor).max() > same * factor->max()) return std::nullopt;
     if (!factor) factor = change;
   }
   return factor;
@@ -100,22 +102,25 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   choose_shares();
   fit_to_nodes();
   const KnownLights now = known_lights();
-  const auto factor = before.empty() ? std::nullopt : common_factor(before, now);
+  auto factor = before.empty() ? std::nullopt : common_factor(before, now);
+  if (factor && has_distant_lights_ && !factor->is_grey()) factor.reset();  // from_afar_ is a sum of bands
   scale(factor.value_or(Rgb{unit_change, unit_change, unit_change}));
   if (factor) waiting_power_ = share_waiting * power_;
   else is_known_.assign(is_known_.size(), false);
   return factor;
 }
 
-/// Multiplies the light of all leaves; that at origins and the noise by the mean of the factors.
+/// Multiplies the light of all leaves; that at origins and the noise as the mean of its bands.
 void DirectField::scale(const Rgb& factor) {
-  const auto mean = static_cast<float>(factor.mean());
   for (DirectLight& light : light_) {
+    const double before = light.irradiance.mean();
     light.irradiance = factor * light.irradiance;
-    for (float& at : light.at_origin) at *= mean;
-    light.variance *= mean * mean;
-    light.origin_variance *= mean * mean;
+    const auto change = static_cast<float>(before > 0 ? light.irradiance.mean() / before : factor.mean());
+    for (float& at : light.at_origin) at *= change;
+    light.variance *= change * change;
+    light.origin_variance *= change * change;
   }
+  const auto mean = static_cast<float>(factor.mean());
   for (float& light : from_afar_) light *= mean;
 }
 

@@ -21,6 +21,8 @@ void LightShares::set(const LightSource& light, NodeIndex leaf, const DirectLigh
   };
   const RelativeLight& colour = light.colour();
   const double mean = colour.mean();
+  constexpr double darkest = 1e-12;  // of the emission unit: of less, squares are not within the range of float32
+  if (mean < darkest) return;
   Share& share = by_light_.at(light.number()).shares[leaf];
   share.irradiance = {part(brought.irradiance.r, colour.r), part(brought.irradiance.g, colour.g),
                       part(brought.irradiance.b, colour.b)};

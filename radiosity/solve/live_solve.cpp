@@ -119,6 +119,8 @@ std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, co
     live =
         std::make_shared<LiveSolve>(of, is_of_other ? Plan(of, options) : plan, options, *control.ranks, control.live != nullptr);
     live->load(control.checkpoint);
+    // It had begun anew after an edit, and shown nothing yet.
+    live->is_refreshing = live->progress.passes == 0 && log.last_step().edits != live->edits;
   }
   if (live && live->edits != control.edits && !live->take_edit(mesh)) live.reset();
   if (!live) live = begin(mesh, plan, options, log, control);

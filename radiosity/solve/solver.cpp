@@ -52,11 +52,12 @@ constexpr double publishing_share = 0.1;
 constexpr std::uint64_t always_published = 12;
 
 /// Publishes one step: every face, and no light on any.
-SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log) {
+SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log, std::uint64_t edits) {
   std::vector<LeafValue> values;
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) values.push_back({PatchId::root(root), {}});
   Step step;
   step.leaves = values.size();
+  step.edits = edits;
   step.unshot_fraction = step.estimated_error = 0;
   log.publish(values, step);
   return {.reason = StopReason::dark, .cpu_s = cpu.seconds()};
@@ -83,7 +84,7 @@ class Run {
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
     // instead of 1.8 %).
-    if (reason == StopReason::time_limit && is_.passes == 0) {
+    if (reason == StopReason::time_limit && (is_.passes == 0 || live_.error_before_edit)) {
       live_.is_refreshing = false;
       publish();
     }
@@ -216,7 +217,7 @@ class Run {
     step.area_within = by_place_.area_within;
     step.edits = control_.edits;
     step.is_provisional = live_.error_before_edit.has_value();
-    step.displayed_error = displayed_error * std::min(1.0, is_.error.total());
+    step.displayed_error = displayed_error * std::min(1.0, live_.error_before_edit.value_or(is_.error.total()));
     if (state_.plan.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
     log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
     requests_.heed_edits(true);
@@ -338,14 +339,14 @@ std::string_view why_on_one_rank(const SolveOptions& options) {
 SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, SolutionLog& log,
                               const SolveControl& control) {
   assert(!mesh.roots().empty());
-  assert(!control.checkpoint.empty() || control.live || log.head() == 0);
+  assert(!control.checkpoint.empty() || control.live || control.edits > 0 || log.head() == 0);
   if (const auto why = why_on_one_rank(options); !why.empty() && !control.ranks->is_alone())
     throw std::invalid_argument("takes a single rank: " + std::string(why));
   const int threads = options.threads > 0 ? options.threads : threads_of(*control.ranks);
   tbb::task_arena arena(threads, 1, priority_of(control.priority));
   const CpuClock cpu(arena);
   return arena.execute([&] {
-    if (!plan.has_light()) return show_darkness(mesh, cpu, log);  // on every rank, each in its own log
+    if (!plan.has_light()) return show_darkness(mesh, cpu, log, control.edits);  // on every rank, each in its own log
     const auto live = live_solve(mesh, plan, options, log, control);
     return Run(*live, cpu, log, control).run();
   });

@@ -95,8 +95,13 @@ struct SolveRecord {
   std::optional<Time> checkpoint_time;  ///< of the newest checkpoint
   std::vector<KeptEdit> edits;          ///< of its scene, oldest first
 
-  /// Returns whether there are edits that the newest step does not heed.
-  bool has_edits_to_heed() const { return newest_revision(edits) > last_step.value_or(Step()).edits; }
+  /// Makes one that has ended wait for its turn again.
+  void queue_again() {
+    status = SolveStatus::queued;
+    end_reason.clear();
+    end_time.reset();
+    balance.reset();
+  }
 };
 
 }  // namespace alvor

@@ -77,6 +77,7 @@ void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
   Entry& entry = solves_[name];
   entry.scene = std::move(scene);
   entry.shall_pause = solve->status() == SolveStatus::paused;
+  entry.refusal = refusal;
   entry.solve = std::move(solve);
 }
 
@@ -169,7 +170,7 @@ std::vector<std::shared_ptr<StoredSolve>> SolveStore::all() const {
 std::shared_ptr<StoredSolve> SolveStore::cancel(const std::string& name, const std::string& tenant) {
   Lock hold(lock_);
   Entry& cancelled = entry(name, tenant);
-  cancelled.shall_cancel = true;  // also if it is just being parked
+  cancelled.shall_cancel = !cancelled.solve->ended();  // also if it is just being parked
   if (cancelled.is_running) {
     cancelled.cancel.request_stop();
     cancelled.solve->keep_wish(SolveStatus::cancelled);
@@ -208,11 +209,15 @@ std::shared_ptr<StoredSolve> SolveStore::resume(const std::string& name, const s
 std::uint64_t SolveStore::edit(const std::string& name, const EditRequest& request, const std::string& tenant) {
   check_request_id(request.request_id);
   std::shared_ptr<StoredSolve> solve;
+  std::uint64_t bytes = 0;
   {
     Lock hold(lock_);
     if (stopping_) throw StatusError(grpc::UNAVAILABLE, "the server is stopping");
-    ++entry(name, tenant).editors;
-    solve = entry(name, tenant).solve;
+    Entry& edited = entry(name, tenant);
+    if (!edited.refusal.empty()) throw StatusError(grpc::FAILED_PRECONDITION, name + " cannot go on: " + edited.refusal);
+    ++edited.editors;
+    solve = edited.solve;
+    bytes = edited.scene.scene->facts.content_bytes;
   }
   const auto leave = [&] {
     Lock hold(lock_);
@@ -221,11 +226,13 @@ std::uint64_t SolveStore::edit(const std::string& name, const EditRequest& reque
     changed_.notify_all();
   };
   const auto admit = [&] {
-    if (!solve->ended()) return;
     Lock hold(lock_);
+    if (!solve->ended()) return;
     check_capacity(tenant, solve->options, false);
+    entry(name, tenant).shall_cancel = entry(name, tenant).shall_pause = false;  // wishes that came too late
   };
   try {
+    options_.memory.admit("edit", 3 * bytes);
     const std::uint64_t revision = solve->edit(request, admit);
     leave();
     return revision;

@@ -78,7 +78,8 @@ class SolveStore {
     std::shared_ptr<StoredSolve> solve;
     std::stop_source cancel, park, short_of_memory;
     bool is_running = false;
-    int editors = 0;  ///< calls that are editing it: it is not removed
+    std::string refusal;  ///< why its spec is beyond the limits of this server; empty if it is not
+    int editors = 0;      ///< calls that are editing it: it is not removed
     bool shall_pause = false, shall_cancel = false;
   };
   Entry& entry(const std::string& name, const std::string& tenant) ALVOR_REQUIRES(lock_);
@@ -91,6 +92,7 @@ class SolveStore {
       ALVOR_REQUIRES(lock_);
   void check_capacity(const std::string& tenant, const SolveOptions& next, bool is_new) ALVOR_REQUIRES(lock_);
   void note_live(const std::shared_ptr<StoredSolve>& solve) ALVOR_REQUIRES(lock_);
+  void drop_old_live();
   void start_waiting() ALVOR_REQUIRES(lock_);
   void watch_memory();
   void relieve_memory();
@@ -113,10 +115,15 @@ class SolveStore {
   bool stopping_ ALVOR_GUARDED_BY(lock_) = false;
   std::stop_source abandon_;
   std::map<std::thread::id, std::thread> threads_ ALVOR_GUARDED_BY(lock_);
-  std::vector<std::weak_ptr<StoredSolve>> live_ ALVOR_GUARDED_BY(lock_);  ///< those that ended last, which may be kept live
-  std::vector<std::thread::id> finished_ ALVOR_GUARDED_BY(lock_);         ///< have nothing left to do but to end
-  std::shared_ptr<void> relief_;                                          ///< registered with the memory guard
-  std::unique_ptr<TaskQueue> watching_memory_;                            ///< uses all of the above; null without a limit
+  /// A solve that may be kept live, and when it ended.
+  struct Ended {
+    std::weak_ptr<StoredSolve> solve;
+    std::chrono::steady_clock::time_point at;
+  };
+  std::vector<Ended> live_ ALVOR_GUARDED_BY(lock_);                ///< those that ended last, oldest first
+  std::vector<std::thread::id> finished_ ALVOR_GUARDED_BY(lock_);  ///< have nothing left to do but to end
+  std::shared_ptr<void> relief_;                                   ///< registered with the memory guard
+  std::unique_ptr<TaskQueue> watching_memory_;                     ///< uses all of the above; null without a limit
 };
 
 }  // namespace alvor

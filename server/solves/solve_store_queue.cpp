@@ -62,6 +62,7 @@ SolveStore::Entry* SolveStore::next_waiting() {
 }
 
 void SolveStore::watch_memory() {
+  drop_old_live();
   options_.memory.make_room(0);
   if (options_.memory.is_short()) relieve_memory();
   watching_memory_->post_at(TaskQueue::Clock::now() + MemoryGuard::between_looks, [this] { watch_memory(); });
@@ -157,9 +158,8 @@ void SolveStore::run(Entry& entry, Solver solver) {
 void SolveStore::settle(const Entry& entry) {
   const auto status = entry.solve->status();
   const auto wanted = entry.shall_cancel ? SolveStatus::cancelled : entry.shall_pause ? SolveStatus::paused : SolveStatus::queued;
+  if (entry.solve->ended() || status == wanted) return;
   try {
-    if (!entry.shall_cancel) entry.solve->go_on_if_edited();
-    if (entry.solve->ended() || status == wanted) return;
     entry.solve->set_waiting_status(wanted);
   } catch (const StatusError& fault) {
     options_.logger->error("solve {} cannot be kept: {}", entry.solve->name, fault.what());
@@ -169,11 +169,21 @@ void SolveStore::settle(const Entry& entry) {
 /// What a solve knew takes much memory: it is kept for the few that ended last.
 void SolveStore::note_live(const std::shared_ptr<StoredSolve>& solve) {
   constexpr std::size_t most_live = 4;
-  std::erase_if(live_, [&](const auto& each) { return each.expired() || each.lock() == solve; });
-  live_.push_back(solve);
+  std::erase_if(live_, [&](const Ended& each) { return each.solve.expired() || each.solve.lock() == solve; });
+  live_.push_back({solve, std::chrono::steady_clock::now()});
   if (live_.size() <= most_live) return;
-  if (const auto oldest = live_.front().lock()) oldest->drop_live();
+  if (const auto oldest = live_.front().solve.lock()) oldest->drop_live();
   live_.erase(live_.begin());
+}
+
+/// Nor is it kept for long where nobody edits.
+void SolveStore::drop_old_live() {
+  constexpr std::chrono::minutes longest{15};
+  Lock hold(lock_);
+  while (!live_.empty() && std::chrono::steady_clock::now() > live_.front().at + longest) {
+    if (const auto oldest = live_.front().solve.lock()) oldest->drop_live();
+    live_.erase(live_.begin());
+  }
 }
 
 /// All that a finished thread could still be at is to give the lock back, so this does not wait.

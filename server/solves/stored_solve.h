@@ -99,8 +99,6 @@ class StoredSolve {
   std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const;
   /// Returns how the scene looks after the newest edits.
   v1::Look look() const;
-  /// Of one that has SUCCEEDED without heeding all edits: it is QUEUED again.
-  void go_on_if_edited();
   /// Gives back what is kept in memory for edits.
   void drop_live();
   /// Says that the server does not hold it any more; those who do may go on reading it.
@@ -153,8 +151,9 @@ class StoredSolve {
   std::vector<std::string> state_in_memory_ ALVOR_GUARDED_BY(lock_);
   std::shared_ptr<LiveSolve> live_ ALVOR_GUARDED_BY(lock_);  ///< null: none is kept, or it runs
   std::atomic<bool> is_removed_ = false;
-  std::atomic<std::uint64_t> newest_edits_ = 0;              ///< newest_revision()
-  mutable Mutex editing_lock_;                               ///< one is edited after the other; before all others
+  std::uint64_t edits_of_run_ ALVOR_GUARDED_BY(lock_) = 0;  ///< newest_revision() that the last run was given
+  std::atomic<std::uint64_t> newest_edits_ = 0;             ///< newest_revision()
+  mutable Mutex editing_lock_;                              ///< one is edited after the other; before all others
   /// The newest content that was edited, and the revision of its edits.
   mutable std::pair<std::uint64_t, std::shared_ptr<const SceneContent>> edited_ ALVOR_GUARDED_BY(lock_);
 };

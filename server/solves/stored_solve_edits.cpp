@@ -33,13 +33,6 @@ bool look_alike(const Material& a, const Material& b) {
   return a.emission == b.emission && a.reflectance == b.reflectance && a.diffuse_transmittance == b.diffuse_transmittance;
 }
 
-void queue_again(SolveRecord& facts) {
-  facts.status = SolveStatus::queued;
-  facts.end_reason.clear();
-  facts.end_time.reset();
-  facts.balance.reset();
-}
-
 }  // namespace
 
 std::vector<KeptEdit> StoredSolve::edits() const {
@@ -67,7 +60,7 @@ std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<
   if (next.facts.status == SolveStatus::cancelled || next.facts.status == SolveStatus::failed)
     throw StatusError(grpc::FAILED_PRECONDITION, name + " was cancelled or has failed");
   next.facts.edits = after;
-  if (is_final(next.facts.status)) queue_again(next.facts);
+  if (is_final(next.facts.status)) next.facts.queue_again();
   if (keeping_.archive) keeping_.archive->update(next);
   {
     Lock log(log_lock_);
@@ -75,19 +68,10 @@ std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<
   }
   Lock hold(lock_);
   facts_.edits = std::move(after);
-  if (is_final(facts_.status)) queue_again(facts_);
+  if (is_final(facts_.status)) facts_.queue_again();
   edited_ = {revision, std::move(edited)};
   newest_edits_ = revision;
   return revision;
-}
-
-void StoredSolve::go_on_if_edited() {
-  Lock alone(editing_lock_);
-  {
-    const SolveRecord facts = describe();
-    if (facts.status != SolveStatus::succeeded || !facts.has_edits_to_heed()) return;
-  }
-  change_waiting(queue_again);
 }
 
 std::shared_ptr<const SceneContent> StoredSolve::content_of(std::span<const KeptEdit> edits, const CallStop& stop) const {
@@ -136,7 +120,7 @@ void StoredSolve::drop_live() {
   std::shared_ptr<LiveSolve> dropped;  // freed after the lock is
   {
     Lock hold(lock_);
-    if (is_final(facts_.status)) dropped = std::exchange(live_, nullptr);
+    dropped = std::exchange(live_, nullptr);  // null while it runs
     if (facts_.edits.empty() || is_final(facts_.status)) edited_ = {};
   }
   if (dropped) trim_heap_soon();

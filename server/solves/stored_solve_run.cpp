@@ -69,7 +69,7 @@ void StoredSolve::run(const Solver& solver, const RunControl& control, const std
     Lock hold(lock_);
     facts_.status = status;  // there is no thread any more; after a restart it is queued in any case
   }
-  if (is_final(status)) close_log();
+  if (ended()) close_log();
 }
 
 /// Null where it was cancelled meanwhile.
@@ -100,6 +100,10 @@ std::shared_ptr<const SceneContent> StoredSolve::content_of_checkpoint(std::vect
 SolveOutcome StoredSolve::solve(const Solver& solver, const RunControl& run,
                                 const std::function<void(const std::string&)>& complain) {
   const std::vector<KeptEdit> edits = this->edits();
+  {
+    Lock hold(lock_);
+    edits_of_run_ = newest_revision(edits);
+  }
   CallStop stop;
   const std::stop_callback cancelled(run.cancel, [&] { stop.stop({grpc::CANCELLED, "cancelled"}); });
   const auto content = load_content(edits, stop);
@@ -184,7 +188,13 @@ void StoredSolve::show(const Plan& plan) {
 /// Others see the end once it is kept, or could not be.
 void StoredSolve::end(SolveStatus status, const std::string& reason, const SolveOutcome& outcome) {
   const auto end_time = SolveRecord::Clock::now();
+  const std::uint64_t heeded = [this] {
+    Lock hold(lock_);
+    return edits_of_run_;
+  }();
   const auto say_end = [&](SolveRecord& facts) {
+    // Edits that came since the solver returned.
+    if (status == SolveStatus::succeeded && newest_revision(facts.edits) > heeded) return facts.queue_again();
     facts.status = status;
     facts.end_reason = reason;
     facts.end_time = end_time;
@@ -199,8 +209,9 @@ void StoredSolve::end(SolveStatus status, const std::string& reason, const Solve
   if (!keeping_.archive) return show_end();
   try {
     keep_checkpoint({}, say_end);
+    const bool has_ended = ended();
     Lock hold(log_lock_);
-    is_log_kept_ = true;
+    is_log_kept_ = has_ended;
   } catch (const StatusError& fault) {
     show_end();
     if (fault.code == grpc::DATA_LOSS) keep_row();  // else it would fail anew whenever the server is started

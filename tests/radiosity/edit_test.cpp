@@ -114,6 +114,16 @@ INSTANTIATE_TEST_SUITE_P(Cases, Edit,
                                               [](Scene& s) {
                                                 s.lights[0].position = {1, 1.5, 1};
                                               }},
+                                         Case{"TheSunTurnsRed",
+                                              [] {
+                                                Scene scene = test::room_with_lamps_and_sun();
+                                                scene.lights = {scene.lights[2]};
+                                                for (Material& material : scene.materials) material.emission = {};
+                                                return scene;
+                                              },
+                                              [](Scene& s) {
+                                                s.lights[0].intensity = {60, 10, 1};
+                                              }},
                                          Case{"TheSunGoesOn", test::room_with_lamps_and_sun,
                                               [](Scene& s) {
                                                 s.lights[2].direction = normalized(Vec3{-0.3, -1, 0.3});

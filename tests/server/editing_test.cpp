@@ -243,6 +243,48 @@ TEST_F(EditingTest, ASlideIsOneStep) {
   EXPECT_EQ(last.last_step().edits(), 23u);
 }
 
+TEST_F(EditingTest, ACancelOfAnEndedSolveDoesNotReachAnEditedOne) {
+  client.cancel_solve(solve);  // has no effect: it has ended
+  client.edit_solve(solve, recolour("m0", 0.1, 0.1, 0.1));
+  client.pause_solve(solve);
+  v1::Solve::State state;
+  do state = client.get_solve(solve).state();
+  while (state == v1::Solve::QUEUED || state == v1::Solve::RUNNING);
+  EXPECT_TRUE(state == v1::Solve::PAUSED || state == v1::Solve::SUCCEEDED) << state;
+}
+
+TEST_F(EditingTest, ADarkSceneIsSolvedOnceForEachEdit) {
+  Scene dark = test::black(test::coloured_room());
+  for (std::size_t n = 0; n < dark.materials.size(); ++n) {
+    dark.materials[n].name = "m" + std::to_string(n);
+    dark.materials[n].emission = {};
+  }
+  solve = client.create_solve(client.create_scene(dark, "").name(), coarse()).name();
+  end();
+  client.edit_solve(solve, recolour("m0", 0.5, 0.5, 0.5));
+  end();
+  EXPECT_EQ(last.last_step().edits(), 1u);
+  EXPECT_EQ(last.last_step().step(), 1u);
+  v1::EditStep shine;
+  shine.add_edits()->mutable_material()->set_name("m0");
+  *shine.mutable_edits(0)->mutable_material()->mutable_emission() = encode(Rgb{1, 1, 1});
+  client.edit_solve(solve, shine);
+  EXPECT_GT(mean(dark, end()), 0);
+  client.edit_solve(solve, undo());
+  EXPECT_EQ(mean(dark, end()), 0);
+  EXPECT_EQ(last.last_step().edits(), 3u);
+}
+
+TEST_F(EditingTest, EditsInTheMomentOfTheEndAreHeeded) {
+  for (int n = 1; n <= 60; ++n) {
+    client.edit_solve(solve, dim_light("bulb", 0.01 * n));
+    if (n % 3 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(n));  // some come while it ends
+  }
+  end();
+  EXPECT_EQ(last.state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(last.last_step().edits(), 60u);
+}
+
 TEST_F(EditingTest, CancelledSolvesAreNotEdited) {
   v1::SolveSpec long_one = coarse();
   *long_one.mutable_step_pause() = encode_seconds(60);

@@ -68,6 +68,7 @@ Json json_of(const v1::Solve& solve) {
           {"leaves", step.leaves},
           {"unshot_fraction", step.unshot_fraction},
           {"estimated_error", step.estimated_error},
+          {"edits", step.edits},
           {"restarts", solve.restarts()},
           {"resumed_from_revision", solve.resumed_from_revision()},
           {"work_lost_s", decode_seconds(solve.work_lost())},
