@@ -1,19 +1,11 @@
 #include "proto/edit_codec.h"
 
 #include "proto/codec.h"
+#include "proto/light_codec.h"
 
 namespace alvor {
 
 namespace {
-
-v1::Vector3 vector_of(Vec3 v) {
-  v1::Vector3 message;
-  message.set_x(v.x);
-  message.set_y(v.y);
-  message.set_z(v.z);
-  return message;
-}
-Vec3 vector_of(const v1::Vector3& message) { return {message.x(), message.y(), message.z()}; }
 
 v1::Edit message_of(const SceneEdit& edit) {
   v1::Edit message;
@@ -28,8 +20,8 @@ v1::Edit message_of(const SceneEdit& edit) {
     part.set_name(light->name);
     if (light->dim) part.set_dim(*light->dim);
     if (light->intensity) *part.mutable_intensity() = encode(*light->intensity);
-    if (light->position) *part.mutable_position() = vector_of(*light->position);
-    if (light->direction) *part.mutable_direction() = vector_of(*light->direction);
+    if (light->position) *part.mutable_position() = encode_vector(*light->position);
+    if (light->direction) *part.mutable_direction() = encode_vector(*light->direction);
   } else if (const auto* object = std::get_if<ObjectEdit>(&edit)) {
     v1::ObjectEdit& part = *message.mutable_object();
     part.set_name(object->name);
@@ -50,8 +42,8 @@ LightEdit light_of(const v1::LightEdit& message) {
   LightEdit edit{.name = message.name(), .dim = {}, .intensity = {}, .position = {}, .direction = {}};
   if (message.has_dim()) edit.dim = message.dim();
   if (message.has_intensity()) edit.intensity = decode(message.intensity());
-  if (message.has_position()) edit.position = vector_of(message.position());
-  if (message.has_direction()) edit.direction = vector_of(message.direction());
+  if (message.has_position()) edit.position = decode_vector(message.position());
+  if (message.has_direction()) edit.direction = decode_vector(message.direction());
   return edit;
 }
 

@@ -8,8 +8,6 @@
 
 namespace alvor {
 
-namespace {
-
 v1::Vector3 encode_vector(Vec3 v) {
   v1::Vector3 message;
   message.set_x(v.x);
@@ -19,6 +17,8 @@ v1::Vector3 encode_vector(Vec3 v) {
 }
 
 Vec3 decode_vector(const v1::Vector3& message) { return {message.x(), message.y(), message.z()}; }
+
+namespace {
 
 v1::Light::Kind encode_kind(LightKind kind) {
   switch (kind) {

@@ -1,15 +1,15 @@
 // edits --scene S.obj [--tolerance T] [--threads N]: prints the table of docs/edits.md for edits of the finished furnished room.
 // Each is asked of a server in this process; a watch that follows edits sees when the first state with it comes, and when one is
-// within the tolerance again. Compared with a solve of the edited scene from nothing.
+// within the tolerance again; times are also told as shares of that of the first solve.
 
 #include "client/rpc/client.h"
 #include "import/apart/scene_file.h"
 #include "proto/codec.h"
+#include "server/base/cpu_time.h"
 #include "server/rpc/service.h"
 
 #include <CLI/CLI.hpp>
 
-#include <sys/resource.h>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -25,14 +25,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-/// The processor time of this process, s.
-double cpu_s() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 /// A server in this process that keeps what its solves know.
 class Server {
@@ -189,7 +181,7 @@ class Bench {
     std::vector<Clock::time_point> sent(count + 1);
     std::vector<double> behind;
     const std::uint64_t before = follower_->wait_for([](const Step&) { return true; }).edits;
-    std::atomic<std::uint64_t> newest = before;
+    std::uint64_t newest = before;
     std::mutex lock;
     std::atomic<bool> is_over = false;
     std::thread watching([&] {
@@ -203,7 +195,7 @@ class Bench {
         behind.push_back(seconds_since(sent[static_cast<std::size_t>(seen - before)]));
       }
     });
-    const double cpu = cpu_s();
+    const double cpu = cpu_seconds();
     const auto begin = Clock::now();
     for (int n = 1; n <= count; ++n) {
       {
@@ -215,7 +207,7 @@ class Bench {
       newest = client_.edit_solve(solve_, step).revision();
       std::this_thread::sleep_until(begin + n * between);
     }
-    const double took = seconds_since(begin), spent = cpu_s() - cpu;
+    const double took = seconds_since(begin), spent = cpu_seconds() - cpu;
     follower_->wait_for([&](const Step& now) { return now.edits >= newest; });
     is_over = true;
     edit(undo());

@@ -1,5 +1,5 @@
 #pragma once
-// What each of a few lights brings to each leaf, so that a light can be dimmed without a ray.
+// The direct light of leaves by light, for a few lights, so that one of them can be dimmed without a ray.
 
 #include "meshing/light.h"
 #include "meshing/patch_forest.h"

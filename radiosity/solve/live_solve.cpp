@@ -46,17 +46,16 @@ bool may_go_on(const BaseMesh& before, const Plan& plan_before, const BaseMesh& 
 LiveSolve::LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, Ranks& ranks, bool keeps_mesh)
     : own_mesh_(keeps_mesh ? std::optional(mesh) : std::nullopt),
       state(own_mesh_ ? *own_mesh_ : mesh, plan, options, budget, ranks) {
-  if (keeps_mesh) state.keep_shares();
+  if (keeps_mesh) state.direct.keep_shares();
 }
 
-bool LiveSolve::take_edit(const BaseMesh& edited) {
+bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
   assert(own_mesh_);
   if (state.options.strategy != Strategy::automatic) return false;  // what was shot is not known
-  Plan plan(edited, state.options);
   if (!may_go_on(*own_mesh_, state.plan, edited, plan)) return false;
   const bool is_alike = reflects_alike(*own_mesh_, edited);
   *own_mesh_ = edited;
-  state.note_relit(std::move(plan), is_alike);
+  state.note_relit(plan, is_alike);
   if (!error_before_edit) error_before_edit = progress.error.total();
   edited_at_s = progress.elapsed_s;
   progress.error.unshot = 1;
@@ -122,7 +121,7 @@ std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, co
     // It had begun anew after an edit, and shown nothing yet.
     live->is_refreshing = live->progress.passes == 0 && log.last_step().edits != live->edits;
   }
-  if (live && live->edits != control.edits && !live->take_edit(mesh)) live.reset();
+  if (live && live->edits != control.edits && !live->take_edit(mesh, plan)) live.reset();
   if (!live) live = begin(mesh, plan, options, log, control);
   live->edits = control.edits;
   if (control.live) *control.live = live;

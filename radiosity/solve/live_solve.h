@@ -1,5 +1,5 @@
 #pragma once
-// What a solve holds from pass to pass and keeps in memory when it has ended, so that it can go on after an edit.
+// The state and progress of a solve, which can stay in memory when the solve has ended, so that it goes on after an edit.
 
 #include "radiosity/solve/pass.h"
 #include "radiosity/solve/solve_control.h"
@@ -32,9 +32,9 @@ class LiveSolve {
   LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, Ranks& ranks, bool keeps_mesh);
   LiveSolve(const LiveSolve&) = delete;  // its parts refer to each other
 
-  /// Goes on with the materials, lights and medium of `edited`. Returns false, and changes nothing, where a solve from the
-  /// beginning is needed. Requires: keeps_mesh.
-  bool take_edit(const BaseMesh& edited);
+  /// Goes on with the materials, lights and medium of `edited`, whose plan this is. Returns false, and changes nothing, where a
+  /// solve from the beginning is needed. Requires: keeps_mesh.
+  bool take_edit(const BaseMesh& edited, const Plan& plan);
 
   /// Collective.
   void save(PlainWriter& out) const;

@@ -80,8 +80,6 @@ class SolveState {
   /// which points are hidden.
   void heed_hidden_origins(NodeIndex row);
 
-  /// Keeps what later edits of lights can use, see DirectField::keep_shares().
-  void keep_shares() { direct.keep_shares(); }
   /// Takes the materials and lights of the mesh, which have changed, with a plan of the mesh as it is now. What is not known any
   /// more is found by the next pass. `reflects_as_before` says that only emission and lights have changed: where all of them have
   /// by one factor, indirect light has, too. Requires: rows and forests are those of the mesh as it is now.

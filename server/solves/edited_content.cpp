@@ -64,14 +64,20 @@ void check(const EditRequest& request, const Scene& submitted) {
     throw invalid_argument("step.edits[" + std::to_string(fault->edit) + "]." + fault->field + ": " + fault->reason);
 }
 
+/// Requires: !find_fault(edited).
+std::shared_ptr<const SceneContent> relit(const SceneContent& submitted, Scene edited) {
+  BaseMesh mesh = submitted.mesh.relit_as(edited);
+  return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh)});
+}
+
 }  // namespace
 
-std::vector<KeptEdit> with_step(std::vector<KeptEdit> edits, const EditRequest& request, const Scene& submitted) {
+EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request, std::shared_ptr<const SceneContent> submitted) {
   const std::uint64_t newest = newest_revision(edits);
   if (request.base_revision && *request.base_revision != newest)
     throw StatusError(grpc::ABORTED, "base_revision: " + std::to_string(*request.base_revision) +
                                          ", but the newest edits are of revision " + std::to_string(newest));
-  check(request, submitted);
+  check(request, submitted->scene);
   const bool replaces =
       request.continues && !edits.empty() && edits.back().author == request.author && are_alike(edits.back().step, request.step);
   if (replaces) edits.pop_back();
@@ -84,19 +90,16 @@ std::vector<KeptEdit> with_step(std::vector<KeptEdit> edits, const EditRequest& 
                       "the solve has " + std::to_string(edits.size() - 1) + " steps of edits, as many as are kept");
   const auto hold = that_hold(edits);
   if (!hold) throw StatusError(grpc::FAILED_PRECONDITION, "step.kind: there is nothing to undo or redo");
-  const Scene edited = edited_scene(submitted, *hold);
+  Scene edited = edited_scene(submitted->scene, *hold);
   if (const auto fault = find_fault(edited)) throw invalid_argument("step.edits: then " + fault->text());
-  if (!shines(edited) && shines(submitted)) throw invalid_argument("step.edits: then nothing in the scene would shine");
-  return edits;
+  if (!shines(edited) && shines(submitted->scene)) throw invalid_argument("step.edits: then nothing in the scene would shine");
+  return {std::move(edits), hold->empty() ? submitted : relit(*submitted, std::move(edited))};
 }
 
 std::shared_ptr<const SceneContent> edited_content(std::shared_ptr<const SceneContent> submitted,
                                                    std::span<const KeptEdit> edits) {
   const auto hold = that_hold(edits);
-  if (!hold || hold->empty()) return submitted;
-  Scene scene = edited_scene(submitted->scene, *hold);
-  BaseMesh mesh = submitted->mesh.relit_as(scene);
-  return std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
+  return !hold || hold->empty() ? submitted : relit(*submitted, edited_scene(submitted->scene, *hold));
 }
 
 }  // namespace alvor

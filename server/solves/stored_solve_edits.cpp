@@ -1,6 +1,7 @@
 // The part of StoredSolve that takes edits of its scene.
 
 #include "proto/codec.h"
+#include "server/base/request_ids.h"
 #include "server/base/status_error.h"
 #include "server/solves/stored_solve.h"
 
@@ -46,20 +47,17 @@ std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<
   if (!request.request_id.empty())
     for (const KeptEdit& known : before)
       if (known.request_id == request.request_id) {
-        if (known.step != request.step)
-          throw invalid_argument("request_id: '" + request.request_id + "' was used for another request");
+        if (known.step != request.step) throw other_request(request.request_id);
         return known.revision;
       }
-  const auto submitted = scene_->content();
-  std::vector<KeptEdit> after = with_step(before, request, submitted->scene);
-  const std::uint64_t revision = newest_revision(after);
-  auto edited = edited_content(submitted, after);
+  EditedContent after = with_step(before, request, scene_->content());
+  const std::uint64_t revision = newest_revision(after.edits);
   admit();
   Lock keep(keeping_lock_);
   Archive::SolveRow next = row();
   if (next.facts.status == SolveStatus::cancelled || next.facts.status == SolveStatus::failed)
     throw StatusError(grpc::FAILED_PRECONDITION, name + " was cancelled or has failed");
-  next.facts.edits = after;
+  next.facts.edits = after.edits;
   if (is_final(next.facts.status)) next.facts.queue_again();
   if (keeping_.archive) keeping_.archive->update(next);
   {
@@ -67,9 +65,9 @@ std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<
     is_log_kept_ = false;
   }
   Lock hold(lock_);
-  facts_.edits = std::move(after);
+  facts_.edits = std::move(after.edits);
   if (is_final(facts_.status)) facts_.queue_again();
-  edited_ = {revision, std::move(edited)};
+  edited_ = {revision, std::move(after.content)};
   newest_edits_ = revision;
   return revision;
 }

@@ -1,4 +1,4 @@
-// What of a scene can be edited.
+// The lights, lamps and materials of a scene that a person can edit.
 
 import { Light_Kind, type Rgb } from "../gen/alvor/v1/scene_service_pb";
 import type { Bands, Parts } from "../messages";

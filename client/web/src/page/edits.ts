@@ -1,9 +1,9 @@
-// What the steps of a solve's edits say.
+// The edits of a solve: which of them hold, and sentences about them.
 
 import { EditStep_Kind, type Edit, type EditStep } from "../gen/alvor/v1/solve_service_pb";
 
-/** Returns the edits that hold after all undos and redos, oldest first. */
-export function editsThatHold(steps: EditStep[]): Edit[] {
+/** Plays steps through: those that hold after all undos and redos, and those that were taken back and can be repeated. */
+function replay(steps: EditStep[]): { hold: EditStep[]; undone: EditStep[] } {
   const hold: EditStep[] = [];
   let undone: EditStep[] = [];
   for (const step of steps) {
@@ -14,19 +14,18 @@ export function editsThatHold(steps: EditStep[]): Edit[] {
       undone = [];
     }
   }
-  return hold.flatMap(({ edits }) => edits);
+  return { hold, undone };
+}
+
+/** Returns the edits that hold after all undos and redos, oldest first. */
+export function editsThatHold(steps: EditStep[]): Edit[] {
+  return replay(steps).hold.flatMap(({ edits }) => edits);
 }
 
 /** Returns whether there is a step to take back, and one to repeat. */
 export function undoAndRedo(steps: EditStep[]): { undo: boolean; redo: boolean } {
-  let hold = 0;
-  let undone = 0;
-  for (const { kind } of steps) {
-    if (kind === EditStep_Kind.UNDO) [hold, undone] = [hold - 1, undone + 1];
-    else if (kind === EditStep_Kind.REDO) [hold, undone] = [hold + 1, undone - 1];
-    else [hold, undone] = [hold + 1, 0];
-  }
-  return { undo: hold > 0, redo: undone > 0 };
+  const { hold, undone } = replay(steps);
+  return { undo: hold.length > 0, redo: undone.length > 0 };
 }
 
 const percent = (share: number) => `${Math.round(100 * share)} %`;
