@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Sets up the machine, builds everything, proves that what mutexes guard is used under them, runs all tests, those in a browser too, feeds
 # made-up bytes to what reads foreign ones, attacks the server bare and behind nginx, and pulls plugs in containers where it can.
-# The containers mostly wait, so they run beside what comes after the page's tests; what they say is printed last. Arguments go to CTest.
+# The containers mostly wait, so they run beside what comes after the page's tests, but not beside the attacks, which measure how long bystanders
+# wait. Arguments go to CTest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -31,11 +32,11 @@ step "checking mutexes"
 scripts/thread_safety.sh
 step "feeding made-up bytes"
 scripts/fuzz.sh 20 1
-step "attacking"
-scripts/hostile.sh
-scripts/hostile.sh --front nginx
 step "waiting for the containers"
 wait "$containers" || { containers=; cat "$said"; exit 1; }
 containers=
 cat "$said"
+step "attacking"
+scripts/hostile.sh
+scripts/hostile.sh --front nginx
 step "done"
