@@ -1,5 +1,7 @@
 #include "meshing/base_mesh.h"
 
+#include "meshing/bounding_box.h"
+#include "meshing/face_object.h"
 #include "meshing/polygon.h"
 #include "meshing/weld.h"
 #include "meshing/welded_faces.h"
@@ -25,18 +27,6 @@ const double smooth_cosine = std::cos(25 * std::numbers::pi / 180);
 void refuse_stopped(const std::stop_token& stop) {
   if (stop.stop_requested()) throw BuildStopped();
 }
-
-struct Box {
-  Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-           std::numeric_limits<double>::infinity()};
-  Vec3 high = -low;
-
-  void add(Vec3 p) {
-    low = lower(low, p);
-    high = upper(high, p);
-  }
-  double longest_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
-};
 
 /// Returns how many of a quad's sixteen strata lie along u, so that none is much longer than wide.
 int count_strata_along_u(const std::array<Vec3, 4>& p) {
@@ -165,7 +155,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
       objects_(scene.objects),
       up_(scene.up),
       quantity_(scene.quantity) {
-  Box used;
+  BoundingBox used;
   for (const Face& face : scene.faces)
     for (const std::uint32_t vertex : scene.corners_of(face)) used.add(scene.vertices[vertex]);
   std::vector<std::uint32_t> welded(scene.vertices.size());
@@ -185,18 +175,22 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
     else add_roots(scene, face);
   }
 
-  Box box;
-  for (const RootPatch& root : roots_)
-    for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[c]);
   if (roots_.empty()) return;
-  centre_ = lerp(box.low, box.high, 0.5);
-  extent_ = box.longest_side();
-
+  find_bounds();
   find_corner_values(scene, welded, options.stop);
   pair_back_to_back();
   refuse_stopped(options.stop);
   find_neighbours(options.stop);
   add_backs();
+  separate_objects(false);
+}
+
+void BaseMesh::find_bounds() {
+  BoundingBox box;
+  for (const RootPatch& root : roots_)
+    for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[c]);
+  centre_ = lerp(box.low, box.high, 0.5);
+  extent_ = box.longest_side();
 }
 
 void BaseMesh::add_root(const Scene& scene, const WeldedFace& face, const std::array<std::uint32_t, 4>& piece) {
@@ -308,13 +302,101 @@ void BaseMesh::add_backs() {
   }
 }
 
-BaseMesh BaseMesh::relit_as(const Scene& scene) const {
-  BaseMesh relit = *this;
-  relit.materials_ = scene.materials;
-  relit.lights_ = scene.lights;
-  relit.absorption_ = scene.absorption;
-  for (RootPatch& root : relit.roots_) root.material = scene.faces[root.input.first].material;
-  return relit;
+BaseMesh BaseMesh::edited_as(const Scene& scene) const {
+  BaseMesh edited = *this;
+  edited.materials_ = scene.materials;
+  edited.lights_ = scene.lights;
+  edited.absorption_ = scene.absorption;
+  edited.objects_ = scene.objects;
+  for (RootPatch& root : edited.roots_) root.material = scene.faces[root.input.first].material;
+  edited.separate_objects(true);
+  return edited;
+}
+
+namespace {
+
+/// Roots that are where they were submitted, or that move together. Each object that is moved or hidden is a group of its own
+/// unless it moves as another one does.
+class MovingGroups {
+ public:
+  static constexpr std::uint32_t at_rest = ~0u;
+
+  explicit MovingGroups(std::span<const SceneObject> objects) : objects_(objects), group_(objects.size(), at_rest) {
+    std::vector<std::uint32_t> first;
+    for (std::uint32_t n = 0; n < objects.size(); ++n) {
+      if (!objects[n].is_hidden && objects[n].motion == Placement{}) continue;
+      const auto same = std::ranges::find_if(first, [&](std::uint32_t other) {
+        return objects[other].motion == objects[n].motion && objects[other].is_hidden == objects[n].is_hidden;
+      });
+      group_[n] = same == first.end() ? n : *same;
+      if (group_[n] == n && first.size() < most_compared) first.push_back(n);
+    }
+  }
+
+  /// Returns the first object of the group that a face belongs to.
+  std::uint32_t of_face(std::uint32_t face) const {
+    const auto object = object_of_face(objects_, face);
+    return object ? group_[*object] : at_rest;
+  }
+
+ private:
+  static constexpr std::size_t most_compared = 100;  // so that the time stays linear
+  std::span<const SceneObject> objects_;
+  std::vector<std::uint32_t> group_;  // by object
+};
+
+void move(RootPatch& root, const Placement& motion) {
+  for (int c = 0; c < root.corner_count; ++c) root.corners[c] = motion.point(root.corners[c]);
+  root.normal = normalized(motion.direction(root.normal));
+}
+
+/// Gives the vertices of roots numbers that no root of another group has.
+void separate_vertices(std::span<RootPatch> roots, std::span<const std::uint32_t> group) {
+  std::uint32_t next = 0;
+  for (const RootPatch& root : roots)
+    for (int c = 0; c < root.corner_count; ++c) next = std::max(next, root.vertex[c] + 1);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;  // by group and vertex
+  for (std::size_t r = 0; r < roots.size(); ++r)
+    for (int c = 0; c < roots[r].corner_count && group[r] != MovingGroups::at_rest; ++c) {
+      std::uint32_t& vertex = roots[r].vertex[c];
+      const auto [number, is_new] = numbers.try_emplace({group[r], vertex}, next);
+      next += is_new;
+      vertex = number->second;
+    }
+}
+
+}  // namespace
+
+/// Takes roots of objects that are hidden or have moved from those that do not move with them. Puts them where the motions say if
+/// they are not there yet.
+void BaseMesh::separate_objects(bool are_to_move) {
+  if (std::ranges::none_of(objects_, [](const SceneObject& o) { return o.is_hidden || o.motion != Placement{}; })) return;
+  const MovingGroups groups(objects_);
+  std::vector<std::uint32_t> group;
+  for (const RootPatch& root : roots_) group.push_back(groups.of_face(root.input.first));
+  separate_vertices(roots_, group);
+  for (std::uint32_t r = 0; r < roots_.size(); ++r) {
+    RootPatch& root = roots_[r];
+    for (int e = 0; e < root.corner_count; ++e)
+      if (auto& other = neighbours_[r][e]; other && group[other->root] != group[r]) other.reset();
+    if (root.twin != RootPatch::no_twin && group[root.twin] != group[r]) root.twin = RootPatch::no_twin, root.is_behind = false;
+    if (group[r] == MovingGroups::at_rest) continue;
+    if (are_to_move) move(root, objects_[group[r]].motion);
+    root.is_hidden = objects_[group[r]].is_hidden;
+    if (root.is_hidden) root.is_behind = true;
+  }
+  if (are_to_move && !is_within_frame()) find_bounds();
+}
+
+/// Returns whether all roots lie in the cube about the centre that is as long as the extent.
+bool BaseMesh::is_within_frame() const {
+  BoundingBox frame;
+  frame.add(centre_ - Vec3{extent_ / 2, extent_ / 2, extent_ / 2});
+  frame.add(centre_ + Vec3{extent_ / 2, extent_ / 2, extent_ / 2});
+  return std::ranges::all_of(roots_, [&](const RootPatch& root) {
+    return std::ranges::all_of(std::span(root.corners).first(static_cast<std::size_t>(root.corner_count)),
+                               [&](const Vec3& corner) { return frame.holds(corner); });
+  });
 }
 
 std::optional<Neighbour> BaseMesh::across(std::uint32_t root, int edge) const { return neighbours_[root][edge]; }

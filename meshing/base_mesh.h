@@ -34,7 +34,8 @@ struct RootPatch {
   /// corners. Its corners are this root's in the order 0, n-1, ..., 1, so its (u, v) is our (v, u).
   std::uint32_t twin = no_twin;
   bool is_back = false;    ///< the added back side of a two-sided face
-  bool is_behind = false;  ///< rays hit the twin's geometry, not this root's
+  bool is_behind = false;  ///< rays hit the twin's geometry, not this root's; or nobody's, if it is hidden
+  bool is_hidden = false;  ///< see SceneObject
 
   /// Returns the position at (u, v). Quad: bilinear, with (0,0), (1,0), (1,1), (0,1) at corners 0..3. Triangle: corner0 + u
   /// (corner1 - corner0) + v (corner2 - corner0).
@@ -82,10 +83,11 @@ class BaseMesh {
   /// the order of the scene's faces; a quad joined from two triangles takes the place of the first. A two-sided face gives two
   /// roots: its back comes after all fronts. If all faces are degenerate, there are no roots.
   explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
-  /// Returns this mesh with the materials, lights and medium of `scene`. Requires: !find_fault(scene); it differs from the scene
-  /// of this mesh only in these and in the materials of faces, and no face has gained or lost its second side, a texture or
-  /// colours.
-  BaseMesh relit_as(const Scene& scene) const;
+  /// Returns this mesh with the materials, lights and medium of `scene`, and its objects where their `motion` puts them. Roots
+  /// keep their numbers; those of objects that do not move together are no neighbours, and no twins. Faces that come to lie in
+  /// one place are not joined. Requires: !find_fault(scene); no edit has changed this mesh's scene; `scene` differs from it only
+  /// in what edits change (edited_scene()).
+  BaseMesh edited_as(const Scene& scene) const;
 
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
@@ -112,12 +114,15 @@ class BaseMesh {
   double extent() const { return extent_; }  ///< longest side of the bounding box, metres; > 0 unless there are no roots
 
  private:
+  void find_bounds();
+  bool is_within_frame() const;
   void add_root(const Scene& scene, const WeldedFace& face, const std::array<std::uint32_t, 4>& piece);
   void add_roots(const Scene& scene, const WeldedFace& face);
   void find_corner_values(const Scene& scene, std::span<const std::uint32_t> welded, const std::stop_token& stop);
   void pair_back_to_back();
   void find_neighbours(const std::stop_token& stop);
   void add_backs();
+  void separate_objects(bool are_to_move);
 
   std::vector<RootPatch> roots_;
   std::vector<std::array<TexturePoint, 4>> texture_points_;  // by root; none if no root has a texture

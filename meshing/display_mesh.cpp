@@ -140,6 +140,7 @@ class Triangulation {
 
   void emit(std::size_t n) {
     const PatchShape shape = forest_.shape(leaves_[n]);
+    if (mesh_.roots()[shape.root].is_hidden) return;
     const auto points = outline(shape);
     const NodeIndex behind = forest_.leaf_behind(leaves_[n]);
     const std::uint32_t centre =

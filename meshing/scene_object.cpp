@@ -15,9 +15,9 @@ std::optional<std::string> fault_in(std::span<const SceneObject> objects, std::s
   if (object.name.empty()) return "has no name";
   if (object.parent && *object.parent >= which)
     return "its parent " + std::to_string(*object.parent) + " does not come before it";
-  const Placement& p = object.placement;
-  if (!(is_finite(p.x) && is_finite(p.y) && is_finite(p.z) && is_finite(p.origin)))
-    return "its transform has a number that is not finite";
+  for (const Placement& p : {object.placement, object.motion})
+    if (!(is_finite(p.x) && is_finite(p.y) && is_finite(p.z) && is_finite(p.origin)))
+      return "its transform has a number that is not finite";
   if (object.face_count > scene_faces || object.first_face > scene_faces - object.face_count)
     return "its faces end beyond the " + std::to_string(scene_faces) + " faces of the scene";
   if (which > 0 && object.first_face < objects[which - 1].first_face + objects[which - 1].face_count)

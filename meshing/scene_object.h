@@ -21,6 +21,10 @@ struct SceneObject {
   Placement placement;
   /// The faces [first_face, first_face + face_count) of the scene. They come after the faces of all objects before it.
   std::uint32_t first_face = 0, face_count = 0;
+  /// Maps the faces from where the scene was submitted with them to where edits have put them: a rotation and a shift.
+  /// `placement` and the scene's vertices are mapped already.
+  Placement motion;
+  bool is_hidden = false;  ///< an edit took it away: its faces send no light, reflect none and are in no light's way
 
   friend bool operator==(const SceneObject&, const SceneObject&) = default;
 };

@@ -1,5 +1,6 @@
 #include "meshing/welded_faces.h"
 
+#include "meshing/face_object.h"
 #include "meshing/polygon.h"
 #include "meshing/quad_pairing.h"
 #include "solution/patch_id.h"
@@ -157,6 +158,9 @@ void join_triangle_pairs(const Scene& scene, std::vector<WeldedFace>& faces) {
     triangles.push_back({{face.ring[0], face.ring[1], face.ring[2]}, face.material, face.input.first});
   for (const TrianglePair& pair : pair_triangles(triangles, scene.vertices)) {
     if (!may_be_one_quad(scene, faces[pair.first], faces[pair.second])) continue;
+    if (object_of_face(scene.objects, faces[pair.first].input.first) !=
+        object_of_face(scene.objects, faces[pair.second].input.first))
+      continue;  // one may be moved without the other
     faces[pair.first].ring.assign(pair.corners.begin(), pair.corners.end());
     faces[pair.first].input.second = faces[pair.second].input.first;
     faces[pair.second].ring.clear();

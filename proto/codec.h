@@ -39,6 +39,8 @@ v1::Light encode(const Light& light);  ///< without the number of its web or map
 v1::PhotometricWeb encode(const PhotometricWeb& web);
 PhotometricWeb decode(const v1::PhotometricWeb& message);  ///< unchecked, see fault_in()
 v1::SceneObject encode(const SceneObject& object);
+/// Appends the 12 numbers of a placement; none of the identity.
+void encode(const Placement& placement, google::protobuf::RepeatedField<double>& numbers);
 v1::EnvironmentMap encode(const EnvironmentMap& map);
 /// Requires: three values of radiance per pixel, and at most 256 x 128 pixels. Otherwise unchecked, see fault_in().
 EnvironmentMap decode(const v1::EnvironmentMap& message);

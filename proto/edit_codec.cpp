@@ -26,6 +26,9 @@ v1::Edit message_of(const SceneEdit& edit) {
     v1::ObjectEdit& part = *message.mutable_object();
     part.set_name(object->name);
     if (object->dim) part.set_dim(*object->dim);
+    if (object->move) *part.mutable_move() = encode_vector(*object->move);
+    if (object->turn) part.set_turn(*object->turn);
+    if (object->hidden) part.set_hidden(*object->hidden);
   }
   return message;
 }
@@ -48,8 +51,11 @@ LightEdit light_of(const v1::LightEdit& message) {
 }
 
 ObjectEdit object_of(const v1::ObjectEdit& message) {
-  ObjectEdit edit{.name = message.name(), .dim = {}};
+  ObjectEdit edit{.name = message.name(), .dim = {}, .move = {}, .turn = {}, .hidden = {}};
   if (message.has_dim()) edit.dim = message.dim();
+  if (message.has_move()) edit.move = decode_vector(message.move());
+  if (message.has_turn()) edit.turn = message.turn();
+  if (message.has_hidden()) edit.hidden = message.hidden();
   return edit;
 }
 

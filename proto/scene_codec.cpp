@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <utility>
 
 namespace alvor {
 
@@ -15,12 +16,22 @@ namespace {
 constexpr std::size_t most_environments = 64;
 std::string count_of(std::uint64_t count, const char* unit) { return std::to_string(count) + " " + unit; }
 
-/// Requires: no transform, or 12 numbers.
+/// Requires: 12 numbers, or none.
+Placement decode_placement(const google::protobuf::RepeatedField<double>& t) {
+  if (t.empty()) return {};
+  return {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}, {t[9], t[10], t[11]}};
+}
+
+/// Requires: transform and motion have 12 numbers, or none.
 SceneObject decode_object(const v1::SceneObject& message) {
-  SceneObject object{message.name(), std::nullopt, {}, message.first_face(), message.face_count()};
+  SceneObject object{.name = message.name(),
+                     .parent = std::nullopt,
+                     .placement = decode_placement(message.transform()),
+                     .first_face = message.first_face(),
+                     .face_count = message.face_count(),
+                     .motion = decode_placement(message.motion()),
+                     .is_hidden = message.hidden()};
   if (message.has_parent()) object.parent = message.parent();
-  const auto& t = message.transform();
-  if (!t.empty()) object.placement = {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}, {t[9], t[10], t[11]}};
   return object;
 }
 
@@ -53,14 +64,19 @@ v1::Material encode(const Material& material) {
   return message;
 }
 
+void encode(const Placement& placement, google::protobuf::RepeatedField<double>& numbers) {
+  if (placement == Placement{}) return;
+  for (const Vec3& part : {placement.x, placement.y, placement.z, placement.origin})
+    for (const double number : {part.x, part.y, part.z}) numbers.Add(number);
+}
+
 v1::SceneObject encode(const SceneObject& object) {
   v1::SceneObject message;
   message.set_name(as_utf8(object.name));
   if (object.parent) message.set_parent(*object.parent);
-  const Placement& placement = object.placement;
-  if (placement != Placement{})
-    for (const Vec3& part : {placement.x, placement.y, placement.z, placement.origin})
-      for (const double number : {part.x, part.y, part.z}) message.add_transform(number);
+  encode(object.placement, *message.mutable_transform());
+  encode(object.motion, *message.mutable_motion());
+  message.set_hidden(object.is_hidden);
   message.set_first_face(object.first_face);
   message.set_face_count(object.face_count);
   return message;
@@ -135,9 +151,11 @@ std::optional<Fault> SceneAssembler::fault_in(const v1::GeometryChunk& chunk) co
   if (auto fault = images_.fault_in(chunk, "chunk " + std::to_string(chunks_) + ", ")) return fault;
   if (auto fault = fault_in_lights(chunk)) return fault;
   for (const v1::SceneObject& object : chunk.objects())
-    if (!object.transform().empty() && object.transform_size() != 12)
-      return Fault{"object '" + object.name() + "'",
-                   "its transform has " + count_of(static_cast<std::uint64_t>(object.transform_size()), "numbers, needs 12")};
+    for (const auto& [name, numbers] : {std::pair("transform", &object.transform()), std::pair("motion", &object.motion())})
+      if (!numbers->empty() && numbers->size() != 12)
+        return Fault{
+            "object '" + object.name() + "'",
+            std::string("its ") + name + " has " + count_of(static_cast<std::uint64_t>(numbers->size()), "numbers, needs 12")};
   std::uint64_t promised = 0;  // a sum of 2^31 counts of 32 bits does not overflow
   for (int i = 0; i < chunk.face_corner_counts_size(); ++i) {
     const std::uint32_t count = chunk.face_corner_counts(i);

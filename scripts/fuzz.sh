@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-targets=(scene_upload frame watch checkpoint file web)
+targets=(scene_upload frame watch checkpoint file web edit)
 PRESET=fuzz scripts/build.sh seeds "${targets[@]/%/_fuzz}"
 cd build/fuzz
 mkdir -p found
@@ -31,3 +31,4 @@ wait $first
 fuzz file 131072 64 & first=$!
 fuzz web 16384 64
 wait $first
+fuzz edit 4096 64

@@ -87,6 +87,16 @@ inline Scene room_with_contacts() {
   return scene;
 }
 
+/// Returns room_with_contacts() whose blocks and lamp are objects.
+inline Scene room_of_objects() {
+  Scene scene = room_with_contacts();
+  for (std::size_t n = 0; n < scene.materials.size(); ++n) scene.materials[n].name = "m" + std::to_string(n);
+  scene.objects = {{.name = "block", .first_face = 6, .face_count = 6},
+                   {.name = "lamp", .first_face = 12, .face_count = 1},
+                   {.name = "box", .first_face = 13, .face_count = 6}};
+  return scene;
+}
+
 /// Returns the scene with all reflectances 0.
 inline Scene black(Scene scene) {
   for (Material& material : scene.materials) material.reflectance = {};

@@ -3,6 +3,7 @@
 #include "client/export/part_stream.h"
 #include "client/export/solution_file.h"
 #include "client/export/vertex_index.h"
+#include "meshing/face_object.h"
 #include "proto/codec.h"
 #include "proto/leaf_codec.h"
 #include "proto/mesh_codec.h"
@@ -117,14 +118,32 @@ class Reader {
     const BaseMesh mesh = base_mesh();
     check_leaves(mesh);
     DisplayMesh display = build_display_mesh(mesh, leaves_, errors_);
-    std::vector<FaceTriangles> faces;
-    for (const FaceTriangles& run : display.faces) append_run(faces, {sources_[run.faces.first], run.material, run.count});
-    display.faces = std::move(faces);
+    name_faces(display);
     display.objects = std::move(objects_);
     return display;
   }
 
  private:
+  /// Replaces the faces of the scene that was rebuilt by those of the scene that was solved, without those of hidden objects.
+  void name_faces(DisplayMesh& display) const {
+    const auto is_hidden = [this](const InputFaces& faces) {
+      const auto object = object_of_face(objects_, faces.first);
+      return object && objects_[*object].is_hidden;
+    };
+    std::vector<FaceTriangles> faces;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (auto first = display.triangles.cbegin(); const FaceTriangles& run : display.faces) {
+      const auto last = first + run.count;
+      if (const InputFaces& source = sources_[run.faces.first]; !is_hidden(source)) {
+        append_run(faces, {source, run.material, run.count});
+        triangles.insert(triangles.end(), first, last);
+      }
+      first = last;
+    }
+    display.faces = std::move(faces);
+    display.triangles = std::move(triangles);
+  }
+
   void read_header() {
     const auto part = parts_.next();
     if (!part || !part->has_header()) parts_.fail("the header is missing");

@@ -1,9 +1,12 @@
 #include "meshing/edit/edited_scene.h"
 
+#include "meshing/edit/object_boxes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <unordered_map>
 #include <utility>
 
@@ -11,7 +14,7 @@ namespace alvor {
 
 namespace {
 
-constexpr double most_dim = 1e6, most_emission = 1e30, farthest = 1e9;
+constexpr double most_dim = 1e6, most_emission = 1e30, farthest = 1e9, most_turn = 1e6;
 
 /// Finds the parts of one kind by their names. Of two that have one name the first counts.
 template <class Part>
@@ -31,10 +34,18 @@ class Named {
   std::unordered_map<std::string, std::size_t> places_;  // filled when something is looked for
 };
 
+/// Returns the box in which objects must stay.
+BoundingBox about(BoundingBox scene) {
+  const double far = scene.longest_side();
+  scene.low = scene.low - Vec3{far, far, far}, scene.high = scene.high + Vec3{far, far, far};
+  return scene;
+}
+
 /// Finds the fault of one edit.
 class Check {
  public:
-  explicit Check(const Scene& scene) : materials_(scene.materials), lights_(scene.lights), objects_(scene.objects) {}
+  explicit Check(const Scene& scene)
+      : scene_(scene), materials_(scene.materials), lights_(scene.lights), objects_(scene.objects) {}
 
   std::optional<EditFault> operator()(const MaterialEdit& edit) {
     const Material* material = materials_.find(edit.name);
@@ -72,13 +83,24 @@ class Check {
   }
 
   std::optional<EditFault> operator()(const ObjectEdit& edit) {
-    if (!objects_.find(edit.name)) return unknown("object", edit.name);
-    if (!edit.dim) return EditFault{0, "object", "sets nothing"};
-    if (!is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
-    return {};
+    const SceneObject* object = objects_.find(edit.name);
+    if (!object) return unknown("object", edit.name);
+    if (!edit.dim && !edit.move && !edit.turn && !edit.hidden) return EditFault{0, "object", "sets nothing"};
+    if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
+    if (edit.turn && !(std::abs(*edit.turn) <= most_turn)) return EditFault{0, "object.turn", "must be in [-1e6, 1e6] degrees"};
+    return edit.move ? fault_of_move(*object, *edit.move) : std::nullopt;
   }
 
  private:
+  /// The object must stay within a box about the scene that is longer than the scene by its length on each side.
+  std::optional<EditFault> fault_of_move(const SceneObject& object, Vec3 move) {
+    if (!boxes_) boxes_.emplace(scene_);
+    const BoundingBox& box = boxes_->of_object[static_cast<std::size_t>(&object - scene_.objects.data())];
+    if (box.is_empty()) return EditFault{0, "object.move", "'" + object.name + "' has no faces"};
+    const BoundingBox most = about(boxes_->of_scene);
+    if (std::isfinite(length(move)) && most.holds(box.low + move) && most.holds(box.high + move)) return {};
+    return EditFault{0, "object.move", "'" + object.name + "' would lie farther from the scene than the scene is long"};
+  }
   static EditFault unknown(const std::string& kind, const std::string& name) {
     return {0, kind + ".name", "'" + name + "' is no " + kind + " of the scene"};
   }
@@ -86,10 +108,27 @@ class Check {
   static bool is_share(const Rgb& value) { return value.is_finite() && value.min() >= 0 && value.max() < 1; }
   static bool is_dim(double dim) { return dim >= 0 && dim <= most_dim; }
 
+  const Scene& scene_;
+  std::optional<ObjectBoxes> boxes_;  // when an object is to be moved
   Named<const Material> materials_;
   Named<const Light> lights_;
   Named<const SceneObject> objects_;
 };
+
+/// Returns the turn about the vertical through the middle of the box, then the shift.
+Placement motion_of(const ObjectEdit& edit, const BoundingBox& box, UpAxis up) {
+  const double angle = std::remainder(edit.turn.value_or(0), 360.0) * std::numbers::pi / 180;
+  const double c = std::cos(angle), s = std::sin(angle);
+  Placement motion;
+  if (angle != 0 && up == UpAxis::z) motion.x = {c, s, 0}, motion.y = {-s, c, 0};
+  if (angle != 0 && up == UpAxis::y) motion.x = {c, 0, -s}, motion.z = {s, 0, c};
+  if (angle != 0 && !box.is_empty()) {
+    const Vec3 middle = lerp(box.low, box.high, 0.5);
+    motion.origin = middle - motion.direction(middle);
+  }
+  motion.origin = motion.origin + edit.move.value_or(Vec3{});
+  return motion;
+}
 
 /// Makes the edits of one scene. What multiplies is applied at the end, so that the order of edits of different fields does not
 /// matter.
@@ -112,24 +151,52 @@ class Editor {
     if (edit.dim) light_dim_[&light] = *edit.dim;
   }
   void operator()(const ObjectEdit& edit) {
-    if (edit.dim) object_dim_[objects_.find(edit.name)] = *edit.dim;
+    ObjectEdit& all = object_edits_[static_cast<std::size_t>(objects_.find(edit.name) - scene_.objects.data())];
+    if (edit.dim) all.dim = edit.dim;
+    if (edit.move) all.move = edit.move;
+    if (edit.turn) all.turn = edit.turn;
+    if (edit.hidden) all.hidden = edit.hidden;
   }
 
   Scene take() {
     for (const auto& [light, dim] : light_dim_) light->intensity = dim * light->intensity;
-    if (!object_dim_.empty()) dim_objects();
+    if (!object_edits_.empty()) edit_objects();
     return std::move(scene_);
   }
 
  private:
-  void dim_objects() {
+  /// What an object got from those that it hangs from is changed by its own edits, which so come first where both move it.
+  void edit_objects() {
     std::vector<double> dim(scene_.objects.size(), 1);
+    const auto moves = [](const auto& edit) { return edit.second.move || edit.second.turn; };
+    std::optional<ObjectBoxes> boxes;
+    if (std::ranges::any_of(object_edits_, moves)) boxes.emplace(scene_);
     for (std::size_t n = 0; n < dim.size(); ++n) {
-      const SceneObject& object = scene_.objects[n];
-      if (object.parent) dim[n] = dim[*object.parent];
-      if (const auto own = object_dim_.find(&object); own != object_dim_.end()) dim[n] *= own->second;
-      if (dim[n] != 1) dim_faces(object, dim[n]);
+      SceneObject& object = scene_.objects[n];
+      if (object.parent) {
+        const SceneObject& parent = scene_.objects[*object.parent];
+        dim[n] = dim[*object.parent], object.motion = parent.motion, object.is_hidden = parent.is_hidden;
+      }
+      if (const auto own = object_edits_.find(n); own != object_edits_.end()) {
+        dim[n] *= own->second.dim.value_or(1);
+        if (moves(*own)) object.motion = object.motion * motion_of(own->second, boxes->of_object[n], scene_.up);
+        object.is_hidden = object.is_hidden || own->second.hidden.value_or(false);
+      }
+      if (const double shown = object.is_hidden ? 0 : dim[n]; shown != 1) dim_faces(object, shown);
+      if (object.motion == Placement{}) continue;
+      object.placement = object.motion * object.placement;
+      move_faces(object);
     }
+  }
+  void move_faces(const SceneObject& object) {
+    std::unordered_map<std::uint32_t, std::uint32_t> moved;  // by vertex
+    for (std::uint32_t face = object.first_face; face < object.first_face + object.face_count; ++face)
+      for (std::uint32_t k = 0; k < scene_.faces[face].corner_count; ++k) {
+        std::uint32_t& vertex = scene_.corners[scene_.faces[face].first_corner + k];
+        const auto [own, is_new] = moved.try_emplace(vertex, static_cast<std::uint32_t>(scene_.vertices.size()));
+        if (is_new) scene_.vertices.push_back(object.motion.point(scene_.vertices[vertex]));
+        vertex = own->second;
+      }
   }
   void dim_faces(const SceneObject& object, double dim) {
     std::map<std::uint32_t, std::uint32_t> dimmed;  // by material
@@ -152,7 +219,7 @@ class Editor {
   Named<Light> lights_{scene_.lights};
   Named<SceneObject> objects_{scene_.objects};
   std::map<Light*, double> light_dim_;
-  std::map<const SceneObject*, double> object_dim_;
+  std::map<std::size_t, ObjectEdit> object_edits_;  // by number of the object
 };
 
 }  // namespace
@@ -164,6 +231,16 @@ std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene&
       fault->edit = n;
       return fault;
     }
+  return std::nullopt;
+}
+
+std::optional<std::string> object_too_far(const Scene& submitted, const Scene& edited) {
+  if (edited.vertices.size() == submitted.vertices.size()) return std::nullopt;
+  const BoundingBox most = about(ObjectBoxes(submitted).of_scene);
+  const ObjectBoxes boxes(edited);
+  for (std::size_t n = 0; n < edited.objects.size(); ++n)
+    if (const BoundingBox& box = boxes.of_object[n]; !box.is_empty() && !(most.holds(box.low) && most.holds(box.high)))
+      return edited.objects[n].name;
   return std::nullopt;
 }
 

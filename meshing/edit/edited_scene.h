@@ -22,9 +22,15 @@ struct EditFault {
 /// Returns the first fault of the edits. Looks at each edit by itself: names, ranges.
 std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene);
 
+/// Returns the name of an object of an edited scene that lies beyond the box in which fault_in() lets it be moved, as objects may
+/// that hang from moved ones; nothing if there is none.
+std::optional<std::string> object_too_far(const Scene& submitted, const Scene& edited);
+
 /// Returns the scene with these edits. Objects whose faces are dimmed get materials of their own, named "MATERIAL of OBJECT",
-/// after all others. The numbers of faces, objects, lights and materials stay. Requires: !fault_in(edits, scene),
-/// !find_fault(scene). The result may have a fault: a material that reflects and lets through more than all light.
+/// after all others; those that are hidden are dimmed to nothing. Faces of objects that moved get vertices of their own, after
+/// all others. The numbers of faces, objects, lights and materials stay. Requires: !fault_in(edits, scene), !find_fault(scene),
+/// and that no object is hidden or moved. The result may have a fault: a material that reflects and lets through more than all
+/// light.
 Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits);
 
 }  // namespace alvor

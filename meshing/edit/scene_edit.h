@@ -32,7 +32,10 @@ struct LightEdit {
 /// Sets what is given of an object and of those that hang from it.
 struct ObjectEdit {
   std::string name;
-  std::optional<double> dim;  ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
+  std::optional<double> dim;   ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
+  std::optional<Vec3> move;    ///< metres, from where the scene as submitted has it
+  std::optional<double> turn;  ///< degrees counter-clockwise seen from above, about the middle of its box, before `move`
+  std::optional<bool> hidden;  ///< whether it is taken away
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
 

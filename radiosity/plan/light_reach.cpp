@@ -89,6 +89,9 @@ LightReach::LightReach(const BaseMesh& mesh, const PointTree& corners) : is_dark
     if (light.is_distant()) distant.push_back(&light);
   for (std::uint32_t root = 0; root < is_dark.size(); ++root) {
     const RootPatch& face = mesh.roots()[root];
+    is_dark[root] = face.is_hidden;
+    hidden += face.is_hidden;
+    if (face.is_hidden) continue;
     const double height = height_of(face, mesh.centre());
     const bool faces_nothing = !corners.any_above(face.normal, height + flat_tolerance * mesh.extent()) &&
                                std::ranges::none_of(distant, [&](const Light* light) { return faces(*light, face.normal); });

@@ -4,7 +4,9 @@
 #include "radiosity/plan/scene_census.h"
 #include "radiosity/rays/sampling.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 
 namespace alvor {
@@ -66,6 +68,7 @@ Standing look_from(const PointTree& lit, const BaseMesh& mesh) {
   Standing standing;
   for (; standing.blocker < mesh.roots().size(); ++standing.blocker) {
     const RootPatch& face = mesh.roots()[standing.blocker];
+    if (face.is_hidden) continue;
     const double height = dot(face.normal, face.corners[0] - mesh.centre()), margin = behind * mesh.extent();
     const bool is_seen_from_behind = lit.any_above(-face.normal, -height + margin);
     standing.backs_are_seen |= is_seen_from_behind;
@@ -78,7 +81,7 @@ Standing look_from(const PointTree& lit, const BaseMesh& mesh) {
 class Planner {
  public:
   Planner(const BaseMesh& mesh, const SolveOptions& options)
-      : mesh_(mesh), options_(options), census_(mesh), reach_(mesh, PointTree(corners_about_centre(mesh, nobody()))) {
+      : mesh_(mesh), options_(options), census_(mesh), reach_(mesh, PointTree(corners_about_centre(mesh, hidden()))) {
     emission_by_rows_ = census_.emitting_share > most_area_emits;
     if (census_.is_lit()) standing_ = look_from(PointTree(corners_about_centre(mesh, left_dark())), mesh);
     standing_.backs_are_seen |= census_.has_distant_light;  // it looks from beyond all faces
@@ -93,9 +96,9 @@ class Planner {
   }
 
   const SceneCensus& census() const { return census_; }
-  /// Returns the faces that the solver will leave dark: those that no light can reach, or none if Feature::dark_faces is forced
-  /// on.
-  std::vector<bool> left_dark() const { return options_.forced_on.contains(Feature::dark_faces) ? nobody() : reach_.is_dark; }
+  /// Returns the faces that the solver will leave dark: those that no light can reach, or only those that are not there if
+  /// Feature::dark_faces is forced on.
+  std::vector<bool> left_dark() const { return options_.forced_on.contains(Feature::dark_faces) ? hidden() : reach_.is_dark; }
   bool emission_by_rows() const { return emission_by_rows_; }
   bool backs_are_seen() const { return standing_.backs_are_seen; }
 
@@ -107,7 +110,11 @@ class Planner {
     decided.reason = "asked for, though " + decided.reason;
     return decided;
   }
-  std::vector<bool> nobody() const { return std::vector<bool>(mesh_.roots().size()); }
+  std::vector<bool> hidden() const {
+    std::vector<bool> hidden;
+    for (const RootPatch& root : mesh_.roots()) hidden.push_back(root.is_hidden);
+    return hidden;
+  }
 
   PlannedFeature of_lit_scene(Feature feature) const {
     switch (feature) {
@@ -155,7 +162,7 @@ class Planner {
   }
 
   PlannedFeature dark_faces() const {
-    const std::size_t dark = reach_.facing_nothing + reach_.shut_off, all = mesh_.roots().size();
+    const std::size_t all = mesh_.roots().size() - reach_.hidden, dark = reach_.facing_nothing + reach_.shut_off;
     if (dark == 0) return on(sentence("light may reach all ", faces(all)));
     return off(sentence("light cannot reach ", dark, " of ", faces(all), ": ", reach_.facing_nothing, " face nothing, ",
                         reach_.shut_off, " are shut off from all emitters"));
@@ -236,7 +243,8 @@ Plan::Plan(const BaseMesh& mesh, const SolveOptions& options) {
   has_light_ = planner.census().is_lit();
   emission_by_rows_ = planner.emission_by_rows();
   backs_are_seen_ = planner.backs_are_seen();
-  if (!needs(Feature::dark_faces)) is_dark_ = planner.left_dark();
+  is_dark_ = planner.left_dark();
+  if (std::ranges::none_of(is_dark_, std::identity())) is_dark_.clear();
 }
 
 }  // namespace alvor

@@ -27,7 +27,7 @@ class Plan {
   bool emission_by_rows() const { return emission_by_rows_; }
   /// Returns whether a lit point lies behind a face. If not, nothing can be hidden under a solid.
   bool backs_are_seen() const { return backs_are_seen_; }
-  /// Returns whether light may reach the front of a root. Always true if Feature::dark_faces is on.
+  /// Returns whether light may reach the front of a root. If Feature::dark_faces is on, it may reach all that are not hidden.
   bool may_be_lit(std::uint32_t root) const { return is_dark_.empty() || !is_dark_[root]; }
 
  private:

@@ -52,6 +52,7 @@ SceneCensus::SceneCensus(const BaseMesh& mesh) {
   double area = 0, emitting_area = 0;
   for (std::uint32_t r = 0; r < mesh.roots().size(); ++r) {
     const RootPatch& root = mesh.roots()[r];
+    if (root.is_hidden) continue;
     const Material& material = mesh.materials()[root.material];
     if (is_coloured(mesh, r)) has_colours[root.material] = true;
     const bool emits = !material.emission.is_zero();

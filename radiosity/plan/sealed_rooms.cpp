@@ -49,7 +49,7 @@ class RoomFinder {
       const RootPatch& root = mesh_.roots()[part[n]];
       for (int e = 0; e < root.corner_count; ++e) {
         const auto neighbour = mesh_.across(part[n], e);
-        is_closed &= neighbour.has_value() && !lets_light_through(mesh_.material_of(part[n]));
+        is_closed &= neighbour.has_value() && !root.is_hidden && !lets_light_through(mesh_.material_of(part[n]));
         if (!neighbour || is_seen_[neighbour->root]) continue;
         is_seen_[neighbour->root] = true;
         part.push_back(neighbour->root);

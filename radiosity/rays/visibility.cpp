@@ -131,6 +131,8 @@ Visibility::Visibility(const BaseMesh& mesh, const LocalFrame& frame) : handles_
 }
 
 Visibility::~Visibility() = default;
+Visibility::Visibility(Visibility&&) noexcept = default;
+Visibility& Visibility::operator=(Visibility&&) noexcept = default;
 
 namespace {
 

@@ -62,8 +62,8 @@ class Visibility {
  public:
   Visibility(const BaseMesh& mesh, const LocalFrame& frame);
   ~Visibility();
-  Visibility(const Visibility&) = delete;
-  Visibility& operator=(const Visibility&) = delete;
+  Visibility(Visibility&&) noexcept;
+  Visibility& operator=(Visibility&&) noexcept;
 
   /// Writes the nearest hit of every ray on a face through which it does not go on, between its t_min and t_max, to `hits`.
   /// Writes the panes that the rays of packet p crossed before, ordered by lane and then along the ray, to `crossings[p]`, unless

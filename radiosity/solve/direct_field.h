@@ -59,6 +59,10 @@ class DirectField {
   /// they are known. `unit_change` is the emission unit of before as a multiple of the present one.
   std::optional<Rgb> note_relit(double unit_change);
 
+  /// Takes roots that have moved: the next add_new() finds again what each light brings where the way to it leads by places where
+  /// they were or are. Requires: one rank; the scene is the new one, and note_relit() was called.
+  void note_moved(const MovedRoots& moved);
+
   /// Makes room for new nodes of the leaf forest.
   void fit_to_nodes();
   /// Gives the children of a leaf that was split its light, until their own is found.
@@ -76,6 +80,8 @@ class DirectField {
   std::vector<LightForm> forms_of_lights() const;
   void choose_shares();
   void scale(const Rgb& factor);
+  std::vector<std::uint8_t> whose_way_changed(const LightSource& light, const MovedRoots& moved,
+                                              std::span<const NodeIndex> leaves) const;
   std::vector<DirectLight> trace_one(const LightSource& next, std::span<const Receiver> receivers);
   std::vector<DirectLight> trace_unknown(const LightSource& next, std::span<const Receiver> receivers,
                                          std::span<const NodeIndex> leaves);

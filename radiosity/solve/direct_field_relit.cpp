@@ -3,7 +3,10 @@
 #include "radiosity/direct/mesh_light.h"
 #include "radiosity/solve/direct_field.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -108,6 +111,72 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   if (factor) waiting_power_ = share_waiting * power_;
   else is_known_.assign(is_known_.size(), false);
   return factor;
+}
+
+/// Returns for each leaf whether what the light brings to it may have changed.
+std::vector<std::uint8_t> DirectField::whose_way_changed(const LightSource& light, const MovedRoots& moved,
+                                                         std::span<const NodeIndex> leaves) const {
+  const auto form = std::ranges::find(owned_lights_, light.number(), [](const auto& owned) { return owned->number(); });
+  const LightForm& is = forms_[static_cast<std::size_t>(form - owned_lights_.begin())];
+  const bool is_moved = std::ranges::any_of(is.roots, [&](std::uint32_t root) { return moved.has(root); });
+  const auto extent = light.extent();
+  const bool is_sun = is.light && is.light->kind == LightKind::directional;
+  if (is_moved || (!extent && !is_sun)) return std::vector<std::uint8_t>(leaves.size(), 1);
+  const BaseMesh& mesh = forests_.mesh();
+  const double far = 3 * mesh.extent();
+  const auto to_metres = [&](Vec3 p) { return scene_.frame().to_metres(p); };
+  std::vector<std::uint8_t> changed(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    const Vec3 leaf = forests_.leaf_centres()[leaves[n]];
+    const PatchShape shape = forests_.leaves().shape(leaves[n]);
+    const auto corners = corners_of(mesh, shape);
+    double radius = 0;
+    for (int c = 0; c < shape.corner_count; ++c) radius = std::max(radius, length(corners[static_cast<std::size_t>(c)] - leaf));
+    if (is_sun) {
+      const double spread = far * std::tan(is.light->angular_diameter / 2);
+      changed[n] = moved.may_meet(leaf, radius, leaf - far * is.light->direction, radius + spread);
+    } else {
+      const Vec3 middle = lerp(to_metres(extent->low), to_metres(extent->high), 0.5);
+      changed[n] = moved.may_meet(leaf, radius, middle, length(to_metres(extent->high) - middle));
+    }
+  });
+  return changed;
+}
+
+void DirectField::note_moved(const MovedRoots& moved) {
+  blockers_.reset();
+  if (is_exact_) blockers_ = std::make_unique<BlockerTree>(scene_);
+  const auto is_shining = [this](std::uint32_t number) {
+    return std::ranges::any_of(owned_lights_, [&](const auto& light) { return light->number() == number; });
+  };
+  shares_.keep_only(is_shining);
+  const std::vector<NodeIndex> leaves = forests_.leaves().leaves();
+  std::vector<std::uint8_t> is_lost(leaves.size(), light_tree_ ? 1 : 0);  // of many lights some way leads by, mostly
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    const std::uint32_t root = forests_.leaves().id(leaves[n]).root_face();
+    if (!plan_.may_be_lit(root)) {
+      light_[leaves[n]] = {};
+      if (has_distant_lights_) from_afar_[leaves[n]] = 0;
+    }
+    if (!moved.has(root)) continue;
+    is_lost[n] = 1;
+    shares_.forget(leaves[n]);
+  }
+  for (std::size_t k = 0; k < owned_lights_.size() && !light_tree_; ++k) {
+    const auto changed = whose_way_changed(*owned_lights_[k], moved, leaves);
+    for (std::size_t n = 0; n < leaves.size(); ++n) {
+      if (!changed[n]) continue;
+      is_lost[n] = 1;
+      shares_.forget(*owned_lights_[k], leaves[n]);
+    }
+  }
+  double lost = 0;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    if (!is_lost[n]) continue;
+    is_known_[leaves[n]] = false;
+    lost += forests_.leaf_area(leaves[n]) / forests_.area();
+  }
+  waiting_power_ = std::max(waiting_power_, std::min(1.0, lost) * power_);
 }
 
 /// Multiplies the light of all leaves; that at origins and the noise as the mean of its bands.

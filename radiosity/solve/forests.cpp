@@ -59,8 +59,12 @@ void load_leaves(PatchForest& forest, PlainReader& in) {
 Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits)
     : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
   for (const RootPatch& root : mesh.roots()) area_ += root.area;
+  split_as_at_start(plan);
+}
+
+void Forests::split_as_at_start(const Plan& plan) {
   split_to_start(plan);
-  if (mesh.has_varying_reflectance()) split_to_show_textures(plan);
+  if (mesh_.has_varying_reflectance()) split_to_show_textures(plan);
   fit_to_nodes();
 }
 
@@ -140,6 +144,11 @@ bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
   const bool is_done = rows_.split(row, limits_, split);
   fit_to_nodes();
   return is_done;
+}
+
+void Forests::note_moved() {
+  for (NodeIndex row = 0; row < row_centre_.size(); ++row) row_centre_[row] = centre_of(mesh_, rows_.shape(row));
+  for (NodeIndex leaf = 0; leaf < leaf_centre_.size(); ++leaf) leaf_centre_[leaf] = centre_of(mesh_, leaves_.shape(leaf));
 }
 
 void Forests::note_relit() {

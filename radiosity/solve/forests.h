@@ -18,7 +18,7 @@ namespace alvor {
 /// place if their ids are equal. Used by one thread at a time.
 class Forests {
  public:
-  /// Splits the roots that light may reach as far as a solve needs before its first pass.
+  /// As after split_as_at_start().
   Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits);
 
   const BaseMesh& mesh() const { return mesh_; }
@@ -58,8 +58,13 @@ class Forests {
   /// Splits a leaf of the row forest, as split_leaf() does in the leaf forest.
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
 
+  /// Finds the middles of nodes again, after roots of the mesh have moved as rigid bodies.
+  void note_moved();
   /// Finds the reflectances of nodes again, after the materials of the mesh have changed.
   void note_relit();
+
+  /// Splits the roots that light may reach as far as a solve needs before its first pass, where they are not split yet.
+  void split_as_at_start(const Plan& plan);
 
   void save(PlainWriter& out) const;
   /// Reads what save() wrote. Throws BadBytes if the leaves are not those of this scene. Requires: no split since construction.

@@ -35,6 +35,10 @@ void LightShares::forget(NodeIndex leaf) {
   for (auto& [number, kept] : by_light_) kept.shares[leaf] = {};
 }
 
+void LightShares::forget(const LightSource& light, NodeIndex leaf) {
+  if (const auto kept = by_light_.find(light.number()); kept != by_light_.end()) kept->second.shares[leaf] = {};
+}
+
 std::optional<DirectLight> LightShares::brought(const LightSource& light, NodeIndex leaf) const {
   const auto kept = by_light_.find(light.number());
   if (kept == by_light_.end()) return std::nullopt;

@@ -42,6 +42,8 @@ class LightShares {
   /// Sets the share of a light at a leaf from what it brings there. Requires: keeps(light).
   void set(const LightSource& light, NodeIndex leaf, const DirectLight& brought);
   void forget(NodeIndex leaf);
+  /// Forgets what one light brings to a leaf.
+  void forget(const LightSource& light, NodeIndex leaf);
   /// Returns what the light brings to a leaf at its present colour; nothing where its share is not known.
   std::optional<DirectLight> brought(const LightSource& light, NodeIndex leaf) const;
 

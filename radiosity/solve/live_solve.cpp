@@ -5,19 +5,39 @@
 #include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace alvor {
 
 namespace {
 
+/// Returns whether the roots differ only in where they are, whether they are hidden, and in what relighting changes.
 bool has_same_roots(const BaseMesh& before, const BaseMesh& after) {
   return std::ranges::equal(before.roots(), after.roots(), [&](const RootPatch& a, const RootPatch& b) {
     const Material &was = before.materials()[a.material], &is = after.materials()[b.material];
-    return a.corner_count == b.corner_count &&
-           std::equal(a.corners.begin(), a.corners.begin() + a.corner_count, b.corners.begin()) && a.twin == b.twin &&
-           was.regular_transmittance == is.regular_transmittance && was.is_translucent() == is.is_translucent() &&
-           was.texture.has_value() == is.texture.has_value();
+    return a.corner_count == b.corner_count && a.twin == b.twin && was.regular_transmittance == is.regular_transmittance &&
+           was.is_translucent() == is.is_translucent() && was.texture.has_value() == is.texture.has_value();
   });
+}
+
+/// Requires: has_same_roots().
+bool has_moved(const BaseMesh& before, const BaseMesh& after) {
+  return !std::ranges::equal(before.roots(), after.roots(), [](const RootPatch& a, const RootPatch& b) {
+    return a.is_hidden == b.is_hidden && std::equal(a.corners.begin(), a.corners.begin() + a.corner_count, b.corners.begin());
+  });
+}
+
+/// Requires: has_same_roots().
+bool has_same_frame_and_neighbours(const BaseMesh& before, const BaseMesh& after) {
+  if (before.centre() != after.centre() || before.extent() != after.extent()) return false;
+  const auto other = [](const BaseMesh& mesh, std::uint32_t root, int edge) {
+    const auto neighbour = mesh.across(root, edge);
+    return neighbour ? neighbour->root : RootPatch::no_twin;
+  };
+  for (std::uint32_t root = 0; root < after.roots().size(); ++root)
+    for (int e = 0; e < after.roots()[root].corner_count; ++e)
+      if (other(before, root, e) != other(after, root, e)) return false;
+  return true;
 }
 
 /// Requires: has_same_roots().
@@ -37,7 +57,7 @@ bool may_go_on(const BaseMesh& before, const Plan& plan_before, const BaseMesh& 
   if (plan_after.backs_are_seen() && !plan_before.backs_are_seen()) return false;
   if (before.absorption() != after.absorption() || !has_same_roots(before, after)) return false;
   for (std::uint32_t root = 0; root < after.roots().size(); ++root)
-    if (plan_after.may_be_lit(root) && !plan_before.may_be_lit(root)) return false;
+    if (plan_after.may_be_lit(root) && !plan_before.may_be_lit(root) && !before.roots()[root].is_hidden) return false;
   return true;
 }
 
@@ -54,8 +74,17 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
   if (state.options.strategy != Strategy::automatic) return false;  // what was shot is not known
   if (!may_go_on(*own_mesh_, state.plan, edited, plan)) return false;
   const bool is_alike = reflects_alike(*own_mesh_, edited);
-  *own_mesh_ = edited;
-  state.note_relit(plan, is_alike);
+  if (has_moved(*own_mesh_, edited)) {
+    const bool may_mend = state.ranks.is_alone() && state.options.form_factors != FormFactorMethod::analytic &&
+                          !plan.emission_by_rows() && has_same_frame_and_neighbours(*own_mesh_, edited);
+    if (!may_mend) return false;
+    const BaseMesh before = std::exchange(*own_mesh_, edited);
+    state.note_moved(before, plan, is_alike);
+    has_unseen_move = true;
+  } else {
+    *own_mesh_ = edited;
+    state.note_relit(plan, is_alike);
+  }
   if (!error_before_edit) error_before_edit = progress.error.total();
   edited_at_s = progress.elapsed_s;
   progress.error.unshot = 1;

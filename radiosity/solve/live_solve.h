@@ -54,7 +54,8 @@ class LiveSolve {
   double edited_at_s = 0;   ///< elapsed seconds when the last edit was taken
   /// Until the first estimate after an edit: the estimated error of before.
   std::optional<double> error_before_edit;
-  bool is_refreshing = false;  ///< the log shows an older solution, and nothing is published before the first pass is done
+  bool has_unseen_move = false;  ///< the last edit moved or hid objects, and nothing was published since
+  bool is_refreshing = false;    ///< the log shows an older solution, and nothing is published before the first pass is done
 };
 
 /// Returns the state from which a solve of `mesh` goes on, or a new one. Throws BadBytes.

@@ -22,6 +22,7 @@ constexpr double held_by_floats = 1e37;
 Rgb largest_irradiance(const BaseMesh& mesh) {
   Rgb emission, albedo;
   for (const RootPatch& root : mesh.roots()) {
+    if (root.is_hidden) continue;
     const Material& material = mesh.materials()[root.material];
     if (material.is_pane() && !material.emission.is_zero()) return {held_by_floats, held_by_floats, held_by_floats};
     emission = upper(emission, material.emission);
@@ -131,6 +132,27 @@ void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   for (RelativeLight& light : shot) light = change * light;
   const auto factor = direct.note_relit(change);
   field.scale(factor && reflects_as_before ? *factor : Rgb{change, change, change});
+}
+
+void SolveState::note_moved(const BaseMesh& before, Plan new_plan, bool reflects_as_before) {
+  const MovedRoots moved(before, mesh);
+  scene = LocalScene(mesh);
+  forests.note_moved();
+  note_relit(std::move(new_plan), reflects_as_before);
+  direct.note_moved(moved);
+  const std::vector<NodeIndex> lost = rows.note_moved(before, moved);
+  std::vector<NodeIndex> leaves, of_moved = forests.rows().leaves();
+  for (const NodeIndex row : lost) forests.append_leaves_of_row(row, leaves);
+  std::erase_if(of_moved, [&](NodeIndex row) { return !moved.has(forests.rows().id(row).root_face()); });
+  for (const NodeIndex leaf : leaves) direct.forget(leaf);
+  if (rows.carry_light()) {  // a slope of light at the old place says nothing at the new one
+    std::vector<RelativeLight> irradiance;
+    for (const NodeIndex row : of_moved)
+      irradiance.push_back(plan.may_be_lit(forests.rows().id(row).root_face()) ? field.irradiance(row) : RelativeLight{});
+    field.set(of_moved, irradiance);
+  }
+  forests.split_as_at_start(plan);
+  fit_to_nodes();
 }
 
 void SolveState::save(PlainWriter& out) const {

@@ -31,7 +31,7 @@ class SolveState {
   const SolveOptions options;
   RayBudget& budget;
   Ranks& ranks;
-  const LocalScene scene;
+  LocalScene scene;
   Forests forests;
   TracedRows rows;
   RowField field;
@@ -84,6 +84,10 @@ class SolveState {
   /// more is found by the next pass. `reflects_as_before` says that only emission and lights have changed: where all of them have
   /// by one factor, indirect light has, too. Requires: rows and forests are those of the mesh as it is now.
   void note_relit(Plan new_plan, bool reflects_as_before);
+
+  /// Takes roots of the mesh that have moved since it was `before`, and materials and lights as note_relit() does. Light and rows
+  /// that others are not in the way of stay. Requires: one rank; no frame, neighbour or twin has changed.
+  void note_moved(const BaseMesh& before, Plan new_plan, bool reflects_as_before);
 
   /// Collective. Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on, with
   /// any number of ranks; all else is computed again.

@@ -79,6 +79,10 @@ class Run {
 
   SolveOutcome run() {
     if (log_.head() == 0) publish();
+    if (std::exchange(live_.has_unseen_move, false)) {  // objects are seen where they are, in the light of before
+      publish();
+      requests_.heed_edits(false);
+    }
     const StopReason reason = pass_until_done();
     if (reason == StopReason::parked) save();
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet

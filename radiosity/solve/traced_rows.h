@@ -5,6 +5,7 @@
 #include "radiosity/ranks/deal.h"
 #include "radiosity/rays/transport_rows.h"
 #include "radiosity/solve/forests.h"
+#include "radiosity/solve/moved_roots.h"
 
 #include <map>
 #include <optional>
@@ -69,6 +70,11 @@ class TracedRows {
   void fit_to_nodes();
   /// Forgets the row of a node that was split.
   void forget(NodeIndex row);
+  /// Takes roots that have moved since the mesh was `before`: sends the rays again that ended on them, or may meet them where
+  /// they are now. Returns the rows that must be traced anew instead, which are forgotten: those of moved roots, those that touch
+  /// places where these were or are, and where not all is known of the rays: under panes and media, with hemicubes, and where
+  /// rays left the scene. Requires: one rank; the scene is the new one.
+  std::vector<NodeIndex> note_moved(const BaseMesh& before, const MovedRoots& moved);
 
   /// Collective. Every rank writes the rows of all.
   void save_rows(PlainWriter& out) const;

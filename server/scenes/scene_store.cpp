@@ -26,6 +26,14 @@ std::vector<std::string> warnings_about(const BaseMesh& mesh) {
   return warnings;
 }
 
+/// What edits of another scene did to the objects is how this scene is submitted, unless they were taken away.
+void forget_edits(Scene& scene) {
+  for (SceneObject& object : scene.objects) {
+    if (object.is_hidden) throw invalid_argument("object '" + object.name + "': is hidden; leave its faces out instead");
+    object.motion = {};
+  }
+}
+
 /// Replaces each reflectance of exactly 1 by clamped_reflectance. Returns a sentence about it, or "" if there was none.
 std::string clamp_reflectance_of_one(Scene& scene) {
   std::size_t count = 0;
@@ -128,6 +136,7 @@ std::shared_ptr<const StoredScene> SceneStore::add(Scene scene, const std::strin
   if (display_name.size() > longest_display_name)
     throw invalid_argument("scene.display_name: " + std::to_string(display_name.size()) + " bytes, at most 256 are allowed");
   const std::string clamped = clamp_reflectance_of_one(scene);
+  forget_edits(scene);
   if (const auto fault = find_fault(scene)) throw invalid_argument(fault->text());
   memory_.admit("scene", bytes_a_corner * scene.corners.size() + bytes_an_object * scene.objects.size());
   stop.refuse_stopped();

@@ -27,7 +27,7 @@ SceneEdit without_values(SceneEdit edit) {
   } else if (auto* light = std::get_if<LightEdit>(&edit)) {
     clear(light->dim), clear(light->intensity), clear(light->position), clear(light->direction);
   } else if (auto* object = std::get_if<ObjectEdit>(&edit)) {
-    clear(object->dim);
+    clear(object->dim), clear(object->move), clear(object->turn), clear(object->hidden);
   }
   return edit;
 }
@@ -42,7 +42,7 @@ bool are_alike(const EditStep& a, const EditStep& b) {
 std::size_t bytes_of(const KeptEdit& edit) {
   std::size_t bytes = 100 + edit.author.size() + edit.request_id.size();
   for (const SceneEdit& each : edit.step.edits)
-    bytes += 150 + std::visit([](const auto& part) { return part.name.size(); }, each);
+    bytes += 200 + std::visit([](const auto& part) { return part.name.size(); }, each);
   return bytes;
 }
 
@@ -66,7 +66,7 @@ void check(const EditRequest& request, const Scene& submitted) {
 
 /// Requires: !find_fault(edited).
 std::shared_ptr<const SceneContent> relit(const SceneContent& submitted, Scene edited) {
-  BaseMesh mesh = submitted.mesh.relit_as(edited);
+  BaseMesh mesh = submitted.mesh.edited_as(edited);
   return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh)});
 }
 
@@ -92,6 +92,8 @@ EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request,
   if (!hold) throw StatusError(grpc::FAILED_PRECONDITION, "step.kind: there is nothing to undo or redo");
   Scene edited = edited_scene(submitted->scene, *hold);
   if (const auto fault = find_fault(edited)) throw invalid_argument("step.edits: then " + fault->text());
+  if (const auto object = object_too_far(submitted->scene, edited))
+    throw invalid_argument("step.edits: then '" + *object + "' would lie farther from the scene than the scene is long");
   if (!shines(edited) && shines(submitted->scene)) throw invalid_argument("step.edits: then nothing in the scene would shine");
   return {std::move(edits), hold->empty() ? submitted : relit(*submitted, std::move(edited))};
 }

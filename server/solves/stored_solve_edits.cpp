@@ -6,6 +6,7 @@
 #include "server/solves/stored_solve.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace alvor {
@@ -27,6 +28,16 @@ void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
       run->set_material(material);
     }
     run->set_face_count(run->face_count() + 1);
+  }
+}
+
+void add_objects(std::span<const SceneObject> objects, v1::Look& look) {
+  for (std::uint32_t n = 0; n < objects.size(); ++n) {
+    if (!objects[n].is_hidden && objects[n].motion == Placement{}) continue;
+    v1::LookOfObject& changed = *look.add_objects();
+    changed.set_number(n);
+    encode(objects[n].motion, *changed.mutable_motion());
+    changed.set_hidden(objects[n].is_hidden);
   }
 }
 
@@ -101,6 +112,7 @@ v1::Look StoredSolve::look() const {
     changed.mutable_material()->clear_texture();
   }
   add_faces(before->scene, after->scene, look);
+  add_objects(after->scene.objects, look);
   return look;
 }
 

@@ -117,7 +117,26 @@ void write_texture_seeds(const fs::path& directory) {
   write(directory / "5flat.webp", "\x05" + test::webp_of_one_colour(64, 64));
 }
 
+void write_edit_seeds(const fs::path& directory) {
+  v1::EditStep step;
+  v1::ObjectEdit& object = *step.add_edits()->mutable_object();
+  object.set_name("block");
+  object.mutable_move()->set_x(0.5);
+  object.set_turn(30);
+  step.add_edits()->mutable_object()->set_name("lamp");
+  step.mutable_edits(1)->mutable_object()->set_hidden(true);
+  step.add_edits()->mutable_material()->set_name("m0");
+  step.mutable_edits(2)->mutable_material()->mutable_reflectance()->set_r(0.5);
+  step.add_edits()->mutable_light()->set_name("bulb");
+  step.mutable_edits(3)->mutable_light()->set_dim(0.5);
+  v1::EditStep undo;
+  undo.set_kind(v1::EditStep::UNDO);
+  const auto text = [](const v1::EditStep& of) { return '\0' + fuzz::as_text(of.SerializeAsString()); };
+  write(directory / "edit" / "objects", text(step) + text(undo) + text(step));
+}
+
 void write_seeds(const fs::path& directory, std::span<char*> files) {
+  write_edit_seeds(directory);
   const Scene room = test::coloured_room();
   write(directory / "scene_upload" / "room", upload_of(room));
   write(directory / "scene_upload" / "furnace", upload_of(test::furnace(1, 0.5)));

@@ -68,6 +68,30 @@ def test_killed_server(world, observed):
                   "watchers' files equal that of an undisturbed solve")
 
 
+def test_killed_between_edits(world, observed):
+  """Server killed (-9) three times just after edits: each acknowledged one is there, none twice, and all who watch see the same room."""
+  server = world.server("--insecure", "--checkpoint-interval", "0.5")
+  own = start_slow_solve(world, 20)
+  desk = world.desk()
+  name = the_solve(desk)
+  watcher = start_watching(world, name, "watched.glb")
+  until(lambda: solve(desk, name)["leaves"] > 100, 30, "it has begun")
+  edits = 0
+  for blue in (0.1, 0.4, 0.7):
+    for change in (["--set", f"material:white.reflectance=0.5,0.5,{blue}"], ["--undo"], ["--redo"]):
+      alvor(desk, "edit", name, *change)
+      edits += 1
+    server.kill()
+    time.sleep(2)
+    server.start()
+  assert own.wait(120) == 0 and watcher.wait(60) == 0
+  assert start_watching(world, name, "late.glb").wait(30) == 0
+  assert solve(desk, name)["edits"] == edits
+  digests = {world.digest(f"{file}.glb") for file in ("own", "watched", "late")}
+  assert len(digests) == 1
+  observed.append(f"{edits} edits, killed three times: three equal files")
+
+
 def lag_is_gone(server, watchers):
   """No watcher is behind, and as many as should be are there."""
   return server.metric("alvor_watchers") == watchers and server.metric("alvor_watcher_lag_revisions") <= 1

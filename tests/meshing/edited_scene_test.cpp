@@ -80,6 +80,39 @@ TEST(EditedScene, AnEditMadeTwiceIsAsGoodAsOnce) {
   EXPECT_EQ(once.materials.back().emission, twice.materials.back().emission);
 }
 
+std::vector<Vec3> corners_of(const Scene& scene, std::size_t face) {
+  std::vector<Vec3> corners;
+  for (const std::uint32_t vertex : scene.corners_of(scene.faces[face])) corners.push_back(scene.vertices[vertex]);
+  return corners;
+}
+
+TEST(EditedScene, ObjectsTurnAboutTheirMiddleAndThenMoveWithThoseThatHangFromThem) {
+  const Scene scene = lamps();
+  const Scene edited = edited_scene(scene, std::vector<SceneEdit>{ObjectEdit{.name = "stand", .move = Vec3{0, -1, 0}, .turn = 90},
+                                                                  ObjectEdit{.name = "right", .move = Vec3{0, 0, 0.25}}});
+  EXPECT_FALSE(find_fault(edited));
+  const std::size_t left = scene.objects[1].first_face;
+  // The stand's lamps lie about (1.25, 2.9, 1.25). Counter-clockwise from above, x goes to -z.
+  const auto before = corners_of(scene, left), after = corners_of(edited, left), other = corners_of(edited, left + 1);
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Vec3 from = before[c] - Vec3{1.25, 2.9, 1.25};
+    EXPECT_LT(length(after[c] - Vec3{1.25 + from.z, 1.9, 1.25 - from.x}), 1e-12);
+    const Vec3 moved = corners_of(scene, left + 1)[c] + Vec3{0, 0, 0.25} - Vec3{1.25, 2.9, 1.25};
+    EXPECT_LT(length(other[c] - Vec3{1.25 + moved.z, 1.9, 1.25 - moved.x}), 1e-12);
+  }
+  EXPECT_EQ(corners_of(edited, left + 2), corners_of(scene, left + 2));
+  EXPECT_LT(length(edited.objects[1].placement.origin - edited.objects[1].motion.origin), 1e-12);
+}
+
+TEST(EditedScene, WhatHangsFromAHiddenObjectIsHiddenAndShinesNoMore) {
+  const Scene scene = lamps();
+  const Scene edited = edited_scene(
+      scene, std::vector<SceneEdit>{ObjectEdit{.name = "stand", .hidden = true}, ObjectEdit{.name = "left", .hidden = false}});
+  EXPECT_TRUE(edited.objects[1].is_hidden);
+  EXPECT_FALSE(edited.objects[3].is_hidden);
+  EXPECT_TRUE(edited.materials[edited.faces[scene.objects[1].first_face].material].emission.is_zero());
+}
+
 TEST(EditedScene, TexturesSayHowMuchIsReflected) {
   Scene scene = lamps();
   scene.materials[0].texture.emplace();
@@ -93,7 +126,9 @@ TEST(EditedScene, FaultsNameTheFirstEditThatCannotBe) {
   const SceneEdit good = ObjectEdit{.name = "left", .dim = 0.5};
   for (const SceneEdit& bad : std::vector<SceneEdit>{
            ObjectEdit{.name = "middle", .dim = 1}, ObjectEdit{.name = "left", .dim = -1}, ObjectEdit{.name = "left", .dim = NAN},
-           ObjectEdit{.name = "left", .dim = {}}, MaterialEdit{.name = "m0", .emission = Rgb{-1, 0, 0}},
+           ObjectEdit{.name = "left", .dim = {}}, ObjectEdit{.name = "left", .turn = NAN},
+           ObjectEdit{.name = "left", .move = Vec3{1e12, 0, 0}}, ObjectEdit{.name = "left", .move = Vec3{0, NAN, 0}},
+           ObjectEdit{.name = "left", .move = Vec3{0, 0, -11}}, MaterialEdit{.name = "m0", .emission = Rgb{-1, 0, 0}},
            MaterialEdit{.name = "m0", .reflectance = Rgb{1, 0, 0}},
            MaterialEdit{.name = "m0", .diffuse_transmittance = Rgb{0.1, 0, 0}}, LightEdit{.name = "sun", .dim = 1}}) {
     const auto fault = fault_in(std::vector{good, bad}, scene);

@@ -1,8 +1,8 @@
 // Edits of materials and lights: a solve goes on from what it knows, and ends where a solve of the edited scene ends.
 
+#include "meshing/edit/edited_scene.h"
 #include "meshing/patch_place.h"
-#include "radiosity/solve/live_solve.h"
-#include "radiosity/solve/solver.h"
+#include "tests/radiosity/edited_solve.h"
 #include "tests/radiosity/solve_scenes.h"
 
 #include <gtest/gtest.h>
@@ -14,54 +14,7 @@
 namespace alvor {
 namespace {
 
-using Change = std::function<void(Scene&)>;
-
-/// A solve of a scene that is edited, all in memory.
-class EditedSolve {
- public:
-  EditedSolve(const Scene& scene, const SolveOptions& options) : options_(options), mesh_(scene), scene_(scene) { run(); }
-
-  void edit(const Change& change) {
-    change(scene_);
-    mesh_ = mesh_.relit_as(scene_);
-    ++edits_;
-    run();
-  }
-  const Scene& scene() const { return scene_; }
-  const BaseMesh& mesh() const { return mesh_; }
-  SolutionLog& log() { return log_; }
-  std::shared_ptr<LiveSolve>& live() { return live_; }
-  Step last() const { return log_.last_step(); }
-  std::vector<LeafValue> leaves() const { return log_.leaves(); }
-
-  void run() {
-    SolveControl control;
-    control.live = &live_;
-    control.edits = edits_;
-    outcome = solve_as_planned(mesh_, Plan(mesh_, options_), options_, log_, control);
-  }
-  SolveOutcome outcome;
-
- private:
-  SolveOptions options_;
-  BaseMesh mesh_;
-  Scene scene_;
-  std::uint64_t edits_ = 0;
-  SolutionLog log_;
-  std::shared_ptr<LiveSolve> live_;
-};
-
-/// Returns the root mean square of the differences over the leaves, as a share of the mean; each leaf counts for the same.
-double difference(const std::vector<LeafValue>& a, const std::vector<LeafValue>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double squares = 0, sum = 0;
-  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
-    EXPECT_EQ(a[n].patch, b[n].patch);
-    squares += std::pow(a[n].irradiance.mean() - b[n].irradiance.mean(), 2);
-    sum += b[n].irradiance.mean();
-  }
-  return std::sqrt(squares / static_cast<double>(a.size())) / (sum / static_cast<double>(a.size()));
-}
+using test::Change, test::EditedSolve, test::difference, test::difference_of_roots;
 
 /// Returns a room with two lamps of different materials, so that each can be dimmed.
 Scene room_with_two_lamps() {
@@ -75,6 +28,10 @@ Scene room_with_two_lamps() {
 // No leaf is split, so that the edited solve and a new one have the same leaves and, from the same seed, the same rows.
 const SolveOptions unsplit{.tolerance = 1e-6, .max_depth = 0};
 
+Change of_object(const ObjectEdit& edit) {
+  return [edit](Scene& scene) { scene = edited_scene(scene, std::vector<SceneEdit>{edit}); };
+}
+
 struct Case {
   std::string name;
   Scene (*scene)();
@@ -83,64 +40,69 @@ struct Case {
 void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
 
 class Edit : public testing::TestWithParam<Case> {};
-INSTANTIATE_TEST_SUITE_P(Cases, Edit,
-                         testing::Values(Case{"Reflectance", test::coloured_room,
-                                              [](Scene& s) {
-                                                s.materials[0].reflectance = {0.1, 0.7, 0.3};
-                                              }},
-                                         Case{"ReflectanceOfGreyRoom", room_with_two_lamps,
-                                              [](Scene& s) {
-                                                s.materials[0].reflectance = {0.2, 0.5, 0.8};
-                                              }},
-                                         Case{"Emission", test::coloured_room,
-                                              [](Scene& s) {
-                                                s.materials[1].emission = {1, 5, 9};
-                                              }},
-                                         Case{"OneOfTwoLamps", room_with_two_lamps,
-                                              [](Scene& s) {
-                                                s.materials.back().emission = {0, 10, 20};
-                                              }},
-                                         Case{"ALampIsSwitchedOff", room_with_two_lamps,
-                                              [](Scene& s) { s.materials.back().emission = {}; }},
-                                         Case{"AWallBeginsToShine", room_with_two_lamps,
-                                              [](Scene& s) {
-                                                s.materials[2].emission = {3, 2, 1};
-                                              }},
-                                         Case{"ABulb", test::room_with_lamps_and_sun,
-                                              [](Scene& s) {
-                                                s.lights[0].intensity = {1, 1, 20};
-                                              }},
-                                         Case{"ABulbMoves", test::room_with_lamps_and_sun,
-                                              [](Scene& s) {
-                                                s.lights[0].position = {1, 1.5, 1};
-                                              }},
-                                         Case{"TheSunTurnsRed",
-                                              [] {
-                                                Scene scene = test::room_with_lamps_and_sun();
-                                                scene.lights = {scene.lights[2]};
-                                                for (Material& material : scene.materials) material.emission = {};
-                                                return scene;
-                                              },
-                                              [](Scene& s) {
-                                                s.lights[0].intensity = {60, 10, 1};
-                                              }},
-                                         Case{"TheSunGoesOn", test::room_with_lamps_and_sun,
-                                              [](Scene& s) {
-                                                s.lights[2].direction = normalized(Vec3{-0.3, -1, 0.3});
-                                              }},
-                                         Case{"ManyLamps", test::room_with_many_lamps,
-                                              [](Scene& s) {
-                                                s.materials[1].emission = {3, 3, 3};
-                                              }},
-                                         Case{"Curtain", test::curtained_room,
-                                              [](Scene& s) {
-                                                s.materials[3].diffuse_transmittance = {0.1, 0.1, 0.5};
-                                              }},
-                                         Case{"AllSurfacesShine", [] { return test::furnace(1, 0.5); },
-                                              [](Scene& s) {
-                                                s.materials[0].reflectance = {0.2, 0.4, 0.6};
-                                              }}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Cases, Edit,
+    testing::Values(Case{"Reflectance", test::coloured_room,
+                         [](Scene& s) {
+                           s.materials[0].reflectance = {0.1, 0.7, 0.3};
+                         }},
+                    Case{"ReflectanceOfGreyRoom", room_with_two_lamps,
+                         [](Scene& s) {
+                           s.materials[0].reflectance = {0.2, 0.5, 0.8};
+                         }},
+                    Case{"Emission", test::coloured_room,
+                         [](Scene& s) {
+                           s.materials[1].emission = {1, 5, 9};
+                         }},
+                    Case{"OneOfTwoLamps", room_with_two_lamps,
+                         [](Scene& s) {
+                           s.materials.back().emission = {0, 10, 20};
+                         }},
+                    Case{"ALampIsSwitchedOff", room_with_two_lamps, [](Scene& s) { s.materials.back().emission = {}; }},
+                    Case{"AWallBeginsToShine", room_with_two_lamps,
+                         [](Scene& s) {
+                           s.materials[2].emission = {3, 2, 1};
+                         }},
+                    Case{"ABulb", test::room_with_lamps_and_sun,
+                         [](Scene& s) {
+                           s.lights[0].intensity = {1, 1, 20};
+                         }},
+                    Case{"ABulbMoves", test::room_with_lamps_and_sun,
+                         [](Scene& s) {
+                           s.lights[0].position = {1, 1.5, 1};
+                         }},
+                    Case{"TheSunTurnsRed",
+                         [] {
+                           Scene scene = test::room_with_lamps_and_sun();
+                           scene.lights = {scene.lights[2]};
+                           for (Material& material : scene.materials) material.emission = {};
+                           return scene;
+                         },
+                         [](Scene& s) {
+                           s.lights[0].intensity = {60, 10, 1};
+                         }},
+                    Case{"TheSunGoesOn", test::room_with_lamps_and_sun,
+                         [](Scene& s) {
+                           s.lights[2].direction = normalized(Vec3{-0.3, -1, 0.3});
+                         }},
+                    Case{"ManyLamps", test::room_with_many_lamps,
+                         [](Scene& s) {
+                           s.materials[1].emission = {3, 3, 3};
+                         }},
+                    Case{"Curtain", test::curtained_room,
+                         [](Scene& s) {
+                           s.materials[3].diffuse_transmittance = {0.1, 0.1, 0.5};
+                         }},
+                    Case{"ABoxMoves", test::room_of_objects, of_object({.name = "box", .move = Vec3{0.3, 0, 1.7}})},
+                    Case{"ABoxTurnsAndStaysOnTheFloor", test::room_of_objects, of_object({.name = "box", .turn = 30})},
+                    Case{"ABoxIsLiftedOffTheFloor", test::room_of_objects, of_object({.name = "box", .move = Vec3{0, 0.4, 0}})},
+                    Case{"ABoxIsHidden", test::room_of_objects, of_object({.name = "box", .hidden = true})},
+                    Case{"ALampMoves", test::room_of_objects, of_object({.name = "lamp", .move = Vec3{-0.8, -0.3, 1}})},
+                    Case{"AllSurfacesShine", [] { return test::furnace(1, 0.5); },
+                         [](Scene& s) {
+                           s.materials[0].reflectance = {0.2, 0.4, 0.6};
+                         }}),
+    [](const auto& one) { return one.param.name; });
 
 TEST_P(Edit, EndsWhereASolveOfTheEditedSceneEnds) {
   EditedSolve edited(GetParam().scene(), unsplit);
@@ -165,23 +127,7 @@ TEST_P(Edit, WithinWhatBothEstimatesSayWhereLeavesAreSplit) {
   EditedSolve edited(GetParam().scene(), options);
   edited.edit(GetParam().change);
   const EditedSolve anew(edited.scene(), options);
-  // Both as means over the roots, which both have.
-  const auto means = [](const EditedSolve& solve) {
-    std::vector<double> power(solve.mesh().roots().size());
-    for (const LeafValue& leaf : solve.leaves())
-      power[leaf.patch.root_face()] += area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch)) * leaf.irradiance.mean();
-    return power;
-  };
-  const auto a = means(edited), b = means(anew);
-  double squares = 0, area = 0, sum = 0;
-  for (std::size_t root = 0; root < a.size(); ++root) {
-    const double own = edited.mesh().roots()[root].area;
-    squares += std::pow(a[root] - b[root], 2) / own;
-    sum += b[root];
-    area += own;
-  }
-  const double off = std::sqrt(squares / area) / (sum / area);
-  EXPECT_LT(off, edited.last().estimated_error + anew.last().estimated_error);
+  EXPECT_LT(difference_of_roots(edited, anew), edited.last().estimated_error + anew.last().estimated_error);
 }
 
 TEST_P(Edit, KeepingWhatEditsNeedChangesNoBit) {
@@ -263,7 +209,7 @@ TEST(EditedSolve, GoesOnFromACheckpointOfBeforeTheEdit) {
 
   Scene changed = scene;
   changed.materials[0].reflectance = {0.1, 0.1, 0.4};
-  const BaseMesh edited = mesh.relit_as(changed);
+  const BaseMesh edited = mesh.edited_as(changed);
   std::shared_ptr<LiveSolve> live;
   SolveControl on;
   on.checkpoint = state;

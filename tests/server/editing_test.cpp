@@ -9,6 +9,7 @@
 #include "tests/server/refusal.h"
 #include "tests/server/test_server.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -34,6 +35,14 @@ v1::EditStep dim_light(const std::string& light, double dim) {
   v1::EditStep step;
   step.add_edits()->mutable_light()->set_name(light);
   step.mutable_edits(0)->mutable_light()->set_dim(dim);
+  return step;
+}
+
+v1::EditStep moved(const std::string& object, double x, double y, double z) {
+  v1::EditStep step;
+  step.add_edits()->mutable_object()->set_name(object);
+  v1::Vector3& move = *step.mutable_edits(0)->mutable_object()->mutable_move();
+  move.set_x(x), move.set_y(y), move.set_z(z);
   return step;
 }
 
@@ -164,6 +173,32 @@ TEST_F(EditingTest, ObjectsOfOneMaterialAreDimmedByThemselves) {
   EXPECT_EQ(last.state(), v1::Solve::SUCCEEDED);
 }
 
+TEST_F(EditingTest, ObjectsAreMovedAndTakenAway) {
+  const std::size_t roots = BaseMesh(room()).roots().size();
+  v1::EditStep step = moved("lamp.0", 1, -0.5, 2);
+  step.add_edits()->mutable_object()->set_name("lamp.1");
+  step.mutable_edits(1)->mutable_object()->set_hidden(true);
+  client.edit_solve(solve, step);
+  const Scene edited = client.read_scene(solve);
+  const auto corner = [](const Scene& scene, std::size_t face) { return scene.vertices[scene.corners_of(scene.faces[face])[0]]; };
+  const std::size_t lamp = room().objects[0].first_face;
+  EXPECT_EQ(corner(edited, lamp), corner(room(), lamp) + (Vec3{1, -0.5, 2}));
+  EXPECT_EQ(edited.objects[0].motion.origin, (Vec3{1, -0.5, 2}));
+  EXPECT_TRUE(edited.objects[1].is_hidden);
+  const auto leaves = end();
+  EXPECT_EQ(last.state(), v1::Solve::SUCCEEDED);
+  for (const LeafValue& leaf : leaves) {
+    if (leaf.patch.root_face() != roots - 1) continue;
+    EXPECT_TRUE(leaf.irradiance.is_zero());
+  }
+  try {
+    client.create_scene(edited, "");
+    ADD_FAILURE() << "a scene with a hidden object was taken";
+  } catch (const RpcError& error) {
+    EXPECT_NE(std::string(error.what()).find("INVALID_ARGUMENT: object 'lamp.1': is hidden"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(EditingTest, RefusesWhatCannotBeAndNamesTheEditAndItsField) {
   const auto says = [&](const v1::EditStep& step, const std::string& text) {
     EXPECT_NE(refusal(step).find("INVALID_ARGUMENT: " + text), std::string::npos) << refusal(step);
@@ -182,6 +217,10 @@ TEST_F(EditingTest, RefusesWhatCannotBeAndNamesTheEditAndItsField) {
   says(far, "step.edits[0].light.position: must lie within 1e9 m");
   far.mutable_edits(0)->mutable_light()->set_name("sun");
   says(far, "step.edits[0].light.position: 'sun' shines from infinitely far away");
+  says(moved("lamp.0", 1e12, 0, 0),
+       "step.edits[0].object.move: 'lamp.0' would lie farther from the scene than the scene is long");
+  says(moved("lamp.0", NAN, 0, 0), "step.edits[0].object.move");
+  says(moved("chair", 1, 0, 0), "step.edits[0].object.name: 'chair' is no object of the scene");
   v1::EditStep many;
   for (int n = 0; n < 10'000; ++n) *many.add_edits() = dim_light("bulb", 0.5).edits(0);
   says(many, "step.edits: 10000, at most 1000 are allowed");
@@ -340,6 +379,7 @@ TEST_F(EditingTest, AWatchThatFollowsEditsSeesThemAndHowSurfacesLook) {
     v1::EditStep step = recolour("m0", 0.1, 0.2, 0.3);
     step.add_edits()->mutable_object()->set_name("lamp.1");
     step.mutable_edits(1)->mutable_object()->set_dim(0.5);
+    *step.add_edits() = moved("lamp.0", 1, 0, 2).edits(0);
     client.edit_solve(solve, step);
     is_edited = true;
   }
@@ -352,6 +392,9 @@ TEST_F(EditingTest, AWatchThatFollowsEditsSeesThemAndHowSurfacesLook) {
   EXPECT_EQ(look.faces(0).first_face(), room().faces.size() - 1);
   EXPECT_EQ(look.faces(0).face_count(), 1u);
   EXPECT_EQ(look.faces(0).material(), room().materials.size());
+  ASSERT_EQ(look.objects_size(), 1);
+  EXPECT_EQ(look.objects(0).number(), 0u);
+  EXPECT_THAT(look.objects(0).motion(), testing::ElementsAre(1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 2));
 }
 
 TEST_F(EditingTest, WhileItRunsEveryEditIsHeeded) {

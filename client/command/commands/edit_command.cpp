@@ -22,7 +22,7 @@ namespace {
 struct EditCommand {
   std::string solve;
   ServerChoice server;
-  std::vector<std::string> settings, dims;
+  std::vector<std::string> settings, dims, moves, turns, hidden, shown;
   std::string script, author;
   bool undo = false, redo = false, wait = false;
   std::optional<std::uint64_t> base_revision;
@@ -33,11 +33,16 @@ v1::EditStep step_of(const EditCommand& command) {
   if (!command.script.empty()) step = step_of_script(command.script);
   for (const std::string& setting : command.settings) *step.add_edits() = edit_of_setting(setting);
   for (const std::string& dim : command.dims) *step.add_edits() = edit_of_dim(dim);
+  for (const std::string& move : command.moves) *step.add_edits() = edit_of_move(move);
+  for (const std::string& turn : command.turns) *step.add_edits() = edit_of_turn(turn);
+  for (const std::string& name : command.hidden) *step.add_edits() = edit_of_hidden(name, true);
+  for (const std::string& name : command.shown) *step.add_edits() = edit_of_hidden(name, false);
   if (command.undo || command.redo) step.set_kind(command.undo ? v1::EditStep::UNDO : v1::EditStep::REDO);
   const bool is_edit = step.kind() != v1::EditStep::UNDO && step.kind() != v1::EditStep::REDO;
   if (is_edit == (step.edits_size() == 0))
     throw Failure(ExitStatus::usage,
-                  is_edit ? "nothing to edit: give --set, --dim, --script, --undo or --redo" : "--undo and --redo stand alone");
+                  is_edit ? "nothing to edit: give --set, --dim, --move, --turn, --hide, --show, --script, --undo or --redo"
+                          : "--undo and --redo stand alone");
   step.set_author(command.author);
   return step;
 }
@@ -65,7 +70,7 @@ void run_edit(const EditCommand& command) {
 void add_edit_command(CLI::App& app) {
   const auto options = std::make_shared<EditCommand>();
   CLI::App& command =
-      *app.add_subcommand("edit", "Change materials and lights of a solve on a server, while it runs or afterwards");
+      *app.add_subcommand("edit", "Change materials, lights and objects of a solve on a server, while it runs or afterwards");
   command.add_option("solve", options->solve, "Name of the solve: scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
   add_server_option(command, options->server, "Server that holds the solve").required();
   command
@@ -77,6 +82,15 @@ void add_edit_command(CLI::App& app) {
       .add_option("--dim", options->dims,
                   "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off")
       ->type_name("DIM");
+  command
+      .add_option("--move", options->moves, "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it")
+      ->type_name("MOVE");
+  command
+      .add_option("--turn", options->turns,
+                  "NAME=DEGREES: turn an object about the vertical through its middle, counter-clockwise seen from above")
+      ->type_name("TURN");
+  command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME");
+  command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME");
   command.add_option("--script", options->script, "A step of edits as JSON, with the fields of EditStep")
       ->type_name("EDITS.json");
   command.add_flag("--undo", options->undo, "Take back the newest step that holds");

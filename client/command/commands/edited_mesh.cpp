@@ -6,7 +6,7 @@ namespace alvor {
 
 BaseMesh read_edited_mesh(Client& client, const std::string& solve) {
   const BaseMesh submitted(client.read_scene(scene_name_of(solve)));
-  return submitted.relit_as(client.read_scene(solve));
+  return submitted.edited_as(client.read_scene(solve));
 }
 
 }  // namespace alvor

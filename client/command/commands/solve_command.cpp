@@ -134,7 +134,7 @@ Solved solve_and_follow(const SolveCommand& command, RawScene bytes) {
   if (connection.remote()) progress() << solve.name() << '\n';
   solved.followed = follow_own(client, solve, options, interrupt.token());
   const auto& steps = solved.followed.mirror.steps();
-  if (!steps.empty() && steps.back().edits > 0) solved.mesh = solved.mesh->relit_as(client.read_scene(solve.name()));
+  if (!steps.empty() && steps.back().edits > 0) solved.mesh = solved.mesh->edited_as(client.read_scene(solve.name()));
   return solved;
 }
 

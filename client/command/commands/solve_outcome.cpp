@@ -61,7 +61,7 @@ MeanLight mean_light(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
   double power = 0;
   for (const LeafValue& leaf : leaves)
     power += area_of(mesh, shape_of(mesh, leaf.patch)) * one_number(widen(leaf.irradiance), light.quantity);
-  for (const RootPatch& root : mesh.roots()) light.area += root.area;
+  for (const RootPatch& root : mesh.roots()) light.area += root.is_hidden ? 0 : root.area;
   if (light.area > 0) light.irradiance = power / light.area;
   return light;
 }

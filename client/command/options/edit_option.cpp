@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <fstream>
+#include <span>
 #include <sstream>
 #include <system_error>
 #include <vector>
@@ -31,6 +32,13 @@ Named split(const std::string& option, const std::string& text) {
   return {text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
 }
 
+/// `NAME=VALUE` of an object: the last '=' counts.
+Named split_object(const std::string& option, const std::string& text) {
+  const auto equals = text.rfind('=');
+  if (equals == std::string::npos) refuse(option, text, "must be NAME=VALUE, with the name of an object");
+  return {"object", text.substr(0, equals), text.substr(equals + 1)};
+}
+
 std::vector<double> numbers_of(const std::string& option, const std::string& text, const std::string& value, std::size_t count) {
   std::vector<double> numbers;
   const char *at = value.data(), *const end = at + value.size();
@@ -48,6 +56,11 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   return numbers;
 }
 
+/// Requires: three numbers.
+void set_vector(std::span<const double> numbers, v1::Vector3& vector) {
+  vector.set_x(numbers[0]), vector.set_y(numbers[1]), vector.set_z(numbers[2]);
+}
+
 }  // namespace
 
 v1::Edit edit_of_setting(const std::string& setting) {
@@ -62,10 +75,7 @@ v1::Edit edit_of_setting(const std::string& setting) {
     const auto n = three();
     colour.set_r(n[0]), colour.set_g(n[1]), colour.set_b(n[2]);
   };
-  const auto set_vector = [&](v1::Vector3& vector) {
-    const auto n = three();
-    vector.set_x(n[0]), vector.set_y(n[1]), vector.set_z(n[2]);
-  };
+  const auto set = [&](v1::Vector3& vector) { set_vector(three(), vector); };
   v1::Edit edit;
   if (named.part == "material") {
     v1::MaterialEdit& material = *edit.mutable_material();
@@ -78,8 +88,8 @@ v1::Edit edit_of_setting(const std::string& setting) {
     v1::LightEdit& light = *edit.mutable_light();
     light.set_name(named.name);
     if (field == "intensity") set_colour(*light.mutable_intensity());
-    else if (field == "position") set_vector(*light.mutable_position());
-    else if (field == "direction") set_vector(*light.mutable_direction());
+    else if (field == "position") set(*light.mutable_position());
+    else if (field == "direction") set(*light.mutable_direction());
     else refuse(option, setting, "a light has the fields intensity, position, direction");
   } else {
     refuse(option, setting, "the part must be material or light");
@@ -101,6 +111,29 @@ v1::Edit edit_of_dim(const std::string& dim) {
   } else {
     refuse(option, dim, "the part must be light or object");
   }
+  return edit;
+}
+
+v1::Edit edit_of_move(const std::string& move) {
+  const Named named = split_object("--move", move);
+  v1::Edit edit;
+  edit.mutable_object()->set_name(named.name);
+  set_vector(numbers_of("--move", move, named.value, 3), *edit.mutable_object()->mutable_move());
+  return edit;
+}
+
+v1::Edit edit_of_turn(const std::string& turn) {
+  const Named named = split_object("--turn", turn);
+  v1::Edit edit;
+  edit.mutable_object()->set_name(named.name);
+  edit.mutable_object()->set_turn(numbers_of("--turn", turn, named.value, 1)[0]);
+  return edit;
+}
+
+v1::Edit edit_of_hidden(const std::string& name, bool hidden) {
+  v1::Edit edit;
+  edit.mutable_object()->set_name(name);
+  edit.mutable_object()->set_hidden(hidden);
   return edit;
 }
 

@@ -11,6 +11,11 @@ namespace alvor {
 v1::Edit edit_of_setting(const std::string& setting);
 /// Returns the edit of `--dim PART:NAME=FACTOR`. Throws Failure (usage) that names the option.
 v1::Edit edit_of_dim(const std::string& dim);
+/// Returns the edits of `--move NAME=X,Y,Z`, `--turn NAME=DEGREES`, `--hide NAME` and `--show NAME`, of objects. Throw Failure
+/// (usage) that names the option.
+v1::Edit edit_of_move(const std::string& move);
+v1::Edit edit_of_turn(const std::string& turn);
+v1::Edit edit_of_hidden(const std::string& name, bool hidden);
 /// Returns the step of a JSON file: {"edits": [{"material": {"name": "wall", "reflectance": {"r": 0.2, "g": 0.2, "b": 0.2}}}]},
 /// with the fields of EditStep. Throws Failure (usage) that names the file.
 v1::EditStep step_of_script(const std::string& path);

@@ -24,8 +24,8 @@ export type Bands = [number, number, number];
 /** What of a scene can be edited, as it was submitted. */
 export interface Parts {
   lights: { name: string; intensity: Bands; position?: Bands }[];
-  /** Objects of which faces emit. */
-  lamps: string[];
+  /** Objects with faces. `shines`: faces of it emit. `isRoom`: it is as long and wide as the scene. */
+  objects: { name: string; shines: boolean; isRoom: boolean }[];
   materials: { name: string; emission: Bands; reflectance: Bands; hasTexture: boolean }[];
 }
 

@@ -80,7 +80,9 @@ abstract class Shown {
 
   /** Shows how edits have made surfaces look. */
   protected setLook(look: Look): void {
-    this.surface.onMaterials(this.mesh.applyLook(look));
+    const { relit, moved } = this.mesh.applyLook(look);
+    this.surface.onMaterials(relit);
+    this.surface.onMoved(moved);
     this.surface.onTransmittances();
     tell({ kind: "look", ...tablesOf(this.mesh) });
     this.isChanged = true;

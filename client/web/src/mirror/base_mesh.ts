@@ -1,7 +1,7 @@
 // The root patches that patch ids refer to, as ReadMesh sends them.
 
 import { Quantity, UpAxis, type Light, type Material, type ReadMeshResponse, type Rgb, type SceneObject } from "../gen/alvor/v1/scene_service_pb";
-import type { Look } from "../gen/alvor/v1/solve_service_pb";
+import type { Look, LookOfObject } from "../gen/alvor/v1/solve_service_pb";
 import { type Blend, blendOnQuad } from "./blend";
 import { GRID } from "./mirror";
 
@@ -48,7 +48,13 @@ export class BaseMesh {
   /** Of each translucent root the one on its other side, -1 elsewhere; empty if none is translucent. */
   private readonly otherSide: Int32Array;
   /** Before all edits. */
-  private readonly submitted: { materials: Material[]; material: Uint32Array };
+  private readonly submitted: { materials: Material[]; material: Uint32Array; corners: Float64Array };
+  /** 1 for roots that an edit took away. */
+  private readonly hidden: Uint8Array;
+  /** 1 for roots that an edit took away or moved. */
+  private readonly edited: Uint8Array;
+  /** The object of each root: its place in `objects`, or -1. */
+  private readonly objectOfRoot: Int32Array;
   private readonly point = new Float64Array(3);
 
   constructor(messages: ReadMeshResponse[]) {
@@ -64,9 +70,12 @@ export class BaseMesh {
     this.materials = messages.flatMap((message) => message.sceneMaterials);
     this.lights = messages.flatMap((message) => message.sceneLights);
     this.objects = messages.flatMap((message) => message.sceneObjects);
-    this.submitted = { materials: this.materials, material: this.material.slice() };
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
+    this.submitted = { materials: this.materials, material: this.material.slice(), corners: this.corners.slice() };
+    this.objectOfRoot = Int32Array.from(this.sceneFace, (face) => this.numberOfObject(face));
+    this.hidden = Uint8Array.from(this.objectOfRoot, (object) => Number(this.objects[object]?.hidden ?? false));
+    this.edited = new Uint8Array(this.rootCount);
     const cornerCount = this.firstCorner[this.rootCount];
     this.textureCoordinates = Float32Array.from(messages.flatMap((message) => message.textureCoordinates));
     this.hasTextures = cornerCount > 0 && this.textureCoordinates.length === 2 * cornerCount;
@@ -109,11 +118,60 @@ export class BaseMesh {
 
   /** Returns the object that a face of the scene belongs to. */
   objectOfFace(face: number): SceneObject | undefined {
-    return this.objects.find(({ firstFace, faceCount }) => face >= firstFace && face < firstFace + faceCount);
+    return this.objects[this.numberOfObject(face)];
   }
 
-  /** Makes surfaces look as edits have made them, and returns which roots have other materials than before. */
-  applyLook(look: Look): Set<number> {
+  isHidden(root: number): boolean {
+    return this.hidden[root] !== 0;
+  }
+
+  /** Makes surfaces look as edits have made them, and returns which roots have other materials or lie elsewhere than before. */
+  applyLook(look: Look): { relit: Set<number>; moved: Set<number> } {
+    return { relit: this.applyMaterials(look), moved: this.applyPlaces(look.objects) };
+  }
+
+  /** Returns the place in `objects` of the one that a face of the scene belongs to, or -1. Objects come in the order of their faces. */
+  numberOfObject(face: number): number {
+    let low = 0;
+    let high = this.objects.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.objects[middle].firstFace <= face) low = middle + 1;
+      else high = middle;
+    }
+    const last = this.objects[low - 1];
+    return last && face < last.firstFace + last.faceCount ? low - 1 : -1;
+  }
+
+  private applyPlaces(objects: LookOfObject[]): Set<number> {
+    const looks = new Map(objects.map((object) => [object.number, object]));
+    const moved = new Set<number>();
+    for (let root = 0; root < this.rootCount; ++root) {
+      const look = looks.get(this.objectOfRoot[root]);
+      if (!look && this.edited[root] === 0) continue;
+      this.edited[root] = Number(look !== undefined);
+      const isHidden = Number(look?.hidden ?? false);
+      let isMoved = isHidden !== this.hidden[root];
+      this.hidden[root] = isHidden;
+      for (let corner = this.firstCorner[root]; corner < this.firstCorner[root + 1]; ++corner) {
+        const place = this.placed(corner, look?.motion ?? []);
+        isMoved ||= place.some((x, k) => x !== this.corners[3 * corner + k]);
+        this.corners.set(place, 3 * corner);
+      }
+      if (isMoved) moved.add(root);
+    }
+    return moved;
+  }
+
+  /** Returns where a motion puts a corner, from the middle of the mesh. */
+  private placed(corner: number, motion: number[]): number[] {
+    const from = [...this.submitted.corners.subarray(3 * corner, 3 * corner + 3)];
+    if (motion.length < 12) return from;
+    const [x, y, z] = from.map((value, k) => value + this.centre[k]);
+    return [0, 1, 2].map((k) => x * motion[k] + y * motion[3 + k] + z * motion[6 + k] + motion[9 + k] - this.centre[k]);
+  }
+
+  private applyMaterials(look: Look): Set<number> {
     const before = this.material.slice();
     this.materials = this.submitted.materials.slice();
     for (const { number, material } of look.materials)

@@ -7,22 +7,54 @@ import type { BaseMesh } from "./base_mesh";
 const NEAR = [Light_Kind.POINT, Light_Kind.SPOT, Light_Kind.LUMINAIRE];
 const bandsOf = (value: Rgb | undefined): Bands => [value?.r ?? 0, value?.g ?? 0, value?.b ?? 0];
 
+interface Extent {
+  low: number[];
+  high: number[];
+  shines: boolean;
+}
+
+/** Returns the objects that have faces, with those that hang from them. */
+function objectsOf(mesh: BaseMesh): Parts["objects"] {
+  const shines = mesh.materials.map(({ emission }) => Math.max(...bandsOf(emission)) > 0);
+  const nothing = (): Extent => ({ low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity], shines: false });
+  const extents = mesh.objects.map(nothing);
+  const all = nothing();
+  const add = (to: Extent, of: Extent) => {
+    to.low = to.low.map((x, k) => Math.min(x, of.low[k]));
+    to.high = to.high.map((x, k) => Math.max(x, of.high[k]));
+    to.shines ||= of.shines;
+  };
+  for (let root = 0; root < mesh.rootCount; ++root) {
+    const of = nothing();
+    of.shines = shines[mesh.material[root]];
+    for (let corner = mesh.firstCorner[root]; corner < mesh.firstCorner[root + 1]; ++corner) {
+      const place = [...mesh.corners.subarray(3 * corner, 3 * corner + 3)];
+      add(of, { low: place, high: place, shines: false });
+    }
+    add(all, of);
+    const object = mesh.numberOfObject(mesh.sceneFace[root]);
+    if (object >= 0) add(extents[object], of);
+  }
+  [...mesh.objects].reverse().forEach(({ parent }, n) => {
+    if (parent !== undefined) add(extents[parent], extents[extents.length - 1 - n]);
+  });
+  const sides = ({ low, high }: Extent) => low.map((x, k) => high[k] - x);
+  return mesh.objects.flatMap(({ name }, n) => {
+    const own = sides(extents[n]);
+    const isRoom = sides(all).filter((side, k) => own[k] >= 0.9 * side).length >= 2;
+    return own[0] >= 0 ? [{ name, shines: extents[n].shines, isRoom }] : [];
+  });
+}
+
 /** Requires: no edit was applied yet. */
 export function partsOf(mesh: BaseMesh): Parts {
-  const shines = mesh.materials.map(({ emission }) => Math.max(...bandsOf(emission)) > 0);
-  const lamps = new Set<string>();
-  for (let root = 0; root < mesh.rootCount; ++root) {
-    if (!shines[mesh.material[root]]) continue;
-    const object = mesh.objectOfFace(mesh.sceneFace[root]);
-    if (object) lamps.add(object.name);
-  }
   return {
     lights: mesh.lights.map(({ name, kind, intensity, position }) => ({
       name,
       intensity: bandsOf(intensity),
       position: NEAR.includes(kind) ? [position?.x ?? 0, position?.y ?? 0, position?.z ?? 0] : undefined,
     })),
-    lamps: [...lamps],
+    objects: objectsOf(mesh),
     materials: mesh.materials.map(({ name, emission, reflectance, texture }) => ({
       name,
       emission: bandsOf(emission),

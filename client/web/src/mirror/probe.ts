@@ -85,6 +85,7 @@ function placeOnImage(mesh: BaseMesh, root: number, blend: Blend): [number, numb
 function firstFront(mesh: BaseMesh, origin: Vector, direction: Vector, images?: Image[]): Hit | null {
   let best: Hit | null = null;
   for (let root = 0; root < mesh.rootCount; ++root) {
+    if (mesh.isHidden(root)) continue;
     const first = 3 * mesh.firstCorner[root];
     const corner = (c: number): Vector => ({
       x: mesh.corners[first + 3 * c],

@@ -97,6 +97,12 @@ export class Surface implements MirrorListener {
       if (roots.has(this.mirror.root[this.nodeOfSlot[slot]])) this.dirtySlots.add(slot, VALUES);
   }
 
+  /** These roots lie elsewhere, or were hidden or brought back. */
+  onMoved(roots: Set<number>): void {
+    for (let slot = 0; roots.size > 0 && slot < this.slotCount; ++slot)
+      if (roots.has(this.mirror.root[this.nodeOfSlot[slot]])) this.dirtySlots.add(slot, POSITIONS);
+  }
+
   /** The transmittances of materials are other ones. */
   onTransmittances(): void {
     for (let slot = 0; this.mesh.isTranslucent && slot < this.slotCount; ++slot) this.dirtySlots.add(slot, TRANSMITTED);
@@ -346,6 +352,7 @@ export class Surface implements MirrorListener {
     const corners = this.isQuad(this.nodeOfSlot[slot]) ? 4 : 3;
     const centre = SLOT_VERTICES * slot;
     out.fill(centre, at, at + SLOT_INDICES);
+    if (this.mesh.isHidden(this.mirror.root[this.nodeOfSlot[slot]])) return;
     for (let k = 0; k < corners; ++k, at += 6) {
       const next = centre + 1 + ((k + 1) % corners);
       const isOpen = this.isOpen(POINTS * slot + 4 + k);

@@ -14,8 +14,19 @@ const rgb = ([r, g, b]: Bands) => ({ r, g, b });
 const largest = (bands: Bands) => Math.max(...bands);
 const scaled = (bands: Bands, factor: number) => bands.map((band) => factor * band) as Bands;
 
+/** What holds of a part. `turn`: of an object. `position`: of an object how far it was moved. */
+interface Present {
+  isLamp: boolean;
+  dim: number;
+  colour?: Bands;
+  position?: Bands;
+  turn?: number;
+  hidden: boolean;
+  emission?: Bands;
+}
+
 export class Editing {
-  private parts: Parts = { lights: [], lamps: [], materials: [] };
+  private parts: Parts = { lights: [], objects: [], materials: [] };
   private steps: EditStep[] = [];
   /** A slide that has not been sent, because what was sent before it has not been answered. */
   private waiting?: Edit;
@@ -26,6 +37,8 @@ export class Editing {
     input("edit-dim").addEventListener("input", () => this.slide(this.dimmed(input("edit-dim").valueAsNumber)));
     input("edit-colour").addEventListener("input", () => this.slide(this.coloured(linearOf(input("edit-colour").value))));
     for (const id of ["edit-x", "edit-y", "edit-z"]) input(id).addEventListener("input", () => this.move());
+    input("edit-turn").addEventListener("input", () => this.slide(this.objectEdit({ turn: input("edit-turn").valueAsNumber })));
+    input("edit-hidden").addEventListener("change", () => this.hide(input("edit-hidden").checked));
     button("undo").addEventListener("click", () => this.step(EditStep_Kind.UNDO));
     button("redo").addEventListener("click", () => this.step(EditStep_Kind.REDO));
     input("edit-author").value = sessionStorage.getItem("author") ?? "";
@@ -40,9 +53,11 @@ export class Editing {
       options.append(...names.map((name) => new Option(name, `${kind}:${name}`)));
       return names.length > 0 ? [options] : [];
     };
+    const named = (counts: (object: Parts["objects"][0]) => boolean) => parts.objects.filter(counts).map(({ name }) => name);
     select("edit-part").replaceChildren(
       ...group("Lights", "light", parts.lights.map(({ name }) => name)),
-      ...group("Lamps", "object", parts.lamps),
+      ...group("Lamps", "object", named(({ shines }) => shines)),
+      ...group("Objects", "object", named(({ shines }) => !shines)),
       ...group("Materials", "material", parts.materials.map(({ name }) => name)),
     );
     this.showPart();
@@ -61,9 +76,10 @@ export class Editing {
     if (newest && newest.revision > before && !this.isSending && !this.waiting) this.showPart();
   }
 
-  /** Chooses what a person clicked at: a lamp, or a surface by its material. */
+  /** Chooses what a person clicked at: an object, or the material of what is no object or the room itself. */
   choose(material: string, object: string | undefined): void {
-    const wanted = object && this.parts.lamps.includes(object) ? `object:${object}` : `material:${material}`;
+    const isThing = this.parts.objects.some(({ name, isRoom }) => name === object && !isRoom);
+    const wanted = isThing ? `object:${object}` : `material:${material}`;
     if (![...select("edit-part").options].some(({ value }) => value === wanted)) return;
     select("edit-part").value = wanted;
     this.showPart();
@@ -76,19 +92,25 @@ export class Editing {
   }
 
   /** What holds of the chosen part now. */
-  private present(): { dim: number; colour?: Bands; position?: Bands; emission?: Bands } {
+  private present(): Present {
     const { kind, name } = this.chosen;
+    const object = this.parts.objects.find((one) => kind === "object" && one.name === name);
     const light = this.parts.lights.find((one) => kind === "light" && one.name === name);
     const material = this.parts.materials.find((one) => kind === "material" && one.name === name);
     let dim = 1;
     let intensity = light?.intensity;
-    let position = light?.position;
+    let position: Bands | undefined = object ? [0, 0, 0] : light?.position;
+    let turn = object && 0;
+    let hidden = false;
     let reflectance = material?.hasTexture ? undefined : material?.reflectance;
     let emission = material?.emission;
     const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
     for (const { part } of editsThatHold(this.steps)) {
       if (part.case !== kind || part.value.name !== name) continue;
       if (part.case !== "material") dim = part.value.dim ?? dim;
+      if (part.case === "object" && part.value.move) position = [part.value.move.x, part.value.move.y, part.value.move.z];
+      if (part.case === "object") turn = part.value.turn ?? turn;
+      if (part.case === "object") hidden = part.value.hidden ?? hidden;
       if (part.case === "light" && part.value.intensity) intensity = bands(part.value.intensity);
       if (part.case === "light" && part.value.position) position = [part.value.position.x, part.value.position.y, part.value.position.z];
       if (part.case === "material" && part.value.reflectance && reflectance) reflectance = bands(part.value.reflectance);
@@ -97,15 +119,21 @@ export class Editing {
     const shines = material && largest(material.emission) > 0;
     if (shines) dim = largest(emission!) / largest(material.emission);
     const tint = intensity && largest(intensity) > 0 ? scaled(intensity, 1 / largest(intensity)) : undefined;
-    return { dim, colour: light ? tint : shines ? undefined : reflectance, position, emission: shines ? material.emission : undefined };
+    const colour = light ? tint : shines ? undefined : reflectance;
+    const isLamp = light !== undefined || shines === true || object?.shines === true;
+    return { isLamp, dim, colour, position, turn, hidden, emission: shines ? material.emission : undefined };
   }
 
   private showPart(): void {
-    const { kind } = this.chosen;
-    const { dim, colour, position, emission } = this.present();
-    byId("edit-dim-label").hidden = kind === "material" && !emission;
+    const { isLamp, dim, colour, position, turn, hidden } = this.present();
+    byId("edit-dim-label").hidden = !isLamp;
     byId("edit-colour-label").hidden = !colour;
     byId("edit-place").hidden = !position;
+    byId("edit-place-title").textContent = turn === undefined ? "Position, m" : "Moved by, m";
+    byId("edit-turn-label").hidden = byId("edit-hidden-label").hidden = turn === undefined;
+    input("edit-turn").value = String(turn ?? 0);
+    byId("edit-turn-degrees").textContent = `${turn ?? 0}°`;
+    input("edit-hidden").checked = hidden;
     input("edit-dim").value = String(dim);
     this.tellDim();
     if (colour) input("edit-colour").value = colourOf(colour);
@@ -139,7 +167,13 @@ export class Editing {
   private move(): void {
     const [x, y, z] = ["edit-x", "edit-y", "edit-z"].map((id) => input(id).valueAsNumber);
     if (![x, y, z].every(Number.isFinite)) return;
+    if (this.chosen.kind === "object") return this.slide(this.objectEdit({ move: { x, y, z } }));
     this.slide(create(EditSchema, { part: { case: "light", value: { name: this.chosen.name, position: { x, y, z } } } }));
+  }
+
+  private objectEdit(change: { move?: { x: number; y: number; z: number }; turn?: number; hidden?: boolean }): Edit {
+    byId("edit-turn-degrees").textContent = `${input("edit-turn").valueAsNumber}°`;
+    return create(EditSchema, { part: { case: "object", value: { name: this.chosen.name, ...change } } });
   }
 
   /** Sends the newest of the edits of a slide as soon as the one before was answered. */
@@ -160,6 +194,10 @@ export class Editing {
       this.waiting = undefined;
       this.isSending = false;
     }
+  }
+
+  private hide(hidden: boolean): void {
+    void this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [this.objectEdit({ hidden })], author: this.author }));
   }
 
   private step(kind: EditStep_Kind): void {

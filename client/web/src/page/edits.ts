@@ -33,6 +33,9 @@ const percent = (share: number) => `${Math.round(100 * share)} %`;
 function textOfEdit({ part }: Edit): string {
   if (part.case === undefined) return "something";
   const { name } = part.value;
+  if (part.case === "object" && part.value.hidden !== undefined) return `${name}, ${part.value.hidden ? "taken away" : "brought back"}`;
+  if (part.case === "object" && part.value.move) return `${name}, moved`;
+  if (part.case === "object" && part.value.turn !== undefined) return `${name}, turned to ${Math.round(part.value.turn)}°`;
   const dim = part.case !== "material" ? part.value.dim : undefined;
   return dim === undefined ? name : `${name} at ${percent(dim)}`;
 }

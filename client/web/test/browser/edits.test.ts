@@ -1,3 +1,4 @@
+import { readFile } from "node:fs/promises";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Server } from "./server";
@@ -7,6 +8,7 @@ const SCENES = new URL("../../../../scenes/", import.meta.url);
 const CORNELL = ["cornell_box.obj", "cornell_box.mtl"].map((name) => new URL(name, SCENES).pathname);
 const RED_WALL = [0.32, 0.35] as const;
 const BACK_WALL = [0.53, 0.35] as const;
+const BLOCK = [0.45, 0.6] as const;
 
 let server: Server;
 let browser: Browser;
@@ -20,10 +22,18 @@ afterAll(async () => {
   await server?.stop();
 });
 
+/** The Cornell box with its blocks as an object. */
+async function withBlocks() {
+  const lines = (await readFile(CORNELL[0], "utf8")).split("\n");
+  lines.splice(lines.findLastIndex((line) => line.startsWith("usemtl")), 0, "o blocks");
+  const material = { name: "cornell_box.mtl", mimeType: "model/mtl", buffer: await readFile(CORNELL[1]) };
+  return [{ name: "blocks.obj", mimeType: "model/obj", buffer: Buffer.from(lines.join("\n")) }, material];
+}
+
 /** Two who watch one solve that has ended. */
-async function two(): Promise<{ name: string; ann: Page; ben: Page }> {
+async function two(files: Parameters<Page["setInputFiles"]>[1] = CORNELL): Promise<{ name: string; ann: Page; ben: Page }> {
   const ann = await openPage(browser, server.url);
-  await ann.setInputFiles("#files", CORNELL);
+  await ann.setInputFiles("#files", files);
   await waitForState(ann, "Done");
   const name = new URL(ann.url()).hash.slice(1).split("?")[0];
   const ben = await openPage(browser, `${server.url}#${name}`);
@@ -78,6 +88,30 @@ describe("edits on the page", () => {
     expect((await server.api.solves.getSolve({ name })).edits).toHaveLength(1);
     await ann.click("#undo");
     await expect.poll(async () => (await pixelAt(ben, ...BACK_WALL))[1]).toBeGreaterThan(0.95 * before);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
+  it("move and hide objects, and bring them back", async () => {
+    const { name, ann, ben } = await two(await withBlocks());
+    await ben.uncheck("#automatic");
+    const block = () => pixelAt(ben, ...BLOCK);
+    const isAs = async (other: number[]) => Math.max(...(await block()).map((value, n) => Math.abs(value - other[n]))) < 12;
+    const before = [...(await block())];
+    await click(ann, BLOCK);
+    await expect.poll(() => ann.inputValue("#edit-part")).toBe("object:blocks");
+    await ann.check("#edit-hidden");
+    await expect.poll(() => isAs(before)).toBe(false);
+    await expect.poll(() => ben.textContent("#edit-news")).toBe("Ann edited blocks, taken away");
+    await waitForState(ben, "Done");
+    await ann.uncheck("#edit-hidden");
+    await expect.poll(() => isAs(before)).toBe(true);
+    await ann.focus("#edit-y");
+    for (let n = 0; n < 20; ++n) await ann.keyboard.press("ArrowUp"); // out at the top
+    await expect.poll(() => isAs(before)).toBe(false);
+    await waitForState(ann, "Done");
+    await ben.click("#undo");
+    await expect.poll(() => isAs(before)).toBe(true);
+    expect((await server.api.solves.getSolve({ name })).edits).toHaveLength(4);
     await Promise.all([ann.close(), ben.close()]);
   });
 

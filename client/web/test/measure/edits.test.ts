@@ -25,11 +25,15 @@ it("films edits of the furnished room", async () => {
     ["2_blue_walls", "material:wall", "#edit-colour", "#4060a0"],
     ["3_one_lamp_at_a_quarter", "object:lamp.001", "#edit-dim", "0.25"],
     ["4_and_off", "object:lamp.001", "#edit-dim", "0"],
+    ["5_chair_turned", "object:chair.003", "#edit-turn", "60"],
+    ["6_table_hidden", "object:table", "#edit-hidden", "on"],
   ];
   for (const [count, [name, part, control, value]] of edits.entries()) {
     await page.selectOption("#edit-part", part);
     await page.locator(control).evaluate((of, to) => {
-      (of as HTMLInputElement).value = to;
+      const control = of as HTMLInputElement;
+      if (control.type === "checkbox") return control.click();
+      control.value = to;
       of.dispatchEvent(new Event("input", { bubbles: true }));
     }, value);
     const edited = async () => {

@@ -69,19 +69,33 @@ describe("a mesh with a look", () => {
 
   it("takes the materials of edits, and gives them back when they were taken back", () => {
     const edited = mesh();
-    expect([...edited.applyLook(look)]).toEqual([2]);
+    expect([...edited.applyLook(look).relit]).toEqual([2]);
     expect(edited.materials[0].reflectance!.r).toBe(0.1);
     expect(edited.materials[edited.material[2]].emission!.r).toBe(4);
     expect(edited.materials[edited.material[1]].emission!.r).toBe(9);
-    expect([...edited.applyLook(create(LookSchema, { edits: 2n }))]).toEqual([2]);
+    expect([...edited.applyLook(create(LookSchema, { edits: 2n })).relit]).toEqual([2]);
     expect(edited.materials[0].reflectance!.r).toBe(0.5);
     expect(edited.material[2]).toBe(1);
+  });
+
+  it("moves and hides objects, and puts them back when that was taken back", () => {
+    const edited = mesh();
+    const motion = [0, 1, 0, -1, 0, 0, 0, 0, 1, 5, 0, 0]; // a quarter turn about z, then 5 m along x
+    const moved = create(LookSchema, { edits: 1n, objects: [{ number: 0, hidden: true }, { number: 1, motion }] });
+    const corner = (root: number, c: number) => [0, 1, 2].map((k) => edited.corners[3 * edited.firstCorner[root] + 3 * c + k] + edited.centre[k]);
+    expect([...edited.applyLook(moved).moved]).toEqual([1, 2]);
+    expect([edited.isHidden(1), edited.isHidden(2)]).toEqual([true, false]);
+    expect([corner(2, 0), corner(2, 1), corner(2, 2)]).toEqual([[5, 0, 2], [5, 1, 2], [4, 0, 2]]);
+    expect([...edited.applyLook(moved).moved]).toEqual([]);
+    expect([...edited.applyLook(create(LookSchema, { edits: 2n })).moved]).toEqual([1, 2]);
+    expect(edited.isHidden(1)).toBe(false);
+    expect(corner(2, 2)).toEqual([0, 1, 2]);
   });
 
   it("has lights, lamps and materials to edit", () => {
     const parts = partsOf(mesh());
     expect(parts.lights).toEqual([{ name: "bulb", intensity: [3, 3, 3], position: [1, 2, 3] }]);
-    expect(parts.lamps).toEqual(["left", "right"]);
+    expect(parts.objects).toEqual(["left", "right"].map((name) => ({ name, shines: true, isRoom: true })));
     expect(parts.materials.map(({ name }) => name)).toEqual(["wall", "lamp"]);
   });
 });

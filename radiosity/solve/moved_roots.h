@@ -1,0 +1,38 @@
+#pragma once
+// What an edit of objects moved: the root patches, and the boxes in which they were and are.
+
+#include "meshing/base_mesh.h"
+#include "meshing/bounding_box.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// The root patches that were moved, hidden or brought back between two meshes of the same roots, with a box for each object
+/// before and after. A root that is hidden is in no box. Lengths in metres.
+class MovedRoots {
+ public:
+  /// Requires: both meshes have the same roots, objects and frame (centre() and extent()).
+  MovedRoots(const BaseMesh& before, const BaseMesh& after);
+
+  bool is_empty() const { return old_boxes_.empty() && new_boxes_.empty(); }
+  bool has(std::uint32_t root) const { return moved_[root] != 0; }
+  /// Returns whether a box touches one in which moved roots were or are.
+  bool touch(const BoundingBox& box) const;
+  /// Returns whether a ray that starts up to `radius` from `from` and ends at `to` may meet moved roots where they are now. May
+  /// say so where it does not.
+  bool may_meet_now(Vec3 from, Vec3 to, double radius) const;
+  /// Returns whether a ray from within `from_radius` of `from` to within `to_radius` of `to` may meet moved roots where they were
+  /// or are. May say so where it does not.
+  bool may_meet(Vec3 from, double from_radius, Vec3 to, double to_radius) const;
+  /// Returns whether part of a box in which moved roots were or are lies in front of the plane through `point`.
+  bool are_in_front(Vec3 point, Vec3 normal) const;
+
+ private:
+  std::vector<std::uint8_t> moved_;  ///< by root
+  std::vector<BoundingBox> old_boxes_, new_boxes_;
+};
+
+}  // namespace alvor

@@ -1,0 +1,102 @@
+// The part of TracedRows that takes moved roots: rays that ended on them or would meet them now are sent again.
+
+#include "meshing/patch_place.h"
+#include "radiosity/rays/ray_source.h"
+#include "radiosity/rays/resent_rays.h"
+#include "radiosity/solve/traced_rows.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+Vec3 point_of(const PatchPoints& points, std::size_t o) { return {points.x[o], points.y[o], points.z[o]}; }
+
+BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape) {
+  BoundingBox box;
+  const auto corners = corners_of(mesh, shape);
+  for (int c = 0; c < shape.corner_count; ++c) box.add(corners[static_cast<std::size_t>(c)]);
+  return box;
+}
+
+/// Mends one row. Where an origin is known to within a stratum only, as in rounds of rays after the first, the stratum's size is
+/// allowed for when looking for rays in the way of an object, and the ray sent is off by as much.
+class RowMender {
+ public:
+  RowMender(const LocalScene& scene, const BaseMesh& before, const MovedRoots& moved, RayBudget& budget)
+      : scene_(scene), before_(before), moved_(moved), budget_(budget) {}
+
+  enum class Outcome { unchanged, mended, lost };
+  /// Sends stale rays again. The row is lost, and unchanged, if one of them meets no front now: which origins are hidden may be
+  /// otherwise. Requires: the row's hits have places, and it comes from rays through nothing that weakens them.
+  Outcome mend(const PatchShape& shape, PatchId patch, std::uint64_t seed, TransportRow& row) const {
+    RandomStream random(seed, patch);
+    const PatchPoints points = sample_points(scene_, shape, random);
+    const auto corners = corners_of(scene_.mesh(), shape);
+    const double stratum = (length(corners[2] - corners[0]) + length(corners[1] - corners[0])) / 2;
+    std::vector<std::size_t> stale;
+    std::vector<ResentRay> rays;
+    for (std::size_t k = 0, hit = 0; k < row.origin_hits.size(); ++k) {
+      if (row.origin_hits[k] == TransportRow::not_sampled) continue;
+      const Vec3 from = point_of(points, k % origins_per_patch), from_metres = scene_.frame().to_metres(from);
+      for (const std::size_t last = hit + row.origin_hits[k]; hit < last; ++hit) {
+        const bool was_moved = moved_.has(row.hits[hit].root_face());
+        const BaseMesh& of_hit = was_moved ? before_ : scene_.mesh();
+        const Vec3 end = centre_of(of_hit, shape_of(of_hit, row.hits[hit]));
+        if (!was_moved && !moved_.may_meet_now(from_metres, end, k < origins_per_patch ? 0 : stratum)) continue;
+        stale.push_back(hit);
+        rays.push_back({from, scene_.frame().to_local(end)});
+      }
+    }
+    if (stale.empty()) return Outcome::unchanged;
+    const auto ends = resend(scene_, rays, scene_.mesh().roots()[shape.root].normal, budget_);
+    if (!std::ranges::all_of(ends, [](const auto& end) { return end.has_value(); })) return Outcome::lost;
+    for (std::size_t n = 0; n < stale.size(); ++n) row.hits[stale[n]] = *ends[n];
+    return Outcome::mended;
+  }
+
+ private:
+  const LocalScene& scene_;
+  const BaseMesh& before_;
+  const MovedRoots& moved_;
+  RayBudget& budget_;
+};
+
+}  // namespace
+
+std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const MovedRoots& moved) {
+  const bool may_mend = plan_.needs(Feature::refinement) && !plan_.needs(Feature::panes) && !plan_.needs(Feature::medium) &&
+                        !directions_.has_weights();
+  const RowMender mender(scene_, before, moved, budget_);
+  const std::vector<NodeIndex> rows = forests_.rows().leaves();
+  std::vector<RowMender::Outcome> outcomes(rows.size(), RowMender::Outcome::unchanged);
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
+    if (!is_traced_[rows[n]]) return;
+    TransportRow& row = rows_[rows[n]];
+    const PatchShape shape = forests_.rows().shape(rows[n]);
+    const RootPatch& root = scene_.mesh().roots()[shape.root];
+    // Where rays went that met no front is not known, and which origins are hidden was found by such rays.
+    const bool has_unknown = !row.is_closed || row.hidden_origins != 0;
+    if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && !may_mend) ||
+        (has_unknown && moved.are_in_front(root.corners[0], root.normal)))
+      outcomes[n] = RowMender::Outcome::lost;
+    else if (carry_light()) outcomes[n] = mender.mend(shape, forests_.rows().id(rows[n]), options_.seed, row);
+  });
+  std::vector<NodeIndex> lost;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    if (outcomes[n] == RowMender::Outcome::mended) hit_leaves_[rows[n]].clear(), found_among_[rows[n]] = 0;
+    if (outcomes[n] != RowMender::Outcome::lost) continue;
+    forget(rows[n]);
+    is_traced_[rows[n]] = false;
+    guides_.erase(rows[n]);
+    lost.push_back(rows[n]);
+  }
+  std::erase_if(wanting_, [this](NodeIndex row) { return !is_traced_[row]; });
+  return lost;
+}
+
+}  // namespace alvor

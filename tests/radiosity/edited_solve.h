@@ -1,0 +1,94 @@
+#pragma once
+// A solve that is edited, and how far two of them are apart.
+
+#include "meshing/patch_place.h"
+#include "radiosity/solve/live_solve.h"
+#include "radiosity/solve/solver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace alvor::test {
+
+using Change = std::function<void(Scene&)>;
+
+/// A solve of a scene that is edited, all in memory.
+class EditedSolve {
+ public:
+  EditedSolve(const Scene& scene, const SolveOptions& options)
+      : options_(options), submitted_(scene), mesh_(submitted_), scene_(scene) {
+    run();
+  }
+  /// Begins with an edited scene.
+  EditedSolve(const Scene& submitted, const SolveOptions& options, const Scene& edited)
+      : options_(options), submitted_(submitted), mesh_(submitted_.edited_as(edited)), scene_(edited) {
+    run();
+  }
+
+  void edit(const Change& change) {
+    change(scene_);
+    mesh_ = submitted_.edited_as(scene_);
+    ++edits_;
+    run();
+  }
+  const Scene& scene() const { return scene_; }
+  const BaseMesh& mesh() const { return mesh_; }
+  SolutionLog& log() { return log_; }
+  std::shared_ptr<LiveSolve>& live() { return live_; }
+  Step last() const { return log_.last_step(); }
+  std::vector<LeafValue> leaves() const { return log_.leaves(); }
+
+  void run() {
+    SolveControl control;
+    control.live = &live_;
+    control.edits = edits_;
+    outcome = solve_as_planned(mesh_, Plan(mesh_, options_), options_, log_, control);
+  }
+  SolveOutcome outcome;
+
+ private:
+  SolveOptions options_;
+  BaseMesh submitted_, mesh_;
+  Scene scene_;
+  std::uint64_t edits_ = 0;
+  SolutionLog log_;
+  std::shared_ptr<LiveSolve> live_;
+};
+
+/// Returns the root mean square of the differences over the leaves, as a share of the mean; each leaf counts for the same.
+inline double difference(const std::vector<LeafValue>& a, const std::vector<LeafValue>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double squares = 0, sum = 0;
+  for (std::size_t n = 0; n < std::min(a.size(), b.size()); ++n) {
+    EXPECT_EQ(a[n].patch, b[n].patch);
+    squares += std::pow(a[n].irradiance.mean() - b[n].irradiance.mean(), 2);
+    sum += b[n].irradiance.mean();
+  }
+  return std::sqrt(squares / static_cast<double>(a.size())) / (sum / static_cast<double>(a.size()));
+}
+
+/// Returns the root mean square, weighted by area, of the differences of the means over roots, as a share of the mean.
+inline double difference_of_roots(const EditedSolve& a, const EditedSolve& b) {
+  const auto powers = [](const EditedSolve& solve) {
+    std::vector<double> power(solve.mesh().roots().size());
+    for (const LeafValue& leaf : solve.leaves())
+      power[leaf.patch.root_face()] += area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch)) * leaf.irradiance.mean();
+    return power;
+  };
+  const auto one = powers(a), other = powers(b);
+  double squares = 0, area = 0, sum = 0;
+  for (std::size_t root = 0; root < one.size(); ++root) {
+    const double own = a.mesh().roots()[root].area;
+    squares += std::pow(one[root] - other[root], 2) / own;
+    sum += other[root];
+    area += own;
+  }
+  return std::sqrt(squares / area) / (sum / area);
+}
+
+}  // namespace alvor::test

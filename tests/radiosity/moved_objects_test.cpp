@@ -1,0 +1,116 @@
+// Objects that are moved and hidden while a scene is solved.
+
+#include "meshing/edit/edited_scene.h"
+#include "radiosity/solve/moved_roots.h"
+#include "tests/radiosity/edited_solve.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace alvor {
+namespace {
+
+using test::EditedSolve, test::difference_of_roots;
+
+TEST(MovedObjects, FewRaysAreSentAgain) {
+  Scene submitted = test::room_of_objects();
+  const auto first = static_cast<std::uint32_t>(submitted.faces.size());
+  test::add_box(submitted, {2.5, 0.5, 3}, {2.7, 0.7, 3.2}, false);
+  submitted.objects.push_back({.name = "cube", .first_face = first, .face_count = 6});
+  EditedSolve solve(submitted, {.tolerance = 0.02, .max_leaves = 100'000});
+  const Step fresh = solve.last();
+  // Up to the first estimate after the edit.
+  const auto rays_of = [&](const ObjectEdit& edit) {
+    const Step before = solve.last();
+    solve.edit([&](Scene& scene) { scene = edited_scene(submitted, std::vector<SceneEdit>{edit}); });
+    const auto steps = solve.log().steps();
+    const auto told =
+        std::ranges::find_if(steps, [&](const Step& step) { return step.edits > before.edits && !step.is_provisional; });
+    return static_cast<double>(told->rays - before.rays) / static_cast<double>(fresh.rays);
+  };
+  EXPECT_LT(rays_of({.name = "cube", .move = Vec3{0.5, 0.3, 0.5}}), 0.3);
+  EXPECT_LT(rays_of({.name = "cube", .move = Vec3{0.5, 0.3, 0.6}}), 0.3);
+  EXPECT_LT(rays_of({.name = "cube", .hidden = true}), 0.3);
+  EXPECT_LT(rays_of({.name = "cube", .dim = 1}), 0.3);
+}
+
+TEST(MovedObjects, WhatIsHiddenFromTheFirstCanBeShown) {
+  const Scene submitted = test::room_of_objects();
+  const Scene without = edited_scene(submitted, std::vector<SceneEdit>{ObjectEdit{.name = "box", .hidden = true}});
+  const SolveOptions options{.tolerance = 0.03, .max_leaves = 20'000};
+  EditedSolve solve(submitted, options, without);
+  solve.edit([&](Scene& scene) { scene = submitted; });
+  const EditedSolve anew(submitted, options);
+  EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
+}
+
+/// Returns an edit of an object, a material or the lamp's brightness.
+SceneEdit any_edit(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const std::string object = random() % 2 ? "box" : "block";
+  switch (random() % 6) {
+    case 0: return ObjectEdit{.name = object, .move = Vec3{uniform(-1, 1), uniform(0, 0.5), uniform(-1, 2)}};
+    case 1: return ObjectEdit{.name = object, .turn = uniform(-180, 180)};
+    case 2: return ObjectEdit{.name = object, .hidden = random() % 2 == 0};
+    case 3: return ObjectEdit{.name = "lamp", .move = Vec3{uniform(-1, 1), uniform(-0.5, 0), uniform(-1, 1)}};
+    case 4: return MaterialEdit{.name = "m0", .reflectance = Rgb{uniform(0, 0.9), uniform(0, 0.9), uniform(0, 0.9)}};
+    default: return ObjectEdit{.name = "lamp", .dim = uniform(0.1, 2)};
+  }
+}
+
+TEST(MovedObjects, AfterManyEditsASolveIsWithinWhatItTellsOfANewOne) {
+  const SolveOptions options{.tolerance = 0.05, .max_leaves = 20'000};
+  const Scene submitted = test::room_of_objects();
+  std::mt19937 random(5);
+  EditedSolve solve(submitted, options);
+  std::vector<SceneEdit> edits;
+  int compared = 0, within = 0;
+  for (int n = 1; n <= 60; ++n) {
+    edits.push_back(any_edit(random));
+    ASSERT_FALSE(fault_in(edits, submitted));
+    solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
+    EXPECT_EQ(solve.last().edits, static_cast<std::uint64_t>(n));
+    if (n % 5 != 0) continue;
+    const EditedSolve anew(submitted, options, solve.scene());
+    within += difference_of_roots(solve, anew) < solve.last().estimated_error + anew.last().estimated_error;
+    ++compared;
+  }
+  EXPECT_GE(within, compared - 1);  // told errors hold nine times of ten
+  solve.edit([&](Scene& scene) { scene = submitted; });
+  const EditedSolve first(submitted, options);
+  EXPECT_LT(difference_of_roots(solve, first), solve.last().estimated_error + first.last().estimated_error);
+}
+
+TEST(MovedRoots, NoWayThroughABoxIsMissed) {
+  const Scene submitted = test::room_of_objects();
+  const BaseMesh before(submitted);
+  const BaseMesh after =
+      before.edited_as(edited_scene(submitted, std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = Vec3{0.3, 0.2, 2}}}));
+  const MovedRoots moved(before, after);
+  std::mt19937 random(3);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto in_sphere = [&](double radius) {
+    const Vec3 p{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    return radius * uniform(0, 1) * normalized(p);
+  };
+  std::vector<std::uint32_t> roots;
+  for (std::uint32_t root = 0; root < before.roots().size(); ++root)
+    if (moved.has(root)) roots.push_back(root);
+  ASSERT_EQ(roots.size(), 6u);
+  for (int n = 0; n < 20'000; ++n) {
+    // A way through a point of the object, begun and ended in spheres.
+    const bool is_old = random() % 2;
+    const RootPatch& root = (is_old ? before : after).roots()[roots[random() % roots.size()]];
+    const Vec3 through = root.at(uniform(0, 1), uniform(0, 1));
+    const Vec3 start{uniform(0, 4), uniform(0, 3), uniform(0, 5)}, end = start + uniform(1, 3) * (through - start);
+    const double small = uniform(0, 0.1), large = uniform(0, 1);
+    EXPECT_TRUE(moved.may_meet(start + in_sphere(small), small, end + in_sphere(large), large));
+    EXPECT_TRUE(is_old || moved.may_meet_now(start + in_sphere(small), end, small));
+  }
+  EXPECT_FALSE(moved.may_meet({0.1, 0.1, 0.1}, 0.05, {0.1, 2.9, 0.1}, 0.05));
+}
+
+}  // namespace
+}  // namespace alvor
