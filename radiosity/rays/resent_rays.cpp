@@ -1,7 +1,9 @@
 #include "radiosity/rays/resent_rays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace alvor {
 
@@ -45,6 +47,27 @@ bool send_turned(const LocalScene& scene, const ResentRay& ray, Vec3 normal, Ray
 }
 
 }  // namespace
+
+std::uint16_t meet_backs(const LocalScene& scene, std::uint32_t root, const PatchPoints& points, RayBudget& budget) {
+  RayPacket packet;
+  HitPacket hits;
+  const LocalRoot& frame = scene.root(root);
+  const auto as_vec3 = [](const Float3& v) { return Vec3{v.x, v.y, v.z}; };
+  for (std::size_t o = 0; o < RayPacket::width; ++o) {
+    const double angle = 2 * std::numbers::pi * std::numbers::phi * static_cast<double>(o);
+    const double squared = (static_cast<double>(o) + 0.5) / RayPacket::width;  // of the distance from the disk's middle (Nusselt)
+    const Vec3 way =
+        std::sqrt(squared) * (std::cos(angle) * as_vec3(frame.tangent) + std::sin(angle) * as_vec3(frame.bitangent)) +
+        std::sqrt(1 - squared) * as_vec3(frame.normal);
+    packet.set(o, {points.x[o], points.y[o], points.z[o]}, way, std::numeric_limits<float>::infinity());
+  }
+  trace(scene, packet, hits, RayPacket::width, budget);
+  std::uint16_t backs = 0;
+  for (int o = 0; o < RayPacket::width; ++o)
+    if (hits.root[o] != HitPacket::nothing && !turn_to_front(scene, packet, hits, o))
+      backs |= static_cast<std::uint16_t>(1u << o);
+  return backs;
+}
 
 std::vector<std::optional<PatchId>> resend(const LocalScene& scene, std::span<const ResentRay> rays, Vec3 normal,
                                            RayBudget& budget) {

@@ -73,6 +73,13 @@ bool shaft_meets(const BoundingBox& box, Vec3 from, double from_radius, Vec3 to,
 
 MovedRoots::MovedRoots(const BaseMesh& before, const BaseMesh& after) : moved_(after.roots().size()) {
   for (std::uint32_t r = 0; r < moved_.size(); ++r) moved_[r] = is_elsewhere(before.roots()[r], after.roots()[r]);
+  const auto has_free_edge = [&](std::uint32_t root) {
+    bool has = false;
+    for (int e = 0; e < after.roots()[root].corner_count; ++e) has = has || !after.across(root, e);
+    return has;
+  };
+  for (std::uint32_t r = 0; r < moved_.size(); ++r)
+    show_backs_ = show_backs_ || (has(r) && after.roots()[r].twin == RootPatch::no_twin && has_free_edge(r));
   const auto is_moved = [this](std::uint32_t root) { return has(root); };
   old_boxes_ = boxes_of(before, is_moved);
   new_boxes_ = boxes_of(after, is_moved);
@@ -94,13 +101,13 @@ bool MovedRoots::may_meet(Vec3 from, double from_radius, Vec3 to, double to_radi
   return std::ranges::any_of(old_boxes_, may) || std::ranges::any_of(new_boxes_, may);
 }
 
-bool MovedRoots::are_in_front(Vec3 point, Vec3 normal) const {
+bool MovedRoots::are_in_front(Vec3 point, Vec3 normal, bool also_before) const {
   const auto is_in_front = [&](const BoundingBox& box) {
     const Vec3 farthest{normal.x > 0 ? box.high.x : box.low.x, normal.y > 0 ? box.high.y : box.low.y,
                         normal.z > 0 ? box.high.z : box.low.z};
     return dot(farthest - point, normal) > 0;
   };
-  return std::ranges::any_of(old_boxes_, is_in_front) || std::ranges::any_of(new_boxes_, is_in_front);
+  return std::ranges::any_of(new_boxes_, is_in_front) || (also_before && std::ranges::any_of(old_boxes_, is_in_front));
 }
 
 }  // namespace alvor

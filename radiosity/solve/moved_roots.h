@@ -27,11 +27,16 @@ class MovedRoots {
   /// Returns whether a ray from within `from_radius` of `from` to within `to_radius` of `to` may meet moved roots where they were
   /// or are. May say so where it does not.
   bool may_meet(Vec3 from, double from_radius, Vec3 to, double to_radius) const;
-  /// Returns whether part of a box in which moved roots were or are lies in front of the plane through `point`.
-  bool are_in_front(Vec3 point, Vec3 normal) const;
+  /// Returns whether part of a box in which moved roots are now, or were if `also_before`, lies in front of the plane through
+  /// `point`.
+  bool are_in_front(Vec3 point, Vec3 normal, bool also_before) const;
+  /// Returns whether rays from outside may meet the back of a moved root that has no other side. They do not if moved roots
+  /// enclose solids.
+  bool show_backs() const { return show_backs_; }
 
  private:
   std::vector<std::uint8_t> moved_;  ///< by root
+  bool show_backs_ = false;
   std::vector<BoundingBox> old_boxes_, new_boxes_;
 };
 

@@ -31,6 +31,13 @@ class RowMender {
       : scene_(scene), before_(before), moved_(moved), budget_(budget) {}
 
   enum class Outcome { unchanged, mended, lost };
+  /// Returns whether the hidden origins of a row are still hidden, as far as one ray from each of them tells. Inside a solid that
+  /// has not moved each ray meets a back.
+  bool is_hidden_as_before(const PatchShape& shape, PatchId patch, std::uint64_t seed, const TransportRow& row) const {
+    RandomStream random(seed, patch);
+    const std::uint16_t backs = meet_backs(scene_, shape.root, sample_points(scene_, shape, random), budget_);
+    return (row.hidden_origins & ~backs) == 0;
+  }
   /// Sends stale rays again. The row is lost, and unchanged, if one of them meets no front now: which origins are hidden may be
   /// otherwise. Requires: the row's hits have places, and it comes from rays through nothing that weakens them.
   Outcome mend(const PatchShape& shape, PatchId patch, std::uint64_t seed, TransportRow& row) const {
@@ -79,12 +86,15 @@ std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const Move
     TransportRow& row = rows_[rows[n]];
     const PatchShape shape = forests_.rows().shape(rows[n]);
     const RootPatch& root = scene_.mesh().roots()[shape.root];
-    // Where rays went that met no front is not known, and which origins are hidden was found by such rays.
-    const bool has_unknown = !row.is_closed || row.hidden_origins != 0;
-    if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && !may_mend) ||
-        (has_unknown && moved.are_in_front(root.corners[0], root.normal)))
+    const PatchId id = forests_.rows().id(rows[n]);
+    const bool is_beside = moved.are_in_front(root.corners[0], root.normal, moved.show_backs());
+    // Where rays went that met no front is not known.
+    const bool has_unknown = !row.is_closed && !row.is_hidden() && is_beside;
+    const bool may_hide_otherwise = row.hidden_origins != 0 && is_beside && moved.show_backs();
+    if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && (!may_mend || has_unknown)) ||
+        (may_hide_otherwise && !mender.is_hidden_as_before(shape, id, options_.seed, row)))
       outcomes[n] = RowMender::Outcome::lost;
-    else if (carry_light()) outcomes[n] = mender.mend(shape, forests_.rows().id(rows[n]), options_.seed, row);
+    else if (carry_light()) outcomes[n] = mender.mend(shape, id, options_.seed, row);
   });
   std::vector<NodeIndex> lost;
   for (std::size_t n = 0; n < rows.size(); ++n) {

@@ -46,6 +46,21 @@ TEST(MovedObjects, WhatIsHiddenFromTheFirstCanBeShown) {
   EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
 }
 
+/// A sheet of one side lies above the floor, where its back hides what is below it, and is moved or taken away.
+TEST(MovedObjects, WhatASheetOfOneSideHidIsSeenAgain) {
+  Scene submitted = test::coloured_room();
+  submitted.objects = {{.name = "sheet", .first_face = static_cast<std::uint32_t>(submitted.faces.size()), .face_count = 1}};
+  test::add_polygon(submitted, {{2.4, 0.3, 3.2}, {2.4, 0.3, 4.2}, {3.4, 0.3, 4.2}, {3.4, 0.3, 3.2}}, 0);
+  const SolveOptions unsplit{.tolerance = 1e-6, .max_depth = 3, .max_leaves = 3000};
+  for (const ObjectEdit& edit :
+       {ObjectEdit{.name = "sheet", .hidden = true}, ObjectEdit{.name = "sheet", .move = Vec3{0, 1, -1}}}) {
+    EditedSolve solve(submitted, unsplit);
+    solve.edit([&](Scene& scene) { scene = edited_scene(submitted, std::vector<SceneEdit>{edit}); });
+    const EditedSolve anew(submitted, unsplit, solve.scene());
+    EXPECT_LT(difference_of_roots(solve, anew), 0.01);
+  }
+}
+
 /// Returns an edit of an object, a material or the lamp's brightness.
 SceneEdit any_edit(std::mt19937& random) {
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };

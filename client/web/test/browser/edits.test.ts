@@ -105,8 +105,8 @@ describe("edits on the page", () => {
     await waitForState(ben, "Done");
     await ann.uncheck("#edit-hidden");
     await expect.poll(() => isAs(before)).toBe(true);
-    await ann.focus("#edit-y");
-    for (let n = 0; n < 20; ++n) await ann.keyboard.press("ArrowUp"); // out at the top
+    await ann.fill("#edit-y", "400"); // of 550
+    await ann.keyboard.press("ArrowUp");
     await expect.poll(() => isAs(before)).toBe(false);
     await waitForState(ann, "Done");
     await ben.click("#undo");
