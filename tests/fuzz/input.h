@@ -26,7 +26,8 @@ class Input {
   }
   /// Returns as many bytes as the word before them says, or as there are.
   std::string_view text() {
-    const auto taken = left_.first(std::min<std::size_t>(word(), left_.size()));
+    const std::size_t wanted = word();  // before what is left is asked for
+    const auto taken = left_.first(std::min(wanted, left_.size()));
     left_ = left_.subspan(taken.size());
     return {reinterpret_cast<const char*>(taken.data()), taken.size()};
   }
