@@ -102,17 +102,17 @@ class Follower {
   std::thread thread_;  // uses all of the above
 };
 
-v1::EditStep dim_object(const std::string& name, double factor) {
-  v1::EditStep step;
-  step.add_edits()->mutable_object()->set_name(name);
-  step.mutable_edits(0)->mutable_object()->set_dim(factor);
-  return step;
-}
-
 v1::EditStep of_object(v1::ObjectEdit edit) {
   v1::EditStep step;
   *step.add_edits()->mutable_object() = std::move(edit);
   return step;
+}
+
+v1::EditStep dim_object(const std::string& name, double factor) {
+  v1::ObjectEdit edit;
+  edit.set_name(name);
+  edit.set_dim(factor);
+  return of_object(std::move(edit));
 }
 
 v1::EditStep moved(const std::string& name, const Vec3& by) {

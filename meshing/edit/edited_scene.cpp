@@ -165,7 +165,8 @@ class Editor {
   }
 
  private:
-  /// What an object got from those that it hangs from is changed by its own edits, which so come first where both move it.
+  /// Makes the edits of objects. An object takes dim, motion and hiding from the object that it hangs from, and then has its own
+  /// edits; its own motion is applied to its faces before that of the other.
   void edit_objects() {
     std::vector<double> dim(scene_.objects.size(), 1);
     const auto moves = [](const auto& edit) { return edit.second.move || edit.second.turn; };

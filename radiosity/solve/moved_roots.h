@@ -1,5 +1,5 @@
 #pragma once
-// What an edit of objects moved: the root patches, and the boxes in which they were and are.
+// The root patches that an edit of objects has moved, and the boxes in which they were and are.
 
 #include "meshing/base_mesh.h"
 #include "meshing/bounding_box.h"

@@ -88,7 +88,7 @@ std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const Move
     const RootPatch& root = scene_.mesh().roots()[shape.root];
     const PatchId id = forests_.rows().id(rows[n]);
     const bool is_beside = moved.are_in_front(root.corners[0], root.normal, moved.show_backs());
-    // Where rays went that met no front is not known.
+    // A row does not tell where those of its rays went that met no front.
     const bool has_unknown = !row.is_closed && !row.is_hidden() && is_beside;
     const bool may_hide_otherwise = row.hidden_origins != 0 && is_beside && moved.show_backs();
     if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && (!may_mend || has_unknown)) ||
