@@ -7,15 +7,16 @@ clang=${CLANG:-clang++-14}
 
 flags_and_sources() {
   python3 - "$@" <<'PYTHON'
-import json, os, shlex, subprocess, sys
+import json, os, re, shlex, subprocess, sys
 wanted = {os.path.realpath(name) for name in sys.argv[1:]}
 server = os.path.realpath("server") + os.sep
 units = json.loads(subprocess.check_output(["ninja", "-C", "build/release", "-t", "compdb"]))
 lines = []
 for unit in units:
     source = os.path.realpath(os.path.join(unit["directory"], unit["file"]))
-    if not source.startswith(server) or not source.endswith(".cpp") or os.path.basename(source).startswith("cmake_pch"): continue
-    if wanted and source not in wanted: continue
+    together = re.findall(r'#include "(.*)"', open(source).read()) if "/Unity/" in source else [source]
+    looked_at = [name for name in together if name.startswith(server) and name.endswith(".cpp")]
+    if not looked_at or wanted.isdisjoint(looked_at) and wanted: continue
     words, flags = iter(shlex.split(unit["command"])), []
     for word in words:
         if word in ("-include", "-isystem", "-I"):
@@ -31,4 +32,4 @@ PYTHON
 
 listed=$(flags_and_sources "$@")
 xargs -d '\n' -P "$(nproc)" -I '{}' sh -c "$clang -fsyntax-only -Wthread-safety -Werror=thread-safety {}" <<< "$listed"
-echo "$(wc -l <<< "$listed") sources use what mutexes guard only where they hold them"
+echo "$(wc -l <<< "$listed") compilations of server's sources use what mutexes guard only where they hold them"

@@ -3,7 +3,8 @@
 #include "server/web/web_listener.h"
 #include "server/web/web_site.h"
 
-#include <cctype>
+#include <absl/strings/ascii.h>
+
 #include <stdexcept>
 #include <utility>
 
@@ -21,17 +22,12 @@ PageFiles read_page(const std::filesystem::path& directory) {
   }
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 WebSite::Options site_options(const WebOptions& options) {
   ListeningSockets::check(options.address);
   refuse_plaintext("--web", options.address, *options.listen);
   WebSite::Options site;
   site.only_this_machine = is_loopback(options.address) && !is_unix(options.address);
-  if (is_unix(options.address)) site.identity_header = lower_case(options.identity_header);
+  if (is_unix(options.address)) site.identity_header = absl::AsciiStrToLower(options.identity_header);
   site.origins = options.origins;
   site.tokens = tokens_of(*options.listen);
   return site;

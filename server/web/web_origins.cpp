@@ -1,6 +1,7 @@
 #include "server/web/web_origins.h"
 
-#include <cctype>
+#include <absl/strings/ascii.h>
+
 #include <regex>
 #include <stdexcept>
 
@@ -10,11 +11,6 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& origin, const std::string& reason) {
   throw std::invalid_argument("--web-origin: '" + origin + "' " + reason);
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 std::string without_default_port(const std::string& scheme, const std::string& port) {
@@ -28,9 +24,9 @@ std::string without_default_port(const std::string& scheme, const std::string& p
 std::string normal(const std::string& origin) {
   static const std::regex pattern(R"(([a-z][a-z0-9+.-]*)://([a-z0-9._-]+|\[[0-9a-f:.]+\])(?::([0-9]{1,5}))?(/.*)?)");
   if (origin == "*") refuse(origin, "is not an origin: name each, as scheme://host[:port]");
-  if (lower_case(origin) == "null") refuse(origin, "is what any sandboxed page and local file sends: name origins");
+  if (absl::AsciiStrToLower(origin) == "null") refuse(origin, "is what any sandboxed page and local file sends: name origins");
   std::smatch parts;
-  const std::string lower = lower_case(origin);
+  const std::string lower = absl::AsciiStrToLower(origin);
   if (!std::regex_match(lower, parts, pattern)) refuse(origin, "is not scheme://host[:port]");
   if (parts[4].matched) refuse(origin, "has a path: an origin is scheme://host[:port] alone");
   const std::string scheme = parts[1], host = parts[2], port = parts[3];

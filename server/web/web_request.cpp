@@ -1,11 +1,11 @@
 #include "server/web/web_request.h"
 
+#include <absl/strings/ascii.h>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstring>
 #include <limits>
 
@@ -15,18 +15,14 @@ namespace http = boost::beast::http;
 
 namespace {
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos; }
 
 /// Returns whether the headers say once, and unambiguously, where the body ends.
 bool is_framing_clear(const WebRequest& request) {
   const bool has_coding = request.has("transfer-encoding"), has_length = request.has("content-length");
-  if (has_coding && (has_length || !request.is_1_1 || lower_case(request.header("transfer-encoding")) != "chunked")) return false;
+  if (has_coding &&
+      (has_length || !request.is_1_1 || absl::AsciiStrToLower(std::string(request.header("transfer-encoding"))) != "chunked"))
+    return false;
   return !has_length || is_number(request.header("content-length"));
 }
 
@@ -112,7 +108,7 @@ WebRequestReader::Step WebRequestReader::parse_head(std::size_t length) {
   request_.path = std::string(head.target().substr(0, head.target().find('?')));
   request_.is_1_1 = head.version() == 11;
   for (const auto& field : head)
-    request_.headers.emplace_back(lower_case({field.name_string().data(), field.name_string().size()}),
+    request_.headers.emplace_back(absl::AsciiStrToLower({field.name_string().data(), field.name_string().size()}),
                                   std::string(field.value()));
   if (!is_framing_clear(request_) || !is_unambiguous(request_)) return fail(400);
   request_.keeps_alive = parser.keep_alive();

@@ -17,7 +17,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\n";
-const std::string room = "mtllib a.mtl b.mtl\n" + triangle;
+const std::string room_text = "mtllib a.mtl b.mtl\n" + triangle;
 const std::string lamp = "newmtl lamp\nKd .5 .5 .5\nKe 1 1 1\n";
 
 v1::ImportSceneRequest beginning(const std::string& file, const std::string& request_id = "") {
@@ -91,8 +91,8 @@ TEST_F(ImportScene, AnswersWithTheSceneAndItsWarnings) {
 }
 
 TEST_F(ImportScene, ListsAllMissingFilesAndGoesOnWithThemAlone) {
-  EXPECT_EQ(missing({beginning("room.obj", "id"), piece("room.obj", room)}), (Names{"a.mtl", "b.mtl"}));
-  EXPECT_EQ(waiting("id"), Names{"room.obj " + std::to_string(room.size())});
+  EXPECT_EQ(missing({beginning("room.obj", "id"), piece("room.obj", room_text)}), (Names{"a.mtl", "b.mtl"}));
+  EXPECT_EQ(waiting("id"), Names{"room.obj " + std::to_string(room_text.size())});
   EXPECT_EQ(missing({beginning("room.obj", "id"), piece("b.mtl", "")}), Names{"a.mtl"});
   ASSERT_TRUE(send({beginning("room.obj", "id"), piece("a.mtl", lamp)}).ok());
   EXPECT_EQ(scene_.warnings_size(), 0) << scene_.warnings(0);
@@ -100,22 +100,22 @@ TEST_F(ImportScene, ListsAllMissingFilesAndGoesOnWithThemAlone) {
 }
 
 TEST_F(ImportScene, ForgetsTheFilesOfCallsWithoutAnId) {
-  EXPECT_EQ(missing({beginning("room.obj"), piece("room.obj", room)}), (Names{"a.mtl", "b.mtl"}));
+  EXPECT_EQ(missing({beginning("room.obj"), piece("room.obj", room_text)}), (Names{"a.mtl", "b.mtl"}));
   EXPECT_EQ(missing({beginning("room.obj"), piece("a.mtl", lamp)}), Names{"room.obj"});
 }
 
 TEST_F(ImportScene, DoesWithoutMissingFilesOnDemand) {
   v1::ImportSceneRequest first = beginning("room.obj");
   for (const char* name : {"a.mtl", "b.mtl"}) first.mutable_options()->add_absent_files(name);
-  ASSERT_TRUE(send({first, piece("room.obj", room)}).ok());
+  ASSERT_TRUE(send({first, piece("room.obj", room_text)}).ok());
   EXPECT_EQ(scene_.warnings(0), "material library 'a.mtl' cannot be read");
 }
 
 TEST_F(ImportScene, TakesFilesInPiecesAndRefusesGaps) {
-  const auto half = room.size() / 2;
+  const auto half = room_text.size() / 2;
   const auto pieces = [&](std::size_t offset) {
-    return std::vector{beginning("room.obj"), piece("b.mtl", ""), piece("./a.mtl", lamp), piece("room.obj", room.substr(0, half)),
-                       piece("room.obj", room.substr(half), offset)};
+    return std::vector{beginning("room.obj"), piece("b.mtl", ""), piece("./a.mtl", lamp),
+                       piece("room.obj", room_text.substr(0, half)), piece("room.obj", room_text.substr(half), offset)};
   };
   EXPECT_TRUE(send(pieces(half)).ok());
   EXPECT_EQ(missing(pieces(half + 1)), Names{"room.obj"});
@@ -131,7 +131,7 @@ TEST_F(ImportScene, ARepeatedRequestReturnsTheFirstScene) {
 
 TEST_F(ImportScene, RefusesWhatCannotBeMeant) {
   EXPECT_EQ(refusal({}), "3 request: has no messages");
-  EXPECT_EQ(refusal({piece("room.obj", room)}), "3 options: the first message must set them");
+  EXPECT_EQ(refusal({piece("room.obj", room_text)}), "3 options: the first message must set them");
   EXPECT_EQ(refusal({beginning("room.obj"), beginning("room.obj")}), "3 options: only the first message may set them");
   EXPECT_EQ(refusal({beginning("a/room.obj")}), "3 options.scene_file: 'a/room.obj' has folders");
   EXPECT_EQ(refusal({beginning("")}), "3 options.scene_file: '' names no file");
@@ -201,7 +201,7 @@ TEST_F(ImportScene, AMissingProgramIsNoFaultOfTheFile) {
   ImporterOptions nowhere;
   nowhere.program = "/nowhere/alvor-import";
   restart(with_importer(nowhere));
-  EXPECT_EQ(refusal({beginning("room.obj"), piece("room.obj", room)}).substr(0, 3), "13 ");
+  EXPECT_EQ(refusal({beginning("room.obj"), piece("room.obj", room_text)}).substr(0, 3), "13 ");
 }
 
 TEST_F(ImportScene, TheClientSendsWhatTheServerAsksFor) {
@@ -209,7 +209,7 @@ TEST_F(ImportScene, TheClientSendsWhatTheServerAsksFor) {
   v1::ImportOptions options;
   options.set_scene_file("room.obj");
   Names asked;
-  const v1::Scene scene = client.import_scene(options, room, [&](const std::string& name) -> std::optional<std::string> {
+  const v1::Scene scene = client.import_scene(options, room_text, [&](const std::string& name) -> std::optional<std::string> {
     asked.push_back(name);
     if (name == "a.mtl") return lamp + "map_Ke glow.png\n";
     return std::nullopt;

@@ -10,7 +10,7 @@
 namespace alvor {
 namespace {
 
-using Step = WebRequestReader::Step;
+using ReadStep = WebRequestReader::Step;
 
 /// The results of a reader for bytes that come in parts.
 struct Reading {
@@ -22,15 +22,15 @@ Reading read(const std::string& bytes, std::size_t part, const WebLimits& limits
   WebRequestReader reader(limits);
   Reading found;
   for (std::size_t at = 0; at <= bytes.size();) {
-    const Step step = reader.step();
-    if (step == Step::fault) {
+    const ReadStep step = reader.step();
+    if (step == ReadStep::fault) {
       found.fault = reader.fault();
       break;
     }
-    if (step == Step::head) found.paths += reader.request().path + " ";
-    if (step == Step::body) found.bodies += reader.piece();
-    if (step == Step::end) ++found.requests;
-    if (step != Step::need_more) continue;
+    if (step == ReadStep::head) found.paths += reader.request().path + " ";
+    if (step == ReadStep::body) found.bodies += reader.piece();
+    if (step == ReadStep::end) ++found.requests;
+    if (step != ReadStep::need_more) continue;
     if (at == bytes.size()) break;
     const auto room = reader.room();
     const std::size_t count = std::min({part, room.size(), bytes.size() - at});
