@@ -8,12 +8,14 @@ namespace alvor {
 /// A place on the Earth, degrees: north and east are positive.
 struct Geolocation {
   double latitude = 0, longitude = 0;
+  friend bool operator==(const Geolocation&, const Geolocation&) = default;
 };
 
 /// Where the sun stands in the sky, degrees. Without refraction, which lifts a sun at the horizon by half a degree.
 struct SunPosition {
   double azimuth = 0;    ///< clockwise from north, in [0, 360)
   double elevation = 0;  ///< above the horizon, in [-90, 90]
+  friend bool operator==(const SunPosition&, const SunPosition&) = default;
 };
 
 /// Returns where the sun stands, by the algorithm of the Astronomical Almanac as Michalsky (1988) gives it: within 0.01 degrees

@@ -29,6 +29,8 @@ v1::Edit message_of(const SceneEdit& edit) {
     if (object->move) *part.mutable_move() = encode_vector(*object->move);
     if (object->turn) part.set_turn(*object->turn);
     if (object->hidden) part.set_hidden(*object->hidden);
+  } else if (const auto* daylight = std::get_if<DaylightEdit>(&edit)) {
+    *message.mutable_daylight() = encode(daylight->daylight);
   }
   return message;
 }
@@ -81,6 +83,8 @@ std::optional<EditStep> decode(const v1::EditStep& message) {
     if (edit.has_material()) step.edits.emplace_back(material_of(edit.material()));
     else if (edit.has_light()) step.edits.emplace_back(light_of(edit.light()));
     else if (edit.has_object()) step.edits.emplace_back(object_of(edit.object()));
+    else if (const auto daylight = decode_daylight(edit.daylight()); daylight && edit.has_daylight())
+      step.edits.emplace_back(DaylightEdit{*daylight});
     else return std::nullopt;
   }
   return step;

@@ -5,6 +5,7 @@
 #include "proto/codec.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace alvor {
 
@@ -97,6 +98,52 @@ Light decode_light(const v1::Light& message) {
   light.electrical_watts = message.electrical_watts();
   if (message.has_sky()) light.sky = decode_sky(message.sky());
   return light;
+}
+
+// The skies of the API are those of Daylight::Sky in their order.
+v1::Daylight encode(const Daylight& daylight) {
+  v1::Daylight message;
+  if (const auto* stands = std::get_if<SunPosition>(&daylight.sun)) {
+    message.set_sun_azimuth_degrees(stands->azimuth);
+    message.set_sun_elevation_degrees(stands->elevation);
+  } else if (const auto* seen = std::get_if<SunTime>(&daylight.sun)) {
+    message.mutable_sun_time()->set_latitude_degrees(seen->place.latitude);
+    message.mutable_sun_time()->set_longitude_degrees(seen->place.longitude);
+    const double second = std::floor(seen->unix_seconds);
+    message.mutable_sun_time()->mutable_time()->set_seconds(static_cast<std::int64_t>(second));
+    message.mutable_sun_time()->mutable_time()->set_nanos(static_cast<std::int32_t>(1e9 * (seen->unix_seconds - second)));
+  }
+  if (daylight.sun_irradiance) message.set_sun_irradiance(*daylight.sun_irradiance);
+  message.set_sky(static_cast<v1::Daylight::Sky>(daylight.sky));
+  message.set_cie_number(static_cast<std::uint32_t>(daylight.cie_number));
+  message.set_direct_normal_watts(daylight.direct_normal_watts);
+  message.set_diffuse_horizontal_watts(daylight.diffuse_horizontal_watts);
+  if (daylight.sky_irradiance) message.set_sky_irradiance(*daylight.sky_irradiance);
+  message.set_ground_reflectance(daylight.ground_reflectance);
+  message.set_north_degrees(daylight.north_degrees);
+  return message;
+}
+
+std::optional<Daylight> decode_daylight(const v1::Daylight& message) {
+  if (!v1::Daylight::Sky_IsValid(message.sky())) return std::nullopt;
+  Daylight daylight;
+  if (message.has_sun_azimuth_degrees())
+    daylight.sun = SunPosition{message.sun_azimuth_degrees(), message.sun_elevation_degrees()};
+  if (message.has_sun_time()) {
+    const v1::SunTime& seen = message.sun_time();
+    const double seconds = static_cast<double>(seen.time().seconds()) + 1e-9 * seen.time().nanos();
+    daylight.sun = SunTime{{seen.latitude_degrees(), seen.longitude_degrees()}, seconds};
+  }
+  if (message.has_sun_irradiance()) daylight.sun_irradiance = message.sun_irradiance();
+  daylight.sky = static_cast<Daylight::Sky>(message.sky());
+  constexpr std::uint32_t none = 0, most = 15;
+  daylight.cie_number = static_cast<int>(message.cie_number() > most ? none : message.cie_number());
+  daylight.direct_normal_watts = message.direct_normal_watts();
+  daylight.diffuse_horizontal_watts = message.diffuse_horizontal_watts();
+  if (message.has_sky_irradiance()) daylight.sky_irradiance = message.sky_irradiance();
+  daylight.ground_reflectance = message.ground_reflectance();
+  daylight.north_degrees = message.north_degrees();
+  return daylight;
 }
 
 v1::Light encode(const Light& light) {

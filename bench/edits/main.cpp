@@ -1,10 +1,13 @@
-// edits --scene S.obj [--tolerance T] [--threads N]: prints the table of docs/edits.md for edits of the finished furnished room.
-// Each is asked of a server in this process; a watch that follows edits sees when the first state with it comes, and when one is
-// within the tolerance again; times are also told as shares of that of the first solve.
+// edits --scene S.obj --window W.obj [--tolerance T] [--threads N]: prints the tables of docs/edits.md, for edits of the finished
+// furnished room S and for a sun that goes on before the window of the room W. Each is asked of a server in this process; a watch
+// that follows edits sees when the first state with it comes, and when one is within the tolerance again; times are also told as
+// shares of that of the first solve.
 
 #include "client/rpc/client.h"
 #include "import/apart/scene_file.h"
+#include "meshing/edit/edited_scene.h"
 #include "proto/codec.h"
+#include "proto/edit_codec.h"
 #include "proto/light_codec.h"
 #include "server/base/cpu_time.h"
 #include "server/rpc/service.h"
@@ -143,6 +146,23 @@ v1::EditStep recolour(const std::string& name, const Rgb& reflectance) {
   return step;
 }
 
+/// The sun and a clear sky over Munich on 21 March 2026, so many minutes after 09:00 UTC.
+v1::EditStep morning(int minutes) {
+  constexpr std::int64_t nine = 1'774'083'600;
+  v1::EditStep step;
+  v1::Daylight& daylight = *step.add_edits()->mutable_daylight();
+  daylight.set_sky(v1::Daylight::CIE);
+  daylight.set_cie_number(12);
+  daylight.set_ground_reflectance(0.2);
+  daylight.mutable_sun_time()->set_latitude_degrees(48.1);
+  daylight.mutable_sun_time()->set_longitude_degrees(11.6);
+  daylight.mutable_sun_time()->mutable_time()->set_seconds(nine + 60 * minutes);
+  return step;
+}
+
+/// A scene as it stands with a step of edits.
+Scene with(const Scene& scene, const v1::EditStep& step) { return edited_scene(scene, decode(step).value().edits); }
+
 v1::EditStep undo() {
   v1::EditStep step;
   step.set_kind(v1::EditStep::UNDO);
@@ -266,20 +286,25 @@ class Bench {
   std::unique_ptr<Follower> follower_;
 };
 
+void tell_head() {
+  std::puts(
+      "| edit | rays | of all rays of a solve from nothing | first state | at the tolerance again | of its time "
+      "|\n|---|---|---|---|---|---|");
+}
+
 int run(int count, char** arguments) {
   CLI::App app("Measures edits of a finished solve");
-  std::string path;
+  std::string path, window_path;
   double tolerance = 0.02;
   int threads = 0;
   app.add_option("--scene", path)->required();
+  app.add_option("--window", window_path)->required();
   app.add_option("--tolerance", tolerance);
   app.add_option("--threads", threads);
   CLI11_PARSE(app, count, arguments);
   Bench bench(read_scene_file(path).scene, tolerance, threads);
   bench.tell_fresh();
-  std::puts(
-      "| edit | rays | of a solve from nothing | first state | at the tolerance again | of a solve from nothing "
-      "|\n|---|---|---|---|---|---|");
+  tell_head();
   bench.row("dim one of two lamps to a half", dim_object("lamp.001", 0.5));
   bench.row("switch it off", dim_object("lamp.001", 0));
   v1::EditStep both = dim_object("lamp.001", 0.5);
@@ -292,6 +317,14 @@ int run(int count, char** arguments) {
   bench.row("hide the table", hidden("table"));
   std::puts("");
   bench.slide("lamp.002");
+  std::puts("");
+  Scene window = read_scene_file(window_path).scene;
+  window.quantity = Quantity::photometric;
+  Bench day(with(window, morning(0)), tolerance, threads);
+  day.tell_fresh();
+  tell_head();
+  day.row("sun and sky by ten minutes", morning(10));
+  day.row("by two hours", morning(120));
   return 0;
 }
 

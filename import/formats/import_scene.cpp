@@ -10,6 +10,7 @@
 #include "import/formats/placed_environment.h"
 #include "import/formats/placed_luminaires.h"
 #include "import/formats/see_through.h"
+#include "meshing/daylight.h"
 #include "proto/codec.h"
 
 #include <algorithm>
@@ -23,8 +24,6 @@ namespace {
 
 /// A face is a line or a point if twice its area over the square of its outline's length is below this.
 constexpr double flat = 1e-14;
-// Luminous efficacy of white light in Radiance, lm/W.
-constexpr double radiance_lumens_per_watt = 179;
 
 SceneFile import_by_extension(SceneFiles& files) {
   if (files.bytes().empty()) throw ImportError("file", "is empty");
@@ -45,7 +44,7 @@ void take_options(const v1::ImportOptions& options, Scene& scene) {
 
 /// Adds the lights that the options tell, after the scene has its quantity and its up axis.
 void add_lights(const v1::ImportOptions& options, SceneFiles& files, SceneFile& file) {
-  const double lumens_per_watt = options.has_lumens_per_watt() ? options.lumens_per_watt() : radiance_lumens_per_watt;
+  const double lumens_per_watt = options.has_lumens_per_watt() ? options.lumens_per_watt() : usual_lumens_per_watt;
   if (!(lumens_per_watt >= 1e-3 && lumens_per_watt <= 683)) throw ImportError("lumens per watt", "is outside [0.001, 683]");
   // Luminaires that the scene file itself names are in cd, as their photometric files are.
   if (file.scene.quantity == Quantity::radiometric)

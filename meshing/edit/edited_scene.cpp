@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <unordered_map>
@@ -91,6 +92,11 @@ class Check {
     return edit.move ? fault_of_move(*object, *edit.move) : std::nullopt;
   }
 
+  std::optional<EditFault> operator()(const DaylightEdit& edit) {
+    const auto fault = fault_in(edit.daylight);
+    return fault ? std::optional(EditFault{0, "daylight", *fault}) : std::nullopt;
+  }
+
  private:
   /// The object must stay within a box about the scene that is longer than the scene by its length on each side.
   std::optional<EditFault> fault_of_move(const SceneObject& object, Vec3 move) {
@@ -144,11 +150,12 @@ class Editor {
     if (edit.diffuse_transmittance) material.diffuse_transmittance = *edit.diffuse_transmittance;
   }
   void operator()(const LightEdit& edit) {
-    Light& light = *lights_.find(edit.name);
-    if (edit.intensity) light.intensity = *edit.intensity;
-    if (edit.position) light.position = *edit.position;
-    if (edit.direction) light.direction = normalized(*edit.direction);
-    if (edit.dim) light_dim_[&light] = *edit.dim;
+    Light* const light = lights_.find(edit.name);
+    if (!light) return;  // daylight has replaced it
+    if (edit.intensity) light->intensity = *edit.intensity;
+    if (edit.position) light->position = *edit.position;
+    if (edit.direction) light->direction = normalized(*edit.direction);
+    if (edit.dim) light_dim_[edit.name] = *edit.dim;
   }
   void operator()(const ObjectEdit& edit) {
     ObjectEdit& all = object_edits_[static_cast<std::size_t>(objects_.find(edit.name) - scene_.objects.data())];
@@ -158,8 +165,22 @@ class Editor {
     if (edit.hidden) all.hidden = edit.hidden;
   }
 
+  void operator()(const DaylightEdit& edit) {
+    Daylight daylight = edit.daylight;
+    daylight.north_degrees += scene_.north_degrees;
+    std::vector<Light>& lights = scene_.lights;
+    for (const Light& light : lights)
+      if (light.is_distant()) light_dim_.erase(light.name);
+    std::erase_if(lights, [](const Light& light) { return light.is_distant(); });
+    std::ranges::move(lights_of(daylight, scene_.quantity, scene_.up, usual_lumens_per_watt), std::back_inserter(lights));
+    lights_ = Named<Light>(lights);
+  }
+
   Scene take() {
-    for (const auto& [light, dim] : light_dim_) light->intensity = dim * light->intensity;
+    for (const auto& [name, dim] : light_dim_) {
+      Light& light = *lights_.find(name);
+      light.intensity = dim * light.intensity;
+    }
     if (!object_edits_.empty()) edit_objects();
     return std::move(scene_);
   }
@@ -219,7 +240,7 @@ class Editor {
   Named<Material> materials_{scene_.materials};
   Named<Light> lights_{scene_.lights};
   Named<SceneObject> objects_{scene_.objects};
-  std::map<Light*, double> light_dim_;
+  std::map<std::string, double> light_dim_;         // by name
   std::map<std::size_t, ObjectEdit> object_edits_;  // by number of the object
 };
 

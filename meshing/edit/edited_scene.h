@@ -28,7 +28,8 @@ std::optional<std::string> object_too_far(const Scene& submitted, const Scene& e
 
 /// Returns the scene with these edits. Objects whose faces are dimmed get materials of their own, named "MATERIAL of OBJECT",
 /// after all others; those that are hidden are dimmed to nothing. Faces of objects that moved get vertices of their own, after
-/// all others. The numbers of faces, objects, lights and materials stay. Requires: !fault_in(edits, scene), !find_fault(scene),
+/// all others. The numbers of faces, objects and materials stay, and those of lights unless there is other daylight. An edit of a
+/// light that daylight has replaced changes nothing. Requires: !fault_in(edits, scene), !find_fault(scene),
 /// and that no object is hidden or moved. The result may have a fault: a material that reflects and lets through more than all
 /// light.
 Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits);

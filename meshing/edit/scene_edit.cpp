@@ -2,6 +2,13 @@
 
 namespace alvor {
 
+std::string name_of(const SceneEdit& edit) {
+  if (const auto* material = std::get_if<MaterialEdit>(&edit)) return material->name;
+  if (const auto* light = std::get_if<LightEdit>(&edit)) return light->name;
+  const auto* object = std::get_if<ObjectEdit>(&edit);
+  return object ? object->name : "";
+}
+
 std::optional<std::vector<SceneEdit>> edits_that_hold(std::span<const EditStep> steps) {
   std::vector<const EditStep*> hold, undone;
   const auto move_last = [](std::vector<const EditStep*>& from, std::vector<const EditStep*>& to) {

@@ -1,6 +1,7 @@
 #pragma once
 // Edits of a scene while it is solved.
 
+#include "meshing/daylight.h"
 #include "meshing/vec3.h"
 #include "solution/rgb.h"
 
@@ -39,9 +40,18 @@ struct ObjectEdit {
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
 
+/// Says which sun, sky and ground there are. They take the place of all lights that shine from infinitely far away.
+struct DaylightEdit {
+  Daylight daylight;  ///< its `north_degrees` from the scene's north
+  friend bool operator==(const DaylightEdit&, const DaylightEdit&) = default;
+};
+
 /// A change of a scene. It says what a part of the scene is to be, whatever edits before it said: made twice it is as good as
 /// once.
-using SceneEdit = std::variant<MaterialEdit, LightEdit, ObjectEdit>;
+using SceneEdit = std::variant<MaterialEdit, LightEdit, ObjectEdit, DaylightEdit>;
+
+/// Returns the name of what an edit changes; nothing for daylight, which has none.
+std::string name_of(const SceneEdit& edit);
 
 /// Edits that were made together.
 struct EditStep {

@@ -56,7 +56,7 @@ class DirectField {
   void keep_shares();
   /// Takes the lights of the mesh, after its materials and lights have changed. If all have changed by one factor, so has the
   /// light of leaves, and the factor is returned, in emission units; else the next add_new() finds it again, from shares where
-  /// they are known. `unit_change` is the emission unit of before as a multiple of the present one.
+  /// they are known. What light may not reach any more is dark. `unit_change` is the emission unit of before as a multiple of the present one.
   std::optional<Rgb> note_relit(double unit_change);
 
   /// Takes roots that have moved: the next add_new() finds again what each light brings where the way to it leads by places where

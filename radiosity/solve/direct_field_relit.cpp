@@ -110,6 +110,12 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   scale(factor.value_or(Rgb{unit_change, unit_change, unit_change}));
   if (factor) waiting_power_ = share_waiting * power_;
   else is_known_.assign(is_known_.size(), false);
+  for (const NodeIndex leaf : forests_.leaves().leaves()) {
+    if (plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) continue;
+    light_[leaf] = {};
+    if (has_distant_lights_) from_afar_[leaf] = 0;
+    is_known_[leaf] = is_lit_[leaf] = false;
+  }
   return factor;
 }
 
@@ -153,12 +159,7 @@ void DirectField::note_moved(const MovedRoots& moved) {
   const std::vector<NodeIndex> leaves = forests_.leaves().leaves();
   std::vector<std::uint8_t> is_lost(leaves.size(), light_tree_ ? 1 : 0);  // of many lights some way leads by, mostly
   for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const std::uint32_t root = forests_.leaves().id(leaves[n]).root_face();
-    if (!plan_.may_be_lit(root)) {
-      light_[leaves[n]] = {};
-      if (has_distant_lights_) from_afar_[leaves[n]] = 0;
-    }
-    if (!moved.has(root)) continue;
+    if (!moved.has(forests_.leaves().id(leaves[n]).root_face())) continue;
     is_lost[n] = 1;
     shares_.forget(leaves[n]);
   }

@@ -55,10 +55,7 @@ bool may_go_on(const BaseMesh& before, const Plan& plan_before, const BaseMesh& 
   if (std::ranges::any_of(of_rows, [&](Feature f) { return plan_before.needs(f) != plan_after.needs(f); })) return false;
   if (plan_before.emission_by_rows() != plan_after.emission_by_rows() || !plan_after.has_light()) return false;
   if (plan_after.backs_are_seen() && !plan_before.backs_are_seen()) return false;
-  if (before.absorption() != after.absorption() || !has_same_roots(before, after)) return false;
-  for (std::uint32_t root = 0; root < after.roots().size(); ++root)
-    if (plan_after.may_be_lit(root) && !plan_before.may_be_lit(root) && !before.roots()[root].is_hidden) return false;
-  return true;
+  return before.absorption() == after.absorption() && has_same_roots(before, after);
 }
 
 }  // namespace

@@ -132,6 +132,13 @@ void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   for (RelativeLight& light : shot) light = change * light;
   const auto factor = direct.note_relit(change);
   field.scale(factor && reflects_as_before ? *factor : Rgb{change, change, change});
+  if (rows.carry_light()) {
+    std::vector<NodeIndex> dark = forests.rows().leaves();
+    std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
+    field.set(dark, std::vector<RelativeLight>(dark.size()));
+  }
+  forests.split_as_at_start(plan);
+  fit_to_nodes();
 }
 
 void SolveState::note_moved(const BaseMesh& before, Plan new_plan, bool reflects_as_before) {
@@ -147,12 +154,9 @@ void SolveState::note_moved(const BaseMesh& before, Plan new_plan, bool reflects
   for (const NodeIndex leaf : leaves) direct.forget(leaf);
   if (rows.carry_light()) {  // a slope of light at the old place says nothing at the new one
     std::vector<RelativeLight> irradiance;
-    for (const NodeIndex row : of_moved)
-      irradiance.push_back(plan.may_be_lit(forests.rows().id(row).root_face()) ? field.irradiance(row) : RelativeLight{});
+    for (const NodeIndex row : of_moved) irradiance.push_back(field.irradiance(row));
     field.set(of_moved, irradiance);
   }
-  forests.split_as_at_start(plan);
-  fit_to_nodes();
 }
 
 void SolveState::save(PlainWriter& out) const {

@@ -28,6 +28,8 @@ SceneEdit without_values(SceneEdit edit) {
     clear(light->dim), clear(light->intensity), clear(light->position), clear(light->direction);
   } else if (auto* object = std::get_if<ObjectEdit>(&edit)) {
     clear(object->dim), clear(object->move), clear(object->turn), clear(object->hidden);
+  } else {
+    edit = DaylightEdit{};
   }
   return edit;
 }
@@ -41,8 +43,7 @@ bool are_alike(const EditStep& a, const EditStep& b) {
 
 std::size_t bytes_of(const KeptEdit& edit) {
   std::size_t bytes = 100 + edit.author.size() + edit.request_id.size();
-  for (const SceneEdit& each : edit.step.edits)
-    bytes += 200 + std::visit([](const auto& part) { return part.name.size(); }, each);
+  for (const SceneEdit& each : edit.step.edits) bytes += 200 + name_of(each).size();
   return bytes;
 }
 

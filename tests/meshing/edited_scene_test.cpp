@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace alvor {
 namespace {
 
@@ -113,6 +115,29 @@ TEST(EditedScene, WhatHangsFromAHiddenObjectIsHiddenAndShinesNoMore) {
   EXPECT_TRUE(edited.materials[edited.faces[scene.objects[1].first_face].material].emission.is_zero());
 }
 
+TEST(EditedScene, DaylightTakesThePlaceOfAllLightFromAfar) {
+  Scene scene = lamps();
+  scene.north_degrees = 90;
+  Light evening{"sun", LightKind::directional, {5, 1, 0}}, moon{"moon", LightKind::directional, {0.1, 0.1, 0.1}};
+  scene.lights = {evening, {"bulb", LightKind::point, {1, 1, 1}, {1, 1, 1}}, moon};
+  const SceneEdit noon = DaylightEdit{{.sun = SunPosition{0, 60}, .sun_irradiance = 800, .sky = Daylight::Sky::uniform}};
+  const SceneEdit dim = LightEdit{.name = "sun", .dim = 0.5}, dim_moon = LightEdit{.name = "moon", .dim = 2};
+  const auto after = [&](const std::vector<SceneEdit>& edits) {
+    EXPECT_FALSE(fault_in(edits, scene));
+    return edited_scene(scene, edits).lights;
+  };
+  const auto lights = after({dim, dim_moon, noon, dim_moon});
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights[0].name, "bulb");
+  EXPECT_EQ(lights[1].name, "sun");
+  EXPECT_EQ(lights[1].intensity.g, 800) << "an edit of the sun that was there before";
+  EXPECT_LT(length(lights[1].direction - Vec3{-0.5, -std::sqrt(0.75), 0}), 1e-12) << "the scene's north is x";
+  EXPECT_EQ(lights[2].name, "sky");
+  EXPECT_EQ(after({noon, dim})[1].intensity.g, 400);
+  EXPECT_EQ(after({noon, noon}).size(), 3u);
+  EXPECT_EQ(after({noon, DaylightEdit{}}).size(), 1u);
+}
+
 TEST(EditedScene, TexturesSayHowMuchIsReflected) {
   Scene scene = lamps();
   scene.materials[0].texture.emplace();
@@ -130,7 +155,8 @@ TEST(EditedScene, FaultsNameTheFirstEditThatCannotBe) {
            ObjectEdit{.name = "left", .move = Vec3{1e12, 0, 0}}, ObjectEdit{.name = "left", .move = Vec3{0, NAN, 0}},
            ObjectEdit{.name = "left", .move = Vec3{0, 0, -11}}, MaterialEdit{.name = "m0", .emission = Rgb{-1, 0, 0}},
            MaterialEdit{.name = "m0", .reflectance = Rgb{1, 0, 0}},
-           MaterialEdit{.name = "m0", .diffuse_transmittance = Rgb{0.1, 0, 0}}, LightEdit{.name = "sun", .dim = 1}}) {
+           MaterialEdit{.name = "m0", .diffuse_transmittance = Rgb{0.1, 0, 0}}, LightEdit{.name = "sun", .dim = 1},
+           DaylightEdit{{.sun = SunPosition{0, 100}}}}) {
     const auto fault = fault_in(std::vector{good, bad}, scene);
     ASSERT_TRUE(fault);
     EXPECT_EQ(fault->edit, 1u);

@@ -32,6 +32,20 @@ Change of_object(const ObjectEdit& edit) {
   return [edit](Scene& scene) { scene = edited_scene(scene, std::vector<SceneEdit>{edit}); };
 }
 
+Change of_daylight(const Daylight& daylight) {
+  return [daylight](Scene& scene) { scene = edited_scene(scene, std::vector<SceneEdit>{DaylightEdit{daylight}}); };
+}
+Scene room_with_lamps() {
+  Scene scene = test::room_with_lamps_and_sun();
+  scene.lights.pop_back();
+  return scene;
+}
+Scene room_in_the_morning() {
+  Scene scene = room_with_lamps();
+  of_daylight({.sun = SunPosition{120, 60}, .sky = Daylight::Sky::cie, .cie_number = 12, .ground_reflectance = 0.2})(scene);
+  return scene;
+}
+
 struct Case {
   std::string name;
   Scene (*scene)();
@@ -85,6 +99,11 @@ INSTANTIATE_TEST_SUITE_P(
                          [](Scene& s) {
                            s.lights[2].direction = normalized(Vec3{-0.3, -1, 0.3});
                          }},
+                    Case{"ASunAndASkyComeUp", room_with_lamps,
+                         of_daylight({.sun = SunPosition{200, 60}, .sky = Daylight::Sky::cie, .cie_number = 12})},
+                    Case{"TheSunGoesOnUnderASky", room_in_the_morning,
+                         of_daylight({.sun = SunPosition{170, 62}, .sky = Daylight::Sky::cie, .cie_number = 12})},
+                    Case{"NightFalls", room_in_the_morning, of_daylight({})},
                     Case{"ManyLamps", test::room_with_many_lamps,
                          [](Scene& s) {
                            s.materials[1].emission = {3, 3, 3};

@@ -15,6 +15,7 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <random>
 #include <thread>
 
@@ -199,6 +200,35 @@ TEST_F(EditingTest, ObjectsAreMovedAndTakenAway) {
   }
 }
 
+TEST_F(EditingTest, ADayPassesAndIsOneStep) {
+  const std::vector<LeafValue> before = end();
+  v1::EditStep step;
+  step.set_author("Ada");
+  step.set_continues(true);
+  v1::Daylight& daylight = *step.add_edits()->mutable_daylight();
+  daylight.set_sky(v1::Daylight::CIE);
+  daylight.set_cie_number(12);
+  v1::SunTime& time = *daylight.mutable_sun_time();
+  time.set_latitude_degrees(48.1);
+  time.set_longitude_degrees(11.6);
+  for (const int hour : {6, 9, 12}) {
+    time.mutable_time()->set_seconds(1'782'000'000 + 3600 * hour);  // 2026-06-21
+    client.edit_solve(solve, step);
+  }
+  const std::vector<LeafValue> at_noon = end();
+  const v1::Solve noted = client.get_solve(solve);
+  ASSERT_EQ(noted.edits_size(), 1);
+  EXPECT_EQ(noted.edits(0).edits(0).daylight().sun_time().time().seconds(), 1'782'043'200);
+  const Scene edited = client.read_scene(solve);
+  ASSERT_EQ(edited.lights.size(), 4u);
+  EXPECT_EQ(edited.lights[2].name, "sun");
+  EXPECT_NEAR(std::asin(-edited.lights[2].direction.y) * 180 / std::numbers::pi, 63.8, 0.5) << "Munich, 50 minutes after the sun was highest, at 65.3 degrees";
+  EXPECT_GT(mean(edited, at_noon), 1.5 * mean(edited, before));
+  client.edit_solve(solve, undo());
+  end();
+  EXPECT_EQ(client.read_scene(solve).lights, room().lights);
+}
+
 TEST_F(EditingTest, RefusesWhatCannotBeAndNamesTheEditAndItsField) {
   const auto says = [&](const v1::EditStep& step, const std::string& text) {
     EXPECT_NE(refusal(step).find("INVALID_ARGUMENT: " + text), std::string::npos) << refusal(step);
@@ -227,6 +257,10 @@ TEST_F(EditingTest, RefusesWhatCannotBeAndNamesTheEditAndItsField) {
   v1::EditStep nothing;
   nothing.add_edits();
   says(nothing, "step: an edit has no part");
+  v1::EditStep high;
+  high.add_edits()->mutable_daylight()->set_sun_azimuth_degrees(10);
+  high.mutable_edits(0)->mutable_daylight()->set_sun_elevation_degrees(100);
+  says(high, "step.edits[0].daylight: its elevation of the sun is out of range");
   v1::EditStep dark;
   for (const char* light : {"bulb", "spot", "sun"}) *dark.add_edits() = dim_light(light, 0).edits(0);
   v1::MaterialEdit& lamp = *dark.add_edits()->mutable_material();

@@ -5,6 +5,7 @@
 #include "client/command/commands/follow.h"
 #include "client/command/commands/interrupt.h"
 #include "client/command/options/edit_option.h"
+#include "client/command/options/sky_options.h"
 #include "client/command/options/solve_name.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/notes.h"
@@ -23,6 +24,8 @@ struct EditCommand {
   std::string solve;
   ServerChoice server;
   std::vector<std::string> settings, dims, moves, turns, hidden, shown;
+  SkyOptions sky;
+  bool no_daylight = false;
   std::string script, author;
   bool undo = false, redo = false, wait = false;
   std::optional<std::uint64_t> base_revision;
@@ -37,12 +40,16 @@ v1::EditStep step_of(const EditCommand& command) {
   for (const std::string& turn : command.turns) *step.add_edits() = edit_of_turn(turn);
   for (const std::string& name : command.hidden) *step.add_edits() = edit_of_hidden(name, true);
   for (const std::string& name : command.shown) *step.add_edits() = edit_of_hidden(name, false);
+  const auto daylight = daylight_of(command.sky);
+  if (daylight && command.no_daylight) throw Failure(ExitStatus::usage, "--no-daylight: a sun or a sky is given, too");
+  if (daylight) *step.add_edits()->mutable_daylight() = *daylight;
+  if (command.no_daylight) step.add_edits()->mutable_daylight();
   if (command.undo || command.redo) step.set_kind(command.undo ? v1::EditStep::UNDO : v1::EditStep::REDO);
   const bool is_edit = step.kind() != v1::EditStep::UNDO && step.kind() != v1::EditStep::REDO;
   if (is_edit == (step.edits_size() == 0))
-    throw Failure(ExitStatus::usage,
-                  is_edit ? "nothing to edit: give --set, --dim, --move, --turn, --hide, --show, --script, --undo or --redo"
-                          : "--undo and --redo stand alone");
+    throw Failure(ExitStatus::usage, is_edit ? "nothing to edit: give --set, --dim, --move, --turn, --hide, --show, --sun, "
+                                               "--time, --sky, --no-daylight, --script, --undo or --redo"
+                                             : "--undo and --redo stand alone");
   step.set_author(command.author);
   return step;
 }
@@ -69,8 +76,8 @@ void run_edit(const EditCommand& command) {
 
 void add_edit_command(CLI::App& app) {
   const auto options = std::make_shared<EditCommand>();
-  CLI::App& command =
-      *app.add_subcommand("edit", "Change materials, lights and objects of a solve on a server, while it runs or afterwards");
+  CLI::App& command = *app.add_subcommand(
+      "edit", "Change materials, lights, objects and daylight of a solve on a server, while it runs or afterwards");
   command.add_option("solve", options->solve, "Name of the solve: scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
   add_server_option(command, options->server, "Server that holds the solve").required();
   command
@@ -91,6 +98,8 @@ void add_edit_command(CLI::App& app) {
       ->type_name("TURN");
   command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME");
   command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME");
+  add_sky_options(command, options->sky);
+  command.add_flag("--no-daylight", options->no_daylight, "Let no sun, sky or surroundings shine");
   command.add_option("--script", options->script, "A step of edits as JSON, with the fields of EditStep")
       ->type_name("EDITS.json");
   command.add_flag("--undo", options->undo, "Take back the newest step that holds");

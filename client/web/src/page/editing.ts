@@ -1,8 +1,10 @@
 // The controls by which a person edits the scene of a solve: brightness, colour and place of one part at a time.
 
 import { create } from "@bufbuild/protobuf";
+import { DaylightSchema, type Daylight } from "../gen/alvor/v1/scene_service_pb";
 import { EditSchema, EditStep_Kind, EditStepSchema, type Edit, type EditStep } from "../gen/alvor/v1/solve_service_pb";
 import type { Bands, Parts } from "../messages";
+import { DaylightControls } from "./daylight";
 import { button, byId, input, select } from "./dom";
 import { editsThatHold, textOfStep, undoAndRedo } from "./edits";
 import { colourOf, linearOf } from "./srgb";
@@ -25,12 +27,18 @@ interface Present {
   emission?: Bands;
 }
 
+// The option that stands for sun and sky.
+const DAYLIGHT = "daylight";
+
 export class Editing {
   private parts: Parts = { lights: [], objects: [], materials: [] };
   private steps: EditStep[] = [];
   /** A slide that has not been sent, because what was sent before it has not been answered. */
   private waiting?: Edit;
   private isSending = false;
+  private readonly daylight = new DaylightControls((value) =>
+    this.slide(create(EditSchema, { part: { case: "daylight", value: create(DaylightSchema, value) } })),
+  );
 
   constructor(private readonly send: Send) {
     select("edit-part").addEventListener("change", () => this.showPart());
@@ -58,6 +66,7 @@ export class Editing {
       ...group("Lights", "light", parts.lights.map(({ name }) => name)),
       ...group("Lamps", "object", named(({ shines }) => shines)),
       ...group("Objects", "object", named(({ shines }) => !shines)),
+      new Option("Sun and sky", `${DAYLIGHT}:`),
       ...group("Materials", "material", parts.materials.map(({ name }) => name)),
     );
     this.showPart();
@@ -106,7 +115,7 @@ export class Editing {
     let emission = material?.emission;
     const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
     for (const { part } of editsThatHold(this.steps)) {
-      if (part.case !== kind || part.value.name !== name) continue;
+      if (part.case === "daylight" || part.case !== kind || part.value.name !== name) continue;
       if (part.case !== "material") dim = part.value.dim ?? dim;
       if (part.case === "object" && part.value.move) position = [part.value.move.x, part.value.move.y, part.value.move.z];
       if (part.case === "object") turn = part.value.turn ?? turn;
@@ -124,7 +133,14 @@ export class Editing {
     return { isLamp, dim, colour, position, turn, hidden, emission: shines ? material.emission : undefined };
   }
 
+  /** The daylight that edits have set; undefined if none has. */
+  private presentDaylight(): Daylight | undefined {
+    const set = editsThatHold(this.steps).flatMap(({ part }) => (part.case === "daylight" ? [part.value] : []));
+    return set.at(-1);
+  }
+
   private showPart(): void {
+    this.daylight.show(this.chosen.kind === DAYLIGHT, this.presentDaylight());
     const { isLamp, dim, colour, position, turn, hidden } = this.present();
     byId("edit-dim-label").hidden = !isLamp;
     byId("edit-colour-label").hidden = !colour;

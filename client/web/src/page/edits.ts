@@ -32,6 +32,7 @@ const percent = (share: number) => `${Math.round(100 * share)} %`;
 
 function textOfEdit({ part }: Edit): string {
   if (part.case === undefined) return "something";
+  if (part.case === "daylight") return "sun and sky";
   const { name } = part.value;
   if (part.case === "object" && part.value.hidden !== undefined) return `${name}, ${part.value.hidden ? "taken away" : "brought back"}`;
   if (part.case === "object" && part.value.move) return `${name}, moved`;

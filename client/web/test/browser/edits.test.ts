@@ -83,7 +83,8 @@ describe("edits on the page", () => {
     await expect.poll(async () => (await pixelAt(ben, ...BACK_WALL))[1]).toBeLessThan(0.85 * before);
     await ann.focus("#edit-dim");
     await ann.keyboard.press("ArrowRight");
-    await expect.poll(async () => (await server.api.solves.getSolve({ name })).edits.at(-1)!.edits[0].part.value!.name).toBe("light");
+    const edited = async () => (await server.api.solves.getSolve({ name })).edits.at(-1)!.edits[0].part;
+    await expect.poll(edited).toMatchObject({ case: "material", value: { name: "light" } });
     await waitForState(ann, "Done");
     expect((await server.api.solves.getSolve({ name })).edits).toHaveLength(1);
     await ann.click("#undo");

@@ -1,9 +1,10 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
+import { DaylightSchema, ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
 import { EditStep_Kind, EditStepSchema, LookSchema } from "../../src/gen/alvor/v1/solve_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { partsOf } from "../../src/mirror/parts";
+import { choiceOf, clockOf, daylightOf, type DaylightChoice } from "../../src/page/daylight";
 import { editsThatHold, textOfStep, undoAndRedo } from "../../src/page/edits";
 import { colourOf, linearOf } from "../../src/page/srgb";
 
@@ -15,7 +16,7 @@ const redo = create(EditStepSchema, { kind: EditStep_Kind.REDO });
 describe("steps of edits", () => {
   it("hold unless they were taken back", () => {
     const steps = [dim("a", 0.1), dim("b", 0.2), undo, dim("c", 0.3), undo, redo];
-    expect(editsThatHold(steps).map(({ part }) => part.value!.name)).toEqual(["a", "c"]);
+    expect(editsThatHold(steps).map(({ part }) => part.case === "object" && part.value.name)).toEqual(["a", "c"]);
   });
 
   it("tell whether there is something to take back or to repeat", () => {
@@ -97,5 +98,31 @@ describe("a mesh with a look", () => {
     expect(parts.lights).toEqual([{ name: "bulb", intensity: [3, 3, 3], position: [1, 2, 3] }]);
     expect(parts.objects).toEqual(["left", "right"].map((name) => ({ name, shines: true, isRoom: true })));
     expect(parts.materials.map(({ name }) => name)).toEqual(["wall", "lamp"]);
+  });
+});
+
+describe("daylight", () => {
+  const noon: DaylightChoice = { sky: "clear", latitude: 48.1, longitude: 11.6, date: "2026-06-21", minutes: 840, hoursFromUtc: 2 };
+  const there = (choice: DaylightChoice) => create(DaylightSchema, daylightOf(choice)!);
+
+  it("is told by place and time", () => {
+    expect(there(noon).sunTime!.time!.seconds).toBe(BigInt(Date.UTC(2026, 5, 21, 12) / 1000));
+    expect(there({ ...noon, minutes: 60 }).sunTime!.time!.seconds).toBe(BigInt(Date.UTC(2026, 5, 20, 23) / 1000));
+    expect(clockOf(9 * 60 + 5)).toBe("09:05");
+  });
+
+  it("comes back as it was chosen", () => {
+    for (const sky of ["clear", "sun"] as const) expect(choiceOf(there({ ...noon, sky }), { ...noon, minutes: 0 })).toEqual({ ...noon, sky });
+    for (const sky of ["overcast", "dark"] as const) expect(choiceOf(there({ ...noon, sky }), noon)).toEqual({ ...noon, sky });
+  });
+
+  it("is not told while a field is empty or beyond the Earth", () => {
+    for (const bad of [{ latitude: NaN }, { latitude: 91 }, { longitude: -181 }, { date: "" }, { hoursFromUtc: NaN }])
+      expect(daylightOf({ ...noon, ...bad })).toBeUndefined();
+  });
+
+  it("is told with who let it shine", () => {
+    const edits = [{ part: { case: "daylight" as const, value: {} } }];
+    expect(textOfStep(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits, author: "Ann" }))).toBe("Ann edited sun and sky");
   });
 });
