@@ -1,12 +1,15 @@
 # The alvor command, with the example scenes. From the project's root: docker build -f docker/client.Dockerfile -t alvor-client .
 
+# The same stage as in server.Dockerfile, so that it is built once.
 FROM debian:bookworm-slim AS build
 WORKDIR /alvor
 COPY scripts/setup.sh scripts/
 RUN scripts/setup.sh compile
 COPY . .
-RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import && \
-    strip build/release/bin/alvor build/release/bin/alvord build/release/bin/alvor-import
+# What is not needed is removed at once: some gigabytes that the layer would hold.
+RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import alvor-mpi && \
+    cd build/release/bin && strip alvor alvord alvor-import alvor-mpi.so && \
+    mkdir /built && cp alvor alvord alvor-import alvor-mpi.so /built && rm -rf /alvor/build
 
 FROM debian:bookworm-slim
 RUN apt-get update -qq && \
@@ -17,7 +20,7 @@ RUN apt-get update -qq && \
     echo 'alvor:x:10001:10001::/out:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 /out
 COPY scenes /usr/local/share/alvor/scenes
-COPY --from=build /alvor/build/release/bin/alvor /alvor/build/release/bin/alvor-import /usr/local/bin/
+COPY --from=build /built/alvor /built/alvor-import /usr/local/bin/
 RUN alvor --version > /dev/null && alvor explain /usr/local/share/alvor/scenes/cornell_box.obj > /dev/null
 
 USER 10001:10001

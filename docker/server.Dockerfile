@@ -16,8 +16,10 @@ WORKDIR /alvor
 COPY scripts/setup.sh scripts/
 RUN scripts/setup.sh compile
 COPY . .
+# What is not needed is removed at once: some gigabytes that the layer would hold.
 RUN CMAKE_OPTIONS=-DBUILD_TESTING=OFF scripts/build.sh alvor alvord alvor-import alvor-mpi && \
-    cd build/release/bin && strip alvor alvord alvor-import alvor-mpi.so
+    cd build/release/bin && strip alvor alvord alvor-import alvor-mpi.so && \
+    mkdir /built && cp alvor alvord alvor-import alvor-mpi.so /built && rm -rf /alvor/build
 
 FROM debian:bookworm-slim AS server
 RUN apt-get update -qq && \
@@ -28,7 +30,7 @@ RUN apt-get update -qq && \
     echo 'alvor:x:10001:10001::/var/lib/alvor:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 -m 700 /var/lib/alvor && install -d -o 10001 -g 10001 -m 750 /run/alvor
 COPY --from=page /alvor/build/release/bin/web /usr/local/share/alvor/web
-COPY --from=build /alvor/build/release/bin/alvord /alvor/build/release/bin/alvor-import /usr/local/bin/
+COPY --from=build /built/alvord /built/alvor-import /usr/local/bin/
 RUN alvord --help > /dev/null && alvor-import 10000000000 1 < /dev/null
 
 # Each option has a variable of its name; what is given to the container's command goes before it.
@@ -46,7 +48,7 @@ RUN apt-get update -qq && \
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libcairo2 openmpi-bin openssh-client openssh-server && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* /etc/ssh/ssh_host_* && \
     sed -i '/^alvor:/s:/usr/sbin/nologin:/bin/sh:' /etc/passwd
-COPY --from=build /alvor/build/release/bin/alvor /alvor/build/release/bin/alvor-mpi.so /usr/local/bin/
+COPY --from=build /built/alvor /built/alvor-mpi.so /usr/local/bin/
 COPY docker/ranks/sshd_config /etc/alvor/
 COPY docker/ranks/ssh_config /etc/ssh/ssh_config.d/alvor.conf
 COPY docker/ranks/openmpi-mca-params.conf /etc/openmpi/

@@ -158,9 +158,9 @@ void BlockerTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t l
 }
 
 /// A patch and a light, of which blockers are asked whether they may stand between.
-class BlockerTree::Question {
+class BlockerTree::Between {
  public:
-  Question(const Flat& patch, const Flat& light)
+  Between(const Flat& patch, const Flat& light)
       : patch_(patch),
         light_(light),
         ground_{patch.normal, dot(patch.normal, patch.corners[0])},
@@ -168,7 +168,7 @@ class BlockerTree::Question {
         light_box_(BoxCorners::of(light.corners)),
         shaft_(BoxCorners::of(patch.corners), light_box_) {}
 
-  const Shaft& shaft() const { return shaft_; }
+  bool may_touch(const BoxCorners& box) const { return shaft_.may_touch(box); }
 
   bool is_met_by(const Blocker& blocker, std::span<const Vec3> corners, std::span<const BoxCorners> solids) const {
     constexpr double slack = ray_offset;
@@ -188,15 +188,93 @@ class BlockerTree::Question {
   Shaft shaft_;
 };
 
+/// A patch and a rectangle through which light comes from infinitely far away.
+class BlockerTree::Through {
+ public:
+  Through(const Flat& patch, const Flat& rectangle)
+      : patch_(patch),
+        rectangle_{rectangle.normal, dot(rectangle.normal, rectangle.corners[0])},
+        ground_{patch.normal, dot(patch.normal, patch.corners[0])},
+        box_(BoxCorners::of(rectangle.corners)),
+        between_(patch, rectangle) {
+    is_before_ = lies_above(patch.corners, rectangle_, -slack);
+    if (is_before_) set_sides(rectangle.corners);
+  }
+
+  /// Returns whether all of the patch lies before the rectangle. If not, nothing else may be asked.
+  bool is_before() const { return is_before_; }
+  bool may_touch(const BoxCorners& box) const {
+    if (between_.may_touch(box)) return true;
+    return !(lowest(rectangle_, box) > slack) && is_in_cones([&](const Plane& side) { return highest(side, box) > slack; });
+  }
+  bool is_met_by(const Blocker& blocker, std::span<const Vec3> corners, std::span<const BoxCorners> solids) const {
+    if (between_.is_met_by(blocker, corners, solids)) return true;
+    if (lies_below(corners, ground_, slack) || lies_above(corners, rectangle_, -slack)) return false;
+    if (!is_in_cones([&](const Plane& side) { return !lies_below(corners, side, slack); })) return false;
+    const bool is_seen_from_front = lies_above(patch_.corners, blocker.plane, slack);
+    return !is_seen_from_front || blocker.solid == no_solid || solids[blocker.solid].touches(box_);
+  }
+
+ private:
+  static constexpr double slack = ray_offset;
+  /// Where light that goes on through the rectangle can come from is bounded by planes through an edge and a point of the patch.
+  /// A corner of the patch has the outermost one: the height of a place above such a plane is linear in the point of the patch.
+  void set_sides(std::span<const Vec3> corners) {
+    Vec3 middle;
+    for (const Vec3& corner : corners) middle += corner / static_cast<double>(corners.size());
+    for (std::size_t e = 0; e < corners.size(); ++e)
+      for (const Vec3& from : patch_.corners) {
+        const Vec3 here = corners[e], next = corners[(e + 1) % corners.size()];
+        const Vec3 normal = normalized(cross(here - from, next - from));
+        const Plane side{normal, dot(normal, from)};
+        sides_.push_back(side.height(middle) > 0 ? side : Plane{-side.normal, -side.offset});
+      }
+  }
+  /// Returns whether for each edge there is a point of the patch for which `reaches` holds.
+  template <class Reaches>
+  bool is_in_cones(Reaches&& reaches) const {
+    const std::size_t of_edge = patch_.corners.size();
+    for (std::size_t first = 0; first < sides_.size(); first += of_edge)
+      if (std::none_of(sides_.begin() + static_cast<std::ptrdiff_t>(first),
+                       sides_.begin() + static_cast<std::ptrdiff_t>(first + of_edge), reaches))
+        return false;
+    return true;
+  }
+  static double highest(const Plane& plane, const BoxCorners& box) {
+    const auto n = coordinates(plane.normal);
+    double height = -plane.offset;
+    for (std::size_t axis = 0; axis < 3; ++axis) height += std::max(n[axis] * box.low[axis], n[axis] * box.high[axis]);
+    return height;
+  }
+  static double lowest(const Plane& plane, const BoxCorners& box) { return -highest({-plane.normal, -plane.offset}, box); }
+
+  const Flat& patch_;
+  Plane rectangle_, ground_;
+  BoxCorners box_;
+  Between between_;
+  bool is_before_ = false;
+  std::vector<Plane> sides_;  // by edge, and within by corner of the patch
+};
+
 void BlockerTree::find_between(const Flat& patch, const Flat& light, std::size_t most, Found& found) const {
   found.polygons.clear();
   found.is_complete = true;
-  if (nodes_.empty()) return;
-  const Question question(patch, light);
+  if (!nodes_.empty()) find(Between(patch, light), most, found);
+}
+
+void BlockerTree::find_through(const Flat& patch, const Flat& rectangle, std::size_t most, Found& found) const {
+  found.polygons.clear();
+  const Through question(patch, rectangle);
+  found.is_complete = question.is_before();
+  if (found.is_complete && !nodes_.empty()) find(question, most, found);
+}
+
+template <class Question>
+void BlockerTree::find(const Question& question, std::size_t most, Found& found) const {
   std::array<std::uint32_t, 64> waiting{0};  // nodes; each half of a node has half of its blockers, so 32 levels are enough
   for (std::size_t count = 1; count > 0;) {
     const Node& node = nodes_[waiting[--count]];
-    if (!question.shaft().may_touch(node.box)) continue;
+    if (!question.may_touch(node.box)) continue;
     if (node.count == 0) {
       waiting[count++] = node.first;
       waiting[count++] = node.first + 1;

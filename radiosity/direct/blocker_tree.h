@@ -58,6 +58,9 @@ class BlockerTree {
   /// if there are at most `most`. Of a closed solid that does not reach to the light, only faces count through which light would
   /// come out of the solid. A face less than ray_offset before the patch or the light does not count.
   void find_between(const Flat& patch, const Flat& light, std::size_t most, Found& found) const;
+  /// Does the same for light that comes from infinitely far away through a rectangle, whose normal points to the patch: of faces
+  /// on both sides of it. Not complete if the patch does not lie before the rectangle.
+  void find_through(const Flat& patch, const Flat& rectangle, std::size_t most, Found& found) const;
 
  private:
   struct Blocker {
@@ -72,7 +75,10 @@ class BlockerTree {
     BoxCorners box;
     std::uint32_t first = 0, count = 0;  // of blockers_; if count is 0, its children are the nodes `first` and the next
   };
-  class Question;
+  class Between;
+  class Through;
+  template <class Question>
+  void find(const Question& question, std::size_t most, Found& found) const;
   void add(const LocalScene& scene, bool panes, std::span<const std::uint32_t> solid_of_root);
   void build(std::uint32_t node, std::uint32_t first, std::uint32_t last);
   std::span<const Vec3> corners_of(const Blocker& blocker) const {

@@ -158,14 +158,12 @@ class ShadowBatch {
     trace(some, 1, packets_when_mixed);
     for (Lit& lit : lit_) lit.fraction.finish();
   }
-  /// Finds without rays what receivers see of flat lights that few faces may hide.
+  /// Finds without rays what receivers see of flat lights, and of far ones through exits, that few faces may hide.
   void look_exactly() {
     ExactShadow shadow(*blockers_);
     for (Lit& lit : lit_) {
-      const auto polygon = lights_[lit.light]->polygon();
-      if (polygon.empty()) continue;
       const Receiver& receiver = receivers_[lit.receiver];
-      lit.view = shadow.view(scene_, receiver.shape, receiver.hidden_origins, points_[lit.receiver], polygon);
+      lit.view = shadow.view(scene_, receiver.shape, receiver.hidden_origins, points_[lit.receiver], *lights_[lit.light]);
       if (lit.view.kind == ExactView::Kind::clear) lit.fraction = VisibleFraction::all();
     }
   }

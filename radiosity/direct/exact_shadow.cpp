@@ -44,17 +44,47 @@ void ExactShadow::add_part_before_light(std::span<const Vec3> blocker) {
   blockers_.push_back(clipped_.back().corners());
 }
 
-std::optional<double> ExactShadow::visible_from(Vec3 point) {
-  if (above_.is_empty() || lamp_.height(point) <= 0) return 0;
+bool ExactShadow::begin_through(const BlockerTree::Flat& patch, const LightSource& light) {
+  const auto aperture = light.aperture();
+  Vec3 normal = normalized(area_vector(aperture));
+  std::array<Vec3, 4> corners{aperture[0], aperture[1], aperture[2], aperture[3]};
+  if (dot(normal, patch.corners[0] - corners[0]) < 0) {
+    normal = -normal;
+    std::swap(corners[1], corners[3]);
+  }
+  normal_ = patch.normal;
+  above_ = part_above(ConvexPolygon(corners), {patch.normal, dot(patch.normal, patch.corners[0])});
+  blockers_.clear();
+  if (above_.is_empty()) return true;
+  tree_.find_through(patch, {above_.corners(), normal}, most_before_aperture, found_);
+  if (found_.is_complete) blockers_ = found_.polygons;
+  return found_.is_complete;
+}
+
+/// Sets lit_ to what is seen from a point of what lies above the horizon. Returns false if that has too many parts.
+bool ExactShadow::cut(Vec3 point) {
   lit_.assign(1, above_);
   for (const auto& blocker : blockers_) {
     const ShadowCone shadow(point, blocker);
     next_.clear();
     for (const ConvexPolygon& piece : lit_) shadow.cut_from(piece, next_);
     lit_.swap(next_);
-    if (lit_.empty()) return 0;
-    if (lit_.size() > most_parts) return std::nullopt;
+    if (lit_.empty()) return true;
+    if (lit_.size() > most_parts) return false;
   }
+  return true;
+}
+
+std::optional<double> ExactShadow::through_to(Vec3 point, const LightSource& light) {
+  if (above_.is_empty()) return 0;
+  if (!cut(point)) return std::nullopt;
+  const double sum = light.through(lit_, point, normal_);
+  return sum < small && sum < rounding * light.unblocked(point, normal_) ? 0 : sum;
+}
+
+std::optional<double> ExactShadow::visible_from(Vec3 point) {
+  if (above_.is_empty() || lamp_.height(point) <= 0) return 0;
+  if (!cut(point)) return std::nullopt;
   double sum = 0;
   for (const ConvexPolygon& piece : lit_) sum += point_to_polygon_above(point, normal_, piece.corners());
   if (sum < small && sum < rounding * point_to_polygon_above(point, normal_, above_.corners())) return 0;
@@ -63,21 +93,25 @@ std::optional<double> ExactShadow::visible_from(Vec3 point) {
 
 // Points lie above the patch as origins of rays do, so that faces in its plane hide nothing.
 ExactView ExactShadow::view(const LocalScene& scene, const PatchShape& patch, std::uint16_t hidden_origins,
-                            const PatchPoints& origins, std::span<const Vec3> light) {
+                            const PatchPoints& origins, const LightSource& light) {
+  const bool is_far = !light.aperture().empty();
+  if (!is_far && light.polygon().empty()) return {};
   const RootPatch& root = scene.mesh().roots()[patch.root];
   const Vec3 lift = double(ray_offset) * root.normal;
   auto corners = corners_of(scene.mesh(), patch);
   for (Vec3& corner : corners) corner = scene.frame().to_local(corner) + lift;
   const auto count = static_cast<std::size_t>(patch.corner_count);
-  if (!begin({std::span(corners).first(count), root.normal}, {light, normalized(area_vector(light))})) return {};
-  if (is_clear()) return {ExactView::Kind::clear, {}};
+  const BlockerTree::Flat flat{std::span(corners).first(count), root.normal};
+  if (!(is_far ? begin_through(flat, light) : begin(flat, {light.polygon(), normalized(area_vector(light.polygon()))})))
+    return {};
+  if (is_clear() && !light.has_partial_rays()) return {ExactView::Kind::clear, {}};
   ExactView view{ExactView::Kind::shadowed, {}};
   for (int o = 0; o < origins_per_patch; ++o) {
     if (hidden_origins >> o & 1) continue;
     const Uv middle = patch.stratum_centre(o);
     const Vec3 at = hidden_origins != 0 ? Vec3{origins.x[o], origins.y[o], origins.z[o]}
                                         : scene.frame().to_local(root.at(middle.u, middle.v)) + lift;
-    const auto seen = visible_from(at);
+    const auto seen = is_far ? through_to(at, light) : visible_from(at);
     if (!seen) return {};
     view.at_origin[static_cast<std::size_t>(o)] = static_cast<float>(*seen);
   }

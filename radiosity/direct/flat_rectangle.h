@@ -4,6 +4,7 @@
 #include "meshing/patch_place.h"
 #include "meshing/vec3.h"
 
+#include <array>
 #include <optional>
 
 namespace alvor {
@@ -13,6 +14,7 @@ struct FlatRectangle {
   Vec3 corner, side_u, side_v;  ///< the sides are perpendicular to each other
   Vec3 normal;                  ///< unit
   Vec3 at(double u, double v) const { return corner + u * side_u + v * side_v; }
+  std::array<Vec3, 4> corners() const { return {corner, corner + side_u, corner + side_u + side_v, corner + side_v}; }
   double area() const { return length(side_u) * length(side_v); }
   /// Returns where a ray crosses the rectangle, in shares of its sides, from either side; nothing if it does not, or if it starts
   /// on it. Requires: the sides are not zero.

@@ -1,6 +1,7 @@
 #pragma once
 // The interface of a light, through which the direct field computes its irradiance and its shadows.
 
+#include "radiosity/form_factors/convex_polygon.h"
 #include "radiosity/rays/ray_source.h"
 #include "radiosity/rays/visibility.h"
 #include "solution/relative_light.h"
@@ -80,6 +81,12 @@ class LightSource {
   /// Returns the corners of a light that is a convex planar polygon of even emission without holes, counter-clockwise as seen
   /// from its front; none for other lights. Its irradiance is then the form factor to what is visible of it. Local units.
   virtual std::span<const Vec3> polygon() const { return {}; }
+  /// Returns the corners of a rectangle through which a light from infinitely far away shines evenly enough for through(); none
+  /// for other lights. Faces on both sides of it may hide the light. Local units.
+  virtual std::span<const Vec3> aperture() const { return {}; }
+  /// Returns the irradiance, as unblocked() does, that comes through `parts` of aperture(), of which nothing is hidden from the
+  /// point. May change `parts`. Requires: aperture(); the parts lie above the surface's horizon.
+  virtual double through(std::vector<ConvexPolygon>&, Vec3, Vec3) const { return 0; }
   /// Returns whether a ray that nothing blocks may bring less than its weight for a reason other than a face on its way.
   virtual bool has_partial_rays() const { return false; }
   /// Returns nothing if the light comes from outside of the scene.

@@ -2,6 +2,8 @@
 
 #include "radiosity/direct/disk_point.h"
 #include "radiosity/direct/face_integral.h"
+#include "radiosity/form_factors/form_factor.h"
+#include "radiosity/form_factors/shadow_cone.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,9 @@ using std::numbers::pi;
 constexpr int tilts = 48, turns = 96, rings = 32, sectors = 128;
 // Cosine of the angle between a zenith and the side of an exit within which the side stands upright.
 constexpr double aligned = 1 - 1e-9;
+// Longest side of a triangle over which radiance is looked at in three places, as a share of its distance; and most steps into
+// which a side is cut for that. Chosen.
+constexpr double widest_triangle = 0.5, most_steps = 6;
 
 /// Returns the irradiance of open surfaces by their normal.
 NormalTable table_of(const SkyDome& dome) {
@@ -65,6 +70,7 @@ ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, std::shared_
       exits_(std::move(exits)),
       which_(which),
       exit_(exits_->exits[which]),
+      corners_(exit_.corners()),
       box_(scene),
       zenith_(radiance_->zenith()) {}
 
@@ -102,6 +108,54 @@ double ExitLight::unblocked(Vec3 at, Vec3 normal) const {
   const auto point = [&](Uv uv) { return part.at(uv.u, uv.v); };
   const auto brings_here = [&](Vec3 from) { return brings(from, at, normal); };
   return part.area() * FaceIntegral(point, brings_here, size_u, size_v, at).mean();
+}
+
+/// Returns the mean of the radiance over a part of the exit, weighted by what even radiance would bring. The part is cut into
+/// triangles that are small beside their distance, and each is seen by the middles of its sides.
+double ExitLight::mean_radiance(std::span<const Vec3> part, Vec3 at, Vec3 normal) const {
+  double all = 0, bright = 0;
+  const auto add = [&](Vec3 from, double area) {
+    const Vec3 way = from - at;
+    const double squared = std::max(dot(way, way), nearest_look * nearest_look);
+    const double weight = area * std::max(0.0, dot(way, normal)) * std::abs(dot(way, exit_.normal)) / (squared * squared);
+    all += weight;
+    bright += weight * radiance_->smooth_radiance(way / std::sqrt(squared));
+  };
+  for (std::size_t c = 2; c < part.size(); ++c) {
+    const Vec3 corner = part[0], u = part[c - 1] - corner, v = part[c] - corner;
+    const double longest = std::max({length(u), length(v), length(u - v)});
+    const double distance = length(corner + (u + v) / 3 - at);
+    const int steps = static_cast<int>(std::clamp(std::ceil(longest / (widest_triangle * distance)), 1.0, most_steps));
+    const double area = length(cross(u, v)) / (2.0 * steps * steps);
+    const auto add_triangle = [&](double a, double b, double side) {  // a corner and the length of its sides, in steps
+      const auto place = [&](double x, double y) { return corner + x / steps * u + y / steps * v; };
+      for (const Vec3 middle : {place(a + side / 2, b), place(a, b + side / 2), place(a + side / 2, b + side / 2)})
+        add(middle, area / 3);
+    };
+    for (int a = 0; a < steps; ++a)
+      for (int b = 0; a + b < steps; ++b) {
+        add_triangle(a, b, 1);
+        if (a + b + 1 < steps) add_triangle(a + 1, b + 1, -1);
+      }
+  }
+  return all > 0 ? bright / all : 0;
+}
+
+double ExitLight::through(std::vector<ConvexPolygon>& parts, Vec3 at, Vec3 normal) const {
+  std::vector<ConvexPolygon> rest;
+  for (std::size_t before = 0; before < which_; ++before) {  // see SkyExits::counts_at
+    const ShadowCone counts_there(at, exits_->exits[before].corners());
+    rest.clear();
+    for (const ConvexPolygon& part : parts) counts_there.cut_from(part, rest);
+    parts.swap(rest);
+  }
+  double sum = 0;
+  for (const ConvexPolygon& part : parts) {
+    const ConvexPolygon seen = zenith_ ? part_above(part, {*zenith_, dot(*zenith_, at)}) : part;
+    if (seen.is_empty()) continue;
+    sum += pi * std::abs(point_to_polygon_above(at, normal, seen.corners())) * mean_radiance(seen.corners(), at, normal);
+  }
+  return sum;
 }
 
 void ExitLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {

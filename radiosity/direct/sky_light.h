@@ -9,9 +9,12 @@
 #include "radiosity/direct/sky_exits.h"
 #include "radiosity/rays/local_scene.h"
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace alvor {
 
@@ -51,15 +54,19 @@ class ExitLight final : public LightSource {
   double sample_scale(double probability) const override { return 1 / probability; }
   std::optional<LightExtent> extent() const override { return std::nullopt; }
   bool has_partial_rays() const override { return which_ > 0; }
+  std::span<const Vec3> aperture() const override { return corners_; }
+  double through(std::vector<ConvexPolygon>& parts, Vec3 at, Vec3 normal) const override;
 
  private:
   FlatRectangle above_horizon(Vec3 at) const;
   double brings(Vec3 from, Vec3 at, Vec3 normal) const;
+  double mean_radiance(std::span<const Vec3> part, Vec3 at, Vec3 normal) const;
 
   const std::shared_ptr<const DistantRadiance> radiance_;
   const std::shared_ptr<const SkyExits> exits_;
   const std::size_t which_;
   const FlatRectangle& exit_;
+  const std::array<Vec3, 4> corners_;
   const SceneBox box_;
   const std::optional<Vec3> zenith_;
 };

@@ -61,9 +61,14 @@ void DirectField::choose_lights() {
 }
 
 void DirectField::heed_error(double error_so_far) {
-  const bool has_polygons = std::ranges::any_of(owned_lights_, [](const auto& light) { return !light->polygon().empty(); });
-  is_exact_ = has_polygons && options_.tolerance < exact_below_tolerance && error_so_far < exact_below_error &&
-              plan_.needs(Feature::occlusion) && !plan_.needs(Feature::medium);
+  const auto any_has = [this](auto&& what) {
+    return std::ranges::any_of(owned_lights_, [&](const auto& light) { return !what(*light).empty(); });
+  };
+  const bool has_polygons = any_has([](const LightSource& light) { return light.polygon(); });
+  const bool has_apertures = any_has([](const LightSource& light) { return light.aperture(); });
+  is_exact_ =
+      (has_apertures || (has_polygons && options_.tolerance < exact_below_tolerance && error_so_far < exact_below_error)) &&
+      plan_.needs(Feature::occlusion) && !plan_.needs(Feature::medium);
   if (is_exact_ && !blockers_) blockers_ = std::make_unique<BlockerTree>(scene_);
 }
 

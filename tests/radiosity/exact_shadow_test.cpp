@@ -4,6 +4,7 @@
 
 #include "radiosity/direct/direct_light.h"
 #include "radiosity/direct/face_light.h"
+#include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/form_factors/form_factor.h"
 #include "tests/radiosity/solved.h"
 #include "tests/random/dice.h"
@@ -200,8 +201,8 @@ TEST(ExactShadow, AgreesWithRaysOnRandomPairs) {
     View view(random_blockers(dice));
     if (view.mesh().roots().size() < 3 || view.mesh().roots()[1].material != 1) continue;
     const PatchPoints points = middles_of_strata(view.local());
-    const ExactView seen =
-        view.shadow().view(view.local(), shape_of(view.mesh(), PatchId::root(0)), 0, points, view.local().corners(1));
+    const ExactView seen = view.shadow().view(view.local(), shape_of(view.mesh(), PatchId::root(0)), 0, points,
+                                              FaceLight(view.local(), 1, {1, 1, 1}));
     if (seen.kind != ExactView::Kind::shadowed) continue;
     ++shadowed;
     for (const float at_origin : seen.at_origin) ASSERT_TRUE(at_origin >= 0 && at_origin <= 1) << "scene " << n;
@@ -209,6 +210,95 @@ TEST(ExactShadow, AgreesWithRaysOnRandomPairs) {
     EXPECT_EQ(disagreements(view.local(), points, seen, 1 << 16), 0) << "scene " << n;
   }
   EXPECT_GT(shadowed, 700);
+}
+
+/// Returns a black room of 4 x 3 x 5 m with a window of 2 x 1.5 m in a wall 0.4 m thick, under a clear sky, with boxes and quads
+/// in it and before the window. Face 0 is the floor.
+Scene room_with_deep_window(test::Dice& dice) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0)};
+  test::add_polygon(scene, {{0, 0, 0}, {0, 0, 5}, {4, 0, 5}, {4, 0, 0}});
+  test::add_polygon(scene, {{0, 3, 0}, {4, 3, 0}, {4, 3, 5}, {0, 3, 5}});
+  test::add_polygon(scene, {{0, 0, 0}, {0, 3, 0}, {0, 3, 5}, {0, 0, 5}});
+  test::add_polygon(scene, {{4, 0, 0}, {4, 0, 5}, {4, 3, 5}, {4, 3, 0}});
+  test::add_polygon(scene, {{0, 0, 5}, {0, 3, 5}, {4, 3, 5}, {4, 0, 5}});
+  // The wall's inner side about the window, and the window's reveals.
+  test::add_polygon(scene, {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{0, 2.5, 0}, {4, 2.5, 0}, {4, 3, 0}, {0, 3, 0}});
+  test::add_polygon(scene, {{0, 1, 0}, {1, 1, 0}, {1, 2.5, 0}, {0, 2.5, 0}});
+  test::add_polygon(scene, {{3, 1, 0}, {4, 1, 0}, {4, 2.5, 0}, {3, 2.5, 0}});
+  constexpr double out = -0.4;
+  test::add_polygon(scene, {{1, 1, 0}, {3, 1, 0}, {3, 1, out}, {1, 1, out}});
+  test::add_polygon(scene, {{1, 2.5, out}, {3, 2.5, out}, {3, 2.5, 0}, {1, 2.5, 0}});
+  test::add_polygon(scene, {{1, 1, out}, {1, 2.5, out}, {1, 2.5, 0}, {1, 1, 0}});
+  test::add_polygon(scene, {{3, 1, 0}, {3, 2.5, 0}, {3, 2.5, out}, {3, 1, out}});
+  const auto add_box = [&](double near_z, double far_z) {
+    const Vec3 low{dice.between(0.2, 3), dice.between(0.1, 2), dice.between(near_z, far_z)};
+    test::add_box(scene, low, low + Vec3{dice.between(0.05, 0.6), dice.between(0.05, 0.8), dice.between(0.05, 0.5)}, false);
+  };
+  if (dice.happens(0.5)) add_box(0.5, 3);
+  if (dice.happens(0.5)) add_box(-3, -1);
+  if (dice.happens(0.5)) test::add_polygon(scene, {{-9, -2, -6}, {9, -2, -6}, {9, dice.between(1, 5), -6}, {-9, 1, -6}});
+  Light sky{"sky", LightKind::sky, {1, 1, 1}};
+  sky.direction = {0, -1, 0};
+  sky.sky = cie_sky(12, normalized(Vec3{0.5, 0.7, -0.6}));
+  scene.lights = {sky};
+  return scene;
+}
+
+/// What patches of the floor get of the sky, by sixteen times sixteen receivers.
+struct FloorUnderASky {
+  explicit FloorUnderASky(const Scene& scene)
+      : mesh(scene), local(mesh), tree(local), lights(lights_beside_faces(local, EmissionUnit(mesh))) {
+    for (const auto& light : lights) sources.push_back(light.get());
+    for (std::uint32_t path = 0; path < 16; ++path) {
+      const PatchId patch = PatchId::root(0).child(static_cast<int>(path / 4)).child(static_cast<int>(path % 4));
+      receivers.push_back({patch, shape_of(mesh, patch)});
+    }
+  }
+  std::vector<DirectLight> light(std::uint64_t seed, const BlockerTree* blockers) const {
+    RayBudget budget([] { return false; });
+    std::vector<DirectLight> found(receivers.size());
+    add_direct_light(local, sources, receivers, seed, budget, found, {.medium = false, .blockers = blockers});
+    return found;
+  }
+  BaseMesh mesh;
+  LocalScene local;
+  BlockerTree tree;
+  OwnedLights lights;
+  std::vector<const LightSource*> sources;
+  std::vector<Receiver> receivers;
+};
+
+// The rays' noise is known from their seeds; the sixteen places of a patch that are seen exactly stand for all of it, to within a
+// few percent.
+TEST(ExactShadow, OfTheSkyThroughADeepWindowAgreesWithRays) {
+  test::Dice dice(11);
+  constexpr int scenes = 60, seeds = 100;
+  double sum = 0, difference = 0;
+  int noiseless = 0;
+  for (int n = 0; n < scenes; ++n) {
+    const FloorUnderASky floor(room_with_deep_window(dice));
+    const std::vector<DirectLight> exact = floor.light(1, &floor.tree);
+    std::vector<double> mean(exact.size()), squares(exact.size());
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+      const auto by_rays = floor.light(seed, nullptr);
+      for (std::size_t r = 0; r < mean.size(); ++r) {
+        const double irradiance = by_rays[r].irradiance.mean();
+        mean[r] += irradiance / seeds, squares[r] += irradiance * irradiance / seeds;
+      }
+    }
+    for (std::size_t r = 0; r < exact.size(); ++r) {
+      if (exact[r].variance > 0) continue;  // by rays: too many faces stand in the way
+      ++noiseless;
+      const double noise = std::sqrt(std::max(0.0, squares[r] - mean[r] * mean[r]) / seeds);
+      const double off = exact[r].irradiance.mean() - mean[r];
+      EXPECT_LT(std::abs(off), 6 * noise + 0.15 * mean[r] + 1e-6) << "scene " << n << ", patch " << r << ": " << mean[r];
+      sum += mean[r], difference += off;
+    }
+  }
+  EXPECT_GT(noiseless, scenes * 16 * 3 / 4);
+  EXPECT_LT(std::abs(difference), 0.01 * sum);
 }
 
 /// Returns a room that emits all over with two books in it, black and side by side at a distance of `gap`. Face 9 is the side of
