@@ -1,8 +1,9 @@
 # The Alvor server and its page. From the project's root: docker build -f docker/server.Dockerfile -t alvor-server .
 # The same with Open MPI and ssh, for servers of several ranks (docs/cluster.md): docker build -f docker/server.Dockerfile --target ranks -t alvor-ranks .
 
+# In another directory than the next stage: where two stages that are built at once begin alike, later builds find the steps of one of them only.
 FROM debian:bookworm-slim AS page
-WORKDIR /alvor
+WORKDIR /page
 COPY scripts/setup.sh scripts/
 RUN scripts/setup.sh page
 COPY scripts/build_page.sh scripts/
@@ -29,7 +30,7 @@ RUN apt-get update -qq && \
     rm -rf /var/lib/apt/lists/* /var/cache/* /var/log/* && \
     echo 'alvor:x:10001:10001::/var/lib/alvor:/usr/sbin/nologin' >> /etc/passwd && echo 'alvor:x:10001:' >> /etc/group && \
     install -d -o 10001 -g 10001 -m 700 /var/lib/alvor && install -d -o 10001 -g 10001 -m 750 /run/alvor
-COPY --from=page /alvor/build/release/bin/web /usr/local/share/alvor/web
+COPY --from=page /page/build/release/bin/web /usr/local/share/alvor/web
 COPY --from=build /built/alvord /built/alvor-import /usr/local/bin/
 RUN alvord --help > /dev/null && alvor-import 10000000000 1 < /dev/null
 

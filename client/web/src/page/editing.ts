@@ -66,8 +66,8 @@ export class Editing {
       ...group("Lights", "light", parts.lights.map(({ name }) => name)),
       ...group("Lamps", "object", named(({ shines }) => shines)),
       ...group("Objects", "object", named(({ shines }) => !shines)),
-      new Option("Sun and sky", `${DAYLIGHT}:`),
       ...group("Materials", "material", parts.materials.map(({ name }) => name)),
+      new Option("Sun and sky", `${DAYLIGHT}:`),
     );
     this.showPart();
   }

@@ -116,6 +116,34 @@ describe("edits on the page", () => {
     await Promise.all([ann.close(), ben.close()]);
   });
 
+  it("let a day pass by a slider, which is one step, and darken the sky", async () => {
+    const { name, ann, ben } = await two();
+    await ben.uncheck("#automatic");
+    const brightness = async () => (await pixelAt(ben, ...BACK_WALL))[1];
+    const before = await brightness();
+    await ann.selectOption("#edit-part", "daylight:");
+    await ann.fill("#edit-latitude", "48.1");
+    await ann.fill("#edit-longitude", "11.6");
+    await ann.fill("#edit-utc", "0");
+    await ann.fill("#edit-date", "2026-06-21");
+    for (const minutes of ["360", "540", "720"]) await slide(ann, "#edit-time", minutes);
+    await expect.poll(() => ann.textContent("#edit-clock")).toBe("12:00");
+    await expect.poll(() => ben.textContent("#edit-news")).toBe("Ann edited sun and sky");
+    const edits = async () => (await server.api.solves.getSolve({ name })).edits;
+    const noon = { case: "daylight", value: { cieNumber: 12, sunTime: { latitudeDegrees: 48.1, time: { seconds: BigInt(Date.UTC(2026, 5, 21, 12) / 1000) } } } };
+    await expect.poll(async () => (await edits()).at(-1)!.edits[0].part).toMatchObject(noon);
+    expect(await edits()).toHaveLength(1);
+    await expect.poll(brightness).toBeGreaterThan(before);
+    await expect.poll(() => ben.isVisible("#edit-daylight")).toBe(false);
+    await ben.selectOption("#edit-part", "daylight:");
+    await expect.poll(() => ben.inputValue("#edit-latitude")).toBe("48.1");
+    await waitForState(ann, "Done");
+    await ben.selectOption("#edit-sky", "dark");
+    await expect.poll(() => ann.isVisible("#edit-sun")).toBe(false);
+    await expect.poll(async () => Math.abs((await brightness()) - before)).toBeLessThan(6);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
   it("come to who joins later, and to who comes back", async () => {
     const { name, ann, ben } = await two();
     await ann.selectOption("#edit-part", "material:red");
