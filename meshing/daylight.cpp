@@ -14,6 +14,8 @@ constexpr double diameter_of_sun = 0.533 * degree;
 constexpr double cloudy_lux = 10'000;
 // Number of the first of the CIE skies that are clear.
 constexpr int first_clear = 11;
+// W/m2 or lx: a sun that brings less is no light. At the horizon the model has suns of 1e-40 lx.
+constexpr double least_of_model = 1e-6;
 
 bool is_in(double value, double low, double high) { return value >= low && value <= high; }
 
@@ -44,7 +46,7 @@ class DaylightMaker {
         to_sun_(sun_ ? direction_of_sun(up) : up_) {}
 
   std::vector<Light> make() {
-    if (sun_ && sun_->elevation > 0) add_sun();
+    if (sun_ && sun_->elevation > 0 && irradiance_of_sun() >= least_of_model) add_sun();
     if (daylight_.sky != Daylight::Sky::none) add_sky();
     if (const double ground = daylight_.ground_reflectance * horizontal_; ground > 0)
       add_light("ground", LightKind::sky, ground).direction = up_;
@@ -67,10 +69,13 @@ class DaylightMaker {
     light.intensity = {intensity, intensity, intensity};
     return light;
   }
-  void add_sun() {
+  double irradiance_of_sun() const {
     const bool is_perez = daylight_.sky == Daylight::Sky::perez;
     const double by_model = is_perez ? of_watts_ * daylight_.direct_normal_watts : of_lux_ * clear().sun;
-    Light& sun = add_light("sun", LightKind::directional, daylight_.sun_irradiance.value_or(by_model));
+    return daylight_.sun_irradiance.value_or(by_model);
+  }
+  void add_sun() {
+    Light& sun = add_light("sun", LightKind::directional, irradiance_of_sun());
     sun.direction = -to_sun_;
     sun.angular_diameter = diameter_of_sun;
     horizontal_ += sun.intensity.g * std::sin(elevation());

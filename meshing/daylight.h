@@ -52,10 +52,10 @@ std::optional<SunPosition> position_of_sun(const Daylight& wanted);
 /// Returns which value is out of range or does not fit to the others, as the end of a sentence about the daylight.
 std::optional<std::string> fault_in(const Daylight& wanted);
 
-/// Returns the lights "sun", "sky" and "ground", those that there are, in this order. A sun at or below the horizon does not
-/// shine, and a ground shines only if something lights it. What is not given comes from the IES model of a clear sky (sun, and
-/// CIE skies 11 to 15), from the values of Perez, or is 10 000 lx of a cloudy sky. `lumens_per_watt` converts what the models say
-/// for scenes of the other quantity. Requires: !fault_in(wanted).
+/// Returns the lights "sun", "sky" and "ground", those that there are, in this order. A sun at or below the horizon, or of
+/// less than 1e-6 W/m2 or lx, does not shine, and a ground shines only if something lights it. What is not given comes from the
+/// IES model of a clear sky (sun, and CIE skies 11 to 15), from the values of Perez, or is 10 000 lx of a cloudy sky.
+/// `lumens_per_watt` converts what the models say for scenes of the other quantity. Requires: !fault_in(wanted).
 std::vector<Light> lights_of(const Daylight& wanted, Quantity quantity, UpAxis up, double lumens_per_watt);
 
 }  // namespace alvor

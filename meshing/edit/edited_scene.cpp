@@ -170,7 +170,7 @@ class Editor {
     daylight.north_degrees += scene_.north_degrees;
     std::vector<Light>& lights = scene_.lights;
     for (const Light& light : lights)
-      if (light.is_distant()) light_dim_.erase(light.name);
+      if (light.is_distant() && lights_.find(light.name) == &light) light_dim_.erase(light.name);
     std::erase_if(lights, [](const Light& light) { return light.is_distant(); });
     std::ranges::move(lights_of(daylight, scene_.quantity, scene_.up, usual_lumens_per_watt), std::back_inserter(lights));
     lights_ = Named<Light>(lights);

@@ -223,8 +223,14 @@ class BlockerTree::Through {
     Vec3 middle;
     for (const Vec3& corner : corners) middle += corner / static_cast<double>(corners.size());
     for (std::size_t e = 0; e < corners.size(); ++e)
-      for (const Vec3& from : patch_.corners) {
+      for (const Vec3& corner : patch_.corners) {
         const Vec3 here = corners[e], next = corners[(e + 1) % corners.size()];
+        // A corner in the rectangle's plane has no cone: one a little before it stands for it.
+        const Vec3 from = corner + std::max(0.0, slack - rectangle_.height(corner)) * rectangle_.normal;
+        if (length(cross(here - from, next - from)) == 0) {
+          sides_.push_back({{}, -1});  // an edge without length bounds nothing
+          continue;
+        }
         const Vec3 normal = normalized(cross(here - from, next - from));
         const Plane side{normal, dot(normal, from)};
         sides_.push_back(side.height(middle) > 0 ? side : Plane{-side.normal, -side.offset});

@@ -41,6 +41,7 @@ class ShadowBatch {
         medium_{scene.mesh().absorption()},
         partial_(needs.partial),
         blockers_(needs.medium ? nullptr : needs.blockers),
+        exact_faces_(needs.exact_faces),
         lights_(lights),
         receivers_(receivers),
         seed_(seed),
@@ -162,6 +163,7 @@ class ShadowBatch {
   void look_exactly() {
     ExactShadow shadow(*blockers_);
     for (Lit& lit : lit_) {
+      if (!exact_faces_ && lights_[lit.light]->aperture().empty()) continue;
       const Receiver& receiver = receivers_[lit.receiver];
       lit.view = shadow.view(scene_, receiver.shape, receiver.hidden_origins, points_[lit.receiver], *lights_[lit.light]);
       if (lit.view.kind == ExactView::Kind::clear) lit.fraction = VisibleFraction::all();
@@ -342,6 +344,7 @@ class ShadowBatch {
   Medium medium_;
   bool partial_;
   const BlockerTree* blockers_;
+  bool exact_faces_;
   LightSources lights_;
   std::span<const Receiver> receivers_;
   std::uint64_t seed_;

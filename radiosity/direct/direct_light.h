@@ -46,6 +46,7 @@ struct ShadowNeeds {
   bool medium = true;                     ///< false: the medium is clear
   bool partial = true;                    ///< false: no face lets light straight through, and all of a light is there
   const BlockerTree* blockers = nullptr;  ///< the scene's; null: shadows are found by rays alone
+  bool exact_faces = true;                ///< false: of flat lights shadows are found by rays, blockers or not
 };
 
 /// Adds to `light` what every one of `lights` brings: its unblocked irradiance (mean over the four quarters of the patch) times

@@ -64,12 +64,11 @@ void DirectField::heed_error(double error_so_far) {
   const auto any_has = [this](auto&& what) {
     return std::ranges::any_of(owned_lights_, [&](const auto& light) { return !what(*light).empty(); });
   };
-  const bool has_polygons = any_has([](const LightSource& light) { return light.polygon(); });
-  const bool has_apertures = any_has([](const LightSource& light) { return light.aperture(); });
-  is_exact_ =
-      (has_apertures || (has_polygons && options_.tolerance < exact_below_tolerance && error_so_far < exact_below_error)) &&
-      plan_.needs(Feature::occlusion) && !plan_.needs(Feature::medium);
-  if (is_exact_ && !blockers_) blockers_ = std::make_unique<BlockerTree>(scene_);
+  const bool may_be_exact = plan_.needs(Feature::occlusion) && !plan_.needs(Feature::medium);
+  const bool is_fine = options_.tolerance < exact_below_tolerance && error_so_far < exact_below_error;
+  exact_faces_ = may_be_exact && is_fine && any_has([](const LightSource& light) { return light.polygon(); });
+  exact_exits_ = may_be_exact && any_has([](const LightSource& light) { return light.aperture(); });
+  if ((exact_faces_ || exact_exits_) && !blockers_) blockers_ = std::make_unique<BlockerTree>(scene_);
 }
 
 double DirectField::emitted_power() const {
@@ -162,7 +161,7 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
 ShadowNeeds DirectField::shadow_needs() const {
   const bool has_partial_rays = std::ranges::any_of(lights_, &LightSource::has_partial_rays);
   return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium), has_partial_rays || plan_.needs(Feature::panes),
-          is_exact_ ? blockers_.get() : nullptr};
+          exact_faces_ || exact_exits_ ? blockers_.get() : nullptr, exact_faces_};
 }
 
 /// Returns what a leaf keeps from going straight on of its irradiance, sum of bands. What goes on arrives on other leaves.

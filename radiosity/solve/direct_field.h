@@ -38,8 +38,8 @@ class DirectField {
   /// Returns the share of the area of faces that light may reach which shows no direct light yet.
   double unlit_fraction() const;
 
-  /// Tells the estimated nRMSE of the pass before, by which add_new() decides how to find shadows: exactly if it is small.
-  /// Without this call, shadows are found by rays.
+  /// Tells the estimated nRMSE of the pass before, by which add_new() decides how to find shadows of flat lights: exactly
+  /// if it is small. Those of light through exits are then exact at once. Without this call, shadows are found by rays.
   void heed_error(double error_so_far);
   /// Collective. Adds direct light to the leaves whose rows are traced. Up to twelve lights reach all of these leaves, one light
   /// after the other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
@@ -56,7 +56,8 @@ class DirectField {
   void keep_shares();
   /// Takes the lights of the mesh, after its materials and lights have changed. If all have changed by one factor, so has the
   /// light of leaves, and the factor is returned, in emission units; else the next add_new() finds it again, from shares where
-  /// they are known. What light may not reach any more is dark. `unit_change` is the emission unit of before as a multiple of the present one.
+  /// they are known. What light may not reach any more is dark. `unit_change` is the emission unit of before as a multiple of the
+  /// present one.
   std::optional<Rgb> note_relit(double unit_change);
 
   /// Takes roots that have moved: the next add_new() finds again what each light brings where the way to it leads by places where
@@ -110,8 +111,8 @@ class DirectField {
   std::unique_ptr<LightTree> light_tree_;        ///< null if there are no others
   bool keeps_shares_ = false;
   LightShares shares_;
-  std::unique_ptr<BlockerTree> blockers_;  ///< null until shadows are exact
-  bool is_exact_ = false;
+  std::unique_ptr<BlockerTree> blockers_;           ///< null until shadows are exact
+  bool exact_faces_ = false, exact_exits_ = false;  ///< shadows of flat lights, and of those through exits, are exact
   bool has_distant_lights_ = false;
   double near_power_ = 0;                 ///< of faces and lamps
   double power_ = 0, waiting_power_ = 0;  ///< of all lights

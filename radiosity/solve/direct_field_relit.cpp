@@ -151,7 +151,7 @@ std::vector<std::uint8_t> DirectField::whose_way_changed(const LightSource& ligh
 
 void DirectField::note_moved(const MovedRoots& moved) {
   blockers_.reset();
-  if (is_exact_) blockers_ = std::make_unique<BlockerTree>(scene_);
+  if (exact_faces_ || exact_exits_) blockers_ = std::make_unique<BlockerTree>(scene_);
   const auto is_shining = [this](std::uint32_t number) {
     return std::ranges::any_of(owned_lights_, [&](const auto& light) { return light->number() == number; });
   };

@@ -15,6 +15,10 @@ namespace {
 // Largest irradiance that is published, W/m2: a 34th of the largest float32 (3.4e38), which leaves room for sums.
 constexpr double held_by_floats = 1e37;
 
+// What is known of light is forgotten where the emission unit changes by more than this: squares stay within the range of
+// float32.
+constexpr double least_kept = 1e-6;
+
 /// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max albedo). If every surface emitted
 /// and scattered like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth
 /// does not. Near a lamp, under a sky that is brighter beside its zenith, and among panes that emit, irradiance has no such
@@ -125,7 +129,8 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
 
 void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
-  const double change = unit_before.to_watts(1) / unit_.to_watts(1);
+  const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);
+  const double change = ratio >= least_kept && ratio <= 1 / least_kept ? ratio : 0;
   plan = std::move(new_plan);
   largest_irradiance_ = largest_irradiance(mesh);
   forests.note_relit();

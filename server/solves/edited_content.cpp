@@ -95,7 +95,10 @@ EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request,
   if (const auto fault = find_fault(edited)) throw invalid_argument("step.edits: then " + fault->text());
   if (const auto object = object_too_far(submitted->scene, edited))
     throw invalid_argument("step.edits: then '" + *object + "' would lie farther from the scene than the scene is long");
-  if (!shines(edited) && shines(submitted->scene)) throw invalid_argument("step.edits: then nothing in the scene would shine");
+  const bool has_daylight =
+      std::ranges::any_of(*hold, [](const SceneEdit& edit) { return std::holds_alternative<DaylightEdit>(edit); });
+  if (!shines(edited) && shines(submitted->scene) && !has_daylight)
+    throw invalid_argument("step.edits: then nothing in the scene would shine");
   return {std::move(edits), hold->empty() ? submitted : relit(*submitted, std::move(edited))};
 }
 

@@ -47,6 +47,7 @@ TEST(Daylight, TheGroundReflectsWhatFallsOnIt) {
 
 TEST(Daylight, AtNightOnlyASkyOfItsOwnShines) {
   EXPECT_TRUE(lights({.sun = SunPosition{0, -10}, .ground_reflectance = 0.2}).empty());
+  EXPECT_TRUE(lights({.sun = SunPosition{0, 0.1}}).empty()) << "the model has 1e-47 lx";
   const auto made = lights({.sun = SunPosition{0, -10}, .sky = Daylight::Sky::overcast, .sky_irradiance = 3});
   ASSERT_EQ(made.size(), 1u);
   EXPECT_EQ(made[0].name, "sky");

@@ -222,9 +222,19 @@ TEST_F(EditingTest, ADayPassesAndIsOneStep) {
   const Scene edited = client.read_scene(solve);
   ASSERT_EQ(edited.lights.size(), 4u);
   EXPECT_EQ(edited.lights[2].name, "sun");
-  EXPECT_NEAR(std::asin(-edited.lights[2].direction.y) * 180 / std::numbers::pi, 63.8, 0.5) << "Munich, 50 minutes after the sun was highest, at 65.3 degrees";
+  EXPECT_NEAR(std::asin(-edited.lights[2].direction.y) * 180 / std::numbers::pi, 63.8, 0.5)
+      << "Munich, 50 minutes after the sun was highest, at 65.3 degrees";
   EXPECT_GT(mean(edited, at_noon), 1.5 * mean(edited, before));
-  client.edit_solve(solve, undo());
+  step.set_continues(false);
+  time.mutable_time()->set_seconds(1'782'000'000 - 3600);
+  for (const char* lamp : {"bulb", "spot"}) *step.add_edits() = dim_light(lamp, 0).edits(0);
+  for (const char* lamp : {"lamp.0", "lamp.1"}) {
+    step.add_edits()->mutable_object()->set_name(lamp);
+    step.mutable_edits(step.edits_size() - 1)->mutable_object()->set_dim(0);
+  }
+  client.edit_solve(solve, step);
+  EXPECT_EQ(mean(edited, end()), 0) << "a night without lamps";
+  for (int n = 0; n < 2; ++n) client.edit_solve(solve, undo());
   end();
   EXPECT_EQ(client.read_scene(solve).lights, room().lights);
 }

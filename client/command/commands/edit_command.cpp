@@ -99,6 +99,7 @@ void add_edit_command(CLI::App& app) {
   command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME");
   command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME");
   add_sky_options(command, options->sky);
+  command.get_option("--north")->description("Degrees, clockwise seen from above, from the scene's north to that of --sun (0)");
   command.add_flag("--no-daylight", options->no_daylight, "Let no sun, sky or surroundings shine");
   command.add_option("--script", options->script, "A step of edits as JSON, with the fields of EditStep")
       ->type_name("EDITS.json");

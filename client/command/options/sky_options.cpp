@@ -65,6 +65,8 @@ std::optional<SunPosition> position_of(const SkyOptions& options) {
   return SunPosition{sun[0], sun[1]};
 }
 
+bool has_sun(const v1::Daylight& wanted) { return wanted.has_sun_azimuth_degrees() || wanted.has_sun_time(); }
+
 void set_perez(const std::string& text, v1::Daylight& wanted) {
   const auto light = two_numbers("--sky perez", text, "DIRECT,DIFFUSE in W/m2");
   if (light[0] < 0 || !(light[1] > 0)) refuse("--sky perez: needs direct >= 0 and diffuse > 0, in W/m2");
@@ -87,7 +89,7 @@ void set_sky(const std::string& name, v1::Daylight& wanted) {
   if (name == "overcast") return wanted.set_sky(v1::Daylight::OVERCAST);
   if (name.starts_with("perez:")) set_perez(name.substr(6), wanted);
   else set_cie(name, wanted);
-  if (!wanted.has_sun_azimuth_degrees()) refuse("--sky " + name + " needs the sun's place: --sun, or --place and --time");
+  if (!has_sun(wanted)) refuse("--sky " + name + " needs the sun's place: --sun, or --place and --time");
 }
 
 }  // namespace
@@ -120,18 +122,23 @@ void add_sky_options(CLI::App& command, SkyOptions& options) {
 
 std::optional<v1::Daylight> daylight_of(const SkyOptions& options) {
   v1::Daylight wanted;
-  if (const auto sun = position_of(options)) {
+  if (const auto sun = position_of(options); sun && !options.place.empty()) {
+    const auto place = two_numbers("--place", options.place, "LATITUDE,LONGITUDE");
+    wanted.mutable_sun_time()->set_latitude_degrees(place[0]);
+    wanted.mutable_sun_time()->set_longitude_degrees(place[1]);
+    wanted.mutable_sun_time()->mutable_time()->set_seconds(static_cast<std::int64_t>(seconds_of(options.time)));
+  } else if (sun) {
     wanted.set_sun_azimuth_degrees(std::fmod(sun->azimuth, 360));
     wanted.set_sun_elevation_degrees(sun->elevation);
   }
-  if (options.sun_light && !wanted.has_sun_azimuth_degrees()) refuse("--sun-light needs --sun, or --place and --time");
+  if (options.sun_light && !has_sun(wanted)) refuse("--sun-light needs --sun, or --place and --time");
   if (options.sky_light && options.sky.empty()) refuse("--sky-light needs --sky");
   if (options.sun_light) wanted.set_sun_irradiance(*options.sun_light);
   if (options.sky_light) wanted.set_sky_irradiance(*options.sky_light);
   if (!options.sky.empty()) set_sky(options.sky, wanted);
   wanted.set_ground_reflectance(options.ground);
   wanted.set_north_degrees(options.north);
-  if (!wanted.has_sun_azimuth_degrees() && options.sky.empty()) {
+  if (!has_sun(wanted) && options.sky.empty()) {
     if (options.ground > 0) refuse("--ground needs a sun or a sky that lights it");
     return std::nullopt;
   }

@@ -23,16 +23,19 @@ export interface DaylightChoice {
 // The number of the CIE sky that is called clear (ISO 15469).
 const CLEAR = 12;
 const MINUTE = 60_000;
+// Times that the server takes.
+const FIRST = Date.UTC(1900, 0, 1);
+const LAST = Date.UTC(2100, 0, 1);
 
 const timeOf = ({ date, minutes, hoursFromUtc }: DaylightChoice) => Date.parse(`${date}T00:00Z`) + MINUTE * (minutes - 60 * hoursFromUtc);
 
-/** Returns the message; undefined where a field is empty or out of range. */
+/** Returns the message; undefined where a field that counts is empty or out of range. */
 export function daylightOf(choice: DaylightChoice): MessageInitShape<typeof DaylightSchema> | undefined {
   const { sky, latitude, longitude } = choice;
   if (sky === "dark") return {};
   if (sky === "overcast") return { sky: Daylight_Sky.OVERCAST };
-  const time = timeOf(choice);
-  const isKnown = Math.abs(latitude) <= 90 && Math.abs(longitude) <= 180 && Number.isFinite(time);
+  const time = Math.round(timeOf(choice));
+  const isKnown = Math.abs(latitude) <= 90 && Math.abs(longitude) <= 180 && Math.abs(choice.hoursFromUtc) <= 14 && time >= FIRST && time < LAST;
   if (!isKnown) return undefined;
   const sunTime = { latitudeDegrees: latitude, longitudeDegrees: longitude, time: timestampFromMs(time) };
   return sky === "sun" ? { sunTime } : { sunTime, sky: Daylight_Sky.CIE, cieNumber: CLEAR };
@@ -42,15 +45,18 @@ export function daylightOf(choice: DaylightChoice): MessageInitShape<typeof Dayl
 export function choiceOf(daylight: Daylight, before: DaylightChoice): DaylightChoice {
   const { sky, sunTime } = daylight;
   if (sky === Daylight_Sky.OVERCAST || sky === Daylight_Sky.UNIFORM) return { ...before, sky: "overcast" };
-  if (!sunTime) return { ...before, sky: sky === Daylight_Sky.SKY_UNSPECIFIED && daylight.sunAzimuthDegrees === undefined ? "dark" : before.sky };
-  const local = new Date(Number(sunTime.time?.seconds ?? 0n) * 1000 + 60 * MINUTE * before.hoursFromUtc);
+  const hasSun = sunTime !== undefined || daylight.sunAzimuthDegrees !== undefined;
+  const shown = sky !== Daylight_Sky.SKY_UNSPECIFIED ? "clear" : hasSun ? "sun" : "dark";
+  const hours = before.hoursFromUtc;
+  if (!sunTime || !Number.isFinite(hours)) return { ...before, sky: shown };
+  const local = new Date(Number(sunTime.time?.seconds ?? 0n) * 1000 + 60 * MINUTE * hours);
   return {
-    sky: sky === Daylight_Sky.SKY_UNSPECIFIED ? "sun" : "clear",
+    sky: shown,
     latitude: sunTime.latitudeDegrees,
     longitude: sunTime.longitudeDegrees,
     date: local.toISOString().slice(0, 10),
     minutes: 60 * local.getUTCHours() + local.getUTCMinutes(),
-    hoursFromUtc: before.hoursFromUtc,
+    hoursFromUtc: hours,
   };
 }
 
@@ -67,7 +73,7 @@ export class DaylightControls {
     const now = new Date();
     const hoursFromUtc = -now.getTimezoneOffset() / 60;
     const date = new Date(now.getTime() + 60 * MINUTE * hoursFromUtc).toISOString().slice(0, 10);
-    this.set({ sky: "clear", latitude: 50, longitude: 15 * hoursFromUtc, date, minutes: 12 * 60, hoursFromUtc });
+    this.set({ sky: "clear", latitude: 50, longitude: ((15 * hoursFromUtc + 540) % 360) - 180, date, minutes: 12 * 60, hoursFromUtc });
     for (const id of ["edit-sky", "edit-date", ...Object.values(NUMBERS)])
       byId(id).addEventListener("input", () => {
         this.tell();

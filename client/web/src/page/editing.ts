@@ -115,6 +115,7 @@ export class Editing {
     let emission = material?.emission;
     const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
     for (const { part } of editsThatHold(this.steps)) {
+      if (part.case === "daylight" && light && !light.position) [dim, intensity] = [1, light.intensity]; // it takes the place of far lights
       if (part.case === "daylight" || part.case !== kind || part.value.name !== name) continue;
       if (part.case !== "material") dim = part.value.dim ?? dim;
       if (part.case === "object" && part.value.move) position = [part.value.move.x, part.value.move.y, part.value.move.z];

@@ -117,8 +117,15 @@ describe("daylight", () => {
   });
 
   it("is not told while a field is empty or beyond the Earth", () => {
-    for (const bad of [{ latitude: NaN }, { latitude: 91 }, { longitude: -181 }, { date: "" }, { hoursFromUtc: NaN }])
+    for (const bad of [{ latitude: NaN }, { latitude: 91 }, { longitude: -181 }, { date: "" }, { date: "0002-06-21" }, { hoursFromUtc: NaN }, { hoursFromUtc: 1e300 }])
       expect(daylightOf({ ...noon, ...bad })).toBeUndefined();
+  });
+
+  it("is shown as far as it is told", () => {
+    const choice = { ...noon, sky: "dark" as const, hoursFromUtc: NaN };
+    expect(choiceOf(create(DaylightSchema, { sunAzimuthDegrees: 120, sunElevationDegrees: 30 }), choice).sky).toBe("sun");
+    expect(choiceOf(there(noon), choice)).toEqual({ ...choice, sky: "clear" });
+    expect(there({ ...noon, hoursFromUtc: 5.3333333 }).sunTime!.time!.nanos % 1).toBe(0);
   });
 
   it("is told with who let it shine", () => {
