@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace alvor {
 
@@ -111,7 +112,8 @@ v1::Daylight encode(const Daylight& daylight) {
     message.mutable_sun_time()->set_longitude_degrees(seen->place.longitude);
     const double second = std::floor(seen->unix_seconds);
     message.mutable_sun_time()->mutable_time()->set_seconds(static_cast<std::int64_t>(second));
-    message.mutable_sun_time()->mutable_time()->set_nanos(static_cast<std::int32_t>(1e9 * (seen->unix_seconds - second)));
+    message.mutable_sun_time()->mutable_time()->set_nanos(
+        static_cast<std::int32_t>(std::min(999'999'999L, std::lround(1e9 * (seen->unix_seconds - second)))));
   }
   if (daylight.sun_irradiance) message.set_sun_irradiance(*daylight.sun_irradiance);
   message.set_sky(static_cast<v1::Daylight::Sky>(daylight.sky));
@@ -136,8 +138,7 @@ std::optional<Daylight> decode_daylight(const v1::Daylight& message) {
   }
   if (message.has_sun_irradiance()) daylight.sun_irradiance = message.sun_irradiance();
   daylight.sky = static_cast<Daylight::Sky>(message.sky());
-  constexpr std::uint32_t none = 0, most = 15;
-  daylight.cie_number = static_cast<int>(message.cie_number() > most ? none : message.cie_number());
+  daylight.cie_number = static_cast<int>(std::min<std::uint32_t>(message.cie_number(), std::numeric_limits<int>::max()));
   daylight.direct_normal_watts = message.direct_normal_watts();
   daylight.diffuse_horizontal_watts = message.diffuse_horizontal_watts();
   if (message.has_sky_irradiance()) daylight.sky_irradiance = message.sky_irradiance();

@@ -228,10 +228,8 @@ TEST_F(EditingTest, ADayPassesAndIsOneStep) {
   step.set_continues(false);
   time.mutable_time()->set_seconds(1'782'000'000 - 3600);
   for (const char* lamp : {"bulb", "spot"}) *step.add_edits() = dim_light(lamp, 0).edits(0);
-  for (const char* lamp : {"lamp.0", "lamp.1"}) {
-    step.add_edits()->mutable_object()->set_name(lamp);
-    step.mutable_edits(step.edits_size() - 1)->mutable_object()->set_dim(0);
-  }
+  step.add_edits()->mutable_material()->set_name("m1");
+  *step.mutable_edits(step.edits_size() - 1)->mutable_material()->mutable_emission() = encode(Rgb{});
   client.edit_solve(solve, step);
   EXPECT_EQ(mean(edited, end()), 0) << "a night without lamps";
   for (int n = 0; n < 2; ++n) client.edit_solve(solve, undo());
