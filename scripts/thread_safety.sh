@@ -14,7 +14,7 @@ units = json.loads(subprocess.check_output(["ninja", "-C", "build/release", "-t"
 lines = []
 for unit in units:
     source = os.path.realpath(os.path.join(unit["directory"], unit["file"]))
-    together = [os.path.realpath(name) for name in re.findall(r'#include "(.*)"', open(source).read())] if "/together/" in source else [source]
+    together = [os.path.realpath(name) for name in re.findall(r'#include "(.*)"', open(source).read())] if "/together/" in source and source.endswith(".cpp") else [source]
     looked_at = [name for name in together if name.startswith(server) and name.endswith(".cpp")]
     if not looked_at or wanted.isdisjoint(looked_at) and wanted: continue
     words, flags = iter(shlex.split(unit["command"])), []
