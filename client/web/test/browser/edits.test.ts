@@ -137,7 +137,6 @@ describe("edits on the page", () => {
     await expect.poll(() => ben.isVisible("#edit-daylight")).toBe(false);
     await ben.selectOption("#edit-part", "daylight:");
     await expect.poll(() => ben.inputValue("#edit-latitude")).toBe("48.1");
-    await waitForState(ann, "Done");
     await ben.selectOption("#edit-sky", "dark");
     await expect.poll(() => ann.isVisible("#edit-sun")).toBe(false);
     await expect.poll(async () => Math.abs((await brightness()) - before)).toBeLessThan(6);
