@@ -16,7 +16,7 @@ page = pathlib.Path("docs/edits.md")
 head = page.read_text().split("## Figures\n")[0]
 page.write_text(head + "## Figures\n\nWritten by `scripts/edits.sh`: the furnished room at 2 %, on two cores, server and watcher in one process. Times are from the call of\n"
                 "`EditSolve` to the end of the watcher's first frame with a state that heeds it, and with one whose estimated error is within the\ntolerance again. "
-                "A light that is switched off needs rays because shadows of the other are seen then. Below the first table: a slider that dims\none of the lamps, and the sun that goes on before the window of a bare room (docs/lights/window.obj), under a clear sky.\n\n"
+                "A light that is switched off needs rays because shadows of the other are seen then. Below the first table: a slider that dims\none of the lamps, and the sun that goes on before the window of a bare room (docs/lights/window.obj), under a clear sky,\nat 10 %.\n\n"
                 + pathlib.Path(sys.argv[1]).read_text())
 PYTHON
 cd client/web
