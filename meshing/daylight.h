@@ -29,7 +29,7 @@ struct Daylight {
     cie,       ///< a CIE standard general sky (ISO 15469:2004)
     perez,     ///< that of Perez et al. (1993)
   };
-  /// Where the sun stands; nothing: no sun. CIE and Perez skies need it.
+  /// The sun's place in the sky; std::monostate means that there is no sun. CIE and Perez skies need one.
   std::variant<std::monostate, SunPosition, SunTime> sun;
   std::optional<double> sun_irradiance;  ///< of a surface that faces the sun, W/m2 or lx; nothing: by a model
   Sky sky = Sky::none;

@@ -217,8 +217,9 @@ class BlockerTree::Through {
 
  private:
   static constexpr double slack = ray_offset;
-  /// Where light that goes on through the rectangle can come from is bounded by planes through an edge and a point of the patch.
-  /// A corner of the patch has the outermost one: the height of a place above such a plane is linear in the point of the patch.
+  /// Sets the planes through an edge of the rectangle and a corner of the patch. They bound the places behind the rectangle from
+  /// which light reaches the patch, because corners have the outermost planes of all points of the patch: the height of a place
+  /// above such a plane is linear in the point of the patch.
   void set_sides(std::span<const Vec3> corners) {
     Vec3 middle;
     for (const Vec3& corner : corners) middle += corner / static_cast<double>(corners.size());

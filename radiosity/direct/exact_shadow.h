@@ -18,11 +18,11 @@ namespace alvor {
 struct ExactView {
   enum class Kind { unknown, clear, shadowed };
   Kind kind = Kind::unknown;
-  /// What arrives, in multiples of the light's colour, if shadowed; 0 at hidden origins. Of a face that is a form factor.
+  /// Irradiance by origin, in multiples of the light's colour, if shadowed; 0 at hidden origins. For a face: a form factor.
   std::array<float, origins_per_patch> at_origin{};
 };
 
-/// What a flat convex patch sees past other faces, point by point: of a flat convex light, or of a far light through a rectangle.
+/// Finds what points of a flat convex patch see, past other faces, of a flat convex light or of a far light through a rectangle.
 /// Local units. Keeps its memory from one pair to the next. Used by one thread at a time. Borrows the tree.
 class ExactShadow {
  public:
@@ -30,7 +30,7 @@ class ExactShadow {
   /// of the time, and the Cornell box 0.63 % instead of 0.74 % in twice the time; the time for a point grows with the square of
   /// the faces that overlap as seen from it.
   static constexpr std::size_t most_blockers = 8;
-  /// The same for light through an aperture: the wall about a window and its reveals are eight faces. Chosen.
+  /// Most faces that may hide light through an aperture. The wall about a window and its reveals are eight faces. Chosen.
   static constexpr std::size_t most_before_aperture = 16;
 
   explicit ExactShadow(const BlockerTree& tree) : tree_(tree) {}

@@ -45,6 +45,14 @@ NormalTable table_of(const SkyDome& dome) {
           }};
 }
 
+/// Returns the irradiance that a place at the end of `way`, on a plane with this unit normal, brings per area and radiance.
+double brought_by_even_radiance(Vec3 way, Vec3 normal, Vec3 normal_of_plane) {
+  const double squared = std::max(dot(way, way), nearest_look * nearest_look);
+  return std::max(0.0, dot(way, normal)) * std::abs(dot(way, normal_of_plane)) / (squared * squared);
+}
+
+Vec3 direction_of(Vec3 way) { return way / std::max(length(way), nearest_look); }
+
 }  // namespace
 
 DomeLight::DomeLight(const LocalScene& scene, std::uint32_t number, const SkyDome& dome, const RelativeLight& colour,
@@ -77,9 +85,8 @@ ExitLight::ExitLight(const LocalScene& scene, std::uint32_t number, std::shared_
 /// Returns the irradiance that a point of the exit brings, per area of the exit.
 double ExitLight::brings(Vec3 from, Vec3 at, Vec3 normal) const {
   const Vec3 way = from - at;
-  const double squared = std::max(dot(way, way), nearest_look * nearest_look), distance = std::sqrt(squared);
-  const double here = dot(way, normal), there = std::abs(dot(way, exit_.normal));
-  return here > 0 ? here * there / (squared * squared) * radiance_->smooth_radiance(way / distance) : 0;
+  const double even = brought_by_even_radiance(way, normal, exit_.normal);
+  return even > 0 ? even * radiance_->smooth_radiance(direction_of(way)) : 0;
 }
 
 /// Returns the part of the exit through which the sky is seen from a point: above the horizontal plane through the point. A
@@ -116,10 +123,9 @@ double ExitLight::mean_radiance(std::span<const Vec3> part, Vec3 at, Vec3 normal
   double all = 0, bright = 0;
   const auto add = [&](Vec3 from, double area) {
     const Vec3 way = from - at;
-    const double squared = std::max(dot(way, way), nearest_look * nearest_look);
-    const double weight = area * std::max(0.0, dot(way, normal)) * std::abs(dot(way, exit_.normal)) / (squared * squared);
+    const double weight = area * brought_by_even_radiance(way, normal, exit_.normal);
     all += weight;
-    bright += weight * radiance_->smooth_radiance(way / std::sqrt(squared));
+    bright += weight * radiance_->smooth_radiance(direction_of(way));
   };
   for (std::size_t c = 2; c < part.size(); ++c) {
     const Vec3 corner = part[0], u = part[c - 1] - corner, v = part[c] - corner;

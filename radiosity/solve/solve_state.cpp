@@ -15,8 +15,8 @@ namespace {
 // Largest irradiance that is published, W/m2: a 34th of the largest float32 (3.4e38), which leaves room for sums.
 constexpr double held_by_floats = 1e37;
 
-// What is known of light is forgotten where the emission unit changes by more than this: squares stay within the range of
-// float32.
+// An edited solve keeps its light where the emission unit changes by a factor from this to its inverse, so that squares stay
+// within the range of float32. Else its light becomes 0 and is found anew.
 constexpr double least_kept = 1e-6;
 
 /// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max albedo). If every surface emitted

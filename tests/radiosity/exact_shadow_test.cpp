@@ -246,7 +246,7 @@ Scene room_with_deep_window(test::Dice& dice) {
   return scene;
 }
 
-/// What patches of the floor get of the sky, by sixteen times sixteen receivers.
+/// Finds the direct light of the sky that sixteen patches of a room's floor receive.
 struct FloorUnderASky {
   explicit FloorUnderASky(const Scene& scene)
       : mesh(scene), local(mesh), tree(local), lights(lights_beside_faces(local, EmissionUnit(mesh))) {

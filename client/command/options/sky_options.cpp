@@ -2,7 +2,6 @@
 
 #include "client/command/output/failure.h"
 #include "client/command/output/numbers.h"
-#include "meshing/sun_position.h"
 
 #include <cmath>
 #include <cstdio>
@@ -51,18 +50,23 @@ std::vector<double> two_numbers(const std::string& option, const std::string& te
   return *numbers;
 }
 
-std::optional<SunPosition> position_of(const SkyOptions& options) {
+/// Sets where the sun stands, if the options say so.
+void set_sun(const SkyOptions& options, v1::Daylight& wanted) {
   if (options.place.empty() != options.time.empty()) refuse("--place and --time belong together");
   if (!options.place.empty() && !options.sun.empty()) refuse("--sun says where the sun stands; --place and --time say it again");
   if (!options.place.empty()) {
     const auto place = two_numbers("--place", options.place, "LATITUDE,LONGITUDE");
     if (std::abs(place[0]) > 90 || std::abs(place[1]) > 180) refuse("--place: " + options.place + " is not on the Earth");
-    return sun_position({place[0], place[1]}, seconds_of(options.time));
+    v1::SunTime& seen = *wanted.mutable_sun_time();
+    seen.set_latitude_degrees(place[0]);
+    seen.set_longitude_degrees(place[1]);
+    seen.mutable_time()->set_seconds(static_cast<std::int64_t>(seconds_of(options.time)));
   }
-  if (options.sun.empty()) return std::nullopt;
+  if (options.sun.empty()) return;
   const auto sun = two_numbers("--sun", options.sun, "AZIMUTH,ELEVATION");
   if (std::abs(sun[1]) > 90) refuse("--sun: an elevation is within [-90, 90] degrees");
-  return SunPosition{sun[0], sun[1]};
+  wanted.set_sun_azimuth_degrees(std::fmod(sun[0], 360));
+  wanted.set_sun_elevation_degrees(sun[1]);
 }
 
 bool has_sun(const v1::Daylight& wanted) { return wanted.has_sun_azimuth_degrees() || wanted.has_sun_time(); }
@@ -122,15 +126,7 @@ void add_sky_options(CLI::App& command, SkyOptions& options) {
 
 std::optional<v1::Daylight> daylight_of(const SkyOptions& options) {
   v1::Daylight wanted;
-  if (const auto sun = position_of(options); sun && !options.place.empty()) {
-    const auto place = two_numbers("--place", options.place, "LATITUDE,LONGITUDE");
-    wanted.mutable_sun_time()->set_latitude_degrees(place[0]);
-    wanted.mutable_sun_time()->set_longitude_degrees(place[1]);
-    wanted.mutable_sun_time()->mutable_time()->set_seconds(static_cast<std::int64_t>(seconds_of(options.time)));
-  } else if (sun) {
-    wanted.set_sun_azimuth_degrees(std::fmod(sun->azimuth, 360));
-    wanted.set_sun_elevation_degrees(sun->elevation);
-  }
+  set_sun(options, wanted);
   if (options.sun_light && !has_sun(wanted)) refuse("--sun-light needs --sun, or --place and --time");
   if (options.sky_light && options.sky.empty()) refuse("--sky-light needs --sky");
   if (options.sun_light) wanted.set_sun_irradiance(*options.sun_light);
