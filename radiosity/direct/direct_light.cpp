@@ -12,6 +12,7 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <iterator>
 
 namespace alvor {
 
@@ -20,14 +21,17 @@ namespace {
 // Receivers that one task lights, so that their rays are traced together. Chosen; half and double give the same solutions
 // (docs/design/constants.md).
 constexpr std::size_t receivers_per_batch = 64;
-// Packets of 16 rays that a receiver sends: to a light whose first packet is partly blocked (packets_when_mixed, more), and to
-// all lights that it only samples (packets_of_rest). Chosen; half: error +1 %, rays -3 %, double: error -1 %, rays +10 %
-// (docs/design/constants.md). That packets_of_rest is fixed was measured: sending more only where some rays arrived lost half of
-// the light behind a hole in a screen (docs/error-vs-time/tried.md).
+// Packets of 16 rays that a receiver of level 0 sends: to a light whose first packet is partly blocked (packets_when_mixed,
+// more), and to all lights that it only samples (packets_of_rest). Chosen; half: error +1 %, rays -3 %, double: error -1 %, rays
+// +10 % (docs/design/constants.md). That packets_of_rest is fixed was measured: sending more only where some rays arrived lost
+// half of the light behind a hole in a screen (docs/error-vs-time/tried.md).
 constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
 // Share of the receiver's irradiance, as the first packets find it: a light whose unblocked irradiance is below this share
-// gets no more rays. Chosen; half: the same, double: the same (docs/design/constants.md).
+// gets no more rays, at level 0. Chosen; half: the same, double: the same (docs/design/constants.md).
 constexpr double worth_a_closer_look = 0.1;
+
+/// Returns how many times the rays of level 0 a receiver of this level sends.
+std::uint32_t times_at(int ray_level) { return 1u << 2 * ray_level; }
 
 using Lanes = std::array<float, RayPacket::width>;
 
@@ -115,6 +119,7 @@ class ShadowBatch {
       for (int k = 0; k < 4; ++k) lit.unblocked[k] = light.unblocked(local_point(shape.quarter_centre(k), shape.root), normal);
       lit.mean_unblocked = (lit.unblocked[0] + lit.unblocked[1] + lit.unblocked[2] + lit.unblocked[3]) / 4;
     }
+    lit.fraction.ray_level = receivers_[r].ray_level;
     if (lit.mean_unblocked > 0) lit_.push_back(lit);
   }
   /// Sets what a light would bring to the middle of the visible origins in each quarter of a receiver, and to a quarter without
@@ -151,12 +156,14 @@ class ShadowBatch {
     std::vector<std::size_t> some;
     for (std::size_t k = 0; k < lit_.size(); ++k)
       if (lit_[k].view.kind == ExactView::Kind::unknown) some.push_back(k);
-    trace(some, 0, 1);
+    trace_at_levels(some, [](std::uint32_t times) { return Rounds{0, times}; });
     const std::vector<double> brightness = brightness_of_receivers();
     std::erase_if(some, [&](std::size_t k) {
-      return !lit_[k].fraction.mixed() || unblocked(lit_[k]) < worth_a_closer_look * brightness[lit_[k].receiver];
+      const Lit& lit = lit_[k];
+      const double worth_it = worth_a_closer_look / (1 << receivers_[lit.receiver].ray_level);
+      return !lit.fraction.mixed() || unblocked(lit) < worth_it * brightness[lit.receiver];
     });
-    trace(some, 1, packets_when_mixed);
+    trace_at_levels(some, [](std::uint32_t times) { return Rounds{times, times * packets_when_mixed}; });
     for (Lit& lit : lit_) lit.fraction.finish();
   }
   /// Finds without rays what receivers see of flat lights, and of far ones through exits, that few faces may hide.
@@ -216,17 +223,35 @@ class ShadowBatch {
     }
   }
 
-  void trace(std::span<const std::size_t> lit, std::uint32_t first_round, std::uint32_t rounds) {
-    rays_.resize(lit.size() * rounds);
+  /// Packets of one pair: `count` of them, counted from `first`.
+  struct Rounds {
+    std::uint32_t first, count;
+  };
+  /// Traces the pairs with the rounds that rounds_of(times) returns, where receivers send `times` the rays of level 0.
+  template <class RoundsOf>
+  void trace_at_levels(std::span<const std::size_t> lit, RoundsOf&& rounds_of) {
+    std::vector<std::size_t> at_level;
+    for (int level = 0; level <= most_ray_level; ++level) {
+      at_level.clear();
+      std::ranges::copy_if(lit, std::back_inserter(at_level),
+                           [&](std::size_t k) { return receivers_[lit_[k].receiver].ray_level == level; });
+      if (at_level.empty()) continue;
+      const Rounds all = rounds_of(times_at(level));
+      for (std::uint32_t done = 0; done < all.count; done += packets_when_mixed)
+        trace(at_level, {all.first + done, std::min(packets_when_mixed, all.count - done)});
+    }
+  }
+  void trace(std::span<const std::size_t> lit, Rounds rounds) {
+    rays_.resize(lit.size() * rounds.count);
     weights_.resize(rays_.size());
     blocked_.resize(rays_.size());
     for (std::size_t n = 0; n < rays_.size(); ++n) {
-      const Lit& pair = lit_[lit[n / rounds]];
-      aim(pair.receiver, *lights_[pair.light], first_round + static_cast<std::uint32_t>(n % rounds), n);
+      const Lit& pair = lit_[lit[n / rounds.count]];
+      aim(pair.receiver, *lights_[pair.light], rounds.first + static_cast<std::uint32_t>(n % rounds.count), n);
     }
     if (rays_.empty()) return;
     find_blocked();
-    for (std::size_t n = 0; n < rays_.size(); ++n) count(lit_[lit[n / rounds]].fraction, n);
+    for (std::size_t n = 0; n < rays_.size(); ++n) count(lit_[lit[n / rounds.count]].fraction, n);
   }
 
   void find_blocked() {
@@ -237,16 +262,24 @@ class ShadowBatch {
       for (std::size_t o = 0; o < RayPacket::width; ++o) tints_[n][o] = there_[n][o] * tints_[n][o];
   }
 
+  /// Returns the number, in the light's sequence of points, of the one that origin `o` aims at in this round. At level 0, where
+  /// an origin has one ray or four, those of a round are a (0, 2)-net, and an origin's own are of different parts of them. At the
+  /// others, each origin's own points are a net, those of the first rounds and all, and so are all points.
+  static std::uint32_t number_of(std::uint32_t o, std::uint32_t round, int ray_level, std::uint64_t scramble) {
+    const auto turn = static_cast<std::uint32_t>(scramble >> 60);
+    if (ray_level == 0) return 16 * round + (o ^ turn ^ (round * 5));
+    return (1 + packets_when_mixed) * times_at(ray_level) * (o ^ turn) + round;
+  }
+
   /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the light. `round` counts the packets of
   /// one pair.
   void aim(std::size_t r, const LightSource& light, std::uint32_t round, std::size_t packet) {
     const std::uint64_t scramble =
         mix_bits(seed_ ^ mix_bits(receivers_[r].patch.bits()) ^ (light.number() + 1ull) * 0x9e3779b97f4a7c15u);
-    const std::uint32_t turn = static_cast<std::uint32_t>(scramble >> 60) ^ (round * 5);
     ShadowAim aim = aim_of(r, packet);
     for (std::uint32_t o = 0; o < origins_per_patch; ++o)
-      aim.at[o] = sobol_point(16 * round + (o ^ turn), static_cast<std::uint32_t>(scramble),
-                              static_cast<std::uint32_t>(mix_bits(scramble)));
+      aim.at[o] = owen_point(number_of(o, round, receivers_[r].ray_level, scramble), static_cast<std::uint32_t>(scramble),
+                             static_cast<std::uint32_t>(mix_bits(scramble)));
     light.aim(aim, 0, RayPacket::width);
     hide(packet, receivers_[r]);
   }
@@ -290,8 +323,8 @@ class ShadowBatch {
     return scene_.frame().metres_per_unit * length({rays.direction_x[o], rays.direction_y[o], rays.direction_z[o]});
   }
 
-  /// Adds what the lights bring that are only sampled. The number of rays is fixed: if it depended on what the rays find, the
-  /// mean would be too dark.
+  /// Adds what the lights bring that are only sampled. The number of rays is fixed before the first of them: if it depended on
+  /// what they find, the mean would be too dark.
   void add_rest(std::size_t r, const LightChoice& choice, const LightTree& tree) {
     const Samples samples = sample_rest(r, choice, tree);
     if (samples.count == 0) return;
@@ -309,11 +342,12 @@ class ShadowBatch {
     const Receiver& receiver = receivers_[r];
     RandomStream random(seed_ + 1, receiver.patch);
     const Sphere sphere = around(receiver.shape);
-    rays_.resize(packets_of_rest);
-    weights_.resize(packets_of_rest);
-    blocked_.resize(packets_of_rest);
-    std::array<RelativeLight, packets_of_rest * RayPacket::width> brings{};
-    for (std::size_t packet = 0; packet < packets_of_rest; ++packet) {
+    const std::size_t packets = packets_of_rest * times_at(receiver.ray_level);
+    rays_.resize(packets);
+    weights_.resize(packets);
+    blocked_.resize(packets);
+    std::vector<RelativeLight> brings(packets * RayPacket::width);
+    for (std::size_t packet = 0; packet < packets; ++packet) {
       ShadowAim aim = aim_of(r, packet);
       for (std::size_t o = 0; o < RayPacket::width; ++o) {
         const auto drawn = tree.draw(choice, sphere.centre, sphere.radius, normal_of(receiver), random);

@@ -118,7 +118,8 @@ double ExitLight::unblocked(Vec3 at, Vec3 normal) const {
 }
 
 /// Returns the mean of the radiance over a part of the exit, weighted by what even radiance would bring. The part is cut into
-/// triangles that are small beside their distance, and each is seen by the middles of its sides.
+/// triangles that are small beside their distance, and each is seen by three points inside, because its sides may lie on the
+/// horizon, where the sky ends (the rule is exact for polynomials of degree two: Hammer & Stroud 1956).
 double ExitLight::mean_radiance(std::span<const Vec3> part, Vec3 at, Vec3 normal) const {
   double all = 0, bright = 0;
   const auto add = [&](Vec3 from, double area) {
@@ -135,8 +136,9 @@ double ExitLight::mean_radiance(std::span<const Vec3> part, Vec3 at, Vec3 normal
     const double area = length(cross(u, v)) / (2.0 * steps * steps);
     const auto add_triangle = [&](double a, double b, double side) {  // a corner and the length of its sides, in steps
       const auto place = [&](double x, double y) { return corner + x / steps * u + y / steps * v; };
-      for (const Vec3 middle : {place(a + side / 2, b), place(a, b + side / 2), place(a + side / 2, b + side / 2)})
-        add(middle, area / 3);
+      const double near = side / 6, far = 4 * near;
+      for (const Vec3 inside : {place(a + near, b + near), place(a + far, b + near), place(a + near, b + far)})
+        add(inside, area / 3);
     };
     for (int a = 0; a < steps; ++a)
       for (int b = 0; a + b < steps; ++b) {

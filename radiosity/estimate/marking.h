@@ -7,13 +7,17 @@
 
 namespace alvor {
 
-/// One possible refinement of the solution. `patch` is a node of the leaf forest for split_leaf, and of the row forest otherwise.
+/// One possible refinement of the solution. `patch` is a node of the leaf forest if refines_leaf(), and of the row forest
+/// otherwise.
 struct Candidate {
-  enum class Kind { split_leaf, split_row, add_rays };
+  enum class Kind { split_leaf, add_shadow_rays, split_row, add_rays };
   Kind kind = Kind::split_leaf;
   NodeIndex patch = 0;
   double squared_error = 0;  ///< squared error, integrated over the patch, most of which the refinement would remove
   double rays = 1;           ///< rays that the refinement costs
+
+  bool refines_leaf() const { return kind == Kind::split_leaf || kind == Kind::add_shadow_rays; }
+  bool splits() const { return kind == Kind::split_leaf || kind == Kind::split_row; }
 };
 
 /// Returns the candidates with the most squared error per ray that together make up `share` of the whole squared error (bulk

@@ -26,6 +26,17 @@ std::uint32_t sobol_second(std::uint32_t n) {
   return result;
 }
 
+/// Exchanges each bit or not, as a hash of the lower bits and `seed` says (Laine & Karras 2011, with the constants of Vegdahl
+/// 2021).
+std::uint32_t exchange_by_lower_bits(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
 void set_direction(DirectionSets::Set& set, std::size_t n, Vec3 direction, double weight) {
   set.x[n] = static_cast<float>(direction.x);
   set.y[n] = static_cast<float>(direction.y);
@@ -68,6 +79,12 @@ void place_on_hemicubes(DirectionSets::Set& set, std::uint64_t scramble) {
 
 Uv sobol_point(std::uint32_t n, std::uint32_t scramble_u, std::uint32_t scramble_v) {
   return {(reverse_bits(n) ^ scramble_u) * 0x1p-32, (sobol_second(n) ^ scramble_v) * 0x1p-32};
+}
+
+Uv owen_point(std::uint32_t n, std::uint32_t seed_u, std::uint32_t seed_v) {
+  const std::uint32_t u = reverse_bits(exchange_by_lower_bits(n, seed_u));
+  const std::uint32_t v = reverse_bits(exchange_by_lower_bits(reverse_bits(sobol_second(n)), seed_v));
+  return {u * 0x1p-32, v * 0x1p-32};
 }
 
 DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(placing), sets_(set_count) {

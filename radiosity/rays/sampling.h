@@ -84,4 +84,8 @@ OriginPlaces origins_in(const PatchShape& patch, Uv jitter);
 /// Returns point n of the (0,2)-sequence, its binary digits scrambled (exclusive or) by `scramble_u` and `scramble_v`.
 Uv sobol_point(std::uint32_t n, std::uint32_t scramble_u, std::uint32_t scramble_v);
 
+/// Returns point n of the (0,2)-sequence, each of its binary digits exchanged or not at random by all digits before it (Owen
+/// 1995). Points that are alike in their first digits are then random to each other, which sobol_point() leaves as they are.
+Uv owen_point(std::uint32_t n, std::uint32_t seed_u, std::uint32_t seed_v);
+
 }  // namespace alvor

@@ -83,6 +83,7 @@ void DirectField::fit_to_nodes() {
   light_.resize(count);
   shares_.resize(count);
   if (has_distant_lights_) from_afar_.resize(count);
+  ray_level_.resize(count);
   is_known_.resize(count);
   is_lit_.resize(count);
 }
@@ -91,6 +92,7 @@ void DirectField::hand_down(NodeIndex split_leaf) {
   for (int k = 0; k < 4; ++k) {
     const NodeIndex child = forests_.leaves().child(split_leaf, k);
     light_[child] = light_[split_leaf];
+    ray_level_[child] = ray_level_[split_leaf];
     if (has_distant_lights_) from_afar_[child] = from_afar_[split_leaf];
     is_lit_[child] = is_lit_[split_leaf];
   }
@@ -110,7 +112,8 @@ std::vector<Receiver> DirectField::receivers_of(std::span<const NodeIndex> leave
     const NodeIndex row = forests_.row_of(leaf);
     const PatchId id = forests_.leaves().id(leaf);
     const auto none = static_cast<std::uint16_t>(rows[row].is_hidden() ? 0xffff : 0);
-    receivers[n] = {id, forests_.leaves().shape(leaf), forests_.rows().id(row) == id ? rows[row].hidden_origins : none};
+    receivers[n] = {id, forests_.leaves().shape(leaf), forests_.rows().id(row) == id ? rows[row].hidden_origins : none,
+                    ray_level_[leaf]};
   });
   return receivers;
 }
@@ -274,6 +277,13 @@ void DirectField::load_light(PlainReader& in) {
   if (has_distant_lights_) load_at(leaves, from_afar_, in, "light from afar", [](float light) { return std::isfinite(light); });
   load_flags(leaves, is_known_, in);
   load_flags(leaves, is_lit_, in);
+}
+
+void DirectField::save_ray_levels(PlainWriter& out) const { save_at(forests_.leaves().leaves(), ray_level_, out); }
+
+void DirectField::load_ray_levels(PlainReader& in) {
+  const auto is_level = [](std::uint8_t level) { return level <= most_ray_level; };
+  load_at(forests_.leaves().leaves(), ray_level_, in, "level of shadow rays", is_level);
 }
 
 void DirectField::save_waiting(PlainWriter& out) const { out.put(waiting_power_); }

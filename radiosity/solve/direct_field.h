@@ -51,6 +51,16 @@ class DirectField {
     shares_.forget(leaf);
   }
 
+  /// Returns whether the leaf can have more shadow rays, see Receiver::ray_level.
+  bool may_add_rays(NodeIndex leaf) const { return ray_level_[leaf] < most_ray_level; }
+  /// Returns how many times the rays of level 0 the leaf sends.
+  double ray_share(NodeIndex leaf) const { return double(1u << 2 * ray_level_[leaf]); }
+  /// Makes the next add_new() find the leaf's light again, with four times the shadow rays. Requires: may_add_rays(leaf).
+  void add_rays(NodeIndex leaf) {
+    ++ray_level_[leaf];
+    forget(leaf);
+  }
+
   /// Keeps from now on what each light brings, where there are two to LightShares::most_lights, none of them a sky or
   /// surroundings, and one rank.
   void keep_shares();
@@ -71,10 +81,13 @@ class DirectField {
 
   void save_light(PlainWriter& out) const;
   void save_waiting(PlainWriter& out) const;
+  void save_ray_levels(PlainWriter& out) const;
   /// Reads what save_light() wrote. Throws BadBytes.
   void load_light(PlainReader& in);
   /// Reads what save_waiting() wrote. Throws BadBytes.
   void load_waiting(PlainReader& in);
+  /// Reads what save_ray_levels() wrote. Throws BadBytes.
+  void load_ray_levels(PlainReader& in);
 
  private:
   void choose_lights();
@@ -119,8 +132,9 @@ class DirectField {
   std::vector<DirectLight> light_;
   /// Irradiance from distant lights, sum of bands, but for what goes straight on through the leaf; empty if there are none.
   std::vector<float> from_afar_;
-  std::vector<bool> is_known_;  ///< the leaf has its own light of all lights
-  std::vector<bool> is_lit_;    ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
+  std::vector<std::uint8_t> ray_level_;  ///< see Receiver
+  std::vector<bool> is_known_;           ///< the leaf has its own light of all lights
+  std::vector<bool> is_lit_;             ///< the leaf shows some light: its own, its parent's, or another leaf's of the face
 };
 
 }  // namespace alvor

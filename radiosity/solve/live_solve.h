@@ -33,7 +33,8 @@ class LiveSolve {
   LiveSolve(const LiveSolve&) = delete;  // its parts refer to each other
 
   /// Goes on with the materials, lights and medium of `edited`, whose plan this is. Returns false, and changes nothing, where a
-  /// solve from the beginning is needed. Requires: keeps_mesh.
+  /// solve from the beginning is needed, or cheaper because edits have left many leaves that show no detail any more. Requires:
+  /// keeps_mesh.
   bool take_edit(const BaseMesh& edited, const Plan& plan);
 
   /// Collective.
@@ -52,11 +53,18 @@ class LiveSolve {
   ErrorByPlace by_place{.area_within = 0, .kept_error = 1};
   std::uint64_t edits = 0;  ///< SolveControl::edits of the mesh
   double edited_at_s = 0;   ///< elapsed seconds when the last edit was taken
+  /// When the solve first ended, before edits: the leaves of its forest, 0 until then, and the estimated error.
+  std::uint64_t leaves_at_first_end = 0;
+  double error_at_first_end = 0;
   /// Until the first estimate after an edit: the estimated error of before.
   std::optional<double> error_before_edit;
   bool has_unseen_move = false;  ///< the last edit moved or hid objects, and nothing was published since
   bool is_refreshing = false;    ///< the log shows an older solution, and nothing is published before the first pass is done
 };
+
+/// Returns a new state, for a log that may show an older solution.
+std::shared_ptr<LiveSolve> begin_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options,
+                                       const SolutionLog& log, const SolveControl& control);
 
 /// Returns the state from which a solve of `mesh` goes on, or a new one. Throws BadBytes.
 std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,

@@ -16,8 +16,10 @@ namespace alvor {
 
 namespace {
 
-// Rays that splitting a leaf costs: four children, 32 shadow rays each, the geometric mean of 16 and 64.
-constexpr double rays_per_leaf_split = 4 * 32;
+// A level more of shadow rays: how many times the rays, and the share of the variance that it removes (VisibleFraction).
+constexpr double times_rays_of_level = 4, removed_by_rays = 7.0 / 8;
+// Shadow rays of a leaf of level 0: the geometric mean of 16 and 64. Splitting it costs those of four children.
+constexpr double rays_per_leaf = 32, rays_per_leaf_split = 4 * rays_per_leaf;
 // Rays that splitting a row costs: four children, a row and 32 shadow rays each.
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 // Rays above which a row gets no more. Chosen; half and double give the same solutions (docs/design/constants.md).
@@ -51,8 +53,6 @@ constexpr double contact_error = 0.1;
 // Share of the squared error that the limits keep from being refined: rays that would remove less are not sent. Removing all of
 // it would make the error a tenth smaller. Chosen.
 constexpr double worth_rays = 0.2;
-
-bool splits(const Candidate& candidate) { return candidate.kind != Candidate::Kind::add_rays; }
 
 double squared(double x) { return x * x; }
 
@@ -119,11 +119,12 @@ bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
   return kind == Candidate::Kind::split_leaf ? state_.forests.may_split_leaf(patch) : state_.forests.may_split_row(patch);
 }
 
-void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors, double rays) {
+void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
+                          const std::function<double(NodeIndex)>& rays) {
   if (!state_.plan.needs(Feature::refinement)) return;
   for (std::size_t n = 0; n < patches.size(); ++n) {
     if (errors[n] <= 0) continue;
-    if (may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays});
+    if (may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays(patches[n])});
     else lasting_error_ += errors[n];
   }
 }
@@ -202,7 +203,7 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   const double share = share_of(error.misfit, told_misfit);
   for (std::size_t p = 0; p < patches.size(); ++p)
     row_squares_[p] = share * row_squares_[p] + state_.field.fit(system_->rows()[p]).variance;
-  add_candidates(Candidate::Kind::split_row, system_->rows(), errors, rays_per_row_split);
+  add_candidates(Candidate::Kind::split_row, system_->rows(), errors, [](NodeIndex) { return rays_per_row_split; });
 }
 
 /// Returns the mean square deviation of the irradiance at a leaf's visible origins from a plane with the leaf's slope through
@@ -229,6 +230,25 @@ double Pass::squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const 
   const int visible = origins_per_patch - std::popcount(hidden);
   if (visible == 0) return 0;
   return std::max(0.0, squares / visible - squared(sum / visible) - noise_of_origins * direct.origin_variance);
+}
+
+/// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove. Both parts of the error,
+/// what interpolation misses and the noise of shadow rays, go where the edge of a shadow leaves the smaller leaves. Where noise
+/// is the larger part, there is no edge to find, and smaller leaves are as noisy: then a candidate gives the leaf more shadow
+/// rays instead. So it is where a leaf cannot be split, and noise of its origins may be part of what is taken for missed.
+double Pass::error_by_splitting(NodeIndex leaf, double missed, double noise) {
+  const double doubtful = state_.forests.may_split_leaf(leaf)
+                              ? 0
+                              : state_.visible_area(leaf) * noise_of_origins * state_.direct[leaf].origin_variance;
+  if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
+    const double removed = removed_by_rays * noise + std::min(missed, doubtful) / 2;
+    candidates_.push_back(
+        {Candidate::Kind::add_shadow_rays, leaf, removed, times_rays_of_level * rays_per_leaf * state_.direct.ray_share(leaf)});
+    return 0;
+  }
+  if (noise <= missed) return missed + noise;
+  lasting_error_ += noise;
+  return missed;
 }
 
 /// Adds the errors of leaves to `error`, and candidates that split leaves, as estimate_rows() does for rows. Returns the power
@@ -262,10 +282,11 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
     error.sampling += noise;
     leaf_squares_[n] = unseen_detail * std::max(0.0, errors[n]);
     told_interpolation += leaf_squares_[n];
-    errors[n] = std::max(0.0, errors[n]) + noise;
+    errors[n] = error_by_splitting(leaves[n], std::max(0.0, errors[n]), noise);
   }
   tell_leaves(share_of(error.interpolation, told_interpolation));
-  add_candidates(Candidate::Kind::split_leaf, leaves, errors, rays_per_leaf_split);
+  add_candidates(Candidate::Kind::split_leaf, leaves, errors,
+                 [this](NodeIndex leaf) { return rays_per_leaf_split * state_.direct.ray_share(leaf); });
   return power;
 }
 
@@ -306,8 +327,8 @@ void Pass::drop_rays_that_do_not_help(double lasting_error) {
   if (state_.options.is_by_place() || lasting_error <= state_.options.tolerance) return;
   double removable = 0;
   for (const Candidate& candidate : candidates_)
-    if (!splits(candidate)) removable += candidate.squared_error;
-  if (removable < worth_rays * lasting_error_) std::erase_if(candidates_, std::not_fn(splits));
+    if (!candidate.splits()) removable += candidate.squared_error;
+  if (removable < worth_rays * lasting_error_) std::erase_if(candidates_, std::not_fn(&Candidate::splits));
 }
 
 ErrorEstimate Pass::estimate() {
@@ -328,7 +349,7 @@ ErrorEstimate Pass::estimate() {
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;
   error.unshot = exchange_->remaining_error();
-  if (std::ranges::none_of(candidates_, splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
+  if (std::ranges::none_of(candidates_, &Candidate::splits) && error.sampling < 0.5 * error.mesh()) candidates_.clear();
   drop_rays_that_do_not_help(std::sqrt(lasting_error_ / area) / mean);
   return error;
 }

@@ -95,7 +95,7 @@ void Pass::guide_rows(std::span<const Candidate> marked, const std::function<boo
   if (!state_.rows.carry_light() || !state_.rows.may_be_guided()) return;
   std::vector<NodeIndex> rows;
   for (const Candidate& candidate : marked)
-    if (candidate.kind != Candidate::Kind::split_leaf && state_.rows.is_traced(candidate.patch)) rows.push_back(candidate.patch);
+    if (!candidate.refines_leaf() && state_.rows.is_traced(candidate.patch)) rows.push_back(candidate.patch);
   std::ranges::sort(rows);
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   if (rows.empty()) return;

@@ -98,7 +98,7 @@ void Pass::refine_only_what_is_not_within(const ErrorEstimate& error) {
       by_row[system_->rows()[p]] += most(places[n]);
     }
   for (Candidate& candidate : candidates_) {
-    const bool is_leaf = candidate.kind == Candidate::Kind::split_leaf;
+    const bool is_leaf = candidate.refines_leaf();
     candidate.squared_error = std::min(candidate.squared_error, (is_leaf ? by_leaf : by_row)[candidate.patch]);
   }
   std::erase_if(candidates_, [](const Candidate& candidate) { return candidate.squared_error <= 0; });

@@ -20,12 +20,13 @@ void save_at(std::span<const NodeIndex> nodes, const std::vector<T>& by_node, Pl
   out.put_all(some);
 }
 
-/// Reads what save_at wrote. Throws BadBytes that names `what` if is_sound(value) is false for a value: it is not finite.
+/// Reads what save_at wrote. Throws BadBytes that names `what` if is_sound(value) is false for a value: it is not finite, or out
+/// of range.
 template <class T, class IsSound>
 void load_at(std::span<const NodeIndex> nodes, std::vector<T>& by_node, PlainReader& in, const char* what, IsSound&& is_sound) {
   const auto some = in.get_all<T>(nodes.size(), what);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (!is_sound(some[n])) throw BadBytes(std::string(what) + ": not a finite number");
+    if (!is_sound(some[n])) throw BadBytes(std::string(what) + ": not finite or out of range");
     by_node[nodes[n]] = some[n];
   }
 }

@@ -173,6 +173,7 @@ void SolveState::save(PlainWriter& out) const {
   rows.save_wanted(out);
   rows.save_guides(out);
   direct.save_waiting(out);
+  direct.save_ray_levels(out);
 }
 
 void SolveState::load(PlainReader& in, std::uint32_t version) {
@@ -186,6 +187,7 @@ void SolveState::load(PlainReader& in, std::uint32_t version) {
   rows.load_wanted(in);
   if (version >= 4) rows.load_guides(in);
   direct.load_waiting(in);
+  if (version >= 6) direct.load_ray_levels(in);
 }
 
 }  // namespace alvor

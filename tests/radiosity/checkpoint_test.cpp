@@ -69,6 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"NothingReflects", test::black_room, {.tolerance = 0.03, .max_leaves = 6000}},
                     Case{"HemicubesInHaze", test::hazy_room, {.tolerance = 0.05, .form_factors = FormFactorMethod::hemicube}},
                     Case{"LampsAndSun", test::room_with_lamps_and_sun, {.tolerance = 0.03, .max_leaves = 5000}},
+                    Case{"OvercastSky", test::room_under_overcast_sky, {.tolerance = 0.03, .max_leaves = 5000}},
                     Case{"Furnace", [] { return test::furnace(1, 0.9); }, {}}),
     [](const auto& one) { return one.param.name; });
 

@@ -106,12 +106,12 @@ TEST(DirectLight, HalfBlockedMatchesTheVisibleHalf) {
 }
 
 /// Returns the light on the patches of one level of the floor (root 0) from the lamp (root 1).
-std::vector<DirectLight> light_on_divided_floor(const BaseMesh& mesh, int level, std::uint64_t seed) {
+std::vector<DirectLight> light_on_divided_floor(const BaseMesh& mesh, int level, std::uint64_t seed, std::uint8_t ray_level) {
   std::vector<Receiver> receivers;
   for (int n = 0; n < 1 << 2 * level; ++n) {
     PatchId patch = PatchId::root(0);
     for (int l = 0; l < level; ++l) patch = patch.child(n >> 2 * l & 3);
-    receivers.push_back({patch, shape_of(mesh, patch)});
+    receivers.push_back({patch, shape_of(mesh, patch), 0, ray_level});
   }
   const LocalScene scene(mesh);
   RayBudget budget([] { return false; });
@@ -129,22 +129,34 @@ Scene lamp_and_wide_floor() {
   return scene;
 }
 
-/// Returns the ratio of the standard deviation that patches of a quarter metre report to the one between seeds, both RMS over
-/// patches.
-double predicted_over_actual_deviation(const BaseMesh& mesh) {
+/// What patches of a quarter metre report of the noise of their light, and how it varies between seeds: standard deviations, RMS
+/// over patches; and the mean over patches and seeds.
+struct Noise {
+  double predicted = 0, actual = 0, mean = 0;
+};
+Noise noise_on_divided_floor(const BaseMesh& mesh, std::uint8_t ray_level = 0) {
   constexpr int seeds = 32, level = 4;
   std::vector<double> sum(1 << 2 * level), squares(sum.size());
-  double predicted = 0, actual = 0;
+  double predicted = 0, actual = 0, all = 0;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const auto light = light_on_divided_floor(mesh, level, seed);
+    const auto light = light_on_divided_floor(mesh, level, seed, ray_level);
     for (std::size_t p = 0; p < light.size(); ++p) {
       sum[p] += light[p].irradiance.mean();
       squares[p] += std::pow(light[p].irradiance.mean(), 2);
       predicted += light[p].variance / seeds;
     }
   }
-  for (std::size_t p = 0; p < sum.size(); ++p) actual += (squares[p] - sum[p] * sum[p] / seeds) / (seeds - 1);
-  return std::sqrt(predicted / actual);
+  for (std::size_t p = 0; p < sum.size(); ++p) {
+    actual += (squares[p] - sum[p] * sum[p] / seeds) / (seeds - 1);
+    all += sum[p] / seeds;
+  }
+  const auto patches = static_cast<double>(sum.size());
+  return {std::sqrt(predicted / patches), std::sqrt(actual / patches), all / patches};
+}
+
+double predicted_over_actual_deviation(const BaseMesh& mesh) {
+  const Noise noise = noise_on_divided_floor(mesh);
+  return noise.predicted / noise.actual;
 }
 
 // Stratified rays have less noise than independent ones, by an amount that depends on the shadow's edge; hence the tolerance of a
@@ -157,16 +169,37 @@ TEST(DirectLight, VarianceIsTheSpreadOverSeedsWhereHalfTheFloorIsInShadow) {
   EXPECT_LT(ratio, 2);
 }
 
-TEST(DirectLight, VarianceIsTheSpreadOverSeedsUnderManySmallBlockers) {
-  Scene scene = lamp_and_wide_floor();
+/// Adds a board of squares, of which every other one is missing.
+void add_chequered_screen(Scene& scene) {
   for (int i = -20; i < 20; ++i)
     for (int j = -20 + (i & 1); j < 20; j += 2) {
       const double x = 0.05 * i, z = 0.05 * j;
       test::add_polygon(scene, {{x, 1, z}, {x + 0.05, 1, z}, {x + 0.05, 1, z + 0.05}, {x, 1, z + 0.05}});
     }
+}
+
+TEST(DirectLight, VarianceIsTheSpreadOverSeedsUnderManySmallBlockers) {
+  Scene scene = lamp_and_wide_floor();
+  add_chequered_screen(scene);
   const double ratio = predicted_over_actual_deviation(BaseMesh(scene));
   EXPECT_GT(ratio, 0.5);
   EXPECT_LT(ratio, 2);
+}
+
+// Four times the rays at each level: the noise falls as that of a net that one edge crosses, the mean stays.
+TEST(DirectLight, MoreShadowRaysHaveTheNoiseThatIsToldAndTheSameMean) {
+  Scene scene = lamp_and_wide_floor();
+  test::add_polygon(scene, {{-5, 1, -2}, {5, 1, 1}, {5, 1, 8}, {-5, 1, 8}});
+  const BaseMesh mesh(scene);
+  Noise before = noise_on_divided_floor(mesh);
+  for (std::uint8_t level = 1; level <= most_ray_level; ++level) {
+    const Noise noise = noise_on_divided_floor(mesh, level);
+    EXPECT_LT(noise.actual, before.actual / 2) << int(level);
+    EXPECT_GT(noise.predicted, 0.5 * noise.actual) << int(level);
+    EXPECT_LT(noise.predicted, 3 * noise.actual) << int(level);
+    EXPECT_NEAR(noise.mean, before.mean, 1e-3 * before.mean) << int(level);
+    before = noise;
+  }
 }
 
 /// Returns a tube of 2 x 0.02 m that hangs 5 cm above the middle of a floor of 10 cm, and between them screens with slits.
@@ -207,7 +240,7 @@ TEST(FaceLight, RaysToALongLampNearByBringAboutTheSame) {
 
 TEST(DirectLight, OriginsAverageToTheIrradianceWhereNothingIsInShadow) {
   const BaseMesh mesh(lamp_and_floor(false));
-  for (const DirectLight& light : light_on_divided_floor(mesh, 1, 1)) {
+  for (const DirectLight& light : light_on_divided_floor(mesh, 1, 1, 0)) {
     double mean = 0;
     for (const float there : light.at_origin) mean += there / double(origins_per_patch);
     EXPECT_NEAR(mean, light.irradiance.mean(), 1e-3 * mean);

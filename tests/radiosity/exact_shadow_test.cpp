@@ -6,6 +6,7 @@
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/form_factors/form_factor.h"
+#include "tests/radiosity/solve_scenes.h"
 #include "tests/radiosity/solved.h"
 #include "tests/random/dice.h"
 #include "tests/scenes.h"
@@ -212,26 +213,10 @@ TEST(ExactShadow, AgreesWithRaysOnRandomPairs) {
   EXPECT_GT(shadowed, 700);
 }
 
-/// Returns a black room of 4 x 3 x 5 m with a window of 2 x 1.5 m in a wall 0.4 m thick, under a clear sky, with boxes and quads
-/// in it and before the window. Face 0 is the floor.
-Scene room_with_deep_window(test::Dice& dice) {
-  Scene scene;
-  scene.materials = {test::grey(0, 0)};
-  test::add_polygon(scene, {{0, 0, 0}, {0, 0, 5}, {4, 0, 5}, {4, 0, 0}});
-  test::add_polygon(scene, {{0, 3, 0}, {4, 3, 0}, {4, 3, 5}, {0, 3, 5}});
-  test::add_polygon(scene, {{0, 0, 0}, {0, 3, 0}, {0, 3, 5}, {0, 0, 5}});
-  test::add_polygon(scene, {{4, 0, 0}, {4, 0, 5}, {4, 3, 5}, {4, 3, 0}});
-  test::add_polygon(scene, {{0, 0, 5}, {0, 3, 5}, {4, 3, 5}, {4, 0, 5}});
-  // The wall's inner side about the window, and the window's reveals.
-  test::add_polygon(scene, {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}});
-  test::add_polygon(scene, {{0, 2.5, 0}, {4, 2.5, 0}, {4, 3, 0}, {0, 3, 0}});
-  test::add_polygon(scene, {{0, 1, 0}, {1, 1, 0}, {1, 2.5, 0}, {0, 2.5, 0}});
-  test::add_polygon(scene, {{3, 1, 0}, {4, 1, 0}, {4, 2.5, 0}, {3, 2.5, 0}});
-  constexpr double out = -0.4;
-  test::add_polygon(scene, {{1, 1, 0}, {3, 1, 0}, {3, 1, out}, {1, 1, out}});
-  test::add_polygon(scene, {{1, 2.5, out}, {3, 2.5, out}, {3, 2.5, 0}, {1, 2.5, 0}});
-  test::add_polygon(scene, {{1, 1, out}, {1, 2.5, out}, {1, 2.5, 0}, {1, 1, 0}});
-  test::add_polygon(scene, {{3, 1, 0}, {3, 2.5, 0}, {3, 2.5, out}, {3, 1, out}});
+/// Returns a black room with a deep window under a clear sky, with boxes and quads in it and before the window. Face 0 is the
+/// floor.
+Scene furnished_room_with_deep_window(test::Dice& dice) {
+  Scene scene = test::room_with_deep_window(0);
   const auto add_box = [&](double near_z, double far_z) {
     const Vec3 low{dice.between(0.2, 3), dice.between(0.1, 2), dice.between(near_z, far_z)};
     test::add_box(scene, low, low + Vec3{dice.between(0.05, 0.6), dice.between(0.05, 0.8), dice.between(0.05, 0.5)}, false);
@@ -256,10 +241,18 @@ struct FloorUnderASky {
       receivers.push_back({patch, shape_of(mesh, patch)});
     }
   }
-  std::vector<DirectLight> light(std::uint64_t seed, const BlockerTree* blockers) const {
+  std::vector<DirectLight> light_by_rays(std::uint64_t seed) const {
     RayBudget budget([] { return false; });
     std::vector<DirectLight> found(receivers.size());
-    add_direct_light(local, sources, receivers, seed, budget, found, {.medium = false, .blockers = blockers});
+    add_direct_light(local, sources, receivers, seed, budget, found, {.medium = false});
+    return found;
+  }
+  /// Returns the light of a patch if it is found without rays.
+  std::optional<DirectLight> exact_light(std::size_t r) const {
+    RayBudget budget([] { return false; });
+    DirectLight found;
+    add_direct_light(local, sources, {&receivers[r], 1}, 1, budget, {&found, 1}, {.medium = false, .blockers = &tree});
+    if (budget.rays() > 0) return std::nullopt;
     return found;
   }
   BaseMesh mesh;
@@ -278,21 +271,21 @@ TEST(ExactShadow, OfTheSkyThroughADeepWindowAgreesWithRays) {
   double sum = 0, difference = 0;
   int noiseless = 0;
   for (int n = 0; n < scenes; ++n) {
-    const FloorUnderASky floor(room_with_deep_window(dice));
-    const std::vector<DirectLight> exact = floor.light(1, &floor.tree);
-    std::vector<double> mean(exact.size()), squares(exact.size());
+    const FloorUnderASky floor(furnished_room_with_deep_window(dice));
+    std::vector<double> mean(floor.receivers.size()), squares(mean.size());
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      const auto by_rays = floor.light(seed, nullptr);
+      const auto by_rays = floor.light_by_rays(seed);
       for (std::size_t r = 0; r < mean.size(); ++r) {
         const double irradiance = by_rays[r].irradiance.mean();
         mean[r] += irradiance / seeds, squares[r] += irradiance * irradiance / seeds;
       }
     }
-    for (std::size_t r = 0; r < exact.size(); ++r) {
-      if (exact[r].variance > 0) continue;  // by rays: too many faces stand in the way
+    for (std::size_t r = 0; r < mean.size(); ++r) {
+      const auto exact = floor.exact_light(r);
+      if (!exact) continue;  // too many faces stand in the way
       ++noiseless;
       const double noise = std::sqrt(std::max(0.0, squares[r] - mean[r] * mean[r]) / seeds);
-      const double off = exact[r].irradiance.mean() - mean[r];
+      const double off = exact->irradiance.mean() - mean[r];
       EXPECT_LT(std::abs(off), 6 * noise + 0.15 * mean[r] + 1e-6) << "scene " << n << ", patch " << r << ": " << mean[r];
       sum += mean[r], difference += off;
     }

@@ -28,6 +28,39 @@ inline Scene room_with_lamps_and_sun() {
   return scene;
 }
 
+/// Returns a room of 4 x 3 x 5 m with a window of 2 x 1.5 m in a wall 0.4 m thick. Face 0 is the floor.
+inline Scene room_with_deep_window(double reflectance) {
+  Scene scene;
+  scene.materials = {grey(0, reflectance)};
+  add_polygon(scene, {{0, 0, 0}, {0, 0, 5}, {4, 0, 5}, {4, 0, 0}});
+  add_polygon(scene, {{0, 3, 0}, {4, 3, 0}, {4, 3, 5}, {0, 3, 5}});
+  add_polygon(scene, {{0, 0, 0}, {0, 3, 0}, {0, 3, 5}, {0, 0, 5}});
+  add_polygon(scene, {{4, 0, 0}, {4, 0, 5}, {4, 3, 5}, {4, 3, 0}});
+  add_polygon(scene, {{0, 0, 5}, {0, 3, 5}, {4, 3, 5}, {4, 0, 5}});
+  // The wall's inner side about the window, and the window's reveals.
+  add_polygon(scene, {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}});
+  add_polygon(scene, {{0, 2.5, 0}, {4, 2.5, 0}, {4, 3, 0}, {0, 3, 0}});
+  add_polygon(scene, {{0, 1, 0}, {1, 1, 0}, {1, 2.5, 0}, {0, 2.5, 0}});
+  add_polygon(scene, {{3, 1, 0}, {4, 1, 0}, {4, 2.5, 0}, {3, 2.5, 0}});
+  constexpr double out = -0.4;
+  add_polygon(scene, {{1, 1, 0}, {3, 1, 0}, {3, 1, out}, {1, 1, out}});
+  add_polygon(scene, {{1, 2.5, out}, {3, 2.5, out}, {3, 2.5, 0}, {1, 2.5, 0}});
+  add_polygon(scene, {{1, 1, out}, {1, 2.5, out}, {1, 2.5, 0}, {1, 1, 0}});
+  add_polygon(scene, {{3, 1, 0}, {3, 2.5, 0}, {3, 2.5, out}, {3, 1, out}});
+  return scene;
+}
+
+/// Returns the same room under an overcast sky. Its reveals look for the sky in all directions, its other faces through the
+/// window.
+inline Scene room_under_overcast_sky() {
+  Scene scene = room_with_deep_window(0.5);
+  Light sky{"sky", LightKind::sky, {1000, 1000, 1000}};
+  sky.direction = {0, -1, 0};
+  sky.sky = cie_sky(1, normalized(Vec3{0.5, 0.7, -0.6}));
+  scene.lights = {sky};
+  return scene;
+}
+
 inline Scene black_room() { return black(room_with_contacts()); }
 
 inline Scene hazy_room() {

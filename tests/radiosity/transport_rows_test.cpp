@@ -7,8 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace alvor {
 namespace {
@@ -170,6 +172,28 @@ TEST(TransportRows, AppendedRowsLeaveOutOriginsThatAreHidden) {
   row.append(trace(mesh, 0, 2).rows[0]);
   EXPECT_EQ(row.ray_count(), 256u);
   EXPECT_EQ(row.hits.size(), row.ray_count());
+}
+
+// A (0, 2)-net: each of sixteen points in sequence lies alone in its sixteenth of the square, whatever the sixteenth's shape.
+TEST(OwenPoints, AreNetsAndEvenOverSeeds) {
+  double mean_u = 0, mean_v = 0, product = 0;
+  constexpr std::uint32_t seeds = 64;
+  for (std::uint32_t seed = 0; seed < seeds; ++seed)
+    for (std::uint32_t first = 0; first < 64; first += 16)
+      for (int bits_of_u = 0; bits_of_u <= 4; ++bits_of_u) {
+        std::set<std::pair<int, int>> cells;
+        for (std::uint32_t n = first; n < first + 16; ++n) {
+          const Uv at = owen_point(n, seed * 0x9e3779b9u, seed * 0x85ebca6bu + 1);
+          ASSERT_TRUE(at.u >= 0 && at.u < 1 && at.v >= 0 && at.v < 1);
+          cells.insert({static_cast<int>(std::ldexp(at.u, bits_of_u)), static_cast<int>(std::ldexp(at.v, 4 - bits_of_u))});
+          mean_u += at.u, mean_v += at.v, product += (at.u - 0.5) * (at.v - 0.5);
+        }
+        EXPECT_EQ(cells.size(), 16u) << seed << ' ' << first << ' ' << bits_of_u;
+      }
+  constexpr double count = seeds * 64 * 5;
+  EXPECT_NEAR(mean_u / count, 0.5, 0.005);
+  EXPECT_NEAR(mean_v / count, 0.5, 0.005);
+  EXPECT_NEAR(product / count, 0, 0.002);
 }
 
 TEST(DirectionSets, WeightsOfEachOriginHaveTheMeanOne) {

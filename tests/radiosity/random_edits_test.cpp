@@ -1,0 +1,115 @@
+// Many random edits of one solve.
+
+#include "meshing/edit/edited_scene.h"
+#include "tests/radiosity/edited_solve.h"
+#include "tests/radiosity/solve_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <random>
+
+namespace alvor {
+namespace {
+
+using test::EditedSolve, test::difference_of_roots;
+
+/// Returns a room with a deep window, two lamps of faces, a bulb, two boxes and a curtain.
+Scene room_to_be_edited() {
+  Scene scene = test::room_with_deep_window(0.6);
+  scene.materials[0].name = "walls";
+  scene.materials.push_back({"shine", {20, 18, 15}, {}, false});
+  Material curtain = test::grey(0, 0.4);
+  curtain.name = "curtain";
+  curtain.two_sided = true;
+  curtain.diffuse_transmittance = {0.3, 0.3, 0.2};
+  scene.materials.push_back(curtain);
+  const auto add = [&](const char* name, auto&& add_faces) {
+    const auto first = static_cast<std::uint32_t>(scene.faces.size());
+    add_faces();
+    scene.objects.push_back(
+        {.name = name, .first_face = first, .face_count = static_cast<std::uint32_t>(scene.faces.size()) - first});
+  };
+  add("box", [&] { test::add_box(scene, {1, 0.2, 1.5}, {1.8, 1, 2.3}, false); });
+  add("block", [&] { test::add_box(scene, {2.4, 0.2, 2}, {3, 1.4, 2.5}, false); });
+  add("lamp", [&] { test::add_polygon(scene, {{1.5, 2.8, 2}, {2.5, 2.8, 2}, {2.5, 2.8, 3}, {1.5, 2.8, 3}}, 1); });
+  add("panel", [&] { test::add_polygon(scene, {{0.5, 2.7, 4}, {0.9, 2.7, 4}, {0.9, 2.7, 4.4}, {0.5, 2.7, 4.4}}, 1); });
+  add("blind", [&] { test::add_polygon(scene, {{3.2, 0.5, 1}, {3.2, 2.2, 1}, {3.2, 2.2, 2}, {3.2, 0.5, 2}}, 2); });
+  Light bulb{"bulb", LightKind::point, {4, 4, 3}, {2, 2, 4}};
+  bulb.radius = 0.05;
+  scene.lights = {bulb};
+  return scene;
+}
+
+class RandomEdits {
+ public:
+  explicit RandomEdits(std::uint32_t seed) : random_(seed) {}
+
+  SceneEdit next() {
+    const std::string object = random_() % 2 ? "box" : "block";
+    switch (random_() % 11) {
+      case 0: return ObjectEdit{.name = object, .move = Vec3{uniform(-0.6, 0.6), uniform(0, 0.5), uniform(-1, 2)}};
+      case 1: return ObjectEdit{.name = object, .turn = uniform(-180, 180)};
+      case 2: return ObjectEdit{.name = random_() % 3 ? object : "blind", .hidden = random_() % 2 == 0};
+      case 3: return ObjectEdit{.name = "lamp", .move = Vec3{uniform(-1, 1), uniform(-0.5, 0), uniform(-1, 1)}};
+      case 4: return MaterialEdit{.name = "walls", .reflectance = colour(0.8)};
+      case 5: return MaterialEdit{.name = "curtain", .reflectance = colour(0.5), .diffuse_transmittance = colour(0.45)};
+      case 6: return MaterialEdit{.name = "shine", .emission = Rgb{1, 1, 1} + colour(20)};
+      case 7: return ObjectEdit{.name = random_() % 2 ? "lamp" : "panel", .dim = random_() % 4 ? uniform(0.1, 2) : 0};
+      case 8: return LightEdit{.name = "bulb", .dim = random_() % 4 ? uniform(0.1, 3) : 0};
+      case 9: return LightEdit{.name = "bulb", .position = Vec3{uniform(0.5, 3.5), uniform(1.6, 2.5), uniform(3, 4.5)}};
+      default: return DaylightEdit{daylight()};
+    }
+  }
+
+ private:
+  double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
+  Rgb colour(double most) {
+    const double r = uniform(0, most), g = uniform(0, most), b = uniform(0, most);
+    return {r, g, b};
+  }
+  Daylight daylight() {
+    Daylight any;
+    if (random_() % 3) any.sky = random_() % 2 ? Daylight::Sky::uniform : Daylight::Sky::overcast;
+    if (any.sky == Daylight::Sky::none || random_() % 2)
+      any.sun = SunPosition{.azimuth = uniform(0, 60), .elevation = uniform(5, 60)};
+    if (!std::holds_alternative<std::monostate>(any.sun) && random_() % 2) any.sun_irradiance = uniform(0, 50);
+    if (any.sky != Daylight::Sky::none) any.sky_irradiance = uniform(1, 20);
+    any.ground_reflectance = random_() % 2 ? uniform(0, 0.5) : 0;
+    return any;
+  }
+  std::mt19937 random_;
+};
+
+// $ALVOR_RANDOM_EDITS is the number of edits (60).
+TEST(RandomEdits, LeaveASolveWithinWhatItTellsOfANewOne) {
+  const char* const wanted = std::getenv("ALVOR_RANDOM_EDITS");
+  const int count = wanted ? std::atoi(wanted) : 60;
+  const SolveOptions options{.tolerance = 0.1, .max_leaves = 6000};
+  const Scene submitted = room_to_be_edited();
+  RandomEdits random(5);
+  EditedSolve solve(submitted, options);
+  std::vector<SceneEdit> edits;
+  int compared = 0, within = 0;
+  for (int n = 1; n <= count; ++n) {
+    edits.push_back(random.next());
+    const auto fault = fault_in(edits, submitted);
+    ASSERT_FALSE(fault) << fault->field << ' ' << fault->reason;
+    solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
+    ASSERT_EQ(solve.last().edits, static_cast<std::uint64_t>(n));
+    if (n % 10 != 0) continue;
+    const EditedSolve anew(submitted, options, solve.scene());
+    const double told = solve.last().estimated_error + anew.last().estimated_error;
+    const double off = difference_of_roots(solve, anew);
+    EXPECT_LT(solve.last().estimated_error, std::max(options.tolerance, 1.5 * anew.last().estimated_error)) << n;
+    within += off < told;
+    ++compared;
+  }
+  EXPECT_GE(within, 0.9 * compared);
+  solve.edit([&](Scene& scene) { scene = submitted; });
+  const EditedSolve first(submitted, options);
+  EXPECT_LT(difference_of_roots(solve, first), solve.last().estimated_error + first.last().estimated_error);
+}
+
+}  // namespace
+}  // namespace alvor
