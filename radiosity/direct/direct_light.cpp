@@ -237,7 +237,7 @@ class ShadowBatch {
                            [&](std::size_t k) { return receivers_[lit_[k].receiver].ray_level == level; });
       if (at_level.empty()) continue;
       const Rounds all = rounds_of(times_at(level));
-      for (std::uint32_t done = 0; done < all.count; done += packets_when_mixed)
+      for (std::uint32_t done = 0; done < all.count && !budget_.is_out(); done += packets_when_mixed)
         trace(at_level, {all.first + done, std::min(packets_when_mixed, all.count - done)});
     }
   }
@@ -263,12 +263,16 @@ class ShadowBatch {
   }
 
   /// Returns the number, in the light's sequence of points, of the one that origin `o` aims at in this round. At level 0, where
-  /// an origin has one ray or four, those of a round are a (0, 2)-net, and an origin's own are of different parts of them. At the
-  /// others, each origin's own points are a net, those of the first rounds and all, and so are all points.
+  /// an origin has one ray or four, those of each round are a (0, 2)-net, and an origin's own are of different parts of them. At
+  /// the others each origin's own points are a net, those of the first rounds and all of them. So are all points of all origins;
+  /// those of the first rounds together are one at level 1 and nearly one (quality 1) at levels 2 and 3 (found by counting, of
+  /// all linear choices of `part`).
   static std::uint32_t number_of(std::uint32_t o, std::uint32_t round, int ray_level, std::uint64_t scramble) {
     const auto turn = static_cast<std::uint32_t>(scramble >> 60);
     if (ray_level == 0) return 16 * round + (o ^ turn ^ (round * 5));
-    return (1 + packets_when_mixed) * times_at(ray_level) * (o ^ turn) + round;
+    const std::uint32_t set = o ^ turn, third = set >> 2 & 1, fourth = set >> 3 & 1;
+    const std::uint32_t first_rounds = times_at(ray_level), part = (third ^ fourth) | third << 1;
+    return (1 + packets_when_mixed) * first_rounds * set + (round ^ first_rounds * part);
   }
 
   /// Sets the rays of a packet: ray o goes from origin o of the receiver to a point of the light. `round` counts the packets of

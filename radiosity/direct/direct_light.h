@@ -33,8 +33,8 @@ struct DirectLight {
   }
 };
 
-/// Largest Receiver::ray_level: 64 times the rays of level 0. The noise of a light that is half hidden is then 0.6 % of what it
-/// would bring unhidden.
+/// Largest Receiver::ray_level: 64 times the rays of level 0. The noise of a light that is half hidden is then told as 0.2 % of
+/// what it would bring unhidden.
 inline constexpr int most_ray_level = 3;
 
 /// A patch that receives direct light. `hidden_origins` has the bits of TransportRow::hidden_origins. At each level of rays a

@@ -214,7 +214,9 @@ class Planner {
   static std::string cost_of(Feature feature) {
     switch (feature) {
       case Feature::three_bands: return "32 bytes a leaf instead of 8 where hits look, and three additions a hit instead of one";
-      case Feature::occlusion: return sentence(origins_per_patch, " to ", 4 * origins_per_patch, " rays a leaf and emitter");
+      case Feature::occlusion:
+        return sentence(origins_per_patch, " to ", 4 * origins_per_patch,
+                        " rays a leaf and emitter, up to 64 times as many where noise is the larger error");
       case Feature::indirect_rows: return sentence(rays_per_row, " rays and more a row, 12 bytes a hit, 290 a fit");
       case Feature::dark_faces: return sentence("a row, and rays to all emitters, of each such face");
       case Feature::back_sides: return "a look at both sides of each hit from behind";

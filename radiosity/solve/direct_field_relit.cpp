@@ -109,7 +109,11 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   if (factor && has_distant_lights_ && !factor->is_grey()) factor.reset();  // from_afar_ is a sum of bands
   scale(factor.value_or(Rgb{unit_change, unit_change, unit_change}));
   if (factor) waiting_power_ = share_waiting * power_;
-  else is_known_.assign(is_known_.size(), false);
+  else {
+    is_known_.assign(is_known_.size(), false);
+    // What noise other lights have is not known. Lights whose shares are kept have theirs.
+    if (shares_.light_count() == 0) ray_level_.assign(ray_level_.size(), 0);
+  }
   for (const NodeIndex leaf : forests_.leaves().leaves()) {
     if (plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) continue;
     light_[leaf] = {};
@@ -175,6 +179,7 @@ void DirectField::note_moved(const MovedRoots& moved) {
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     if (!is_lost[n]) continue;
     is_known_[leaves[n]] = false;
+    ray_level_[leaves[n]] = 0;
     lost += forests_.leaf_area(leaves[n]) / forests_.area();
   }
   waiting_power_ = std::max(waiting_power_, std::min(1.0, lost) * power_);

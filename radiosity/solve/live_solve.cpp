@@ -11,9 +11,13 @@ namespace alvor {
 
 namespace {
 
-// Multiple of the leaves at the first end of a solve above which an edit begins anew: the solve from the beginning then costs
-// less than a third of what made the others. Chosen.
+// Multiple of the leaves at the first end of a solve above which an edit begins anew, and of the error then at the limit of
+// leaves. Chosen: a solve from the beginning makes at most a third of the leaves that edits have added.
 constexpr std::uint64_t most_growth = 4;
+constexpr double much_worse = 1.25;
+// Leaves that a split of a translucent leaf adds, the most of any.
+constexpr std::uint64_t leaves_of_a_split = 6;
+
 /// Returns whether the roots differ only in where they are, whether they are hidden, and in what relighting changes.
 bool has_same_roots(const BaseMesh& before, const BaseMesh& after) {
   return std::ranges::equal(before.roots(), after.roots(), [&](const RootPatch& a, const RootPatch& b) {
@@ -69,10 +73,20 @@ LiveSolve::LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions&
   if (keeps_mesh) state.direct.keep_shares();
 }
 
+/// Returns whether edits have left many leaves that show no detail any more: each edit then takes long, and at the limit of
+/// leaves none is left for new detail.
+bool LiveSolve::has_too_many_leaves() const {
+  if (leaves_at_first_end == 0) return false;
+  const bool is_full = state.leaf_count() + leaves_of_a_split > state.options.max_leaves;
+  const bool was_full = leaves_at_first_end + leaves_of_a_split > state.options.max_leaves;
+  if (is_full && (!was_full || progress.error.total() > much_worse * error_at_first_end)) return true;
+  return state.leaf_count() > most_growth * leaves_at_first_end;
+}
+
 bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
   assert(own_mesh_);
   if (state.options.strategy != Strategy::automatic) return false;  // what was shot is not known
-  if (leaves_at_first_end > 0 && state.leaf_count() > most_growth * leaves_at_first_end) return false;
+  if (has_too_many_leaves()) return false;
   if (!may_go_on(*own_mesh_, state.plan, edited, plan)) return false;
   const bool is_alike = reflects_alike(*own_mesh_, edited);
   if (has_moved(*own_mesh_, edited)) {
@@ -126,8 +140,11 @@ void LiveSolve::load(std::span<const std::byte> checkpoint) {
   budget.add_spent(progress.rays, progress.traversal_s);
 }
 
-std::shared_ptr<LiveSolve> begin_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options,
-                                       const SolutionLog& log, const SolveControl& control) {
+namespace {
+
+/// Begins a solve of which the log may show an older solution.
+std::shared_ptr<LiveSolve> begin(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,
+                                 const SolveControl& control) {
   auto live = std::make_shared<LiveSolve>(mesh, plan, options, *control.ranks, control.live != nullptr);
   const Step last = log.last_step();
   constexpr std::uint64_t first_revision = 1;  // shows darkness
@@ -135,10 +152,10 @@ std::shared_ptr<LiveSolve> begin_solve(const BaseMesh& mesh, const Plan& plan, c
   live->progress.elapsed_s = live->edited_at_s = last.elapsed_s;
   live->progress.shots = last.shots;
   live->budget.add_spent(last.rays, 0);
-  live->edits = control.edits;
-  if (control.live) *control.live = live;
   return live;
 }
+
+}  // namespace
 
 std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,
                                       const SolveControl& control) {
@@ -153,7 +170,7 @@ std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, co
     live->is_refreshing = live->progress.passes == 0 && log.last_step().edits != live->edits;
   }
   if (live && live->edits != control.edits && !live->take_edit(mesh, plan)) live.reset();
-  if (!live) return begin_solve(mesh, plan, options, log, control);
+  if (!live) live = begin(mesh, plan, options, log, control);
   live->edits = control.edits;
   if (control.live) *control.live = live;
   return live;

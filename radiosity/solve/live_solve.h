@@ -43,6 +43,8 @@ class LiveSolve {
   void load(std::span<const std::byte> checkpoint);
 
  private:
+  bool has_too_many_leaves() const;
+
   std::optional<BaseMesh> own_mesh_;
 
  public:
@@ -53,7 +55,7 @@ class LiveSolve {
   ErrorByPlace by_place{.area_within = 0, .kept_error = 1};
   std::uint64_t edits = 0;  ///< SolveControl::edits of the mesh
   double edited_at_s = 0;   ///< elapsed seconds when the last edit was taken
-  /// When the solve first ended, before edits: the leaves of its forest, 0 until then, and the estimated error.
+  /// When the solve first ended by its tolerance or a limit of the mesh: its leaves, 0 until then, and the estimated error.
   std::uint64_t leaves_at_first_end = 0;
   double error_at_first_end = 0;
   /// Until the first estimate after an edit: the estimated error of before.
@@ -61,10 +63,6 @@ class LiveSolve {
   bool has_unseen_move = false;  ///< the last edit moved or hid objects, and nothing was published since
   bool is_refreshing = false;    ///< the log shows an older solution, and nothing is published before the first pass is done
 };
-
-/// Returns a new state, for a log that may show an older solution.
-std::shared_ptr<LiveSolve> begin_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options,
-                                       const SolutionLog& log, const SolveControl& control);
 
 /// Returns the state from which a solve of `mesh` goes on, or a new one. Throws BadBytes.
 std::shared_ptr<LiveSolve> live_solve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, const SolutionLog& log,

@@ -46,7 +46,7 @@ class Pass {
   /// Fits the smooth field that is shown, finds candidates for refinement and returns the estimated error.
   ErrorEstimate estimate();
   /// Splits patches and asks for rays where that removes most error per ray, which ends the pass. Returns false if nothing was
-  /// done: the limits forbid every split, and noise of rows is not the largest error.
+  /// done: the limits forbid every split, and noise of rows and shadow rays is not the largest error.
   /// If `gives_up` returns true on any rank, where it is asked between patches from any thread, it returns early, and the state
   /// must not be used.
   bool refine(const std::function<bool()>& gives_up = [] { return false; });
@@ -105,7 +105,7 @@ class Pass {
   void tell_leaves(double share_of_interpolation);
   void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
   void guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up);
-  double error_by_splitting(NodeIndex leaf, double missed, double noise);
+  double heed_noise(NodeIndex leaf, double missed, double noise);
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
                       const std::function<double(NodeIndex)>& rays);
   void drop_rays_that_do_not_help(double lasting_error);
@@ -126,7 +126,7 @@ class Pass {
   std::optional<PassSystem> system_;
   std::unique_ptr<Exchange> exchange_;
   std::vector<Candidate> candidates_;
-  double lasting_error_ = 0;  ///< squared error of patches that the limits keep from being split, emission units squared times m2
+  double lasting_error_ = 0;          ///< squared error that limits of splits and rays let stay, emission units squared times m2
   std::vector<double> row_squares_;   ///< by patch: mean square error of the rows, emission units squared
   std::vector<double> leaf_squares_;  ///< by place of the leaf, with the row's part
 };

@@ -46,6 +46,8 @@ constexpr double misfit_at_centre = 0.25;
 constexpr double chance_of_origins = 0.35;
 // Multiple of the noise of origins that a misfit must exceed to be part of the told error: two standard deviations of that mean.
 constexpr double sure_of_origins = 0.7;
+// Share of the mean square of values that rounding may leave of their variance.
+constexpr double rounding = 1e-12;
 // Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
@@ -229,19 +231,21 @@ double Pass::squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const 
   }
   const int visible = origins_per_patch - std::popcount(hidden);
   if (visible == 0) return 0;
-  return std::max(0.0, squares / visible - squared(sum / visible) - noise_of_origins * direct.origin_variance);
+  const double square = squares / visible, contrast = square - squared(sum / visible) - noise_of_origins * direct.origin_variance;
+  return contrast > rounding * square ? contrast : 0;
 }
 
 /// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove. Both parts of the error,
 /// what interpolation misses and the noise of shadow rays, go where the edge of a shadow leaves the smaller leaves. Where noise
-/// is the larger part, there is no edge to find, and smaller leaves are as noisy: then a candidate gives the leaf more shadow
-/// rays instead. So it is where a leaf cannot be split, and noise of its origins may be part of what is taken for missed.
-double Pass::error_by_splitting(NodeIndex leaf, double missed, double noise) {
-  const double doubtful = state_.forests.may_split_leaf(leaf)
-                              ? 0
-                              : state_.visible_area(leaf) * noise_of_origins * state_.direct[leaf].origin_variance;
+/// is the larger part, there is no edge to find, and smaller leaves are as noisy: then this adds a candidate that gives the leaf
+/// more shadow rays instead. So it does where a leaf cannot be split, and noise of its origins may be part of what is taken for
+/// missed.
+double Pass::heed_noise(NodeIndex leaf, double missed, double noise) {
+  const bool may_split = state_.forests.may_split_leaf(leaf);
+  const double doubtful = may_split ? 0 : state_.visible_area(leaf) * noise_of_origins * state_.direct[leaf].origin_variance;
   if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
-    const double removed = removed_by_rays * noise + std::min(missed, doubtful) / 2;
+    const double in_doubt = std::min(missed, doubtful) / 2, removed = removed_by_rays * noise + in_doubt;
+    if (!may_split) lasting_error_ += missed - in_doubt;
     candidates_.push_back(
         {Candidate::Kind::add_shadow_rays, leaf, removed, times_rays_of_level * rays_per_leaf * state_.direct.ray_share(leaf)});
     return 0;
@@ -282,7 +286,7 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
     error.sampling += noise;
     leaf_squares_[n] = unseen_detail * std::max(0.0, errors[n]);
     told_interpolation += leaf_squares_[n];
-    errors[n] = error_by_splitting(leaves[n], std::max(0.0, errors[n]), noise);
+    errors[n] = heed_noise(leaves[n], std::max(0.0, errors[n]), noise);
   }
   tell_leaves(share_of(error.interpolation, told_interpolation));
   add_candidates(Candidate::Kind::split_leaf, leaves, errors,

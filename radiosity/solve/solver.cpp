@@ -47,9 +47,6 @@ constexpr double publish_when = 0.75;
 // Largest share of the time that may go into steps that only show progress. Chosen; half and double give the same solutions
 // (docs/design/constants.md).
 constexpr double publishing_share = 0.1;
-// Multiple of the error at the first end of a solve that one must not exceed which ends at the limit of leaves after edits.
-// Chosen.
-constexpr double much_worse = 1.25;
 // Number of first steps that are published whatever they cost. Chosen; half and double give the same solutions
 // (docs/design/constants.md).
 constexpr std::uint64_t always_published = 12;
@@ -87,8 +84,9 @@ class Run {
       requests_.heed_edits(false);
     }
     const StopReason reason = pass_until_done();
-    const bool is_over = reason != StopReason::parked && reason != StopReason::edited && reason != StopReason::cancelled;
-    if (is_over && live_.leaves_at_first_end == 0) {
+    const bool is_as_fine_as_may_be =
+        reason == StopReason::tolerance || reason == StopReason::max_leaves || reason == StopReason::max_depth;
+    if (is_as_fine_as_may_be && live_.leaves_at_first_end == 0) {
       live_.leaves_at_first_end = state_.leaf_count();
       live_.error_at_first_end = is_.error.total();
     }
@@ -359,15 +357,7 @@ SolveOutcome solve_as_planned(const BaseMesh& mesh, const Plan& plan, const Solv
   const CpuClock cpu(arena);
   return arena.execute([&] {
     if (!plan.has_light()) return show_darkness(mesh, cpu, log, control.edits);  // on every rank, each in its own log
-    auto live = live_solve(mesh, plan, options, log, control);
-    const double usual_error = live->error_at_first_end;
-    const SolveOutcome outcome = Run(*live, cpu, log, control).run();
-    const bool is_full = outcome.reason == StopReason::max_leaves && usual_error > 0;
-    if (!is_full || !control.live || live->progress.error.total() <= much_worse * usual_error) return outcome;
-    // Edits have left so many leaves that show no detail any more that there were too few for the new one.
-    control.live->reset();
-    live.reset();  // before the new one takes memory
-    live = begin_solve(mesh, plan, options, log, control);
+    const auto live = live_solve(mesh, plan, options, log, control);
     return Run(*live, cpu, log, control).run();
   });
 }

@@ -202,6 +202,26 @@ TEST(DirectLight, MoreShadowRaysHaveTheNoiseThatIsToldAndTheSameMean) {
   }
 }
 
+// A slat hides an eighth of a lamp, the same for all of a small patch: at every level some rays find it.
+TEST(DirectLight, NoLevelOfShadowRaysMissesASlat) {
+  Scene scene = lamp_and_floor(false);
+  scene.vertices[1].z = scene.vertices[2].z = scene.vertices[2].x = scene.vertices[3].x = 0.01;
+  test::add_polygon(scene, {{0.15, 1.9, -5}, {0.275, 1.9, -5}, {0.275, 1.9, 5}, {0.15, 1.9, 5}});
+  const BaseMesh mesh(scene);
+  const LocalScene local(mesh);
+  const FaceLight lamp(local, 1, {emission, emission, emission});
+  const LightSource* const lights[]{&lamp};
+  for (std::uint8_t level = 0; level <= most_ray_level; ++level) {
+    const Receiver receiver{PatchId::root(0), shape_of(mesh, PatchId::root(0)), 0, level};
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      RayBudget budget([] { return false; });
+      DirectLight light;
+      add_direct_light(local, lights, {&receiver, 1}, seed, budget, {&light, 1});
+      EXPECT_GT(light.variance, 0) << int(level) << ' ' << seed;
+    }
+  }
+}
+
 /// Returns a tube of 2 x 0.02 m that hangs 5 cm above the middle of a floor of 10 cm, and between them screens with slits.
 Scene tube_behind_slits() {
   Scene scene;

@@ -61,6 +61,43 @@ TEST(MovedObjects, WhatASheetOfOneSideHidIsSeenAgain) {
   }
 }
 
+/// Returns an edit of an object, a material or the lamp's brightness.
+SceneEdit any_edit(std::mt19937& random) {
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const std::string object = random() % 2 ? "box" : "block";
+  switch (random() % 6) {
+    case 0: return ObjectEdit{.name = object, .move = Vec3{uniform(-1, 1), uniform(0, 0.5), uniform(-1, 2)}};
+    case 1: return ObjectEdit{.name = object, .turn = uniform(-180, 180)};
+    case 2: return ObjectEdit{.name = object, .hidden = random() % 2 == 0};
+    case 3: return ObjectEdit{.name = "lamp", .move = Vec3{uniform(-1, 1), uniform(-0.5, 0), uniform(-1, 1)}};
+    case 4: return MaterialEdit{.name = "m0", .reflectance = Rgb{uniform(0, 0.9), uniform(0, 0.9), uniform(0, 0.9)}};
+    default: return ObjectEdit{.name = "lamp", .dim = uniform(0.1, 2)};
+  }
+}
+
+TEST(MovedObjects, AfterManyEditsASolveIsWithinWhatItTellsOfANewOne) {
+  const SolveOptions options{.tolerance = 0.05, .max_leaves = 20'000};
+  const Scene submitted = test::room_of_objects();
+  std::mt19937 random(5);
+  EditedSolve solve(submitted, options);
+  std::vector<SceneEdit> edits;
+  int compared = 0, within = 0;
+  for (int n = 1; n <= 60; ++n) {
+    edits.push_back(any_edit(random));
+    ASSERT_FALSE(fault_in(edits, submitted));
+    solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
+    EXPECT_EQ(solve.last().edits, static_cast<std::uint64_t>(n));
+    if (n % 5 != 0) continue;
+    const EditedSolve anew(submitted, options, solve.scene());
+    within += difference_of_roots(solve, anew) < solve.last().estimated_error + anew.last().estimated_error;
+    ++compared;
+  }
+  EXPECT_GE(within, compared - 1);  // told errors hold nine times of ten
+  solve.edit([&](Scene& scene) { scene = submitted; });
+  const EditedSolve first(submitted, options);
+  EXPECT_LT(difference_of_roots(solve, first), solve.last().estimated_error + first.last().estimated_error);
+}
+
 TEST(MovedRoots, NoWayThroughABoxIsMissed) {
   const Scene submitted = test::room_of_objects();
   const BaseMesh before(submitted);
