@@ -30,9 +30,6 @@ constexpr std::uint32_t packets_when_mixed = 3, packets_of_rest = 2;
 // gets no more rays, at level 0. Chosen; half: the same, double: the same (docs/design/constants.md).
 constexpr double worth_a_closer_look = 0.1;
 
-/// Returns how many times the rays of level 0 a receiver of this level sends.
-std::uint32_t times_at(int ray_level) { return 1u << 2 * ray_level; }
-
 using Lanes = std::array<float, RayPacket::width>;
 
 /// The shadow rays of a batch of receivers. `dimming`: there is a medium, or rays bring a part of their light.

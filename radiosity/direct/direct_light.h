@@ -36,6 +36,8 @@ struct DirectLight {
 /// Largest Receiver::ray_level: 64 times the rays of level 0. The noise of a light that is half hidden is then told as 0.2 % of
 /// what it would bring unhidden.
 inline constexpr int most_ray_level = 3;
+/// Returns how many times the shadow rays of level 0 a receiver of this level sends.
+constexpr std::uint32_t times_at(int ray_level) { return 1u << 2 * ray_level; }
 
 /// A patch that receives direct light. `hidden_origins` has the bits of TransportRow::hidden_origins. At each level of rays a
 /// patch sends four times the shadow rays of the level below.

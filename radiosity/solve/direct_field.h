@@ -53,8 +53,8 @@ class DirectField {
 
   /// Returns whether the leaf can have more shadow rays, see Receiver::ray_level.
   bool may_add_rays(NodeIndex leaf) const { return ray_level_[leaf] < most_ray_level; }
-  /// Returns how many times the rays of level 0 the leaf sends.
-  double ray_share(NodeIndex leaf) const { return double(1u << 2 * ray_level_[leaf]); }
+  /// Returns how many times the shadow rays of level 0 the leaf sends.
+  double ray_share(NodeIndex leaf) const { return times_at(ray_level_[leaf]); }
   /// Makes the next add_new() find the leaf's light again, with four times the shadow rays. Requires: may_add_rays(leaf).
   void add_rays(NodeIndex leaf) {
     ++ray_level_[leaf];

@@ -111,7 +111,8 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   if (factor) waiting_power_ = share_waiting * power_;
   else {
     is_known_.assign(is_known_.size(), false);
-    // What noise other lights have is not known. Lights whose shares are kept have theirs.
+    // Leaves have their levels of shadow rays for the noise of the lights of before. Lights whose shares are kept keep that
+    // noise.
     if (shares_.light_count() == 0) ray_level_.assign(ray_level_.size(), 0);
   }
   for (const NodeIndex leaf : forests_.leaves().leaves()) {

@@ -90,9 +90,11 @@ bool Pass::refine(const std::function<bool()>& gives_up) {
     if (candidate.kind == Candidate::Kind::add_rays) wanting.push_back(candidate.patch);
     if (candidate.kind == Candidate::Kind::split_row) state_.split_row(candidate.patch);
     if (candidate.kind == Candidate::Kind::split_leaf) state_.split_leaf(candidate.patch);
-    if (candidate.kind != Candidate::Kind::add_shadow_rays || !forests.leaves().is_leaf(candidate.patch)) continue;
-    state_.direct.add_rays(candidate.patch);
-    wants_shadow_rays = true;
+    // A leaf may have been split since, for its row or to keep its neighbours balanced.
+    if (candidate.kind == Candidate::Kind::add_shadow_rays && forests.leaves().is_leaf(candidate.patch)) {
+      state_.direct.add_rays(candidate.patch);
+      wants_shadow_rays = true;
+    }
   }
   state_.rows.want_rays(wanting);
   const bool has_split = forests.leaves().leaf_count() != leaves_before || forests.rows().leaf_count() != rows_before;

@@ -106,8 +106,8 @@ class Pass {
   void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
   void guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up);
   double heed_noise(NodeIndex leaf, double missed, double noise);
-  void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
-                      const std::function<double(NodeIndex)>& rays);
+  double rays_of_split(Candidate::Kind kind, NodeIndex patch) const;
+  void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors);
   void drop_rays_that_do_not_help(double lasting_error);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
   double squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const;

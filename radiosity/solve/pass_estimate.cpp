@@ -121,12 +121,16 @@ bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
   return kind == Candidate::Kind::split_leaf ? state_.forests.may_split_leaf(patch) : state_.forests.may_split_row(patch);
 }
 
-void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
-                          const std::function<double(NodeIndex)>& rays) {
+/// Returns the rays that splitting a leaf or a row costs.
+double Pass::rays_of_split(Candidate::Kind kind, NodeIndex patch) const {
+  return kind == Candidate::Kind::split_leaf ? rays_per_leaf_split * state_.direct.ray_share(patch) : rays_per_row_split;
+}
+
+void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors) {
   if (!state_.plan.needs(Feature::refinement)) return;
   for (std::size_t n = 0; n < patches.size(); ++n) {
     if (errors[n] <= 0) continue;
-    if (may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays(patches[n])});
+    if (may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays_of_split(kind, patches[n])});
     else lasting_error_ += errors[n];
   }
 }
@@ -205,7 +209,7 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   const double share = share_of(error.misfit, told_misfit);
   for (std::size_t p = 0; p < patches.size(); ++p)
     row_squares_[p] = share * row_squares_[p] + state_.field.fit(system_->rows()[p]).variance;
-  add_candidates(Candidate::Kind::split_row, system_->rows(), errors, [](NodeIndex) { return rays_per_row_split; });
+  add_candidates(Candidate::Kind::split_row, system_->rows(), errors);
 }
 
 /// Returns the mean square deviation of the irradiance at a leaf's visible origins from a plane with the leaf's slope through
@@ -289,8 +293,7 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
     errors[n] = heed_noise(leaves[n], std::max(0.0, errors[n]), noise);
   }
   tell_leaves(share_of(error.interpolation, told_interpolation));
-  add_candidates(Candidate::Kind::split_leaf, leaves, errors,
-                 [this](NodeIndex leaf) { return rays_per_leaf_split * state_.direct.ray_share(leaf); });
+  add_candidates(Candidate::Kind::split_leaf, leaves, errors);
   return power;
 }
 

@@ -129,11 +129,12 @@ Scene lamp_and_wide_floor() {
   return scene;
 }
 
-/// What patches of a quarter metre report of the noise of their light, and how it varies between seeds: standard deviations, RMS
-/// over patches; and the mean over patches and seeds.
+/// The noise of the direct light of some patches: the standard deviation that DirectLight::variance predicts, and the actual one
+/// between seeds, both RMS over the patches; and the mean irradiance over patches and seeds.
 struct Noise {
   double predicted = 0, actual = 0, mean = 0;
 };
+/// Finds the noise of the lamp's light on a floor that is divided into patches of a quarter metre.
 Noise noise_on_divided_floor(const BaseMesh& mesh, std::uint8_t ray_level = 0) {
   constexpr int seeds = 32, level = 4;
   std::vector<double> sum(1 << 2 * level), squares(sum.size());

@@ -3,11 +3,11 @@
 #include "meshing/edit/edited_scene.h"
 #include "tests/radiosity/edited_solve.h"
 #include "tests/radiosity/solve_scenes.h"
+#include "tests/random/dice.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <random>
 
 namespace alvor {
 namespace {
@@ -41,46 +41,48 @@ Scene room_to_be_edited() {
   return scene;
 }
 
-/// Makes edits of all kinds.
-class RandomEdits {
- public:
-  explicit RandomEdits(std::uint32_t seed) : random_(seed) {}
+Rgb any_colour(test::Dice& dice, double most) {
+  const double r = dice.between(0, most), g = dice.between(0, most), b = dice.between(0, most);
+  return {r, g, b};
+}
 
-  SceneEdit next() {
-    const std::string object = random_() % 2 ? "box" : "block";
-    switch (random_() % 11) {
-      case 0: return ObjectEdit{.name = object, .move = Vec3{uniform(-0.6, 0.6), uniform(0, 0.5), uniform(-1, 2)}};
-      case 1: return ObjectEdit{.name = object, .turn = uniform(-180, 180)};
-      case 2: return ObjectEdit{.name = random_() % 3 ? object : "blind", .hidden = random_() % 2 == 0};
-      case 3: return ObjectEdit{.name = "lamp", .move = Vec3{uniform(-1, 1), uniform(-0.5, 0), uniform(-1, 1)}};
-      case 4: return MaterialEdit{.name = "walls", .reflectance = colour(0.8)};
-      case 5: return MaterialEdit{.name = "curtain", .reflectance = colour(0.5), .diffuse_transmittance = colour(0.45)};
-      case 6: return MaterialEdit{.name = "shine", .emission = Rgb{1, 1, 1} + colour(20)};
-      case 7: return ObjectEdit{.name = random_() % 2 ? "lamp" : "panel", .dim = random_() % 4 ? uniform(0.1, 2) : 0};
-      case 8: return LightEdit{.name = "bulb", .dim = random_() % 4 ? uniform(0.1, 3) : 0};
-      case 9: return LightEdit{.name = "bulb", .position = Vec3{uniform(0.5, 3.5), uniform(1.6, 2.5), uniform(3, 4.5)}};
-      default: return DaylightEdit{daylight()};
-    }
-  }
+Vec3 any_place(test::Dice& dice, Vec3 low, Vec3 high) {
+  const double x = dice.between(low.x, high.x), y = dice.between(low.y, high.y), z = dice.between(low.z, high.z);
+  return {x, y, z};
+}
 
- private:
-  double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
-  Rgb colour(double most) {
-    const double r = uniform(0, most), g = uniform(0, most), b = uniform(0, most);
-    return {r, g, b};
+Daylight any_daylight(test::Dice& dice) {
+  Daylight any;
+  any.sky = dice.one_of({Daylight::Sky::none, Daylight::Sky::uniform, Daylight::Sky::overcast});
+  if (any.sky == Daylight::Sky::none || dice.happens(0.5)) {
+    const double azimuth = dice.between(0, 60);
+    any.sun = SunPosition{.azimuth = azimuth, .elevation = dice.between(5, 60)};
+    if (dice.happens(0.5)) any.sun_irradiance = dice.between(0, 50);
   }
-  Daylight daylight() {
-    Daylight any;
-    if (random_() % 3) any.sky = random_() % 2 ? Daylight::Sky::uniform : Daylight::Sky::overcast;
-    if (any.sky == Daylight::Sky::none || random_() % 2)
-      any.sun = SunPosition{.azimuth = uniform(0, 60), .elevation = uniform(5, 60)};
-    if (!std::holds_alternative<std::monostate>(any.sun) && random_() % 2) any.sun_irradiance = uniform(0, 50);
-    if (any.sky != Daylight::Sky::none) any.sky_irradiance = uniform(1, 20);
-    any.ground_reflectance = random_() % 2 ? uniform(0, 0.5) : 0;
-    return any;
+  if (any.sky != Daylight::Sky::none) any.sky_irradiance = dice.between(1, 20);
+  if (dice.happens(0.5)) any.ground_reflectance = dice.between(0, 0.5);
+  return any;
+}
+
+/// Returns an edit of any part of room_to_be_edited().
+SceneEdit any_edit(test::Dice& dice) {
+  const char* const solid = dice.one_of({"box", "block"});
+  switch (dice.below(11)) {
+    case 0: return ObjectEdit{.name = solid, .move = any_place(dice, {-0.6, 0, -1}, {0.6, 0.5, 2})};
+    case 1: return ObjectEdit{.name = solid, .turn = dice.between(-180, 180)};
+    case 2: return ObjectEdit{.name = dice.one_of({"box", "block", "blind"}), .hidden = dice.happens(0.5)};
+    case 3: return ObjectEdit{.name = "lamp", .move = any_place(dice, {-1, -0.5, -1}, {1, 0, 1})};
+    case 4: return MaterialEdit{.name = "walls", .reflectance = any_colour(dice, 0.8)};
+    case 5:
+      return MaterialEdit{
+          .name = "curtain", .reflectance = any_colour(dice, 0.5), .diffuse_transmittance = any_colour(dice, 0.45)};
+    case 6: return MaterialEdit{.name = "shine", .emission = Rgb{1, 1, 1} + any_colour(dice, 20)};
+    case 7: return ObjectEdit{.name = dice.one_of({"lamp", "panel"}), .dim = dice.happens(0.75) ? dice.between(0.1, 2) : 0};
+    case 8: return LightEdit{.name = "bulb", .dim = dice.happens(0.75) ? dice.between(0.1, 3) : 0};
+    case 9: return LightEdit{.name = "bulb", .position = any_place(dice, {0.5, 1.6, 3}, {3.5, 2.5, 4.5})};
+    default: return DaylightEdit{any_daylight(dice)};
   }
-  std::mt19937 random_;
-};
+}
 
 // $ALVOR_RANDOM_EDITS is the number of edits (60).
 TEST(RandomEdits, LeaveASolveWithinWhatItTellsOfANewOne) {
@@ -88,12 +90,12 @@ TEST(RandomEdits, LeaveASolveWithinWhatItTellsOfANewOne) {
   const int count = wanted ? std::atoi(wanted) : 60;
   const SolveOptions options{.tolerance = 0.1, .max_leaves = 6000};
   const Scene submitted = room_to_be_edited();
-  RandomEdits random(5);
+  test::Dice dice(5);
   EditedSolve solve(submitted, options);
   std::vector<SceneEdit> edits;
   int compared = 0, within = 0;
   for (int n = 1; n <= count; ++n) {
-    edits.push_back(random.next());
+    edits.push_back(any_edit(dice));
     const auto fault = fault_in(edits, submitted);
     ASSERT_FALSE(fault) << fault->field << ' ' << fault->reason;
     solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });

@@ -154,6 +154,13 @@ Scene room_with_hole(bool is_roof, std::vector<Vec3>& hole) {
   return scene;
 }
 
+/// Returns the irradiance that a uniform sky of 1000 brings through a hole to a place, by the form factor of the hole. All of the
+/// hole lies above the horizon of the sky and of the place.
+double brought_through(std::vector<Vec3> hole, Vec3 at, Vec3 normal) {
+  if (std::abs(point_to_polygon(at, normal, hole)) < 1e-9) std::ranges::reverse(hole);  // it was seen from behind
+  return 1000 * std::abs(point_to_polygon(at, normal, hole));
+}
+
 // Uniform sky of irradiance E: a point below a hole gets E times the form factor to the hole; beside a window it gets E times the
 // form factor to the part of the window above its horizon.
 TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
@@ -168,9 +175,7 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
       const PatchShape shape = shape_of(mesh, leaf.patch);
       const RootPatch& root = mesh.roots()[shape.root];
       if (root.normal.y < 0.9) continue;  // the floor: all of the hole is above its horizon
-      std::vector<Vec3> seen = hole;
-      if (std::abs(point_to_polygon(centre_of(mesh, shape), root.normal, seen)) < 1e-9) std::ranges::reverse(seen);
-      const double expected = 1000 * std::abs(point_to_polygon(centre_of(mesh, shape), root.normal, seen));
+      const double expected = brought_through(hole, centre_of(mesh, shape), root.normal);
       error += std::abs(leaf.irradiance.g - expected), mean += expected;
       ++compared;
     }
@@ -179,7 +184,8 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
   }
 }
 
-// Where the horizon crosses the window, the lower edge of what is seen of the sky lies on it.
+// Of a wall whose horizon crosses the window, each point sees the sky in the part of the window above its horizon. The lower edge
+// of that part lies on the horizon, where the sky ends.
 TEST(SkyThroughAHole, WallsSeeThePartOfAWindowAboveTheirHorizon) {
   std::vector<Vec3> hole;
   Scene scene = room_with_hole(false, hole);
@@ -193,8 +199,7 @@ TEST(SkyThroughAHole, WallsSeeThePartOfAWindowAboveTheirHorizon) {
     if (root.normal.z > -0.9 || centre.y > 2) continue;  // the wall across from the window; near its upper edge it sees little
     std::vector<Vec3> seen = hole;
     for (Vec3& corner : seen) corner.y = std::max(corner.y, centre.y);
-    if (std::abs(point_to_polygon(centre, root.normal, seen)) < 1e-9) std::ranges::reverse(seen);
-    const double expected = 1000 * std::abs(point_to_polygon(centre, root.normal, seen));
+    const double expected = brought_through(seen, centre, root.normal);
     EXPECT_NEAR(leaf.irradiance.g, expected, 0.02 * expected) << centre.x << ' ' << centre.y;
     ++compared;
   }
@@ -222,15 +227,12 @@ double error_below_holes(Scene scene, const std::vector<std::vector<Vec3>>& hole
     const Vec3 centre = centre_of(mesh, shape);
     if (root.normal.y < 0.9 || length(centre - Vec3{2, 0, 2}) > 3) continue;  // the floor
     double expected = 0;
-    for (std::vector<Vec3> seen : holes) {
-      if (std::abs(point_to_polygon(centre, root.normal, seen)) < 1e-9) std::ranges::reverse(seen);
-      expected += 1000 * std::abs(point_to_polygon(centre, root.normal, seen));
-    }
+    for (const std::vector<Vec3>& hole : holes) expected += brought_through(hole, centre, root.normal);
     error += std::abs(leaf.irradiance.r - transmittance.r * expected) + std::abs(leaf.irradiance.b - transmittance.b * expected);
     mean += expected;
     ++compared;
   }
-  EXPECT_GT(compared, 50u);
+  EXPECT_GT(compared, 50u);  // leaves are not split for noise, and there is little else
   return error / mean;
 }
 

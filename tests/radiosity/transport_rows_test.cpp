@@ -196,9 +196,10 @@ TEST(OwenPoints, AreNetsAndEvenOverSeeds) {
   EXPECT_NEAR(product / count, 0, 0.002);
 }
 
-// Points 0 and 4 agree in the first two digits of u, and so do points 1 and 5. Whether each pair agrees in the third is random
-// for each seed, and independent of the other pair: digits that are exchanged alike for all points never agree.
-TEST(OwenPoints, ThatAreAlikeInFirstDigitsDifferAtRandomInTheFourth) {
+// Points 0 and 4 differ first in the third binary digit of u, and so do points 1 and 5. Whether the two points of a pair agree in
+// the fourth digit is random for each seed, and independent of the other pair. If digits were exchanged alike for all points, as
+// sobol_point() does, both pairs would agree for every seed.
+TEST(OwenPoints, ThatDifferInTheThirdDigitAgreeAtRandomInTheFourth) {
   int first = 0, both = 0;
   constexpr int seeds = 4000;
   for (std::uint32_t seed = 0; seed < seeds; ++seed) {
