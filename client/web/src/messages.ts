@@ -19,13 +19,17 @@ export type ToWorker =
   | { kind: "drawn" }
   | { kind: "probe"; origin: Vector; direction: Vector };
 
+/** Three numbers: r, g, b, or x, y, z. */
 export type Bands = [number, number, number];
 
 /** What of a scene can be edited, as it was submitted. */
 export interface Parts {
   lights: { name: string; intensity: Bands; position?: Bands }[];
-  /** Objects with faces. `shines`: faces of it emit. `isRoom`: it is as long and wide as the scene. */
-  objects: { name: string; shines: boolean; isRoom: boolean }[];
+  /**
+   * Objects with faces, their own or of objects that hang from them. `parent`: what it hangs from. `shines`: faces of it emit. `isRoom`: it is as
+   * long and wide as the scene. `low`, `high`: of the box around it, metres from the middle of the mesh.
+   */
+  objects: { name: string; parent?: string; shines: boolean; isRoom: boolean; low: Bands; high: Bands }[];
   materials: { name: string; emission: Bands; reflectance: Bands; hasTexture: boolean }[];
 }
 

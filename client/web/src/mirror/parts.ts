@@ -39,10 +39,12 @@ function objectsOf(mesh: BaseMesh): Parts["objects"] {
     if (parent !== undefined) add(extents[parent], extents[extents.length - 1 - n]);
   });
   const sides = ({ low, high }: Extent) => low.map((x, k) => high[k] - x);
-  return mesh.objects.flatMap(({ name }, n) => {
+  return mesh.objects.flatMap(({ name, parent }, n) => {
     const own = sides(extents[n]);
     const isRoom = sides(all).filter((side, k) => own[k] >= 0.9 * side).length >= 2;
-    return own[0] >= 0 ? [{ name, shines: extents[n].shines, isRoom }] : [];
+    const { low, high, shines } = extents[n];
+    const above = parent === undefined ? undefined : mesh.objects[parent].name;
+    return own[0] >= 0 ? [{ name, parent: above, shines, isRoom, low: low as Bands, high: high as Bands }] : [];
   });
 }
 

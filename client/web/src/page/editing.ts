@@ -1,16 +1,20 @@
 // The controls by which a person edits the scene of a solve: brightness, colour and place of one part at a time.
 
 import { create } from "@bufbuild/protobuf";
+import * as THREE from "three";
 import { DaylightSchema, type Daylight } from "../gen/alvor/v1/scene_service_pb";
 import { EditSchema, EditStep_Kind, EditStepSchema, type Edit, type EditStep } from "../gen/alvor/v1/solve_service_pb";
-import type { Bands, Parts } from "../messages";
+import type { Bands, Parts, Vector } from "../messages";
 import { DaylightControls } from "./daylight";
 import { button, byId, input, select } from "./dom";
 import { editsThatHold, textOfStep, undoAndRedo } from "./edits";
+import { ownMotion, placeOfLight, placeOfObject, type Place } from "./place";
 import { colourOf, linearOf } from "./srgb";
 
-/** Sends a step to the server. */
-type Send = (step: EditStep) => Promise<void>;
+/** Sends a step to the server. Returns whether it was taken. */
+type Send = (step: EditStep) => Promise<boolean>;
+/** Shows where the chosen part is; nothing where none is chosen that can be moved. */
+type ShowPlace = (place: Place | undefined) => void;
 
 const rgb = ([r, g, b]: Bands) => ({ r, g, b });
 const largest = (bands: Bands) => Math.max(...bands);
@@ -32,16 +36,24 @@ const DAYLIGHT = "daylight";
 
 export class Editing {
   private parts: Parts = { lights: [], objects: [], materials: [] };
+  private centre: Bands = [0, 0, 0];
+  private up = new THREE.Vector3();
   private steps: EditStep[] = [];
   /** A slide that has not been sent, because what was sent before it has not been answered. */
-  private waiting?: Edit;
+  private waiting?: { edit: Edit; continues: boolean };
+  /** A person has chosen the part; at first the page has. */
+  private isChosen = false;
+  private place?: Place;
   private isSending = false;
   private readonly daylight = new DaylightControls((value) =>
     this.slide(create(EditSchema, { part: { case: "daylight", value: create(DaylightSchema, value) } })),
   );
 
-  constructor(private readonly send: Send) {
-    select("edit-part").addEventListener("change", () => this.showPart());
+  constructor(
+    private readonly send: Send,
+    private readonly showPlace: ShowPlace,
+  ) {
+    select("edit-part").addEventListener("change", () => this.showChosen());
     input("edit-dim").addEventListener("input", () => this.slide(this.dimmed(input("edit-dim").valueAsNumber)));
     input("edit-colour").addEventListener("input", () => this.slide(this.coloured(linearOf(input("edit-colour").value))));
     for (const id of ["edit-x", "edit-y", "edit-z"]) input(id).addEventListener("input", () => this.move());
@@ -53,8 +65,10 @@ export class Editing {
     input("edit-author").addEventListener("change", () => sessionStorage.setItem("author", input("edit-author").value));
   }
 
-  setParts(parts: Parts): void {
-    this.parts = parts;
+  /** `centre`: of the mesh, in the scene's own coordinates. */
+  setParts(parts: Parts, centre: Bands, up: THREE.Vector3): void {
+    [this.parts, this.centre, this.up] = [parts, centre, up];
+    this.isChosen = false;
     const group = (label: string, kind: string, names: string[]) => {
       const options = document.createElement("optgroup");
       options.label = label;
@@ -78,6 +92,7 @@ export class Editing {
     const newest = steps.at(-1);
     this.steps = steps;
     byId("edit-form").hidden = !isEditable;
+    if (!isEditable) this.showPlace(undefined);
     const { undo, redo } = undoAndRedo(steps);
     button("undo").disabled = !undo;
     button("redo").disabled = !redo;
@@ -91,6 +106,26 @@ export class Editing {
     const wanted = isThing ? `object:${object}` : `material:${material}`;
     if (![...select("edit-part").options].some(({ value }) => value === wanted)) return;
     select("edit-part").value = wanted;
+    this.showChosen();
+  }
+
+  /** Leaves the part alone: it is no longer marked in the picture. */
+  release(): void {
+    this.isChosen = false;
+    this.showPart();
+  }
+
+  /** The chosen part goes this far from where it was shown, in the scene's axes; `begins` a step of its own. */
+  drag(by: Vector, begins: boolean): void {
+    if (!this.place) return;
+    const { value, axes } = this.place;
+    const local = new THREE.Vector3(by.x, by.y, by.z).applyMatrix4(axes.clone().invert()).add(new THREE.Vector3(value.x, value.y, value.z));
+    this.tellPosition(local.toArray());
+    this.move(begins);
+  }
+
+  private showChosen(): void {
+    this.isChosen = true;
     this.showPart();
   }
 
@@ -108,18 +143,18 @@ export class Editing {
     const material = this.parts.materials.find((one) => kind === "material" && one.name === name);
     let dim = 1;
     let intensity = light?.intensity;
-    let position: Bands | undefined = object ? [0, 0, 0] : light?.position;
-    let turn = object && 0;
+    const edits = editsThatHold(this.steps);
+    const own = object && ownMotion(name, edits);
+    let position: Bands | undefined = own ? [own.move.x, own.move.y, own.move.z] : light?.position;
+    const turn = own?.turn;
     let hidden = false;
     let reflectance = material?.hasTexture ? undefined : material?.reflectance;
     let emission = material?.emission;
     const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
-    for (const { part } of editsThatHold(this.steps)) {
+    for (const { part } of edits) {
       if (part.case === "daylight" && light && !light.position) [dim, intensity] = [1, light.intensity]; // it takes the place of far lights
       if (part.case === "daylight" || part.case !== kind || part.value.name !== name) continue;
       if (part.case !== "material") dim = part.value.dim ?? dim;
-      if (part.case === "object" && part.value.move) position = [part.value.move.x, part.value.move.y, part.value.move.z];
-      if (part.case === "object") turn = part.value.turn ?? turn;
       if (part.case === "object") hidden = part.value.hidden ?? hidden;
       if (part.case === "light" && part.value.intensity) intensity = bands(part.value.intensity);
       if (part.case === "light" && part.value.position) position = [part.value.position.x, part.value.position.y, part.value.position.z];
@@ -154,7 +189,20 @@ export class Editing {
     input("edit-dim").value = String(dim);
     this.tellDim();
     if (colour) input("edit-colour").value = colourOf(colour);
-    if (position) ["edit-x", "edit-y", "edit-z"].forEach((id, n) => (input(id).value = String(Number(position[n].toFixed(3)))));
+    if (position) this.tellPosition(position);
+    this.place = position && this.placeOf(position);
+    this.showPlace(this.isChosen && !hidden && !byId("edit-form").hidden ? this.place : undefined);
+  }
+
+  private placeOf(position: Bands): Place | undefined {
+    const { kind, name } = this.chosen;
+    if (kind === "light") return placeOfLight(position, this.centre);
+    const object = this.parts.objects.find((one) => one.name === name);
+    return object && !object.isRoom ? placeOfObject(object, this.parts, editsThatHold(this.steps), this.up) : undefined;
+  }
+
+  private tellPosition(position: number[]): void {
+    ["edit-x", "edit-y", "edit-z"].forEach((id, n) => (input(id).value = String(Number(position[n].toFixed(3)))));
   }
 
   private tellDim(): void {
@@ -181,11 +229,12 @@ export class Editing {
     return create(EditSchema, { part: { case: "material", value: { name, reflectance } } });
   }
 
-  private move(): void {
+  /** Moves the part to where the fields say. */
+  private move(begins = false): void {
     const [x, y, z] = ["edit-x", "edit-y", "edit-z"].map((id) => input(id).valueAsNumber);
     if (![x, y, z].every(Number.isFinite)) return;
-    if (this.chosen.kind === "object") return this.slide(this.objectEdit({ move: { x, y, z } }));
-    this.slide(create(EditSchema, { part: { case: "light", value: { name: this.chosen.name, position: { x, y, z } } } }));
+    if (this.chosen.kind === "object") return this.slide(this.objectEdit({ move: { x, y, z } }), begins);
+    this.slide(create(EditSchema, { part: { case: "light", value: { name: this.chosen.name, position: { x, y, z } } } }), begins);
   }
 
   private objectEdit(change: { move?: { x: number; y: number; z: number }; turn?: number; hidden?: boolean }): Edit {
@@ -193,9 +242,10 @@ export class Editing {
     return create(EditSchema, { part: { case: "object", value: { name: this.chosen.name, ...change } } });
   }
 
-  /** Sends the newest of the edits of a slide as soon as the one before was answered. */
-  private slide(edit: Edit): void {
-    this.waiting = edit;
+  /** Sends the newest of the edits of a slide as soon as the one before was answered; `begins` another slide. */
+  private slide(edit: Edit, begins = false): void {
+    const continues = !begins && (this.waiting?.continues ?? true);
+    this.waiting = { edit, continues };
     if (!this.isSending) void this.sendWaiting();
   }
 
@@ -203,9 +253,10 @@ export class Editing {
     this.isSending = true;
     try {
       while (this.waiting) {
-        const edits = [this.waiting];
+        const { edit, continues } = this.waiting;
         this.waiting = undefined;
-        await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits, author: this.author, continues: true }));
+        const isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [edit], author: this.author, continues }));
+        if (!isTaken && !this.waiting) this.showPart();
       }
     } finally {
       this.waiting = undefined;

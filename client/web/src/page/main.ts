@@ -8,6 +8,7 @@ import { MissingParts, sendSceneFiles, sendWithoutParts } from "../scene_files";
 import type { Brightness, Counters, FromWorker, ToWorker } from "../messages";
 import { Cameras } from "../view/cameras";
 import { isSolutionFile } from "../solution_file";
+import { Handle } from "../view/handle";
 import { Room } from "../view/room";
 import { Chart } from "./chart";
 import { button, byId, input, listItem, save, select } from "./dom";
@@ -18,6 +19,7 @@ import { Editing } from "./editing";
 import { addressOf, applyView, solveIn, viewIn } from "./link";
 import { takeImages, withdrawWarning } from "./textures";
 import { setPhotometric } from "./units";
+import { upOf } from "./place";
 import { draw, lookOf } from "./viewing";
 
 const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "enfilade"];
@@ -34,7 +36,15 @@ const api = connect(location.origin, () => token);
 const room = new Room(byId<HTMLCanvasElement>("room"));
 const chart = new Chart(byId("chart"));
 let isStale = true;
-const editing = new Editing((step) => attempt(() => edit(step)));
+const handle = new Handle(room, byId("room"), {
+  onHold: (isHeld) => cameras.hold(isHeld),
+  onDrag: (by, begins) => editing.drag(by, begins),
+  onChange: () => (isStale = true),
+});
+const editing = new Editing(
+  (step) => attempt(() => edit(step)),
+  (place) => handle.setPlace(place),
+);
 const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), viewChanged);
 
 let scene: Scene | undefined;
@@ -91,13 +101,15 @@ function note(text: string): void {
   setTimeout(() => byId("state").textContent === text && solve && say(stateText(solve)), NOTE_MS);
 }
 
-/** Runs what a person asked for, and says why it could not be. */
-async function attempt(action: () => Promise<void>): Promise<void> {
+/** Runs what a person asked for, and says why it could not be. Returns whether it could. */
+async function attempt(action: () => Promise<void>): Promise<boolean> {
   try {
     await action();
+    return true;
   } catch (error) {
     if (error instanceof ConnectError && error.code === Code.Unauthenticated) byId("token-label").hidden = false;
     say(reasonOf(error), "bad");
+    return false;
   }
 }
 
@@ -371,8 +383,9 @@ function take(message: FromWorker): void {
       room.camera.aspect = Math.max(0.1, byId("room").clientWidth / byId("room").clientHeight);
       isZUp = message.isZUp;
       setPhotometric(message.isPhotometric);
-      editing.setParts(message.parts);
       room.setUp(isZUp);
+      handle.setScene(upOf(isZUp), message.extent);
+      editing.setParts(message.parts, centre, upOf(isZUp));
       if (!solve || framedScene !== sceneOf(solve.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
       framedScene = solve ? sceneOf(solve.name) : "";
       goToCamera();
@@ -520,13 +533,15 @@ function listenToClicks(): void {
   });
   canvas.addEventListener("keydown", (event) => {
     if (event.key === "Enter") read(0.5, 0.5); // the middle of the picture
-    if (event.key === "Escape") byId("reading").hidden = true;
+    if (event.key !== "Escape") return;
+    byId("reading").hidden = true;
+    editing.release();
   });
 }
 
 function listenToDownloads(): void {
   button("save-png").addEventListener("click", () => {
-    draw(room, brightness);
+    handle.hideWhile(() => draw(room, brightness));
     byId<HTMLCanvasElement>("room").toBlob((picture) => picture && save("room.png", picture));
   });
   button("save-report").addEventListener("click", () => save("report.csv", reportOf(chart.all)));

@@ -11,6 +11,7 @@ export class Cameras {
   private readonly orbit: OrbitControls;
   private readonly keys = new Set<string>();
   private isWalking = false;
+  private isHeld = false;
   private extent = 1;
   private turn: { x: number; y: number } | null = null;
   private framedFrom = new THREE.Vector3();
@@ -69,6 +70,12 @@ export class Cameras {
     this.onMove();
   }
 
+  /** Whether the pointer does something else. */
+  hold(isHeld: boolean): void {
+    this.isHeld = isHeld;
+    this.orbit.enabled = !isHeld && !this.isWalking;
+  }
+
   walk(isWalking: boolean): void {
     this.isWalking = isWalking;
     this.orbit.enabled = !isWalking;
@@ -94,7 +101,7 @@ export class Cameras {
   }
 
   private look(event: PointerEvent): void {
-    if (!this.isWalking || !this.turn) return;
+    if (!this.isWalking || !this.turn || this.isHeld) return;
     const turned = new THREE.Euler().setFromQuaternion(this.camera.quaternion, "YXZ");
     turned.y += TURN_PER_PIXEL * (event.clientX - this.turn.x);
     turned.x = THREE.MathUtils.clamp(turned.x + TURN_PER_PIXEL * (event.clientY - this.turn.y), -1.5, 1.5);

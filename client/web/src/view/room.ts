@@ -92,6 +92,11 @@ export class Room {
     this.scene.updateMatrixWorld();
   }
 
+  /** Draws something besides the surface, in the scene's axes. */
+  add(thing: THREE.Object3D): void {
+    this.scene.add(thing);
+  }
+
   /** A new surface comes. */
   begin(): void {
     this.slots.dispose();

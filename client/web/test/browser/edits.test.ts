@@ -116,6 +116,57 @@ describe("edits on the page", () => {
     await Promise.all([ann.close(), ben.close()]);
   });
 
+  it("drag an object across the floor, or up, and nudge it by keys; the camera stays", async () => {
+    const { name, ann, ben } = await two(await withBlocks());
+    const moves = async () =>
+      (await server.api.solves.getSolve({ name })).edits.map(({ edits }) => {
+        const { part } = edits[0];
+        return part.case === "object" ? part.value.move! : undefined;
+      });
+    const drag = async (from: readonly [number, number], dx: number, dy: number) => {
+      const box = (await ann.locator("#room").boundingBox())!;
+      const at = (part: number) => [box.x + (from[0] + part * dx) * box.width, box.y + (from[1] + part * dy) * box.height] as const;
+      await ann.mouse.move(...at(0));
+      await ann.mouse.down();
+      for (const part of [0.3, 0.7, 1]) await ann.mouse.move(...at(part));
+      await ann.mouse.up();
+    };
+    await click(ann, BLOCK);
+    await expect.poll(() => ann.inputValue("#edit-part")).toBe("object:blocks");
+    await drag(BLOCK, 0.1, 0);
+    await expect.poll(async () => Math.abs(Number(await ann.inputValue("#edit-x")))).toBeGreaterThan(30);
+    const x = Number(await ann.inputValue("#edit-x"));
+    await expect.poll(async () => (await moves()).at(-1)).toMatchObject({ x, y: 0 });
+    await ann.keyboard.down("Shift");
+    await drag([BLOCK[0] + 0.1, BLOCK[1]], 0, -0.1);
+    await ann.keyboard.up("Shift");
+    await expect.poll(async () => (await moves()).at(-1)?.y).toBeGreaterThan(30);
+    const [, lifted] = await moves();
+    expect(lifted).toMatchObject({ x });
+    await ann.focus("#room");
+    await ann.keyboard.press("Alt+ArrowLeft");
+    await expect.poll(async () => (await moves()).length).toBe(3);
+    const [, , nudged] = await moves();
+    expect(Math.abs(nudged!.x - x)).toBeCloseTo(0.02 * 559, 0); // of the extent
+    expect(Math.sign(nudged!.x - x)).toBe(-Math.sign(x));
+    expect(nudged).toMatchObject({ y: lifted!.y, z: lifted!.z });
+    expect(new URL(ann.url()).hash.slice(1)).toBe(name); // no camera in it
+    await expect.poll(() => ben.textContent("#edit-news")).toBe("Ann edited blocks, moved");
+    for (let step = 0; step < 3; ++step) await ben.click("#undo");
+    await expect.poll(async () => Number(await ann.inputValue("#edit-x"))).toBe(0);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
+  it("leave a part where it was, where the server refuses its place", async () => {
+    const { ann, ben } = await two(await withBlocks());
+    await click(ann, BLOCK);
+    await expect.poll(() => ann.inputValue("#edit-part")).toBe("object:blocks");
+    await ann.fill("#edit-x", "1e6");
+    await expect.poll(() => ann.textContent("#state")).toContain("edits[0]");
+    await expect.poll(() => ann.inputValue("#edit-x")).toBe("0");
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
   it("let a day pass by a slider, which is one step, and darken the sky", async () => {
     const { name, ann, ben } = await two();
     await ben.uncheck("#automatic");

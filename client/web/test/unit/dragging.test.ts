@@ -1,0 +1,71 @@
+import * as THREE from "three";
+import { describe, expect, it } from "vitest";
+import { create } from "@bufbuild/protobuf";
+import { EditSchema } from "../../src/gen/alvor/v1/solve_service_pb";
+import type { Parts } from "../../src/messages";
+import { placeOfLight, placeOfObject } from "../../src/page/place";
+import { axesOfView, draggedTo, grabbedBy } from "../../src/view/dragging";
+
+const UP = new THREE.Vector3(0, 0, 1);
+const v = (x: number, y: number, z: number) => new THREE.Vector3(x, y, z);
+const near = (a: THREE.Vector3, b: THREE.Vector3) => expect(a.distanceTo(b)).toBeLessThan(1e-9);
+const towards = (from: THREE.Vector3, to: THREE.Vector3) => ({ origin: from, direction: to.clone().sub(from).normalize() });
+
+// A table of 2 by 1 m, and a lamp on one end of it.
+const PARTS: Parts = {
+  lights: [],
+  materials: [],
+  objects: [
+    { name: "table", shines: false, isRoom: false, low: [0, 0, 0], high: [2, 1, 1] },
+    { name: "lamp", parent: "table", shines: true, isRoom: false, low: [1.6, 0.4, 0.8], high: [1.8, 0.6, 1] },
+  ],
+};
+const objectEdit = (name: string, change: { move?: { x: number; y: number; z: number }; turn?: number }) =>
+  create(EditSchema, { part: { case: "object", value: { name, ...change } } });
+const place = (name: string, edits: ReturnType<typeof objectEdit>[]) =>
+  placeOfObject(PARTS.objects.find((one) => one.name === name)!, PARTS, edits, UP);
+
+describe("the place of a part", () => {
+  it("is where edits of it, and of what it hangs from, bring it", () => {
+    const edits = [objectEdit("table", { turn: 90 }), objectEdit("lamp", { move: { x: -1, y: 0, z: 0 } }), objectEdit("table", { move: { x: 0, y: 5, z: 0 } })];
+    const lamp = place("lamp", edits);
+    // The lamp's middle (1.7, 0.5) goes to (0.7, 0.5), turns about (1, 0.5) to (1, 0.2), and goes 5 m with the table.
+    near(lamp.box.getCenter(v(0, 0, 0)).applyMatrix4(lamp.motion), v(1, 5.2, 0.9));
+    expect(lamp.value).toMatchObject({ x: -1, y: 0, z: 0 });
+    near(v(1, 0, 0).applyMatrix4(lamp.axes), v(0, 1, 0));
+    near(v(1, 0, 0).applyMatrix4(place("table", edits).axes), v(1, 0, 0));
+  });
+  it("of a light is its position", () => {
+    const { box, value } = placeOfLight([3, 4, 5], [1, 1, 1]);
+    near(box.getCenter(v(0, 0, 0)), v(2, 3, 4));
+    expect(value).toEqual({ x: 3, y: 4, z: 5 });
+  });
+});
+
+describe("a part that is dragged", () => {
+  it("is grabbed where the pointer meets its box, as it is turned", () => {
+    const turned = place("table", [objectEdit("table", { turn: 90 })]);
+    near(grabbedBy(towards(v(1, 1.4, 9), v(1, 1.4, 0)), turned.box, turned.motion)!, v(1, 1.4, 1));
+    expect(grabbedBy(towards(v(1.9, 0.5, 9), v(1.9, 0.5, 0)), turned.box, turned.motion)).toBeUndefined();
+    const within = towards(v(1, 0.5, 0.5), v(1, 0.5, 9));
+    expect(grabbedBy(within, turned.box, turned.motion)).toBeUndefined();
+  });
+  it("stays under the pointer, at its height", () => {
+    const eye = v(0, -10, 5);
+    near(draggedTo(towards(eye, v(3, 2, 1)), v(1, 1, 1), UP, false, 100)!, v(2, 1, 0));
+  });
+  it("goes up and down before the eye where that is asked", () => {
+    const eye = v(0, -10, 5);
+    near(draggedTo(towards(eye, v(1, 1, 4)), v(1, 1, 1), UP, true, 100)!, v(0, 0, 3));
+  });
+  it("goes nowhere where the pointer is above the horizon or very far away", () => {
+    const eye = v(0, -10, 5);
+    expect(draggedTo(towards(eye, v(0, 0, 6)), v(1, 1, 1), UP, false, 100)).toBeUndefined();
+    expect(draggedTo(towards(eye, v(0, 500, 1)), v(1, 1, 1), UP, false, 100)).toBeUndefined();
+  });
+  it("goes away from the eye and to the right by keys", () => {
+    const { away, right } = axesOfView(v(-0.9, 0.3, -0.2), UP);
+    near(away, v(-1, 0, 0));
+    near(right, v(0, 1, 0));
+  });
+});
