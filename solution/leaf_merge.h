@@ -36,8 +36,8 @@ inline bool find_places(std::span<const PatchId> held, std::span<const LeafValue
 
 /// Merges `changed` into the leaves `held`. In ascending order of patches, run() calls keep(i) for each held leaf that stays
 /// whole, set(holder, j) for changed[j], and inherit(holder, patch) for each sibling that a changed leaf implies. `holder` is the
-/// index of the held leaf that was split or replaced, or `no_leaf` where no leaf of that root was held. Requires: both lists
-/// ascend, no patch overlaps another of its own list, and no changed patch contains a smaller held one.
+/// index of the held leaf that was split or replaced, the first of those that became one, or `no_leaf` where no leaf of that root
+/// was held. Requires: both lists ascend, no patch overlaps another of its own list, and those of each root in `held` tile it.
 template <class Keep, class Set, class Inherit>
 class LeafMerge {
  public:
@@ -47,9 +47,15 @@ class LeafMerge {
   void run() {
     std::size_t i = 0;
     for (std::size_t j = 0; j < changed_.size();) {
-      for (; i < held_.size() && held_[i].range_max() < changed_[j].patch; ++i) keep_(i);
-      const bool is_held = i < held_.size() && held_[i].contains(changed_[j].patch);
-      const PatchId whole = is_held ? held_[i] : PatchId::root(changed_[j].patch.root_face());
+      const PatchId first = changed_[j].patch;
+      for (; i < held_.size() && held_[i].range_max() < first.range_min(); ++i) keep_(i);
+      const bool is_held = i < held_.size() && held_[i].contains(first);
+      if (!is_held && i < held_.size() && first.contains(held_[i])) {
+        set_(i, j++);
+        while (i < held_.size() && held_[i] <= first.range_max()) ++i;
+        continue;
+      }
+      const PatchId whole = is_held ? held_[i] : PatchId::root(first.root_face());
       const std::size_t end = end_within(whole, j, changed_.size());
       fill(whole, is_held ? i : no_leaf, j, end);
       i += is_held;

@@ -32,12 +32,8 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::sp
     ++head_;
     make_room_for(changed);
     std::vector<std::size_t> places;
-    std::vector<LeafValue> finer;
-    std::vector<float> their_errors;
     if (!find_places(leaves_.patch, changed, places)) {
-      finer = on_held_leaves(changed, errors, their_errors);
-      changed = finer;
-      if (!find_places(leaves_.patch, changed, places)) split_for(changed);
+      retile_for(changed);
       find_places(leaves_.patch, changed, places);
     }
     const double mean = leaves_.patch.empty() ? 0 : sum_ / static_cast<double>(leaves_.patch.size());
@@ -57,29 +53,9 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::sp
   wake_listeners();
 }
 
-/// Returns `changed` with the leaves that the log holds in place of each patch that contains them. Makes `errors` those of the
-/// result, in `room`.
-std::vector<LeafValue> SolutionLog::on_held_leaves(std::span<const LeafValue> changed, std::span<const float>& errors,
-                                                   std::vector<float>& room) const {
-  std::vector<LeafValue> values;
-  values.reserve(changed.size());
-  auto held = leaves_.patch.begin();
-  for (std::size_t n = 0; n < changed.size(); ++n) {
-    const PatchId patch = changed[n].patch;
-    held = std::lower_bound(held, leaves_.patch.end(), patch.range_min());
-    const bool is_whole = held == leaves_.patch.end() || *held > patch.range_max() || *held == patch;
-    if (is_whole) values.push_back(changed[n]);
-    for (; !is_whole && held != leaves_.patch.end() && *held <= patch.range_max(); ++held)
-      values.push_back({*held, changed[n].irradiance});
-    if (!errors.empty()) room.resize(values.size(), errors[n]);
-  }
-  errors = room;
-  return values;
-}
-
-/// Splits leaves so that each patch of `changed` is a leaf. New leaves count as changed in this revision, whatever their values;
-/// implied siblings keep the revision of the leaf they inherit from.
-void SolutionLog::split_for(std::span<const LeafValue> changed) {
+/// Splits and merges leaves so that each patch of `changed` is a leaf. New leaves count as changed in this revision, whatever their
+/// values; implied siblings keep the revision of the leaf they inherit from.
+void SolutionLog::retile_for(std::span<const LeafValue> changed) {
   Leaves next;
   const auto append = [&](PatchId patch, std::size_t from, bool is_new) {
     const bool known = from != no_leaf;

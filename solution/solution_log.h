@@ -82,7 +82,7 @@ class SolutionLog {
 
   /// Makes the next revision. A value for a patch deeper than the log holds splits the ancestor; siblings that this implies, and
   /// that are not in `changed`, inherit the ancestor's value. A value for a patch within which the log holds leaves, as a solve
-  /// of an edited scene that begins anew may publish, goes to each of these. Fills in `step.revision` and `step.step`. Requires:
+  /// of an edited scene that begins anew may publish, makes them one leaf. Fills in `step.revision` and `step.step`. Requires:
   /// the log is open; `changed` ascends; no patch of it contains another; irradiance is finite and not negative. `errors` are the
   /// told errors of the patches in `changed` (see ErrorCoding), or nothing if they were not estimated anew.
   void publish(std::span<const LeafValue> changed, Step step, std::span<const float> errors = {});
@@ -131,9 +131,7 @@ class SolutionLog {
   void load_unmarked(PlainReader& saved);
   void load(PlainReader& saved, std::uint32_t version);
   void load_errors(PlainReader& saved);
-  void split_for(std::span<const LeafValue> changed);
-  std::vector<LeafValue> on_held_leaves(std::span<const LeafValue> changed, std::span<const float>& errors,
-                                        std::vector<float>& room) const;
+  void retile_for(std::span<const LeafValue> changed);
   void make_room_for(std::span<const LeafValue> changed);
   /// Returns whether `irradiance` differs from the held value, or the leaf is new in this revision.
   bool has_changed(std::size_t leaf, const RgbF& irradiance) const {

@@ -7,11 +7,25 @@
 
 namespace alvor {
 
+namespace {
+
+std::optional<std::string> fault_in_patches(std::span<const LeafValue> values) {
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const PatchId patch = values[n].patch;
+    if (!patch.is_valid()) return "patch id " + std::to_string(patch.bits()) + " is not one";
+    if (n > 0 && patch.range_min() <= values[n - 1].patch.range_max())
+      return "patch " + std::to_string(patch.bits()) + " overlaps the one before it";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::string> SolutionMirror::apply(const Delta& delta) {
   if (auto fault = fault_in(delta)) return fault;
   std::vector<std::size_t> places;
   if (!find_places(patches_, delta.values, places)) {
-    split_for(delta.values);
+    retile_for(delta.values);
     find_places(patches_, delta.values, places);
   }
   for (std::size_t n = 0; n < places.size(); ++n) {
@@ -48,22 +62,7 @@ std::optional<std::string> SolutionMirror::fault_in(const Delta& delta) const {
   return fault_in_patches(delta.values);
 }
 
-std::optional<std::string> SolutionMirror::fault_in_patches(const std::vector<LeafValue>& values) const {
-  std::size_t i = 0;
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    const PatchId patch = values[n].patch;
-    const auto name = [&] { return "patch " + std::to_string(patch.bits()); };
-    if (!patch.is_valid()) return "patch id " + std::to_string(patch.bits()) + " is not one";
-    if (n > 0 && patch.range_min() <= values[n - 1].patch.range_max()) return name() + " overlaps the one before it";
-    i = static_cast<std::size_t>(
-        std::lower_bound(patches_.begin() + static_cast<std::ptrdiff_t>(i), patches_.end(), patch.range_min()) -
-        patches_.begin());
-    if (i < patches_.size() && patches_[i] != patch && patch.contains(patches_[i])) return name() + " is split further here";
-  }
-  return std::nullopt;
-}
-
-void SolutionMirror::split_for(const std::vector<LeafValue>& values) {
+void SolutionMirror::retile_for(const std::vector<LeafValue>& values) {
   std::vector<PatchId> patches;
   std::vector<RgbF> irradiance;
   std::vector<float> errors;

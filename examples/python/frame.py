@@ -133,13 +133,22 @@ class Mirror:
       raise FrameError(f"the frame begins at {frame.from_revision}, the mirror is at {self.revision}")
     for patch, irradiance in decode_leaves(frame.leaves):
       self._split_down_to(patch)
+      self._merge_within(patch)
       self.leaves[patch] = irradiance
     self.revision = frame.to_revision
     if frame.HasField("state_hash") and frame.state_hash != hash_of(self.leaves):
       raise FrameError("the mirror is not what the server has")
 
+  def _merge_within(self, patch):
+    if patch not in self.inner:
+      return
+    self.inner.remove(patch)
+    for k in range(4):
+      self._merge_within(child_of(patch, k))
+      self.leaves.pop(child_of(patch, k), None)
+
   def _split_down_to(self, patch):
-    if patch in self.leaves:
+    if patch in self.leaves or patch in self.inner:
       return
     path = patch & 0xFFFFFFFF
     ancestors = []

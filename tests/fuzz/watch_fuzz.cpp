@@ -50,7 +50,8 @@ void run(fuzz::Input input) {
   plan.detail = choice % 2 ? Detail::display : Detail::exact;
   plan.start.errors.are_wanted = choice & 2;
   Watch watch(std::make_shared<FrameSource>(solve, "epoch", 1 + input.byte() % 20), plan, client);
-  GrowingLeaves leaves(4, input.byte());
+  const std::uint8_t seed = input.byte();
+  GrowingLeaves leaves(4, seed, seed % 2 == 0);
   Watch::Clock::time_point now{};
   std::uint64_t acknowledged = 0;
   for (int step = 0; step < 200 && !input.empty(); ++step) {

@@ -1,8 +1,11 @@
 #include "tests/server/growing_leaves.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace alvor {
 
-GrowingLeaves::GrowingLeaves(std::uint32_t roots, unsigned seed) : random_(seed) {
+GrowingLeaves::GrowingLeaves(std::uint32_t roots, unsigned seed, bool merges) : random_(seed), merges_(merges) {
   for (std::uint32_t root = 0; root < roots; ++root) leaves_.insert(PatchId::root(root));
 }
 
@@ -26,8 +29,20 @@ std::vector<LeafValue> GrowingLeaves::next() {
       changed.push_back(value_of(leaf));
     }
   }
+  if (merges_ && begun_ && random_() % 2 == 0) merge(changed);
   begun_ = true;
   return changed;
+}
+
+/// Makes one leaf of all within a patch some levels above one of them.
+void GrowingLeaves::merge(std::vector<LeafValue>& changed) {
+  const PatchId leaf = *std::next(leaves_.begin(), static_cast<std::ptrdiff_t>(random_() % leaves_.size()));
+  const PatchId whole = leaf.ancestor(std::max(0, leaf.level() - 1 - static_cast<int>(random_() % 3)));
+  const auto is_within = [&](const auto& of) { return whole.contains(of); };
+  std::erase_if(leaves_, is_within);
+  std::erase_if(changed, [&](const LeafValue& value) { return is_within(value.patch); });
+  leaves_.insert(whole);
+  changed.insert(std::ranges::upper_bound(changed, whole, {}, &LeafValue::patch), value_of(whole));
 }
 
 }  // namespace alvor

@@ -8,18 +8,21 @@
 
 namespace alvor {
 
-/// Invents leaf values that change and split at random, as a solver might publish them. The same seed gives the same values.
+/// Invents leaf values that change and split at random, as a solver might publish them; if `merges`, leaves also become one, as after
+/// edits. The same seed gives the same values.
 class GrowingLeaves {
  public:
-  GrowingLeaves(std::uint32_t roots, unsigned seed);
+  GrowingLeaves(std::uint32_t roots, unsigned seed, bool merges = false);
   /// Returns all roots the first time; later about a quarter of the leaves, some of them split.
   std::vector<LeafValue> next();
 
  private:
   LeafValue value_of(PatchId leaf);
+  void merge(std::vector<LeafValue>& changed);
 
   std::mt19937 random_;
   std::set<PatchId> leaves_;
+  bool merges_;
   bool begun_ = false;
 };
 

@@ -28,6 +28,16 @@ TEST(SolutionMirror, DeeperValueImpliesSplitsAndSiblingsInherit) {
   for (const LeafValue& leaf : mirror.leaves()) EXPECT_EQ(leaf.irradiance.r, leaf.patch == root.child(2).child(0) ? 5 : 1);
 }
 
+TEST(SolutionMirror, ACoarserValueMakesTheLeavesWithinOne) {
+  SolutionMirror mirror;
+  ASSERT_FALSE(mirror.apply(delta(0, 1, {{root.child(1).child(0), {1, 1, 1}}, {root.child(2).child(3), {2, 2, 2}}})));
+  ASSERT_FALSE(mirror.apply(delta(1, 2, {{root.child(0).child(0), {3, 3, 3}}, {root.child(1), {5, 5, 5}}})));
+  EXPECT_EQ(mirror.leaf_count(), 10u) << "four, one, four, one";
+  for (const LeafValue& leaf : mirror.leaves()) EXPECT_EQ(leaf.patch == root.child(1), leaf.irradiance.r == 5);
+  ASSERT_FALSE(mirror.apply(delta(2, 3, {{root, {7, 7, 7}}})));
+  EXPECT_EQ(mirror.leaves(), (std::vector<LeafValue>{{root, {7, 7, 7}}}));
+}
+
 TEST(SolutionMirror, RefusesAGapAndStaysAsItWas) {
   SolutionMirror mirror;
   ASSERT_FALSE(mirror.apply(delta(0, 3, {{root, {1, 2, 3}}})));
@@ -43,18 +53,18 @@ TEST(SolutionMirror, RefusesBadAndOverlappingPatchesWhole) {
   ASSERT_FALSE(mirror.apply(delta(0, 1, {{root.child(1), {1, 1, 1}}})));
   const auto before = mirror.leaves();
   EXPECT_TRUE(mirror.apply(delta(1, 2, {{root.child(2), {2, 2, 2}}, {PatchId::from_bits(8), {}}})));
-  EXPECT_TRUE(mirror.apply(delta(1, 2, {{root, {2, 2, 2}}}))) << "coarser than held";
   EXPECT_TRUE(mirror.apply(delta(1, 2, {{root.child(1).child(0), {}}, {root.child(1), {}}}))) << "one inside the other";
   EXPECT_EQ(mirror.leaves(), before);
 }
 
-/// Publishes random splits and changes of leaves.
+/// Publishes random splits, merges and changes of leaves.
 class RandomWriter {
  public:
   explicit RandomWriter(unsigned seed) : random_(seed) { leaves_ = {PatchId::root(0), PatchId::root(1), PatchId::root(2)}; }
   void publish(SolutionLog& log) {
     std::vector<LeafValue> changed;
     if (random_() % 2) split(changed);
+    else if (random_() % 4 == 0) merge(changed);
     for (unsigned n = random_() % 4; n > 0; --n) changed.push_back(fresh(leaves_[random_() % leaves_.size()]));
     std::ranges::sort(changed, {}, &LeafValue::patch);
     const auto repeated = std::ranges::unique(changed, {}, &LeafValue::patch);
@@ -75,6 +85,15 @@ class RandomWriter {
     leaves_.erase(leaves_.begin() + static_cast<std::ptrdiff_t>(n));
     for (int k = 0; k < 4; ++k) changed.push_back(fresh(parent.child(k)));
     for (int k = 0; k < 4; ++k) leaves_.push_back(parent.child(k));
+  }
+  void merge(std::vector<LeafValue>& changed) {
+    const PatchId leaf = leaves_[random_() % leaves_.size()];
+    PatchId whole = leaf;
+    for (int levels = 1 + static_cast<int>(random_() % 2); levels > 0 && whole.level() > 0; --levels) whole = whole.parent();
+    if (whole == leaf) return;
+    std::erase_if(leaves_, [&](PatchId patch) { return whole.contains(patch); });
+    leaves_.push_back(whole);
+    changed.push_back(fresh(whole));
   }
   LeafValue fresh(PatchId patch) { return {patch, {float(random_()), float(random_()), float(random_())}}; }
   std::mt19937 random_;

@@ -7,17 +7,21 @@ import { StateHash } from "./state_hash";
 /** Side of a root patch on the finest grid. */
 export const GRID = 1 << MAX_LEVEL;
 
+const UNUSED = -1;
+
 /** Told of what changes, in order. */
 export interface MirrorListener {
   /** A leaf became four; `first` is the first of them. */
   onSplit(node: number, first: number): void;
+  /** `leaves`, all under a node, become one, the node; then the nodes under it are used for others. */
+  onMerge(node: number, leaves: number[]): void;
   onValue(node: number): void;
   onError?(node: number): void;
 }
 
 /** Roots come first, in the order of the mesh; the four children of a node are neighbours. */
 export class Mirror {
-  /** Of each node: its first child, or 0 for a leaf. */
+  /** Of each node: its first child, 0 for a leaf, or UNUSED. */
   firstChild: Int32Array;
   root: Uint32Array;
   /** Irradiance of leaves, W/m2, three of each node. */
@@ -31,6 +35,8 @@ export class Mirror {
   private path: Uint32Array;
   private known: Uint8Array;
   private hash = new StateHash();
+  /** The first of each four nodes that are not used. */
+  private readonly unused: number[] = [];
 
   constructor(
     readonly rootCount: number,
@@ -67,7 +73,8 @@ export class Mirror {
 
   /** Whole or, where it throws BadFrame, not at all. */
   apply(leaves: Leaves): void {
-    for (let n = 0; n < leaves.count; ++n) this.check(leaves.face[n], leaves.path[n]);
+    for (let n = 0; n < leaves.count; ++n)
+      if (leaves.face[n] >= this.rootCount) throw new BadFrame(`root patch ${leaves.face[n]} is not in the mesh`);
     for (let n = 0; n < leaves.count; ++n) {
       const node = this.grow(leaves.face[n], leaves.path[n]);
       this.hash.remove(this.root[node], this.path[node], this.rgb, 3 * node);
@@ -145,15 +152,7 @@ export class Mirror {
     }
   }
 
-  private check(face: number, path: number): void {
-    if (face >= this.rootCount) throw new BadFrame(`root patch ${face} is not in the mesh`);
-    let node = face;
-    const level = levelOf(path);
-    for (let l = 1; l <= level && this.firstChild[node] !== 0; ++l) node = this.firstChild[node] + childIndex(path, l);
-    if (this.firstChild[node] !== 0) throw new BadFrame("a patch is split further here");
-  }
-
-  /** The node of this id, splitting down to it; siblings inherit. */
+  /** The leaf of this id, splitting down to it, siblings inherit, or making those within it one. */
   private grow(face: number, path: number): number {
     const level = levelOf(path);
     if (!this.known[face]) {
@@ -166,19 +165,42 @@ export class Mirror {
       if (this.firstChild[node] === 0) this.split(node, l);
       node = this.firstChild[node] + childIndex(path, l);
     }
+    if (this.firstChild[node] !== 0) this.merge(node);
     return node;
   }
 
+  private merge(node: number): void {
+    const leaves = [...this.leavesUnder(node)];
+    for (const leaf of leaves) this.hash.remove(this.root[leaf], this.path[leaf], this.rgb, 3 * leaf);
+    this.rgb.copyWithin(3 * node, 3 * leaves[0], 3 * leaves[0] + 3);
+    this.errors[node] = this.errors[leaves[0]];
+    this.hash.add(this.root[node], this.path[node], this.rgb, 3 * node);
+    this.leafCount -= leaves.length - 1;
+    this.listener?.onMerge(node, leaves);
+    this.release(node);
+  }
+
+  /** Makes a node a leaf. */
+  private release(node: number): void {
+    const first = this.firstChild[node];
+    if (first === 0) return;
+    for (let k = 0; k < 4; ++k) {
+      this.release(first + k);
+      this.firstChild[first + k] = UNUSED;
+    }
+    this.unused.push(first);
+    this.firstChild[node] = 0;
+  }
+
   private split(node: number, childLevel: number): void {
-    const first = this.nodeCount;
-    this.reserve(first + 4);
-    this.nodeCount += 4;
+    const first = this.unused.pop() ?? this.newNodes();
     this.leafCount += 3;
     this.firstChild[node] = first;
     const half = 4 ** (MAX_LEVEL - childLevel);
     this.hash.remove(this.root[node], this.path[node], this.rgb, 3 * node);
     for (let k = 0; k < 4; ++k) {
       const child = first + k;
+      this.firstChild[child] = 0;
       this.root[child] = this.root[node];
       this.path[child] = this.path[node] - 4 * half + (2 * k + 1) * half;
       this.rgb.copyWithin(3 * child, 3 * node, 3 * node + 3);
@@ -186,6 +208,13 @@ export class Mirror {
       this.hash.add(this.root[child], this.path[child], this.rgb, 3 * child);
     }
     this.listener?.onSplit(node, first);
+  }
+
+  /** The first of four. */
+  private newNodes(): number {
+    this.reserve(this.nodeCount + 4);
+    this.nodeCount += 4;
+    return this.nodeCount - 4;
   }
 
   private reserve(count: number): void {

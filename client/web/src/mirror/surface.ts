@@ -44,7 +44,8 @@ const ERRORS = 8;
 
 export class Surface implements MirrorListener {
   private slotCount = 0;
-  private nodeOfSlot = new Int32Array(1024);
+  private nodeOfSlot = new Int32Array(1024); // -1 where a slot is not used
+  private readonly unusedSlots: number[] = [];
   private slotOfNode = new Int32Array(1024).fill(-1);
   // Of each node: corner 0 on the root's grid, and its side; negative for a triangle that is turned by half a circle.
   private nodeI = new Int32Array(1024);
@@ -91,16 +92,35 @@ export class Surface implements MirrorListener {
     this.setSlot(slot, first);
   }
 
+  onMerge(node: number, leaves: number[]): void {
+    for (const leaf of leaves) {
+      const slot = this.slotOfNode[leaf];
+      this.unlink(slot);
+      this.slotOfNode[leaf] = -1;
+      this.nodeOfSlot[slot] = -1;
+      this.unusedSlots.push(slot);
+      this.dirtySlots.add(slot, POSITIONS);
+    }
+    this.newSlot(node);
+  }
+
   /** The materials of these roots are other ones. */
   onMaterials(roots: Set<number>): void {
-    for (let slot = 0; slot < this.slotCount; ++slot)
-      if (roots.has(this.mirror.root[this.nodeOfSlot[slot]])) this.dirtySlots.add(slot, VALUES);
+    this.addSlotsOf(roots, VALUES);
   }
 
   /** These roots lie elsewhere, or were hidden or brought back. */
   onMoved(roots: Set<number>): void {
+    this.addSlotsOf(roots, POSITIONS);
+  }
+
+  private addSlotsOf(roots: Set<number>, what: number): void {
     for (let slot = 0; roots.size > 0 && slot < this.slotCount; ++slot)
-      if (roots.has(this.mirror.root[this.nodeOfSlot[slot]])) this.dirtySlots.add(slot, POSITIONS);
+      if (this.isUsed(slot) && roots.has(this.mirror.root[this.nodeOfSlot[slot]])) this.dirtySlots.add(slot, what);
+  }
+
+  private isUsed(slot: number): boolean {
+    return this.nodeOfSlot[slot] >= 0;
   }
 
   /** The transmittances of materials are other ones. */
@@ -130,7 +150,7 @@ export class Surface implements MirrorListener {
         : undefined,
       errors: this.mirror.hasErrors
         ? collect(those(ERRORS), SLOT_VERTICES, Float32Array, (slot, out, at) =>
-            out.fill(this.mirror.errors[this.nodeOfSlot[slot]], at, at + SLOT_VERTICES),
+            out.fill(this.isUsed(slot) ? this.mirror.errors[this.nodeOfSlot[slot]] : 0, at, at + SLOT_VERTICES),
           )
         : undefined,
       triangles: collect(moved, SLOT_INDICES, Uint32Array, (slot, out, at) => this.writeTriangles(slot, out, at)),
@@ -142,6 +162,7 @@ export class Surface implements MirrorListener {
   /** Where a leaf is new, light comes through to it; where its light changed, to the leaves behind it. */
   private markTransmitted(): void {
     for (const slot of [...this.dirtySlots.list]) {
+      if (!this.isUsed(slot)) continue;
       const node = this.nodeOfSlot[slot];
       const other = this.mesh.otherSideOf(this.mirror.root[node]);
       if (other < 0) continue;
@@ -167,7 +188,7 @@ export class Surface implements MirrorListener {
   }
 
   private newSlot(node: number): void {
-    const slot = this.slotCount++;
+    const slot = this.unusedSlots.pop() ?? this.slotCount++;
     if (slot >= this.nodeOfSlot.length) this.nodeOfSlot = grown(this.nodeOfSlot, Int32Array, 2 * slot);
     this.setSlot(slot, node);
   }
@@ -268,7 +289,10 @@ export class Surface implements MirrorListener {
     this.pointValue[3 * point + 2] = scale * b;
   }
 
+  // Unused slots keep zeros, and have triangles without area.
+
   private writePositions(slot: number, out: Float32Array, at: number): void {
+    if (!this.isUsed(slot)) return;
     const node = this.nodeOfSlot[slot];
     const root = this.mirror.root[node];
     const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
@@ -282,6 +306,7 @@ export class Surface implements MirrorListener {
   /** Returns `count` numbers of each vertex of `slots`, which `write` mixes from those of the root's corners. */
   private collectMixed(slots: Int32Array, count: number, write: WriteMixed): Change {
     return collect(slots, count * SLOT_VERTICES, Float32Array, (slot, out, at) => {
+      if (!this.isUsed(slot)) return;
       const node = this.nodeOfSlot[slot];
       const root = this.mirror.root[node];
       const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
@@ -294,6 +319,7 @@ export class Surface implements MirrorListener {
   }
 
   private writeValues(slot: number, out: Float32Array, at: number): void {
+    if (!this.isUsed(slot)) return;
     const node = this.nodeOfSlot[slot];
     const material = this.mesh.material[this.mirror.root[node]];
     const { pointOf } = this.smooth;
@@ -310,6 +336,7 @@ export class Surface implements MirrorListener {
 
   /** Leaves of roots that are not translucent keep their zeros. */
   private writeTransmitted(slot: number, out: Float32Array, at: number): void {
+    if (!this.isUsed(slot)) return;
     const node = this.nodeOfSlot[slot];
     const root = this.mirror.root[node];
     const other = this.mesh.otherSideOf(root);
@@ -349,9 +376,10 @@ export class Surface implements MirrorListener {
   }
 
   private writeTriangles(slot: number, out: Uint32Array, at: number): void {
-    const corners = this.isQuad(this.nodeOfSlot[slot]) ? 4 : 3;
     const centre = SLOT_VERTICES * slot;
     out.fill(centre, at, at + SLOT_INDICES);
+    if (!this.isUsed(slot)) return;
+    const corners = this.isQuad(this.nodeOfSlot[slot]) ? 4 : 3;
     if (this.mesh.isHidden(this.mirror.root[this.nodeOfSlot[slot]])) return;
     for (let k = 0; k < corners; ++k, at += 6) {
       const next = centre + 1 + ((k + 1) % corners);

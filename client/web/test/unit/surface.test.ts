@@ -2,8 +2,8 @@ import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
-import type { Leaves } from "../../src/mirror/leaves";
-import { Mirror } from "../../src/mirror/mirror";
+import { levelOf, type Leaves } from "../../src/mirror/leaves";
+import { childIndex, Mirror } from "../../src/mirror/mirror";
 import { SLOT_INDICES, SLOT_VERTICES, Surface, type SurfaceChange } from "../../src/mirror/surface";
 
 const across = (root: number, edge: number, smooth: boolean) => BigInt(1 + 8 * root + 2 * edge + Number(smooth));
@@ -72,6 +72,13 @@ class Drawn {
       }
     }
     return [...sides].filter(([, count]) => count === 1).map(([side]) => side);
+  }
+
+  /** The triangles that have an area: places and values of their corners. */
+  seen(): string[] {
+    const corner = (v: number) => [...this.positions.subarray(3 * v, 3 * v + 3), this.values[4 * v].toPrecision(5)].join();
+    const all = Array.from({ length: this.triangles.length / 3 }, (_, n) => [...this.triangles.subarray(3 * n, 3 * n + 3)]);
+    return all.filter(([a, b, c]) => new Set([a, b, c]).size === 3).map((three) => three.map(corner).join(" ")).sort();
   }
 
   /** Values of the drawn vertices at a place. */
@@ -151,5 +158,38 @@ describe("the surface", () => {
     mirror.apply(leaves([[0, [], 0], [1, [], 3], [2, [], 3], [3, [], 9]]));
     picture.take(surface.flush());
     expect(picture.at(1, 0, 0, base.centre)).toEqual(new Set([3]));
+  });
+
+  it("is after splits and merges what it is when made of the leaves that are left", () => {
+    let random = 7;
+    const dice = (sides: number) => (random = (random * 48271) % 2147483647) % sides; // Lehmer's
+    const { surface, mirror, picture } = drawn(mesh());
+    mirror.apply(leaves([0, 1, 2, 3].map((root) => [root, [], 1 + root])));
+    for (let round = 0; round < 200; ++round) {
+      const there = [...mirror.leaves()];
+      const { face, path: whole } = there[dice(there.length)];
+      const level = levelOf(whole);
+      const children = Array.from({ length: level }, (_, n) => childIndex(whole, n + 1));
+      const deeper = [...children, dice(4)];
+      const place = round % 6 === 0 ? children.slice(0, Math.max(0, level - 1 - dice(2))) : deeper.slice(0, 5);
+      mirror.apply(leaves([[face, place, 1 + dice(100)]]));
+      if (dice(3) === 0) picture.take(surface.flush());
+    }
+    picture.take(surface.flush());
+    const fresh = drawn(mesh());
+    const left = [...mirror.leaves()];
+    fresh.mirror.apply({
+      count: left.length,
+      face: Uint32Array.from(left, ({ face }) => face),
+      path: Uint32Array.from(left, ({ path }) => path),
+      rgb: Float32Array.from(left.flatMap(({ rgb }) => rgb)),
+    });
+    fresh.picture.take(fresh.surface.flush());
+    expect(left.length).toBeGreaterThan(20);
+    expect(mirror.leafCount).toBe(left.length);
+    expect(mirror.stateHash).toBe(fresh.mirror.stateHash);
+    expect(picture.seen()).toEqual(fresh.picture.seen());
+    const most = 4 * 200; // without merges; nodes that became unused are used again
+    expect(mirror.nodeCount).toBeLessThan(most);
   });
 });

@@ -32,7 +32,7 @@ function bytesOf(mirror: Mirror): Buffer {
 }
 
 describe("the mirror", () => {
-  it.each(["display", "exact", "deep", "one_page", "uneven", "errors"])("holds what the C++ mirror holds after the frames of %s", (name) => {
+  it.each(["display", "exact", "deep", "one_page", "uneven", "errors", "merges"])("holds what the C++ mirror holds after the frames of %s", (name) => {
     const mirror = new Mirror(2000);
     const frames = framesOf(name);
     expect(frames.length).toBeGreaterThan(0);
