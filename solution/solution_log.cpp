@@ -53,8 +53,8 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::sp
   wake_listeners();
 }
 
-/// Splits and merges leaves so that each patch of `changed` is a leaf. New leaves count as changed in this revision, whatever their
-/// values; implied siblings keep the revision of the leaf they inherit from.
+/// Splits and merges leaves so that each patch of `changed` is a leaf. New leaves count as changed in this revision, whatever
+/// their values; implied siblings keep the revision of the leaf they inherit from.
 void SolutionLog::retile_for(std::span<const LeafValue> changed) {
   Leaves next;
   const auto append = [&](PatchId patch, std::size_t from, bool is_new) {

@@ -13,9 +13,9 @@ namespace alvor {
 /// A copy of a SolutionLog. Not thread-safe. A root patch that no delta has named is no leaf yet; it counts as zero irradiance.
 class SolutionMirror {
  public:
-  /// Applies `delta`, and returns a fault if it cannot be right. Leaves within a patch that has a value become one. If the delta does
-  /// not fit (a gap, a bad id, overlapping patches), nothing is changed. If the state after it has another hash than the delta
-  /// says, or the delta tells errors of leaves that are not there, the mirror is wrong and must start again from nothing.
+  /// Applies `delta`, and returns a fault if it cannot be right. Leaves within a patch that has a value become one. If the delta
+  /// does not fit (a gap, a bad id, overlapping patches), nothing is changed. If the state after it has another hash than the
+  /// delta says, or the delta tells errors of leaves that are not there, the mirror is wrong and must start again from nothing.
   std::optional<std::string> apply(const Delta& delta);
 
   /// Returns the revision up to which the mirror is complete.

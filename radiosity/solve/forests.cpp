@@ -76,11 +76,12 @@ void Forests::split_to_start(const Plan& plan) {
     return shows_no_curvature || longest_edge(mesh_, rows_.shape(node)) > start_edge * mesh_.extent();
   };
   std::vector<NodeIndex> split;
-  for (NodeIndex node = 0; node < rows_.node_count(); ++node)
-    if (rows_.is_leaf(node) && is_coarse(node)) rows_.split(node, limits_, split);
-  std::vector<NodeIndex> copies;
-  for (const NodeIndex row : split)
-    if (const NodeIndex leaf = leaf_node_of(row); leaves_.is_leaf(leaf)) leaves_.split(leaf, limits_, copies);
+  for (NodeIndex node = 0; node < rows_.node_count(); ++node) {
+    if (!rows_.is_leaf(node) || !is_coarse(node)) continue;
+    const NodeIndex leaf = leaf_node_of(node);
+    if (leaves_.is_leaf(leaf) && !leaves_.split(leaf, limits_, split)) continue;  // after an edit at the limit of leaves
+    rows_.split(node, limits_, split);  // neighbours that this splits have leaves as fine, as leaves are balanced, too
+  }
 }
 
 /// Splits leaves on textures where the reflectance of their quarters differs. Rows need not be as fine: irradiance is smoother.

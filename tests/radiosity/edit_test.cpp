@@ -260,6 +260,24 @@ TEST(EditedSolve, IsInterruptedByAnEditAndTellsIt) {
   EXPECT_EQ(live->edits, 0u);
 }
 
+TEST(EditedSolve, HasNoRowsFinerThanLeavesWhereAHiddenObjectIsShownAtTheLimitOfLeaves) {
+  Scene scene = test::room_with_lamps_and_sun();
+  const auto first = static_cast<std::uint32_t>(scene.faces.size());
+  test::add_box(scene, {0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, false);
+  scene.objects = {{.name = "box", .first_face = first, .face_count = 6}};
+  Scene without = scene;
+  without.objects[0].is_hidden = true;
+  EditedSolve edited(scene, {.tolerance = 1e-3, .max_leaves = 500}, without);
+  ASSERT_EQ(edited.outcome.reason, StopReason::max_leaves);
+  const auto before = edited.live();
+  ASSERT_LT(before->state.forests.rows().leaf_count() + 20, before->state.leaf_count()) << "rows could be split";
+  edited.edit([](Scene& of) { of.objects[0].is_hidden = false; });
+  ASSERT_EQ(edited.live(), before) << "it should go on";
+  const Forests& forests = before->state.forests;
+  for (const NodeIndex row : forests.rows().leaves())
+    EXPECT_EQ(forests.leaves().id(forests.leaf_node_of(row)), forests.rows().id(row));
+}
+
 TEST(EditedSolve, GivesTheTimeLimitAnewToEachEdit) {
   EditedSolve edited(test::coloured_room(), {.tolerance = 1e-4, .time_limit_s = 0.3});
   EXPECT_EQ(edited.outcome.reason, StopReason::time_limit);
