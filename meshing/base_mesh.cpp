@@ -304,6 +304,7 @@ void BaseMesh::add_backs() {
 
 BaseMesh BaseMesh::edited_as(const Scene& scene) const {
   BaseMesh edited = *this;
+  edited.append_copies(scene.objects);
   edited.materials_ = scene.materials;
   edited.lights_ = scene.lights;
   edited.absorption_ = scene.absorption;

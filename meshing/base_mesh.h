@@ -84,9 +84,10 @@ class BaseMesh {
   /// roots: its back comes after all fronts. If all faces are degenerate, there are no roots.
   explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
   /// Returns this mesh with the materials, lights and medium of `scene`, and its objects where their `motion` puts them. Roots
-  /// keep their numbers; those of objects that do not move together are no neighbours, and no twins. Faces that come to lie in
-  /// one place are not joined. Requires: !find_fault(scene); no edit has changed this mesh's scene; `scene` differs from it only
-  /// in what edits change (edited_scene()).
+  /// keep their numbers; those of copies of objects (SceneObject::copy_of) come after them, object by object, in the order of the
+  /// roots that they are copies of; those of objects that do not move together are no neighbours, and no twins. Faces that come
+  /// to lie in one place are not joined. Requires: !find_fault(scene); no edit has changed this mesh's scene; `scene` differs
+  /// from it only in what edits change (edited_scene()).
   BaseMesh edited_as(const Scene& scene) const;
 
   std::span<const RootPatch> roots() const { return roots_; }
@@ -123,6 +124,7 @@ class BaseMesh {
   void find_neighbours(const std::stop_token& stop);
   void add_backs();
   void separate_objects(bool are_to_move);
+  void append_copies(std::span<const SceneObject> objects);
 
   std::vector<RootPatch> roots_;
   std::vector<std::array<TexturePoint, 4>> texture_points_;  // by root; none if no root has a texture

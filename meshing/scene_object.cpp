@@ -10,6 +10,17 @@ bool is_finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std:
 
 }  // namespace
 
+std::vector<std::uint32_t> faces_with_hanging(std::span<const SceneObject> objects, std::uint32_t which) {
+  std::vector<std::uint32_t> faces;
+  std::vector<bool> hangs(objects.size());
+  hangs[which] = true;
+  for (std::size_t n = which; n < objects.size(); ++n) {
+    if (objects[n].parent && hangs[*objects[n].parent]) hangs[n] = true;
+    for (std::uint32_t k = 0; hangs[n] && k < objects[n].face_count; ++k) faces.push_back(objects[n].first_face + k);
+  }
+  return faces;
+}
+
 std::optional<std::string> fault_in(std::span<const SceneObject> objects, std::size_t which, std::size_t scene_faces) {
   const SceneObject& object = objects[which];
   if (object.name.empty()) return "has no name";
@@ -22,6 +33,8 @@ std::optional<std::string> fault_in(std::span<const SceneObject> objects, std::s
     return "its faces end beyond the " + std::to_string(scene_faces) + " faces of the scene";
   if (which > 0 && object.first_face < objects[which - 1].first_face + objects[which - 1].face_count)
     return "its faces begin before those of the object before it end";
+  if (object.copy_of && *object.copy_of >= which)
+    return "it is a copy of object " + std::to_string(*object.copy_of) + ", which does not come before it";
   return std::nullopt;
 }
 

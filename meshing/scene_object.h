@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace alvor {
 
@@ -25,9 +26,15 @@ struct SceneObject {
   /// `placement` and the scene's vertices are mapped already.
   Placement motion;
   bool is_hidden = false;  ///< an edit took it away: its faces send no light, reflect none and are in no light's way
+  /// The object, of a lower number, of which an edit made this one. Its faces are copies of faces_with_hanging() of that one, in
+  /// their order.
+  std::optional<std::uint32_t> copy_of;
 
   friend bool operator==(const SceneObject&, const SceneObject&) = default;
 };
+
+/// Returns the faces of an object and of those that hang from it, in the order of the objects. Requires: no fault_in(objects).
+std::vector<std::uint32_t> faces_with_hanging(std::span<const SceneObject> objects, std::uint32_t which);
 
 /// Returns why object `which` cannot be part of a scene with so many faces; nothing if it can. Names are not compared.
 std::optional<std::string> fault_in(std::span<const SceneObject> objects, std::size_t which, std::size_t scene_faces);

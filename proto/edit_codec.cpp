@@ -22,6 +22,9 @@ v1::Edit message_of(const SceneEdit& edit) {
     if (light->intensity) *part.mutable_intensity() = encode(*light->intensity);
     if (light->position) *part.mutable_position() = encode_vector(*light->position);
     if (light->direction) *part.mutable_direction() = encode_vector(*light->direction);
+    if (light->cone) part.mutable_cone()->set_inner_radians(light->cone->inner);
+    if (light->cone) part.mutable_cone()->set_outer_radians(light->cone->outer);
+    if (light->web) *part.mutable_web() = encode(*light->web);
   } else if (const auto* object = std::get_if<ObjectEdit>(&edit)) {
     v1::ObjectEdit& part = *message.mutable_object();
     part.set_name(object->name);
@@ -29,6 +32,11 @@ v1::Edit message_of(const SceneEdit& edit) {
     if (object->move) *part.mutable_move() = encode_vector(*object->move);
     if (object->turn) part.set_turn(*object->turn);
     if (object->hidden) part.set_hidden(*object->hidden);
+  } else if (const auto* copy = std::get_if<ObjectCopy>(&edit)) {
+    message.mutable_copy()->set_name(copy->name);
+    message.mutable_copy()->set_of(copy->of);
+  } else if (const auto* medium = std::get_if<MediumEdit>(&edit)) {
+    *message.mutable_medium()->mutable_absorption_per_meter() = encode(medium->absorption);
   } else if (const auto* daylight = std::get_if<DaylightEdit>(&edit)) {
     *message.mutable_daylight() = encode(daylight->daylight);
   }
@@ -44,11 +52,13 @@ MaterialEdit material_of(const v1::MaterialEdit& message) {
 }
 
 LightEdit light_of(const v1::LightEdit& message) {
-  LightEdit edit{.name = message.name(), .dim = {}, .intensity = {}, .position = {}, .direction = {}};
+  LightEdit edit{.name = message.name(), .dim = {}, .intensity = {}, .position = {}, .direction = {}, .cone = {}, .web = {}};
   if (message.has_dim()) edit.dim = message.dim();
   if (message.has_intensity()) edit.intensity = decode(message.intensity());
   if (message.has_position()) edit.position = decode_vector(message.position());
   if (message.has_direction()) edit.direction = decode_vector(message.direction());
+  if (message.has_cone()) edit.cone = ConeAngles{message.cone().inner_radians(), message.cone().outer_radians()};
+  if (message.has_web()) edit.web = decode(message.web());
   return edit;
 }
 
@@ -83,6 +93,8 @@ std::optional<EditStep> decode(const v1::EditStep& message) {
     if (edit.has_material()) step.edits.emplace_back(material_of(edit.material()));
     else if (edit.has_light()) step.edits.emplace_back(light_of(edit.light()));
     else if (edit.has_object()) step.edits.emplace_back(object_of(edit.object()));
+    else if (edit.has_medium()) step.edits.emplace_back(MediumEdit{decode(edit.medium().absorption_per_meter())});
+    else if (edit.has_copy()) step.edits.emplace_back(ObjectCopy{edit.copy().name(), edit.copy().of()});
     else if (const auto daylight = decode_daylight(edit.daylight()); daylight && edit.has_daylight())
       step.edits.emplace_back(DaylightEdit{*daylight});
     else return std::nullopt;

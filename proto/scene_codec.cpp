@@ -32,6 +32,7 @@ SceneObject decode_object(const v1::SceneObject& message) {
                      .motion = decode_placement(message.motion()),
                      .is_hidden = message.hidden()};
   if (message.has_parent()) object.parent = message.parent();
+  if (message.has_copy_of()) object.copy_of = message.copy_of();
   return object;
 }
 
@@ -74,6 +75,7 @@ v1::SceneObject encode(const SceneObject& object) {
   v1::SceneObject message;
   message.set_name(as_utf8(object.name));
   if (object.parent) message.set_parent(*object.parent);
+  if (object.copy_of) message.set_copy_of(*object.copy_of);
   encode(object.placement, *message.mutable_transform());
   encode(object.motion, *message.mutable_motion());
   message.set_hidden(object.is_hidden);

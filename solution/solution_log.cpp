@@ -167,6 +167,7 @@ Delta SolutionLog::since(const Cursor& cursor, Detail detail, std::size_t max_va
   delta.next.errors = cursor.errors;
   delta.to_revision = done ? goal : cursor.base;
   if (cursor.base > 0) delta.edits_before = steps_[cursor.base - 1].edits;
+  if (goal > 0) delta.edits_after = steps_[goal - 1].edits;
   if (delta.whole()) delta.state_hash = tier(detail).hash.bits();
   delta.steps.assign(steps_.begin() + static_cast<std::ptrdiff_t>(delta.from_revision),
                      steps_.begin() + static_cast<std::ptrdiff_t>(delta.to_revision));

@@ -56,6 +56,7 @@ struct Delta {
   std::uint64_t from_revision = 0;          ///< the mirror must be at this revision
   std::uint64_t to_revision = 0;            ///< the mirror is then complete up to this revision
   std::uint64_t edits_before = 0;           ///< Step::edits at `from_revision`; 0 at none
+  std::uint64_t edits_after = 0;            ///< Step::edits at the end of the round; 0 at none
   std::uint64_t head = 0;                   ///< newest revision when the delta was made
   std::optional<std::uint64_t> state_hash;  ///< StateHash of all leaves at this detail; set if whole()
   Cursor next;                              ///< the position at which the next page starts

@@ -1,5 +1,6 @@
 #include "meshing/edit/edited_scene.h"
 
+#include "meshing/edit/copied_objects.h"
 #include "meshing/edit/object_boxes.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <unordered_map>
 #include <utility>
@@ -15,7 +17,7 @@ namespace alvor {
 
 namespace {
 
-constexpr double most_dim = 1e6, most_emission = 1e30, farthest = 1e9, most_turn = 1e6;
+constexpr double most_dim = 1e6, most_emission = 1e30, farthest = 1e9, most_turn = 1e6, most_absorption = 1e6;
 
 /// Finds the parts of one kind by their names. Of two that have one name the first counts.
 template <class Part>
@@ -67,7 +69,8 @@ class Check {
   std::optional<EditFault> operator()(const LightEdit& edit) {
     const Light* light = lights_.find(edit.name);
     if (!light) return unknown("light", edit.name);
-    if (!edit.dim && !edit.intensity && !edit.position && !edit.direction) return EditFault{0, "light", "sets nothing"};
+    if (!edit.dim && !edit.intensity && !edit.position && !edit.direction && !edit.cone && !edit.web)
+      return EditFault{0, "light", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "light.dim", "must be in [0, 1e6]"};
     if (edit.intensity && !is_within(*edit.intensity, most_emission))
       return EditFault{0, "light.intensity", "must be in [0, 1e30]"};
@@ -76,20 +79,27 @@ class Check {
     const auto is_near = [](double x) { return std::abs(x) <= farthest; };
     if (edit.position && !(is_near(edit.position->x) && is_near(edit.position->y) && is_near(edit.position->z)))
       return EditFault{0, "light.position", "must lie within 1e9 m"};
-    if (edit.direction && (light->kind != LightKind::spot && light->kind != LightKind::directional))
-      return EditFault{0, "light.direction", "'" + edit.name + "' is no spot and no directional light"};
+    if (edit.direction && !has_direction(light->kind))
+      return EditFault{0, "light.direction", "'" + edit.name + "' is no spot, no luminaire and no directional light"};
     if (edit.direction && !(length(*edit.direction) > 1e-9 && length(*edit.direction) < 1e9))
       return EditFault{0, "light.direction", "must not be zero"};
-    return {};
+    return fault_of_distribution(edit, *light);
   }
 
   std::optional<EditFault> operator()(const ObjectEdit& edit) {
     const SceneObject* object = objects_.find(edit.name);
-    if (!object) return unknown("object", edit.name);
+    if (!object || is_taken_back(*object)) return unknown("object", edit.name);
     if (!edit.dim && !edit.move && !edit.turn && !edit.hidden) return EditFault{0, "object", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
     if (edit.turn && !(std::abs(*edit.turn) <= most_turn)) return EditFault{0, "object.turn", "must be in [-1e6, 1e6] degrees"};
     return edit.move ? fault_of_move(*object, *edit.move) : std::nullopt;
+  }
+
+  std::optional<EditFault> operator()(const ObjectCopy&) { return {}; }  // CheckedCopies
+
+  std::optional<EditFault> operator()(const MediumEdit& edit) {
+    if (is_within(edit.absorption, most_absorption)) return {};
+    return EditFault{0, "medium.absorption_per_meter", "must be in [0, 1e6]"};
   }
 
   std::optional<EditFault> operator()(const DaylightEdit& edit) {
@@ -98,6 +108,19 @@ class Check {
   }
 
  private:
+  static bool has_direction(LightKind kind) {
+    return kind == LightKind::spot || kind == LightKind::directional || kind == LightKind::luminaire;
+  }
+  static std::optional<EditFault> fault_of_distribution(const LightEdit& edit, const Light& light) {
+    if (edit.cone && light.kind != LightKind::spot) return EditFault{0, "light.cone", "'" + edit.name + "' is no spot"};
+    if (edit.cone && !(edit.cone->inner >= 0 && edit.cone->inner <= edit.cone->outer && edit.cone->outer > 0 &&
+                       edit.cone->outer <= std::numbers::pi))
+      return EditFault{0, "light.cone", "must have 0 <= inner <= outer, 0 < outer <= pi"};
+    if (edit.web && light.kind != LightKind::luminaire) return EditFault{0, "light.web", "'" + edit.name + "' is no luminaire"};
+    if (!edit.web) return {};
+    const auto fault = fault_in(*edit.web);
+    return fault ? std::optional(EditFault{0, "light.web", *fault}) : std::nullopt;
+  }
   /// The object must stay within a box about the scene that is longer than the scene by its length on each side.
   std::optional<EditFault> fault_of_move(const SceneObject& object, Vec3 move) {
     if (!boxes_) boxes_.emplace(scene_);
@@ -154,7 +177,9 @@ class Editor {
     if (!light) return;  // daylight has replaced it
     if (edit.intensity) light->intensity = *edit.intensity;
     if (edit.position) light->position = *edit.position;
-    if (edit.direction) light->direction = normalized(*edit.direction);
+    if (edit.direction) aim(*light, normalized(*edit.direction));
+    if (edit.cone) light->inner_cone = edit.cone->inner, light->outer_cone = edit.cone->outer;
+    if (edit.web) light->web = std::make_shared<const PhotometricWeb>(*edit.web);
     if (edit.dim) light_dim_[edit.name] = *edit.dim;
   }
   void operator()(const ObjectEdit& edit) {
@@ -164,6 +189,9 @@ class Editor {
     if (edit.turn) all.turn = edit.turn;
     if (edit.hidden) all.hidden = edit.hidden;
   }
+
+  void operator()(const MediumEdit& edit) { scene_.absorption = edit.absorption; }
+  void operator()(const ObjectCopy&) {}  // made before
 
   void operator()(const DaylightEdit& edit) {
     Daylight daylight = edit.daylight;
@@ -181,11 +209,25 @@ class Editor {
       Light& light = *lights_.find(name);
       light.intensity = dim * light.intensity;
     }
-    if (!object_edits_.empty()) edit_objects();
+    if (!object_edits_.empty() || std::ranges::any_of(scene_.objects, &SceneObject::is_hidden)) edit_objects();
     return std::move(scene_);
   }
 
  private:
+  /// Turns a light by the shortest way from where it was submitted.
+  void aim(Light& light, Vec3 direction) {
+    const auto [was, across] = submitted_aims_.try_emplace(light.name, light.direction, light.across).first->second;
+    light.direction = direction;
+    if (light.kind != LightKind::luminaire) return;
+    const Vec3 axis = cross(was, direction);
+    const double cosine = dot(was, direction);
+    constexpr double opposite = -1 + 1e-12;  // then about `across`, which stays
+    // Rodrigues' formula: axis has the length of the sine.
+    const Vec3 turned =
+        cosine > opposite ? across + cross(axis, across) + (1 / (1 + cosine)) * cross(axis, cross(axis, across)) : across;
+    light.across = normalized(turned - dot(turned, direction) * direction);
+  }
+
   /// Makes the edits of objects. An object takes dim, motion and hiding from the object that it hangs from, and then has its own
   /// edits; its own motion is applied to its faces before that of the other.
   void edit_objects() {
@@ -240,20 +282,38 @@ class Editor {
   Named<Material> materials_{scene_.materials};
   Named<Light> lights_{scene_.lights};
   Named<SceneObject> objects_{scene_.objects};
-  std::map<std::string, double> light_dim_;         // by name
-  std::map<std::size_t, ObjectEdit> object_edits_;  // by number of the object
+  std::map<std::string, double> light_dim_;                      // by name
+  std::map<std::string, std::pair<Vec3, Vec3>> submitted_aims_;  // Light::direction and across, of lights that were aimed
+  std::map<std::size_t, ObjectEdit> object_edits_;               // by number of the object
 };
 
 }  // namespace
 
-std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene) {
-  Check check(scene);
+namespace {
+
+std::optional<EditFault> first_fault(std::span<const SceneEdit> edits, auto&& fault_of) {
   for (std::size_t n = 0; n < edits.size(); ++n)
-    if (auto fault = std::visit(check, edits[n])) {
+    if (std::optional<EditFault> fault = fault_of(edits[n])) {
       fault->edit = n;
       return fault;
     }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene) {
+  const auto is_copy = [](const SceneEdit& edit) { return std::holds_alternative<ObjectCopy>(edit); };
+  if (std::ranges::none_of(edits, is_copy))
+    return first_fault(edits, [check = Check(scene)](const SceneEdit& edit) mutable { return std::visit(check, edit); });
+  Scene with_copies = scene;
+  CheckedCopies copies(with_copies);
+  const auto fault = first_fault(edits, [&](const SceneEdit& edit) {
+    const auto* copy = std::get_if<ObjectCopy>(&edit);
+    return copy ? copies.make(*copy) : std::nullopt;
+  });
+  if (fault) return fault;
+  return first_fault(edits, [check = Check(with_copies)](const SceneEdit& edit) mutable { return std::visit(check, edit); });
 }
 
 std::optional<std::string> object_too_far(const Scene& submitted, const Scene& edited) {
@@ -267,7 +327,9 @@ std::optional<std::string> object_too_far(const Scene& submitted, const Scene& e
 }
 
 Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits) {
-  Editor editor(scene);
+  Scene edited = scene;
+  append_copies(edited, edits);
+  Editor editor(std::move(edited));
   for (const SceneEdit& edit : edits) std::visit(editor, edit);
   return editor.take();
 }

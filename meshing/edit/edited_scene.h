@@ -19,19 +19,21 @@ struct EditFault {
   std::string reason;
 };
 
-/// Returns the first fault of the edits. Looks at each edit by itself: names, ranges.
+/// Returns the first fault of the edits of a step. Looks at each edit by itself: names, ranges. `scene` has the copies of steps
+/// before; an edit may be of a copy that the step makes before it. Copies, with those that were taken back, may have as many
+/// faces in all as the scene has without them, or 100 000 if that is more; and there may be 1000.
 std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene);
 
 /// Returns the name of an object of an edited scene that lies beyond the box in which fault_in() lets it be moved, as objects may
 /// that hang from moved ones; nothing if there is none.
 std::optional<std::string> object_too_far(const Scene& submitted, const Scene& edited);
 
-/// Returns the scene with these edits. Objects whose faces are dimmed get materials of their own, named "MATERIAL of OBJECT",
-/// after all others; those that are hidden are dimmed to nothing. Faces of objects that moved get vertices of their own, after
-/// all others. The numbers of faces, objects and materials stay, and those of lights unless there is other daylight. An edit of a
-/// light that daylight has replaced changes nothing. Requires: !fault_in(edits, scene), !find_fault(scene),
-/// and that no object is hidden or moved. The result may have a fault: a material that reflects and lets through more than all
-/// light.
+/// Returns the scene with these edits. Copies of objects come after all objects, faces and vertices of the scene, as
+/// append_copies() says. Objects whose faces are dimmed get materials of their own, named "MATERIAL of OBJECT", after all others;
+/// those that are hidden are dimmed to nothing. Faces of objects that moved get vertices of their own, at the end. The numbers of
+/// faces, objects and materials stay, and those of lights unless there is other daylight. An edit of a light that daylight has
+/// replaced changes nothing. Requires: !fault_in(edits, scene), !find_fault(scene), and that no object is hidden or moved. The
+/// result may have a fault: a material that reflects and lets through more than all light.
 Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits);
 
 }  // namespace alvor

@@ -1,10 +1,14 @@
 #include "meshing/edit/scene_edit.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace alvor {
 
 std::string name_of(const SceneEdit& edit) {
   if (const auto* material = std::get_if<MaterialEdit>(&edit)) return material->name;
   if (const auto* light = std::get_if<LightEdit>(&edit)) return light->name;
+  if (const auto* copy = std::get_if<ObjectCopy>(&edit)) return copy->name;
   const auto* object = std::get_if<ObjectEdit>(&edit);
   return object ? object->name : "";
 }
@@ -25,7 +29,13 @@ std::optional<std::vector<SceneEdit>> edits_that_hold(std::span<const EditStep> 
     undone.clear();
   }
   std::vector<SceneEdit> edits;
-  for (const EditStep* step : hold) edits.insert(edits.end(), step->edits.begin(), step->edits.end());
+  for (const EditStep& step : steps)
+    for (const SceneEdit& edit : step.edits)
+      if (const auto* copy = std::get_if<ObjectCopy>(&edit))
+        edits.emplace_back(ObjectCopy{copy->name, copy->of, std::ranges::find(hold, &step) == hold.end()});
+  for (const EditStep* step : hold)
+    std::ranges::copy_if(step->edits, std::back_inserter(edits),
+                         [](const SceneEdit& edit) { return !std::holds_alternative<ObjectCopy>(edit); });
   return edits;
 }
 

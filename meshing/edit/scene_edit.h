@@ -2,6 +2,7 @@
 // Edits of a scene while it is solved.
 
 #include "meshing/daylight.h"
+#include "meshing/photometric_web.h"
 #include "meshing/vec3.h"
 #include "solution/rgb.h"
 
@@ -21,12 +22,22 @@ struct MaterialEdit {
   friend bool operator==(const MaterialEdit&, const MaterialEdit&) = default;
 };
 
+/// Angles of a spot's cones from its axis; see Light::inner_cone.
+struct ConeAngles {
+  double inner = 0, outer = 0;
+  friend bool operator==(const ConeAngles&, const ConeAngles&) = default;
+};
+
 /// Sets what is given of a light that is no face; see Light.
 struct LightEdit {
   std::string name;
   std::optional<double> dim;  ///< multiplies its intensity, in [0, 1e6]; 0 is off
   std::optional<Rgb> intensity;
-  std::optional<Vec3> position, direction;
+  std::optional<Vec3> position;
+  /// Of a luminaire its aim; plane 0 of its web turns with it by the shortest way from where the scene as submitted has it.
+  std::optional<Vec3> direction;
+  std::optional<ConeAngles> cone;     ///< of a spot
+  std::optional<PhotometricWeb> web;  ///< of a luminaire, in place of the one it has
   friend bool operator==(const LightEdit&, const LightEdit&) = default;
 };
 
@@ -40,17 +51,31 @@ struct ObjectEdit {
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
 
+/// Adds an object: a copy of another one and of those that hang from it, without the motions and dimming of edits.
+struct ObjectCopy {
+  std::string name;            ///< not empty, and of no other object
+  std::string of;              ///< the name of the other one
+  bool is_taken_back = false;  ///< set by edits_that_hold() where its step does not hold: it is hidden
+  friend bool operator==(const ObjectCopy&, const ObjectCopy&) = default;
+};
+
 /// Says which sun, sky and ground there are. They take the place of all lights that shine from infinitely far away.
 struct DaylightEdit {
   Daylight daylight;  ///< its `north_degrees` from the scene's north
   friend bool operator==(const DaylightEdit&, const DaylightEdit&) = default;
 };
 
+/// Sets the medium that fills the scene.
+struct MediumEdit {
+  Rgb absorption;  ///< see Scene
+  friend bool operator==(const MediumEdit&, const MediumEdit&) = default;
+};
+
 /// A change of a scene. It says what a part of the scene is to be, whatever edits before it said: made twice it is as good as
 /// once.
-using SceneEdit = std::variant<MaterialEdit, LightEdit, ObjectEdit, DaylightEdit>;
+using SceneEdit = std::variant<MaterialEdit, LightEdit, ObjectEdit, ObjectCopy, DaylightEdit, MediumEdit>;
 
-/// Returns the name of what an edit changes; nothing for daylight, which has none.
+/// Returns the name of what an edit changes; nothing for daylight and the medium, which have none.
 std::string name_of(const SceneEdit& edit);
 
 /// Edits that were made together.
@@ -63,7 +88,8 @@ struct EditStep {
   friend bool operator==(const EditStep&, const EditStep&) = default;
 };
 
-/// Returns the edits of the steps that hold, in order; nothing where a step takes back or repeats what is not there.
+/// Returns the edits of the steps that hold, in order, after all copies of objects that were ever made, so that these keep their
+/// numbers; nothing where a step takes back or repeats what is not there.
 std::optional<std::vector<SceneEdit>> edits_that_hold(std::span<const EditStep> steps);
 
 }  // namespace alvor

@@ -26,12 +26,13 @@ std::vector<std::string> warnings_about(const BaseMesh& mesh) {
   return warnings;
 }
 
-/// Forgets the motions of objects, as a scene has that was read from an edited solve: it counts as submitted as it is now. Throws
-/// StatusError where an object is hidden.
+/// Forgets the motions of objects, and of which they are copies, as a scene has that was read from an edited solve: it counts as
+/// submitted as it is now. Throws StatusError where an object is hidden.
 void forget_edits(Scene& scene) {
   for (SceneObject& object : scene.objects) {
     if (object.is_hidden) throw invalid_argument("object '" + object.name + "': is hidden; leave its faces out instead");
     object.motion = {};
+    object.copy_of.reset();
   }
 }
 

@@ -18,8 +18,10 @@
 namespace alvor {
 
 struct SceneContent {
-  Scene scene;    ///< as it was submitted
+  Scene scene;    ///< as it was submitted, or as edits have made it
   BaseMesh mesh;  ///< at least one root
+  /// Of an edited scene what was submitted; else null.
+  std::shared_ptr<const SceneContent> submitted = nullptr;
 };
 
 /// The content of scenes by its hash. Content in use is in memory once. Thread-safe.

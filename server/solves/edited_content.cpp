@@ -1,5 +1,6 @@
 #include "server/solves/edited_content.h"
 
+#include "meshing/edit/copied_objects.h"
 #include "meshing/edit/edited_scene.h"
 #include "server/base/status_error.h"
 
@@ -17,7 +18,8 @@ std::optional<std::vector<SceneEdit>> that_hold(std::span<const KeptEdit> edits)
   return edits_that_hold(steps);
 }
 
-/// Returns an edit without its values: two are alike if they set the same fields of the same part.
+/// Returns an edit without its values: two are alike if they set the same fields of the same part. A copy of an object is like
+/// itself only, and no two have one name.
 SceneEdit without_values(SceneEdit edit) {
   const auto clear = [](auto& field) {
     if (field) field.emplace();
@@ -26,10 +28,13 @@ SceneEdit without_values(SceneEdit edit) {
     clear(material->emission), clear(material->reflectance), clear(material->diffuse_transmittance);
   } else if (auto* light = std::get_if<LightEdit>(&edit)) {
     clear(light->dim), clear(light->intensity), clear(light->position), clear(light->direction);
+    clear(light->cone), clear(light->web);
   } else if (auto* object = std::get_if<ObjectEdit>(&edit)) {
     clear(object->dim), clear(object->move), clear(object->turn), clear(object->hidden);
-  } else {
+  } else if (std::holds_alternative<DaylightEdit>(edit)) {
     edit = DaylightEdit{};
+  } else if (std::holds_alternative<MediumEdit>(edit)) {
+    edit = MediumEdit{};
   }
   return edit;
 }
@@ -43,7 +48,11 @@ bool are_alike(const EditStep& a, const EditStep& b) {
 
 std::size_t bytes_of(const KeptEdit& edit) {
   std::size_t bytes = 100 + edit.author.size() + edit.request_id.size();
-  for (const SceneEdit& each : edit.step.edits) bytes += 200 + name_of(each).size();
+  for (const SceneEdit& each : edit.step.edits) {
+    bytes += 200 + name_of(each).size();
+    if (const auto* light = std::get_if<LightEdit>(&each); light && light->web)
+      bytes += 4 * light->web->intensities.size() + 8 * (light->web->planes.size() + light->web->angles.size());
+  }
   return bytes;
 }
 
@@ -52,7 +61,17 @@ bool shines(const Scene& scene) {
          std::ranges::any_of(scene.faces, [&](const Face& face) { return !scene.materials[face.material].emission.is_zero(); });
 }
 
-void check(const EditRequest& request, const Scene& submitted) {
+/// Returns the fault of a step in a scene with the objects that steps before have added.
+std::optional<EditFault> fault_in(const EditStep& step, std::span<const KeptEdit> before, const Scene& submitted) {
+  std::vector<SceneEdit> copies = that_hold(before).value_or(std::vector<SceneEdit>());
+  std::erase_if(copies, [](const SceneEdit& edit) { return !std::holds_alternative<ObjectCopy>(edit); });
+  if (copies.empty()) return fault_in(step.edits, submitted);
+  Scene with_copies = submitted;
+  append_copies(with_copies, copies);
+  return fault_in(step.edits, with_copies);
+}
+
+void check(const EditRequest& request, std::span<const KeptEdit> before, const Scene& submitted) {
   const EditStep& step = request.step;
   if (request.author.size() > longest_author)
     throw invalid_argument("step.author: " + std::to_string(request.author.size()) + " bytes, at most 256 are allowed");
@@ -61,14 +80,14 @@ void check(const EditRequest& request, const Scene& submitted) {
   if (!is_edit && !step.edits.empty()) throw invalid_argument("step.edits: an undo or redo has none");
   if (step.edits.size() > most_edits_of_step)
     throw invalid_argument("step.edits: " + std::to_string(step.edits.size()) + ", at most 1000 are allowed");
-  if (const auto fault = fault_in(step.edits, submitted))
+  if (const auto fault = fault_in(step, before, submitted))
     throw invalid_argument("step.edits[" + std::to_string(fault->edit) + "]." + fault->field + ": " + fault->reason);
 }
 
 /// Requires: !find_fault(edited).
-std::shared_ptr<const SceneContent> relit(const SceneContent& submitted, Scene edited) {
-  BaseMesh mesh = submitted.mesh.edited_as(edited);
-  return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh)});
+std::shared_ptr<const SceneContent> relit(std::shared_ptr<const SceneContent> submitted, Scene edited) {
+  BaseMesh mesh = submitted->mesh.edited_as(edited);
+  return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh), std::move(submitted)});
 }
 
 }  // namespace
@@ -78,7 +97,7 @@ EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request,
   if (request.base_revision && *request.base_revision != newest)
     throw StatusError(grpc::ABORTED, "base_revision: " + std::to_string(*request.base_revision) +
                                          ", but the newest edits are of revision " + std::to_string(newest));
-  check(request, submitted->scene);
+  check(request, edits, submitted->scene);
   const bool replaces =
       request.continues && !edits.empty() && edits.back().author == request.author && are_alike(edits.back().step, request.step);
   if (replaces) edits.pop_back();
@@ -99,13 +118,13 @@ EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request,
       std::ranges::any_of(*hold, [](const SceneEdit& edit) { return std::holds_alternative<DaylightEdit>(edit); });
   if (!shines(edited) && shines(submitted->scene) && !has_daylight)
     throw invalid_argument("step.edits: then nothing in the scene would shine");
-  return {std::move(edits), hold->empty() ? submitted : relit(*submitted, std::move(edited))};
+  return {std::move(edits), hold->empty() ? submitted : relit(submitted, std::move(edited))};
 }
 
 std::shared_ptr<const SceneContent> edited_content(std::shared_ptr<const SceneContent> submitted,
                                                    std::span<const KeptEdit> edits) {
   const auto hold = that_hold(edits);
-  return !hold || hold->empty() ? submitted : relit(*submitted, edited_scene(submitted->scene, *hold));
+  return !hold || hold->empty() ? submitted : relit(submitted, edited_scene(submitted->scene, *hold));
 }
 
 }  // namespace alvor

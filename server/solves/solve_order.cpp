@@ -69,11 +69,14 @@ Scene get_scene(PlainReader& in) {
 
 }  // namespace
 
-std::vector<std::byte> bytes_of_order(const SolveOptions& options, std::span<const std::byte> checkpoint, const Scene& scene) {
+std::vector<std::byte> bytes_of_order(const SolveOptions& options, std::span<const std::byte> checkpoint, const Scene& submitted,
+                                      const Scene* edited) {
   return plain_bytes([&](PlainWriter& out) {
     put(options, out);
     put(checkpoint, out);
-    put(scene, out);
+    put(submitted, out);
+    out.put(std::uint8_t{edited != nullptr});
+    if (edited) put(*edited, out);
   });
 }
 
@@ -82,7 +85,8 @@ SolveOrder read_order(std::span<const std::byte> bytes) {
   SolveOrder order;
   order.options = get_options(in);
   order.checkpoint = in.get_all<char>();
-  order.scene = get_scene(in);
+  order.submitted = get_scene(in);
+  if (in.get<std::uint8_t>() != 0) order.edited = get_scene(in);
   return order;
 }
 

@@ -5,6 +5,7 @@
 #include "radiosity/plan/solve_options.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,11 +15,13 @@ namespace alvor {
 struct SolveOrder {
   SolveOptions options;          ///< without the pause between steps, which is the first rank's
   std::vector<char> checkpoint;  ///< SolveControl::checkpoint
-  Scene scene;
+  Scene submitted;
+  std::optional<Scene> edited;  ///< what edits have made of it, if there are any
 };
 
-/// Returns the bytes of an order.
-std::vector<std::byte> bytes_of_order(const SolveOptions& options, std::span<const std::byte> checkpoint, const Scene& scene);
+/// Returns the bytes of an order. `edited` is null if there are no edits.
+std::vector<std::byte> bytes_of_order(const SolveOptions& options, std::span<const std::byte> checkpoint, const Scene& submitted,
+                                      const Scene* edited);
 /// Reads what bytes_of_order() of the same program returned. Throws BadBytes or runtime_error.
 SolveOrder read_order(std::span<const std::byte> bytes);
 

@@ -93,7 +93,8 @@ class SolvingRanks::Gang {
     if (options.threads == all_.threads()) of_others.threads = 0;  // of machines that may have more or fewer
     // A solve on several ranks begins anew after an edit.
     const auto checkpoint = control.checkpoint_mesh ? std::span<const std::byte>() : control.checkpoint;
-    std::vector<std::byte> order = bytes_of_order(of_others, checkpoint, scene.scene);
+    std::vector<std::byte> order = scene.submitted ? bytes_of_order(of_others, checkpoint, scene.submitted->scene, &scene.scene)
+                                                   : bytes_of_order(of_others, checkpoint, scene.scene, nullptr);
     const auto together = or_end_all(all_.ranks(), [&] {
       auto called = all_.call_together(workers_);
       send(*called, std::move(order));
@@ -168,7 +169,9 @@ void SolvingRanks::take_part(Ranks& gang) {
   });
   SolveOrder order = read_order(bytes);
   bytes = {};
-  const BaseMesh mesh(std::exchange(order.scene, {}));
+  BaseMesh mesh(std::exchange(order.submitted, {}));
+  if (order.edited) mesh = mesh.edited_as(*order.edited);
+  order.edited.reset();
   SolutionLog nowhere;
   const SolveControl control{
       .short_of_memory = short_of_memory.get_token(), .checkpoint = std::as_bytes(std::span(order.checkpoint)), .ranks = &gang};

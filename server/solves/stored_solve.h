@@ -95,6 +95,10 @@ class StoredSolve {
   /// itself; one that has SUCCEEDED is QUEUED again. `admit` is called before anything is changed, and may throw. Throws
   /// StatusError, also what with_step() does; then nothing has changed.
   std::uint64_t edit(const EditRequest& request, const std::function<void()>& admit);
+  /// Returns the revision of the newest step of edits; 0 if there is none.
+  std::uint64_t newest_edits() const { return newest_edits_; }
+  /// Returns the number of root patches of the scene as submitted.
+  std::size_t submitted_roots() const { return scene_->content()->mesh.roots().size(); }
   /// Returns the content with the newest edits.
   std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const;
   /// Returns how the scene looks after the newest edits.

@@ -13,12 +13,23 @@ namespace alvor {
 
 namespace {
 
+/// Returns the material of each face, before all edits but copies of objects.
+std::vector<std::uint32_t> submitted_materials(const Scene& before, std::span<const SceneObject> objects) {
+  std::vector<std::uint32_t> materials;
+  for (const Face& face : before.faces) materials.push_back(face.material);
+  for (auto copy = before.objects.size(); copy < objects.size(); ++copy)
+    for (const std::uint32_t source : faces_with_hanging(objects, *objects[copy].copy_of))
+      materials.push_back(std::uint32_t{materials[source]});
+  return materials;
+}
+
 /// Appends runs of faces that have other materials than before.
 void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
   v1::FaceMaterials* run = nullptr;
+  const std::vector<std::uint32_t> submitted = submitted_materials(before, after.objects);
   for (std::uint32_t face = 0; face < after.faces.size(); ++face) {
     const std::uint32_t material = after.faces[face].material;
-    if (material == before.faces[face].material) {
+    if (material == submitted[face]) {
       run = nullptr;
       continue;
     }
@@ -31,13 +42,19 @@ void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
   }
 }
 
-void add_objects(std::span<const SceneObject> objects, v1::Look& look) {
+void add_objects(std::span<const SceneObject> objects, std::size_t submitted, v1::Look& look) {
   for (std::uint32_t n = 0; n < objects.size(); ++n) {
-    if (!objects[n].is_hidden && objects[n].motion == Placement{}) continue;
+    const bool is_added = n >= submitted;
+    if (!objects[n].is_hidden && !is_added && objects[n].motion == Placement{}) continue;
     v1::LookOfObject& changed = *look.add_objects();
     changed.set_number(n);
     encode(objects[n].motion, *changed.mutable_motion());
     changed.set_hidden(objects[n].is_hidden);
+    if (!is_added) continue;
+    changed.set_copy_of(*objects[n].copy_of);
+    changed.set_name(as_utf8(objects[n].name));
+    changed.set_first_face(objects[n].first_face);
+    changed.set_face_count(objects[n].face_count);
   }
 }
 
@@ -112,7 +129,7 @@ v1::Look StoredSolve::look() const {
     changed.mutable_material()->clear_texture();
   }
   add_faces(before->scene, after->scene, look);
-  add_objects(after->scene.objects, look);
+  add_objects(after->scene.objects, before->scene.objects.size(), look);
   return look;
 }
 

@@ -31,6 +31,14 @@ std::shared_ptr<const Frame> FrameSource::frame_after(const Cursor& cursor, Deta
   return frame;
 }
 
+/// A look comes before the first leaves of a round, as they may be of added objects; and again with leaves of those where edits
+/// were made since.
+bool FrameSource::is_look_needed(const Cursor& cursor, const Delta& delta) const {
+  if (!cursor.is_inside_round()) return delta.edits_after != delta.edits_before;
+  if (delta.values.empty() || solve_->newest_edits() == delta.edits_after) return false;
+  return delta.values.back().patch.root_face() >= solve_->submitted_roots();
+}
+
 std::shared_ptr<const Frame> FrameSource::encode_frame(const Cursor& cursor, Detail detail, bool ended) const {
   const Delta delta = log_->since(cursor, detail, std::min(max_leaves_, leaves_per_frame(detail)));
   v1::WatchSolveResponse message;
@@ -38,8 +46,7 @@ std::shared_ptr<const Frame> FrameSource::encode_frame(const Cursor& cursor, Det
   encode(delta, message);
   const bool is_complete = delta.whole() && !delta.has_more_errors, last = ended && is_complete;
   message.set_ended(last);
-  const std::uint64_t edits = delta.steps.empty() ? delta.edits_before : delta.steps.back().edits;
-  if (edits != delta.edits_before) *message.mutable_look() = solve_->look();
+  if (is_look_needed(cursor, delta)) *message.mutable_look() = solve_->look();
   if (last) *message.mutable_solve() = encode(solve_->describe());
   return std::make_shared<const Frame>(Frame{grpc::Slice(message.SerializeAsString()), detail, cursor, delta.next,
                                              delta.to_revision, delta.head, is_complete, last});

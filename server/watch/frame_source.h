@@ -44,6 +44,7 @@ class FrameSource {
   std::shared_ptr<const Frame> closing_frame(const Cursor& cursor, const v1::Closing& closing) const;
 
  private:
+  bool is_look_needed(const Cursor& cursor, const Delta& delta) const;
   std::shared_ptr<const Frame> encode_frame(const Cursor& cursor, Detail detail, bool ended) const;
 
   const std::shared_ptr<StoredSolve> solve_;

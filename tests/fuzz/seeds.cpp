@@ -129,6 +129,8 @@ void write_edit_seeds(const fs::path& directory) {
   step.mutable_edits(2)->mutable_material()->mutable_reflectance()->set_r(0.5);
   step.add_edits()->mutable_light()->set_name("bulb");
   step.mutable_edits(3)->mutable_light()->set_dim(0.5);
+  step.add_edits()->mutable_copy()->set_name("second lamp");
+  step.mutable_edits(4)->mutable_copy()->set_of("lamp");
   v1::EditStep undo;
   undo.set_kind(v1::EditStep::UNDO);
   const auto text = [](const v1::EditStep& of) { return '\0' + fuzz::as_text(of.SerializeAsString()); };

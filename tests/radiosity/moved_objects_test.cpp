@@ -46,6 +46,45 @@ TEST(MovedObjects, WhatIsHiddenFromTheFirstCanBeShown) {
   EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
 }
 
+TEST(MovedObjects, ACopyIsLitAsAnObjectThatWasSubmittedThereAndGoesWhenItIsTakenBack) {
+  const Scene submitted = test::room_of_objects();
+  const SolveOptions options{.tolerance = 0.03, .max_leaves = 20'000};
+  EditedSolve solve(submitted, options);
+  const Vec3 by{1.2, 0.3, 1};
+  const auto edit = [&](bool is_taken_back) {
+    std::vector<SceneEdit> edits{ObjectCopy{"second box", "box", is_taken_back}};
+    if (!is_taken_back) edits.push_back(ObjectEdit{.name = "second box", .move = by});
+    solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
+  };
+  const auto mean = [](const EditedSolve& of, std::uint32_t roots) {
+    double sum = 0, area = 0;
+    for (const LeafValue& leaf : of.leaves()) {
+      if (leaf.patch.root_face() >= roots) continue;
+      const double own = area_of(of.mesh(), shape_of(of.mesh(), leaf.patch));
+      sum += own * leaf.irradiance.mean(), area += own;
+    }
+    return sum / area;
+  };
+  const auto roots = static_cast<std::uint32_t>(solve.mesh().roots().size());
+  const double before = mean(solve, roots);
+  edit(false);
+  // The same scene with the second box as faces of its own, at the end as the copy's.
+  Scene with = submitted;
+  for (std::uint32_t k = 0; k < submitted.objects[2].face_count; ++k) {
+    std::vector<Vec3> corners;
+    const Face face = submitted.faces[submitted.objects[2].first_face + k];
+    for (const std::uint32_t vertex : submitted.corners_of(face)) corners.push_back(submitted.vertices[vertex] + by);
+    with.add_polygon(corners, face.material);
+  }
+  const EditedSolve anew(with, options);
+  ASSERT_EQ(solve.mesh().roots().size(), anew.mesh().roots().size());
+  EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
+  EXPECT_GT(std::abs(mean(solve, roots) - before), 0.002 * before) << "the box takes light away";
+  edit(true);
+  for (const LeafValue& leaf : solve.leaves()) EXPECT_TRUE(leaf.patch.root_face() < roots || leaf.irradiance.max() == 0);
+  EXPECT_NEAR(mean(solve, roots), before, 0.04 * before);
+}
+
 /// A sheet of one side lies above the floor, where its back hides what is below it, and is moved or taken away.
 TEST(MovedObjects, WhatASheetOfOneSideHidIsSeenAgain) {
   Scene submitted = test::coloured_room();

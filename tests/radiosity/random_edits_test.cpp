@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <string>
+#include <variant>
 
 namespace alvor {
 namespace {
@@ -67,7 +69,7 @@ Daylight any_daylight(test::Dice& dice) {
 /// Returns an edit of any part of room_to_be_edited().
 SceneEdit any_edit(test::Dice& dice) {
   const char* const solid = dice.one_of({"box", "block"});
-  switch (dice.below(11)) {
+  switch (dice.below(12)) {
     case 0: return ObjectEdit{.name = solid, .move = any_place(dice, {-0.6, 0, -1}, {0.6, 0.5, 2})};
     case 1: return ObjectEdit{.name = solid, .turn = dice.between(-180, 180)};
     case 2: return ObjectEdit{.name = dice.one_of({"box", "block", "blind"}), .hidden = dice.happens(0.5)};
@@ -80,6 +82,7 @@ SceneEdit any_edit(test::Dice& dice) {
     case 7: return ObjectEdit{.name = dice.one_of({"lamp", "panel"}), .dim = dice.happens(0.75) ? dice.between(0.1, 2) : 0};
     case 8: return LightEdit{.name = "bulb", .dim = dice.happens(0.75) ? dice.between(0.1, 3) : 0};
     case 9: return LightEdit{.name = "bulb", .position = any_place(dice, {0.5, 1.6, 3}, {3.5, 2.5, 4.5})};
+    case 10: return MediumEdit{dice.happens(0.5) ? any_colour(dice, 0.2) : Rgb{}};
     default: return DaylightEdit{any_daylight(dice)};
   }
 }
@@ -95,7 +98,13 @@ TEST(RandomEdits, LeaveASolveWithinWhatItTellsOfANewOne) {
   std::vector<SceneEdit> edits;
   int compared = 0, within = 0;
   for (int n = 1; n <= count; ++n) {
-    edits.push_back(any_edit(dice));
+    if (n % 20 == 7 && n < 100) {
+      const std::string name = "block " + std::to_string(n);
+      edits.emplace_back(ObjectCopy{name, "block"});
+      edits.emplace_back(ObjectEdit{.name = name, .move = any_place(dice, {-1.5, 0, -1}, {0.5, 1, 2})});
+    } else {
+      edits.push_back(any_edit(dice));
+    }
     const auto fault = fault_in(edits, submitted);
     ASSERT_FALSE(fault) << fault->field << ' ' << fault->reason;
     solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
@@ -109,8 +118,11 @@ TEST(RandomEdits, LeaveASolveWithinWhatItTellsOfANewOne) {
   }
   EXPECT_GT(compared, 0);
   EXPECT_GE(within, 0.9 * compared);
-  solve.edit([&](Scene& scene) { scene = submitted; });
-  const EditedSolve first(submitted, options);
+  for (SceneEdit& edit : edits)
+    if (auto* copy = std::get_if<ObjectCopy>(&edit)) copy->is_taken_back = true;
+  std::erase_if(edits, [](const SceneEdit& edit) { return !std::holds_alternative<ObjectCopy>(edit); });
+  solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
+  const EditedSolve first(submitted, options, solve.scene());
   EXPECT_LT(difference_of_roots(solve, first), solve.last().estimated_error + first.last().estimated_error);
 }
 

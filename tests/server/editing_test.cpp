@@ -200,6 +200,64 @@ TEST_F(EditingTest, ObjectsAreMovedAndTakenAway) {
   }
 }
 
+v1::EditStep copied(const std::string& name, const std::string& of, double x, double y, double z) {
+  v1::EditStep step = moved(name, x, y, z);
+  v1::ObjectCopy& copy = *step.add_edits()->mutable_copy();
+  copy.set_name(name);
+  copy.set_of(of);
+  return step;
+}
+
+TEST_F(EditingTest, ObjectsAreAddedAsCopiesAndTakenBack) {
+  const std::size_t leaves = end().size(), roots = BaseMesh(room()).roots().size();
+  client.edit_solve(solve, copied("lamp.2", "lamp.0", 1, -1, 1));
+  const auto with = end();
+  EXPECT_GE(with.size(), leaves / 2);
+  EXPECT_EQ(with.back().patch.root_face(), roots);
+  const Scene edited = client.read_scene(solve);
+  ASSERT_EQ(edited.objects.size(), room().objects.size() + 1);
+  EXPECT_EQ(edited.objects.back().name, "lamp.2");
+  EXPECT_EQ(edited.faces.size(), room().faces.size() + 1);
+  const BaseMesh mesh = BaseMesh(client.read_scene(scene_name)).edited_as(edited);
+  ASSERT_EQ(mesh.roots().size(), roots + 1);
+  EXPECT_NEAR(mesh.roots().back().corners[0].y, 1.9, 1e-12);
+
+  EXPECT_THAT(refusal(copied("lamp.2", "lamp.1", 0, 0, 0)), testing::HasSubstr("step.edits[1].copy.name"));
+  EXPECT_THAT(refusal(copied("lamp.3", "lamp.9", 0, 0, 0)), testing::HasSubstr("step.edits[1].copy.of"));
+  EXPECT_THAT(refusal(copied("lamp.3", "lamp.0", 1e12, 0, 0)), testing::HasSubstr("step.edits[0].object.move"));
+  client.edit_solve(solve, undo());
+  for (const LeafValue& leaf : end()) EXPECT_TRUE(leaf.patch.root_face() < roots || leaf.irradiance.max() == 0);
+  EXPECT_THAT(refusal(moved("lamp.2", 0, 0, 0)), testing::HasSubstr("step.edits[0].object.name"));
+  client.edit_solve(solve, copied("lamp.2", "lamp.1", -1, -1, 1));
+  EXPECT_EQ(end().back().patch.root_face(), roots + 1) << "numbers of roots are not used again";
+}
+
+TEST_F(EditingTest, AWatchKnowsOfAddedObjectsBeforeTheirLeaves) {
+  const auto stub = v1::SolveService::NewStub(server.channel());
+  const std::size_t roots = BaseMesh(room()).roots().size();
+  client.edit_solve(solve, copied("lamp.2", "lamp.0", 1, -1, 1));
+  end();
+  grpc::ClientContext context;
+  v1::WatchSolveRequest request;
+  request.set_name(solve);
+  request.set_detail(v1::DETAIL_DISPLAY);
+  const auto reader = stub->WatchSolve(&context, request);
+  v1::WatchSolveResponse frame;
+  ASSERT_TRUE(reader->Read(&frame));
+  ASSERT_TRUE(frame.has_look()) << "the first frame";
+  ASSERT_EQ(frame.look().objects_size(), 1);
+  const v1::LookOfObject& copy = frame.look().objects(0);
+  EXPECT_EQ(copy.number(), room().objects.size());
+  EXPECT_EQ(copy.name(), "lamp.2");
+  EXPECT_TRUE(copy.has_copy_of());
+  EXPECT_EQ(copy.first_face(), room().faces.size());
+  EXPECT_EQ(copy.face_count(), 1u);
+  EXPECT_EQ(copy.motion(9), 1);
+  EXPECT_EQ(frame.look().faces_size(), 0) << "it has the material of the other";
+  EXPECT_GT(roots, 0u);
+  context.TryCancel();
+}
+
 TEST_F(EditingTest, ADayPassesAndIsOneStep) {
   const std::vector<LeafValue> before = end();
   v1::EditStep step;

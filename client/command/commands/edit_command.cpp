@@ -23,7 +23,8 @@ namespace {
 struct EditCommand {
   std::string solve;
   ServerChoice server;
-  std::vector<std::string> settings, dims, moves, turns, hidden, shown;
+  std::vector<std::string> settings, dims, webs, copies, moves, turns, hidden, shown;
+  std::string absorption;
   SkyOptions sky;
   bool no_daylight = false;
   std::string script, author;
@@ -36,6 +37,9 @@ v1::EditStep step_of(const EditCommand& command) {
   if (!command.script.empty()) step = step_of_script(command.script);
   for (const std::string& setting : command.settings) *step.add_edits() = edit_of_setting(setting);
   for (const std::string& dim : command.dims) *step.add_edits() = edit_of_dim(dim);
+  for (const std::string& web : command.webs) *step.add_edits() = edit_of_web(web);
+  if (!command.absorption.empty()) *step.add_edits() = edit_of_absorption(command.absorption);
+  for (const std::string& copy : command.copies) *step.add_edits() = edit_of_copy(copy);
   for (const std::string& move : command.moves) *step.add_edits() = edit_of_move(move);
   for (const std::string& turn : command.turns) *step.add_edits() = edit_of_turn(turn);
   for (const std::string& name : command.hidden) *step.add_edits() = edit_of_hidden(name, true);
@@ -47,9 +51,11 @@ v1::EditStep step_of(const EditCommand& command) {
   if (command.undo || command.redo) step.set_kind(command.undo ? v1::EditStep::UNDO : v1::EditStep::REDO);
   const bool is_edit = step.kind() != v1::EditStep::UNDO && step.kind() != v1::EditStep::REDO;
   if (is_edit == (step.edits_size() == 0))
-    throw Failure(ExitStatus::usage, is_edit ? "nothing to edit: give --set, --dim, --move, --turn, --hide, --show, --sun, "
-                                               "--time, --sky, --no-daylight, --script, --undo or --redo"
-                                             : "--undo and --redo stand alone");
+    throw Failure(ExitStatus::usage,
+                  is_edit
+                      ? "nothing to edit: give --set, --dim, --web, --absorption, --copy, --move, --turn, --hide, --show, --sun, "
+                        "--time, --sky, --no-daylight, --script, --undo or --redo"
+                      : "--undo and --redo stand alone");
   step.set_author(command.author);
   return step;
 }
@@ -83,12 +89,21 @@ void add_edit_command(CLI::App& app) {
   command
       .add_option("--set", options->settings,
                   "material:NAME.FIELD=R,G,B with emission, reflectance or diffuse_transmittance, or light:NAME.FIELD=X,Y,Z with "
-                  "intensity, position or direction")
+                  "intensity, position or direction, or light:NAME.cone=INNER,OUTER in degrees")
       ->type_name("SETTING");
   command
       .add_option("--dim", options->dims,
                   "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off")
       ->type_name("DIM");
+  command
+      .add_option("--web", options->webs,
+                  "NAME=FILE: a photometric file (IES, EULUMDAT) in place of the one that a luminaire has")
+      ->type_name("WEB");
+  command.add_option("--absorption", options->absorption, "Absorption coefficient of the medium, 1/m per band")
+      ->type_name("R,G,B");
+  command
+      .add_option("--copy", options->copies, "NEW=NAME: add an object, a copy of another one as the scene was submitted with it")
+      ->type_name("COPY");
   command
       .add_option("--move", options->moves, "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it")
       ->type_name("MOVE");

@@ -1,11 +1,14 @@
 #include "client/command/options/edit_option.h"
 
+#include "client/command/options/luminaire_option.h"
 #include "client/command/output/failure.h"
+#include "proto/codec.h"
 
 #include <google/protobuf/util/json_util.h>
 
 #include <charconv>
 #include <fstream>
+#include <numbers>
 #include <span>
 #include <sstream>
 #include <system_error>
@@ -52,7 +55,10 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
     if (at < end) ++at;
   }
   if (at != end || numbers.size() != count || value.ends_with(','))
-    refuse(option, text, count == 1 ? "the value must be a number" : "the value must be three numbers with commas between them");
+    refuse(option, text,
+           count == 1   ? "the value must be a number"
+           : count == 2 ? "the value must be two numbers with a comma between them"
+                        : "the value must be three numbers with commas between them");
   return numbers;
 }
 
@@ -75,6 +81,10 @@ v1::Edit edit_of_setting(const std::string& setting) {
     const auto n = three();
     colour.set_r(n[0]), colour.set_g(n[1]), colour.set_b(n[2]);
   };
+  const auto set_cone = [&](v1::SpotCone& cone) {
+    const auto degrees = numbers_of(option, setting, named.value, 2);
+    cone.set_inner_radians(degrees[0] * std::numbers::pi / 180), cone.set_outer_radians(degrees[1] * std::numbers::pi / 180);
+  };
   const auto set = [&](v1::Vector3& vector) { set_vector(three(), vector); };
   v1::Edit edit;
   if (named.part == "material") {
@@ -90,7 +100,8 @@ v1::Edit edit_of_setting(const std::string& setting) {
     if (field == "intensity") set_colour(*light.mutable_intensity());
     else if (field == "position") set(*light.mutable_position());
     else if (field == "direction") set(*light.mutable_direction());
-    else refuse(option, setting, "a light has the fields intensity, position, direction");
+    else if (field == "cone") set_cone(*light.mutable_cone());
+    else refuse(option, setting, "a light has the fields intensity, position, direction, cone");
   } else {
     refuse(option, setting, "the part must be material or light");
   }
@@ -111,6 +122,30 @@ v1::Edit edit_of_dim(const std::string& dim) {
   } else {
     refuse(option, dim, "the part must be light or object");
   }
+  return edit;
+}
+
+v1::Edit edit_of_web(const std::string& web) {
+  const auto equals = web.find('=');
+  if (equals == std::string::npos) refuse("--web", web, "must be NAME=FILE, with the name of a luminaire");
+  v1::Edit edit;
+  edit.mutable_light()->set_name(web.substr(0, equals));
+  *edit.mutable_light()->mutable_web() = encode(*read_luminaire_file(web.substr(equals + 1)).web);
+  return edit;
+}
+
+v1::Edit edit_of_absorption(const std::string& absorption) {
+  const auto n = numbers_of("--absorption", absorption, absorption, 3);
+  v1::Edit edit;
+  *edit.mutable_medium()->mutable_absorption_per_meter() = encode(Rgb{n[0], n[1], n[2]});
+  return edit;
+}
+
+v1::Edit edit_of_copy(const std::string& copy) {
+  const Named named = split_object("--copy", copy);
+  v1::Edit edit;
+  edit.mutable_copy()->set_name(named.name);
+  edit.mutable_copy()->set_of(named.value);
   return edit;
 }
 

@@ -11,8 +11,14 @@ namespace alvor {
 v1::Edit edit_of_setting(const std::string& setting);
 /// Returns the edit of `--dim PART:NAME=FACTOR`. Throws Failure (usage) that names the option.
 v1::Edit edit_of_dim(const std::string& dim);
-/// Returns the edits of `--move NAME=X,Y,Z`, `--turn NAME=DEGREES`, `--hide NAME` and `--show NAME`, of objects. Throw Failure
-/// (usage) that names the option.
+/// Returns the edit of `--web NAME=FILE`, a photometric file. Throws Failure (usage, or no input) that names the option or the
+/// file.
+v1::Edit edit_of_web(const std::string& web);
+/// Returns the edit of `--absorption R,G,B`. Throws Failure (usage) that names the option.
+v1::Edit edit_of_absorption(const std::string& absorption);
+/// Returns the edits of `--copy NEW=NAME`, `--move NAME=X,Y,Z`, `--turn NAME=DEGREES`, `--hide NAME` and `--show NAME`, of
+/// objects. Throw Failure (usage) that names the option.
+v1::Edit edit_of_copy(const std::string& copy);
 v1::Edit edit_of_move(const std::string& move);
 v1::Edit edit_of_turn(const std::string& turn);
 v1::Edit edit_of_hidden(const std::string& name, bool hidden);

@@ -26,10 +26,11 @@ export type Bands = [number, number, number];
 export interface Parts {
   lights: { name: string; intensity: Bands; position?: Bands }[];
   /**
-   * Objects with faces, their own or of objects that hang from them. `parent`: what it hangs from. `shines`: faces of it emit. `isRoom`: it is as
-   * long and wide as the scene. `low`, `high`: of the box around it, metres from the middle of the mesh.
+   * Objects with faces, their own or of objects that hang from them. `parent`: what it hangs from. `isAdded`: by an edit, which may have been
+   * taken back. `shines`: faces of it emit. `isRoom`: it is as long and wide as the scene. `low`, `high`: of the box around it, metres from
+   * the middle of the mesh.
    */
-  objects: { name: string; parent?: string; shines: boolean; isRoom: boolean; low: Bands; high: Bands }[];
+  objects: { name: string; parent?: string; isAdded: boolean; shines: boolean; isRoom: boolean; low: Bands; high: Bands }[];
   materials: { name: string; emission: Bands; reflectance: Bands; hasTexture: boolean }[];
 }
 

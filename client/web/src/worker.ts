@@ -6,6 +6,7 @@ import type { ReadMeshResponse } from "./gen/alvor/v1/scene_service_pb";
 import { Detail, type Look, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
+import { withCopies } from "./mirror/copies";
 import { brightnessOf } from "./mirror/brightness";
 import { decodeErrors } from "./mirror/errors";
 import { BadFrame, decodeLeaves } from "./mirror/leaves";
@@ -43,6 +44,10 @@ function tablesOf(mesh: BaseMesh): { materials: Float32Array; transmittances?: F
 /** What is drawn: a mesh, the light on it, and its textures. */
 abstract class Shown {
   protected mesh!: BaseMesh;
+  /** The mesh as submitted. */
+  private messages: ReadMeshResponse[] = [];
+  /** Names of the objects that edits have added to it. */
+  private added: string[] = [];
   protected mirror!: Mirror;
   private surface!: Surface;
   /** Of the mesh's textures, when they have come. */
@@ -70,8 +75,14 @@ abstract class Shown {
   }
 
   protected setMesh(messages: ReadMeshResponse[]): void {
+    this.messages = messages;
+    this.added = [];
     this.mesh = new BaseMesh(messages);
     this.forget();
+    this.tellMesh();
+  }
+
+  private tellMesh(): void {
     const { centre, extent, isZUp, isPhotometric } = this.mesh;
     const counts = Uint8Array.from({ length: this.mesh.rootCount }, (_, root) => this.mesh.cornersOf(root));
     const corners = Float32Array.from(this.mesh.corners);
@@ -80,6 +91,10 @@ abstract class Shown {
 
   /** Shows how edits have made surfaces look. */
   protected setLook(look: Look): void {
+    const added = look.objects.filter(({ copyOf }) => copyOf !== undefined);
+    const isAsBefore = added.length === this.added.length && added.every(({ name }, n) => name === this.added[n]);
+    if (!isAsBefore) this.setObjects(withCopies(this.messages, added));
+    this.added = added.map(({ name }) => name);
     const { relit, moved } = this.mesh.applyLook(look);
     this.surface.onMaterials(relit);
     this.surface.onMoved(moved);
@@ -88,10 +103,23 @@ abstract class Shown {
     this.isChanged = true;
   }
 
-  protected forget(): void {
+  /** Edits have added objects. What is known of the light stays. */
+  private setObjects(messages: ReadMeshResponse[]): void {
+    const before = this.mirror;
+    this.mesh = new BaseMesh(messages);
+    this.beginMirror();
+    this.mirror.takeAll(before);
+    this.tellMesh();
+  }
+
+  private beginMirror(): void {
     this.surface = new Surface(this.mesh);
     this.mirror = new Mirror(this.mesh.rootCount, this.surface);
     this.surface.attach(this.mirror);
+  }
+
+  protected forget(): void {
+    this.beginMirror();
   }
 
   protected count(began: number): void {
@@ -263,6 +291,7 @@ class Watch extends Shown {
     }
     if (frame.fromRevision !== this.revision) throw new BadFrame("a frame does not follow the one before it");
     const isFirst = this.revision === 0n;
+    if (frame.look) this.setLook(frame.look);
     if (frame.leaves && frame.leaves.count > 0) {
       this.mirror.apply(decodeLeaves(frame.leaves));
       this.isChanged = true;
@@ -272,7 +301,6 @@ class Watch extends Shown {
     this.revision = frame.toRevision;
     if (frame.stateHash !== undefined && frame.stateHash !== this.mirror.stateHash)
       throw new BadFrame("the state has another hash than the server's");
-    if (frame.look) this.setLook(frame.look);
     if (frame.errors) {
       this.mirror.takeErrors(decodeErrors(frame.errors));
       this.isChanged = true;

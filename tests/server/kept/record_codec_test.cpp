@@ -28,7 +28,14 @@ void fill(Message& message, int& number) {
       case FieldDescriptor::CPPTYPE_INT64: reflection.SetInt64(&message, field, number); break;
       case FieldDescriptor::CPPTYPE_UINT32: reflection.SetUInt32(&message, field, static_cast<std::uint32_t>(number)); break;
       case FieldDescriptor::CPPTYPE_UINT64: reflection.SetUInt64(&message, field, static_cast<std::uint64_t>(number)); break;
-      case FieldDescriptor::CPPTYPE_DOUBLE: reflection.SetDouble(&message, field, number); break;
+      case FieldDescriptor::CPPTYPE_DOUBLE:
+        if (field->is_repeated()) reflection.AddDouble(&message, field, number);
+        else reflection.SetDouble(&message, field, number);
+        break;
+      case FieldDescriptor::CPPTYPE_FLOAT:
+        ASSERT_TRUE(field->is_repeated()) << field->full_name();
+        reflection.AddFloat(&message, field, static_cast<float>(number));
+        break;
       case FieldDescriptor::CPPTYPE_BOOL: reflection.SetBool(&message, field, true); break;
       case FieldDescriptor::CPPTYPE_ENUM: reflection.SetEnum(&message, field, field->enum_type()->value(1)); break;
       case FieldDescriptor::CPPTYPE_STRING:

@@ -84,6 +84,24 @@ export class Mirror {
     }
   }
 
+  /** Takes the leaves and errors of a mirror that has fewer roots. Requires: newly made. */
+  takeAll(other: Mirror): void {
+    for (let root = 0; root < other.rootCount; ++root) if (other.known[root]) this.copy(other, root);
+    this.hasErrors = other.hasErrors;
+  }
+
+  private copy(other: Mirror, root: number): void {
+    for (const leaf of other.leavesUnder(root)) {
+      const node = this.grow(root, other.path[leaf]);
+      this.hash.remove(root, this.path[node], this.rgb, 3 * node);
+      this.rgb.set(other.rgb.subarray(3 * leaf, 3 * leaf + 3), 3 * node);
+      this.hash.add(root, this.path[node], this.rgb, 3 * node);
+      this.errors[node] = other.errors[leaf];
+      this.listener?.onValue(node);
+      this.listener?.onError?.(node);
+    }
+  }
+
   /** Requires: the mirror is a state of the solve. Throws BadFrame if there are no such leaves. */
   takeErrors({ face, path, errors }: ErrorPage): void {
     this.hasErrors = true;

@@ -39,12 +39,13 @@ function objectsOf(mesh: BaseMesh): Parts["objects"] {
     if (parent !== undefined) add(extents[parent], extents[extents.length - 1 - n]);
   });
   const sides = ({ low, high }: Extent) => low.map((x, k) => high[k] - x);
-  return mesh.objects.flatMap(({ name, parent }, n) => {
+  return mesh.objects.flatMap(({ name, parent, copyOf }, n) => {
     const own = sides(extents[n]);
     const isRoom = sides(all).filter((side, k) => own[k] >= 0.9 * side).length >= 2;
     const { low, high, shines } = extents[n];
     const above = parent === undefined ? undefined : mesh.objects[parent].name;
-    return own[0] >= 0 ? [{ name, parent: above, shines, isRoom, low: low as Bands, high: high as Bands }] : [];
+    const isAdded = copyOf !== undefined;
+    return own[0] >= 0 ? [{ name, parent: above, isAdded, shines, isRoom, low: low as Bands, high: high as Bands }] : [];
   });
 }
 

@@ -197,7 +197,7 @@ export class Surface implements MirrorListener {
     this.nodeOfSlot[slot] = node;
     this.slotOfNode[node] = slot;
     for (let k = 0; k < POINTS; ++k) this.link(slot, k);
-    this.dirtySlots.add(slot, VALUES | POSITIONS | ERRORS);
+    this.dirtySlots.add(slot, VALUES | POSITIONS | ERRORS | (this.mesh.isTranslucent ? TRANSMITTED : 0));
   }
 
   /** Sets pointI and pointJ. Corners 0 to 3, then the middles of the edges that begin at them. */

@@ -7,8 +7,8 @@ import { EditSchema, EditStep_Kind, EditStepSchema, type Edit, type EditStep } f
 import type { Bands, Parts, Vector } from "../messages";
 import { DaylightControls } from "./daylight";
 import { button, byId, input, select } from "./dom";
-import { editsThatHold, textOfStep, undoAndRedo } from "./edits";
-import { ownMotion, placeOfLight, placeOfObject, type Place } from "./place";
+import { areAlike, copiesEverMade, copiesThatHold, editsThatHold, freeName, textOfStep, undoAndRedo } from "./edits";
+import { besideOf, ownMotion, placeOfLight, placeOfObject, type Place } from "./place";
 import { colourOf, linearOf } from "./srgb";
 
 /** Sends a step to the server. Returns whether it was taken. */
@@ -39,11 +39,14 @@ export class Editing {
   private centre: Bands = [0, 0, 0];
   private up = new THREE.Vector3();
   private steps: EditStep[] = [];
-  /** A slide that has not been sent, because what was sent before it has not been answered. */
-  private waiting?: { edit: Edit; continues: boolean };
+  /** Newest edits of slides that have not been sent, because what was sent before has not been answered. */
+  private waiting: { edit: Edit; continues: boolean }[] = [];
+  /** The option of a part that was asked for and is not there yet. */
+  private wanted = "";
   /** A person has chosen the part; at first the page has. */
   private isChosen = false;
-  private place?: Place;
+  /** A part was dragged, and its place is shown when the server has answered. */
+  private isDragged = false;
   private isSending = false;
   private readonly daylight = new DaylightControls((value) =>
     this.slide(create(EditSchema, { part: { case: "daylight", value: create(DaylightSchema, value) } })),
@@ -59,23 +62,33 @@ export class Editing {
     for (const id of ["edit-x", "edit-y", "edit-z"]) input(id).addEventListener("input", () => this.move());
     input("edit-turn").addEventListener("input", () => this.slide(this.objectEdit({ turn: input("edit-turn").valueAsNumber })));
     input("edit-hidden").addEventListener("change", () => this.hide(input("edit-hidden").checked));
+    button("edit-copy").addEventListener("click", () => void this.duplicate());
     button("undo").addEventListener("click", () => this.step(EditStep_Kind.UNDO));
     button("redo").addEventListener("click", () => this.step(EditStep_Kind.REDO));
     input("edit-author").value = sessionStorage.getItem("author") ?? "";
     input("edit-author").addEventListener("change", () => sessionStorage.setItem("author", input("edit-author").value));
   }
 
-  /** `centre`: of the mesh, in the scene's own coordinates. */
-  setParts(parts: Parts, centre: Bands, up: THREE.Vector3): void {
+  /** `centre`: of the mesh, in the scene's own coordinates. If `isSameScene`, what a person has chosen stays chosen. */
+  setParts(parts: Parts, centre: Bands, up: THREE.Vector3, isSameScene: boolean): void {
     [this.parts, this.centre, this.up] = [parts, centre, up];
-    this.isChosen = false;
+    if (!isSameScene) this.isChosen = false;
+    if (this.listParts() || !this.isSending) this.showPart();
+  }
+
+  /** Returns whether another part is chosen than before. */
+  private listParts(): boolean {
+    const { parts } = this;
+    const chosen = select("edit-part").value;
+    const copies = new Set(copiesThatHold(this.steps));
     const group = (label: string, kind: string, names: string[]) => {
       const options = document.createElement("optgroup");
       options.label = label;
       options.append(...names.map((name) => new Option(name, `${kind}:${name}`)));
       return names.length > 0 ? [options] : [];
     };
-    const named = (counts: (object: Parts["objects"][0]) => boolean) => parts.objects.filter(counts).map(({ name }) => name);
+    const there = parts.objects.filter(({ name, isAdded }) => !isAdded || copies.has(name));
+    const named = (counts: (object: Parts["objects"][0]) => boolean) => there.filter(counts).map(({ name }) => name);
     select("edit-part").replaceChildren(
       ...group("Lights", "light", parts.lights.map(({ name }) => name)),
       ...group("Lamps", "object", named(({ shines }) => shines)),
@@ -83,7 +96,17 @@ export class Editing {
       ...group("Materials", "material", parts.materials.map(({ name }) => name)),
       new Option("Sun and sky", `${DAYLIGHT}:`),
     );
-    this.showPart();
+    const isListed = (value: string) => [...select("edit-part").options].some((option) => option.value === value);
+    if (this.wanted && isListed(this.wanted)) {
+      select("edit-part").value = this.wanted;
+      this.wanted = "";
+      this.isChosen = true;
+    } else if (isListed(chosen)) {
+      select("edit-part").value = chosen;
+    } else {
+      this.isChosen = false;
+    }
+    return select("edit-part").value !== chosen;
   }
 
   /** The steps that the solve has; none where no solve is shown. */
@@ -97,7 +120,8 @@ export class Editing {
     button("undo").disabled = !undo;
     button("redo").disabled = !redo;
     byId("edit-news").textContent = newest ? textOfStep(newest) : "";
-    if (newest && newest.revision > before && !this.isSending && !this.waiting) this.showPart();
+    const isOther = (newest?.revision ?? 0n) !== before && this.parts.objects.some(({ isAdded }) => isAdded) && this.listParts();
+    if (isOther || (newest && newest.revision > before && !this.isSending)) this.showPart();
   }
 
   /** Chooses what a person clicked at: an object, or the material of what is no object or the room itself. */
@@ -115,13 +139,12 @@ export class Editing {
     this.showPart();
   }
 
-  /** The chosen part goes this far from where it was shown, in the scene's axes; `begins` a step of its own. */
-  drag(by: Vector, begins: boolean): void {
-    if (!this.place) return;
-    const { value, axes } = this.place;
-    const local = new THREE.Vector3(by.x, by.y, by.z).applyMatrix4(axes.clone().invert()).add(new THREE.Vector3(value.x, value.y, value.z));
-    this.tellPosition(local.toArray());
-    this.move(begins);
+  /** The chosen part goes this far from a place, in the scene's axes; `begins` a step of its own. */
+  drag({ value, axes }: Place, by: Vector, begins: boolean): void {
+    const local = new THREE.Vector3(by.x, by.y, by.z).applyMatrix4(axes.clone().invert());
+    this.isDragged = true;
+    this.moveTo({ x: value.x + local.x, y: value.y + local.y, z: value.z + local.z }, begins);
+    this.tellPosition([value.x + local.x, value.y + local.y, value.z + local.z]);
   }
 
   private showChosen(): void {
@@ -153,7 +176,8 @@ export class Editing {
     const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
     for (const { part } of edits) {
       if (part.case === "daylight" && light && !light.position) [dim, intensity] = [1, light.intensity]; // it takes the place of far lights
-      if (part.case === "daylight" || part.case !== kind || part.value.name !== name) continue;
+      if (part.case !== "light" && part.case !== "object" && part.case !== "material") continue;
+      if (part.case !== kind || part.value.name !== name) continue;
       if (part.case !== "material") dim = part.value.dim ?? dim;
       if (part.case === "object") hidden = part.value.hidden ?? hidden;
       if (part.case === "light" && part.value.intensity) intensity = bands(part.value.intensity);
@@ -175,14 +199,15 @@ export class Editing {
     return set.at(-1);
   }
 
-  private showPart(): void {
+  /** Shows what holds of the chosen part. */
+  showPart(): void {
     this.daylight.show(this.chosen.kind === DAYLIGHT, this.presentDaylight());
     const { isLamp, dim, colour, position, turn, hidden } = this.present();
     byId("edit-dim-label").hidden = !isLamp;
     byId("edit-colour-label").hidden = !colour;
     byId("edit-place").hidden = !position;
     byId("edit-place-title").textContent = turn === undefined ? "Position, m" : "Moved by, m";
-    byId("edit-turn-label").hidden = byId("edit-hidden-label").hidden = turn === undefined;
+    byId("edit-turn-label").hidden = byId("edit-object").hidden = turn === undefined;
     input("edit-turn").value = String(turn ?? 0);
     byId("edit-turn-degrees").textContent = `${turn ?? 0}°`;
     input("edit-hidden").checked = hidden;
@@ -190,8 +215,10 @@ export class Editing {
     this.tellDim();
     if (colour) input("edit-colour").value = colourOf(colour);
     if (position) this.tellPosition(position);
-    this.place = position && this.placeOf(position);
-    this.showPlace(this.isChosen && !hidden && !byId("edit-form").hidden ? this.place : undefined);
+    const place = position && this.placeOf(position);
+    byId("edit-drag").hidden = !place || hidden;
+    button("edit-copy").disabled = !place;
+    this.showPlace(this.isChosen && !hidden && !byId("edit-form").hidden ? place : undefined);
   }
 
   private placeOf(position: Bands): Place | undefined {
@@ -230,11 +257,14 @@ export class Editing {
   }
 
   /** Moves the part to where the fields say. */
-  private move(begins = false): void {
+  private move(): void {
     const [x, y, z] = ["edit-x", "edit-y", "edit-z"].map((id) => input(id).valueAsNumber);
-    if (![x, y, z].every(Number.isFinite)) return;
-    if (this.chosen.kind === "object") return this.slide(this.objectEdit({ move: { x, y, z } }), begins);
-    this.slide(create(EditSchema, { part: { case: "light", value: { name: this.chosen.name, position: { x, y, z } } } }), begins);
+    if ([x, y, z].every(Number.isFinite)) this.moveTo({ x, y, z });
+  }
+
+  private moveTo(to: Vector, begins = false): void {
+    if (this.chosen.kind === "object") return this.slide(this.objectEdit({ move: to }), begins);
+    this.slide(create(EditSchema, { part: { case: "light", value: { name: this.chosen.name, position: to } } }), begins);
   }
 
   private objectEdit(change: { move?: { x: number; y: number; z: number }; turn?: number; hidden?: boolean }): Edit {
@@ -244,28 +274,45 @@ export class Editing {
 
   /** Sends the newest of the edits of a slide as soon as the one before was answered; `begins` another slide. */
   private slide(edit: Edit, begins = false): void {
-    const continues = !begins && (this.waiting?.continues ?? true);
-    this.waiting = { edit, continues };
+    const last = this.waiting.at(-1);
+    if (last && !begins && areAlike(last.edit, edit)) last.edit = edit;
+    else this.waiting.push({ edit, continues: !begins });
     if (!this.isSending) void this.sendWaiting();
   }
 
   private async sendWaiting(): Promise<void> {
     this.isSending = true;
     try {
-      while (this.waiting) {
-        const { edit, continues } = this.waiting;
-        this.waiting = undefined;
-        const isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [edit], author: this.author, continues }));
-        if (!isTaken && !this.waiting) this.showPart();
+      let isTaken = true;
+      for (let next = this.waiting.shift(); next; next = this.waiting.shift()) {
+        const { edit, continues } = next;
+        isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [edit], author: this.author, continues }));
       }
+      if (!isTaken || this.isDragged) this.showPart();
     } finally {
-      this.waiting = undefined;
-      this.isSending = false;
+      this.waiting = [];
+      this.isSending = this.isDragged = false;
     }
   }
 
   private hide(hidden: boolean): void {
     void this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [this.objectEdit({ hidden })], author: this.author }));
+  }
+
+  /** Puts a copy of the chosen object beside it. */
+  private async duplicate(): Promise<void> {
+    const { name } = this.chosen;
+    const source = this.parts.objects.find((object) => object.name === name)!;
+    const { move, turn } = besideOf(source, this.parts, editsThatHold(this.steps), this.up);
+    const copy = freeName(name, new Set([...this.parts.objects.map((object) => object.name), ...copiesEverMade(this.steps)]));
+    const wanted = `object:${copy}`;
+    this.wanted = wanted;
+    const edits = [
+      create(EditSchema, { part: { case: "copy", value: { name: copy, of: name } } }),
+      create(EditSchema, { part: { case: "object", value: { name: copy, turn, move } } }),
+    ];
+    const isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits, author: this.author }));
+    if (!isTaken && this.wanted === wanted) this.wanted = "";
   }
 
   private step(kind: EditStep_Kind): void {

@@ -22,6 +22,34 @@ export function editsThatHold(steps: EditStep[]): Edit[] {
   return replay(steps).hold.flatMap(({ edits }) => edits);
 }
 
+/** Returns the names of objects that edits have added. */
+export function copiesThatHold(steps: EditStep[]): string[] {
+  return editsThatHold(steps).flatMap(({ part }) => (part.case === "copy" ? [part.value.name] : []));
+}
+
+/** Returns the names of objects that edits have added, with those that were taken back. */
+export function copiesEverMade(steps: EditStep[]): string[] {
+  return steps.flatMap(({ edits }) => edits).flatMap(({ part }) => (part.case === "copy" ? [part.value.name] : []));
+}
+
+/** Returns whether two edits set the same fields of the same part. */
+export function areAlike(a: Edit, b: Edit): boolean {
+  const fields = ({ part }: Edit) => {
+    const set = Object.entries(part.value ?? {}).filter(([name, value]) => value !== undefined && !name.startsWith("$"));
+    return [part.case, ...set.map(([name, value]) => (name === "name" ? value : name))].join();
+  };
+  return fields(a) === fields(b);
+}
+
+/** Returns a name for a copy: "chair.003 copy", "chair.003 copy 2". */
+export function freeName(of: string, taken: Set<string>): string {
+  const stem = `${of.replace(/ copy( \d+)?$/, "")} copy`;
+  for (let n = 1; ; ++n) {
+    const name = n === 1 ? stem : `${stem} ${n}`;
+    if (!taken.has(name)) return name;
+  }
+}
+
 /** Returns whether there is a step to take back, and one to repeat. */
 export function undoAndRedo(steps: EditStep[]): { undo: boolean; redo: boolean } {
   const { hold, undone } = replay(steps);
@@ -33,6 +61,8 @@ const percent = (share: number) => `${Math.round(100 * share)} %`;
 function textOfEdit({ part }: Edit): string {
   if (part.case === undefined) return "something";
   if (part.case === "daylight") return "sun and sky";
+  if (part.case === "medium") return "the air";
+  if (part.case === "copy") return `${part.value.name}, added`;
   const { name } = part.value;
   if (part.case === "object" && part.value.hidden !== undefined) return `${name}, ${part.value.hidden ? "taken away" : "brought back"}`;
   if (part.case === "object" && part.value.move) return `${name}, moved`;

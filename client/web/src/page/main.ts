@@ -19,7 +19,7 @@ import { Editing } from "./editing";
 import { addressOf, applyView, solveIn, viewIn } from "./link";
 import { takeImages, withdrawWarning } from "./textures";
 import { setPhotometric } from "./units";
-import { upOf } from "./place";
+import { upOf, type Place } from "./place";
 import { draw, lookOf } from "./viewing";
 
 const EXAMPLES = ["cornell_box", "furnished_room", "slats_and_boxes", "vault", "enfilade"];
@@ -36,9 +36,12 @@ const api = connect(location.origin, () => token);
 const room = new Room(byId<HTMLCanvasElement>("room"));
 const chart = new Chart(byId("chart"));
 let isStale = true;
-const handle = new Handle(room, byId("room"), {
-  onHold: (isHeld) => cameras.hold(isHeld),
-  onDrag: (by, begins) => editing.drag(by, begins),
+const handle = new Handle<Place>(room, byId("room"), {
+  onHold: (isHeld) => {
+    cameras.hold(isHeld);
+    if (!isHeld) editing.showPart();
+  },
+  onDrag: (place, by, begins) => editing.drag(place, by, begins),
   onChange: () => (isStale = true),
 });
 const editing = new Editing(
@@ -376,7 +379,7 @@ async function edit(step: EditStep): Promise<void> {
 
 function take(message: FromWorker): void {
   switch (message.kind) {
-    case "mesh":
+    case "mesh": {
       materials = message.materials as Float32Array<ArrayBuffer>;
       centre = message.centre;
       room.setMaterials(materials, message.transmittances);
@@ -384,12 +387,14 @@ function take(message: FromWorker): void {
       isZUp = message.isZUp;
       setPhotometric(message.isPhotometric);
       room.setUp(isZUp);
-      handle.setScene(upOf(isZUp), message.extent);
-      editing.setParts(message.parts, centre, upOf(isZUp));
-      if (!solve || framedScene !== sceneOf(solve.name)) cameras.frame(message.corners, message.counts, message.extent, isZUp);
+      const isSameScene = solve !== undefined && framedScene === sceneOf(solve.name); // to which an object was added
+      if (!isSameScene) handle.setScene(upOf(isZUp), message.extent);
+      editing.setParts(message.parts, centre, upOf(isZUp), isSameScene);
+      if (!isSameScene) cameras.frame(message.corners, message.counts, message.extent, isZUp);
       framedScene = solve ? sceneOf(solve.name) : "";
       goToCamera();
       return;
+    }
     case "look":
       materials = message.materials as Float32Array<ArrayBuffer>;
       room.setMaterials(materials, message.transmittances);

@@ -57,6 +57,23 @@ export function placeOfObject(object: Parts["objects"][0], parts: Parts, edits: 
   };
 }
 
+/** Returns what brings a copy of an object beside the object: a copy hangs from nothing. */
+export function besideOf(object: Parts["objects"][0], parts: Parts, edits: Edit[], up: THREE.Vector3): { move: Vector; turn: number } {
+  const box = boxOf(object);
+  const motion = motionOf(object, parts, edits, up);
+  const before = box.getCenter(new THREE.Vector3());
+  const there = box.clone().applyMatrix4(motion).getSize(new THREE.Vector3());
+  const longest = Math.max(there.x, there.y, there.z);
+  const move = before.clone().applyMatrix4(motion).sub(before);
+  move.x += 1.1 * Math.max(there.x, longest / 4); // a thin panel's copy is to be seen beside it
+  return { move: { x: move.x, y: move.y, z: move.z }, turn: turnOf(object, parts, edits) };
+}
+
+function turnOf({ name, parent }: Parts["objects"][0], parts: Parts, edits: Edit[]): number {
+  const above = parts.objects.find((object) => object.name === parent);
+  return ownMotion(name, edits).turn + (above ? turnOf(above, parts, edits) : 0);
+}
+
 /** Returns where a light at `position` lies. `centre`: of the mesh, in the scene's own coordinates. */
 export function placeOfLight([x, y, z]: Bands, centre: Bands): Place {
   const at = new THREE.Vector3(x, y, z).sub(new THREE.Vector3(...centre));

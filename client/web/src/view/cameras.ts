@@ -73,6 +73,7 @@ export class Cameras {
   /** Whether the pointer does something else. */
   hold(isHeld: boolean): void {
     this.isHeld = isHeld;
+    this.turn = null;
     this.orbit.enabled = !isHeld && !this.isWalking;
   }
 

@@ -16,23 +16,23 @@ export interface MovedBox {
   motion: THREE.Matrix4;
 }
 
-export interface HandleEvents {
+export interface HandleEvents<Place extends MovedBox> {
   /** The part is held: the camera must not move with the pointer. */
   onHold: (isHeld: boolean) => void;
-  /** The part is to be this far from where setPlace() had it; `begins` another drag. */
-  onDrag: (by: Vector, begins: boolean) => void;
+  /** The part is to be this far from `place`, which setPlace() was given; `begins` another drag. */
+  onDrag: (place: Place, by: Vector, begins: boolean) => void;
   /** A picture must be drawn again. */
   onChange: () => void;
 }
 
-export class Handle {
+export class Handle<Place extends MovedBox> {
   private readonly lines = new THREE.LineSegments(
     new THREE.EdgesGeometry(new THREE.BoxGeometry()),
     new THREE.LineBasicMaterial({ color: 0x4da3ff, depthTest: false, transparent: true }),
   );
   private up = new THREE.Vector3(0, 1, 0);
   private extent = 1;
-  private place?: MovedBox;
+  private place?: Place;
   /** How far the part went since setPlace(). */
   private readonly moved = new THREE.Vector3();
   private held?: { pointer: number; at: THREE.Vector3; before: THREE.Vector3; isVertical: boolean; isMoved: boolean };
@@ -41,7 +41,7 @@ export class Handle {
   constructor(
     private readonly room: Room,
     private readonly canvas: HTMLCanvasElement,
-    private readonly events: HandleEvents,
+    private readonly events: HandleEvents<Place>,
   ) {
     this.lines.matrixAutoUpdate = this.lines.visible = false;
     this.lines.renderOrder = 1;
@@ -60,8 +60,8 @@ export class Handle {
     this.setPlace(undefined);
   }
 
-  /** Of the chosen part; none if nothing that can be moved is chosen. While a person holds a part, its place is where it is dragged to. */
-  setPlace(place: MovedBox | undefined): void {
+  /** Of the chosen part; none if nothing that can be moved is chosen. Another place of a part that a person holds is not heeded. */
+  setPlace(place: Place | undefined): void {
     if (this.held && place) return;
     this.release();
     this.place = place && { ...place, box: this.largeEnough(place.box) };
@@ -156,6 +156,6 @@ export class Handle {
   private go(moved: THREE.Vector3, begins: boolean): void {
     this.moved.copy(moved);
     this.show();
-    this.events.onDrag({ x: moved.x, y: moved.y, z: moved.z }, begins);
+    this.events.onDrag(this.place!, { x: moved.x, y: moved.y, z: moved.z }, begins);
   }
 }

@@ -2,8 +2,8 @@ import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import { create } from "@bufbuild/protobuf";
 import { EditSchema } from "../../src/gen/alvor/v1/solve_service_pb";
-import type { Parts } from "../../src/messages";
-import { placeOfLight, placeOfObject } from "../../src/page/place";
+import type { Bands, Parts } from "../../src/messages";
+import { besideOf, placeOfLight, placeOfObject } from "../../src/page/place";
 import { axesOfView, draggedTo, grabbedBy } from "../../src/view/dragging";
 
 const UP = new THREE.Vector3(0, 0, 1);
@@ -16,8 +16,8 @@ const PARTS: Parts = {
   lights: [],
   materials: [],
   objects: [
-    { name: "table", shines: false, isRoom: false, low: [0, 0, 0], high: [2, 1, 1] },
-    { name: "lamp", parent: "table", shines: true, isRoom: false, low: [1.6, 0.4, 0.8], high: [1.8, 0.6, 1] },
+    { name: "table", isAdded: false, shines: false, isRoom: false, low: [0, 0, 0], high: [2, 1, 1] },
+    { name: "lamp", parent: "table", isAdded: false, shines: true, isRoom: false, low: [1.6, 0.4, 0.8], high: [1.8, 0.6, 1] },
   ],
 };
 const objectEdit = (name: string, change: { move?: { x: number; y: number; z: number }; turn?: number }) =>
@@ -34,6 +34,18 @@ describe("the place of a part", () => {
     expect(lamp.value).toMatchObject({ x: -1, y: 0, z: 0 });
     near(v(1, 0, 0).applyMatrix4(lamp.axes), v(0, 1, 0));
     near(v(1, 0, 0).applyMatrix4(place("table", edits).axes), v(1, 0, 0));
+  });
+  it("of a copy is beside the other, as it is turned, whatever that hangs from", () => {
+    const edits = [objectEdit("table", { turn: 90, move: { x: 0, y: 5, z: 0 } }), objectEdit("lamp", { turn: 10 })];
+    const lamp = PARTS.objects[1];
+    const { move, turn } = besideOf(lamp, PARTS, edits, UP);
+    expect(turn).toBe(100);
+    // The lamp's middle (1.7, 0.5) is at (1, 6.2), and the copy goes along x by a little more than its length.
+    expect(1.7 + move.x).toBeGreaterThan(1.2);
+    expect(1.7 + move.x).toBeLessThan(1.4);
+    expect(0.5 + move.y).toBeCloseTo(6.2, 9);
+    const panel = { ...lamp, parent: undefined, low: [1, 0, 0] as Bands, high: [1, 2, 2] as Bands };
+    expect(besideOf(panel, PARTS, [], UP).move.x).toBeGreaterThan(0.4);
   });
   it("of a light is its position", () => {
     const { box, value } = placeOfLight([3, 4, 5], [1, 1, 1]);

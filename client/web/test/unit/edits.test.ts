@@ -1,11 +1,11 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { DaylightSchema, ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
-import { EditStep_Kind, EditStepSchema, LookSchema } from "../../src/gen/alvor/v1/solve_service_pb";
+import { EditSchema, EditStep_Kind, EditStepSchema, LookSchema } from "../../src/gen/alvor/v1/solve_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { partsOf } from "../../src/mirror/parts";
 import { choiceOf, clockOf, daylightOf, type DaylightChoice } from "../../src/page/daylight";
-import { editsThatHold, textOfStep, undoAndRedo } from "../../src/page/edits";
+import { areAlike, copiesEverMade, copiesThatHold, editsThatHold, freeName, textOfStep, undoAndRedo } from "../../src/page/edits";
 import { colourOf, linearOf } from "../../src/page/srgb";
 
 const dim = (name: string, share: number) =>
@@ -23,6 +23,25 @@ describe("steps of edits", () => {
     expect(undoAndRedo([])).toEqual({ undo: false, redo: false });
     expect(undoAndRedo([dim("a", 1), undo])).toEqual({ undo: false, redo: true });
     expect(undoAndRedo([dim("a", 1), undo, dim("b", 1)])).toEqual({ undo: true, redo: false });
+  });
+
+  it("are alike where they set the same of the same part", () => {
+    const object = (name: string, change: object) => create(EditSchema, { part: { case: "object", value: { name, ...change } } });
+    const light = create(EditSchema, { part: { case: "light", value: { name: "a", dim: 1 } } });
+    expect(areAlike(object("a", { dim: 1 }), object("a", { dim: 0 }))).toBe(true);
+    expect(areAlike(object("a", { dim: 1 }), object("b", { dim: 1 }))).toBe(false);
+    expect(areAlike(object("a", { dim: 1 }), object("a", { turn: 1 }))).toBe(false);
+    expect(areAlike(object("a", { dim: 1 }), light)).toBe(false);
+  });
+
+  it("give copies names that are free", () => {
+    expect(freeName("chair.003", new Set())).toBe("chair.003 copy");
+    expect(freeName("chair.003 copy", new Set(["chair.003 copy", "chair.003 copy 2"]))).toBe("chair.003 copy 3");
+    const copy = create(EditSchema, { part: { case: "copy", value: { name: "b", of: "a" } } });
+    const made = create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [copy] });
+    expect(copiesThatHold([made])).toEqual(["b"]);
+    expect(copiesThatHold([made, undo])).toEqual([]);
+    expect(copiesEverMade([made, undo])).toEqual(["b"]);
   });
 
   it("are told with who made them", () => {
