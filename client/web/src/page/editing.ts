@@ -147,6 +147,11 @@ export class Editing {
     this.tellPosition([value.x + local.x, value.y + local.y, value.z + local.z]);
   }
 
+  /** A drag has ended: the part is shown where the server has it, when all was answered. */
+  dropped(): void {
+    if (!this.isSending) this.showPart();
+  }
+
   private showChosen(): void {
     this.isChosen = true;
     this.showPart();
@@ -199,8 +204,7 @@ export class Editing {
     return set.at(-1);
   }
 
-  /** Shows what holds of the chosen part. */
-  showPart(): void {
+  private showPart(): void {
     this.daylight.show(this.chosen.kind === DAYLIGHT, this.presentDaylight());
     const { isLamp, dim, colour, position, turn, hidden } = this.present();
     byId("edit-dim-label").hidden = !isLamp;

@@ -39,7 +39,7 @@ let isStale = true;
 const handle = new Handle<Place>(room, byId("room"), {
   onHold: (isHeld) => {
     cameras.hold(isHeld);
-    if (!isHeld) editing.showPart();
+    if (!isHeld) editing.dropped();
   },
   onDrag: (place, by, begins) => editing.drag(place, by, begins),
   onChange: () => (isStale = true),
