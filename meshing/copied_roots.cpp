@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -12,29 +13,55 @@ namespace alvor {
 
 namespace {
 
-/// The numbers that belong to a copy, by those of what was copied.
-struct CopyNumbers {
-  std::unordered_map<std::uint32_t, std::uint32_t> first_face;  // by object of which faces are copied
-  std::unordered_map<std::uint32_t, std::uint32_t> roots, vertices;
-};
+using Numbers = std::unordered_map<std::uint32_t, std::uint32_t>;
 
-/// Returns the first face of the copy of each object that is copied, by object.
-std::unordered_map<std::uint32_t, std::uint32_t> first_faces(std::span<const SceneObject> objects, const SceneObject& copy) {
-  std::unordered_map<std::uint32_t, std::uint32_t> first;
-  std::uint32_t next = copy.first_face;
-  for (std::uint32_t n = *copy.copy_of; n < objects.size(); ++n) {
-    if (n != *copy.copy_of && !(objects[n].parent && first.contains(*objects[n].parent))) continue;
-    first[n] = next;
-    next += objects[n].face_count;
-  }
-  return first;
+std::uint32_t number_in(const Numbers& numbers, std::uint32_t of, std::uint32_t otherwise) {
+  const auto found = numbers.find(of);
+  return found == numbers.end() ? otherwise : found->second;
 }
 
-std::uint32_t face_of_copy(const CopyNumbers& numbers, std::span<const SceneObject> objects, std::uint32_t face) {
-  if (face == InputFaces::none) return face;
-  const auto object = object_of_face(objects, face);
-  const auto first = object ? numbers.first_face.find(static_cast<std::uint32_t>(*object)) : numbers.first_face.end();
-  return first == numbers.first_face.end() ? InputFaces::none : first->second + (face - objects[*object].first_face);
+/// A copy of an object: what numbers its parts have, by the numbers of the parts that they are copies of.
+struct CopiedObject {
+  std::span<const SceneObject> objects;
+  Numbers first_face;  // by object of which faces are copied
+  Numbers roots, vertices;
+
+  std::uint32_t face(std::uint32_t of) const {
+    const auto object = of == InputFaces::none ? std::nullopt : object_of_face(objects, of);
+    const auto first = object ? first_face.find(static_cast<std::uint32_t>(*object)) : first_face.end();
+    return first == first_face.end() ? InputFaces::none : first->second + (of - objects[*object].first_face);
+  }
+
+  /// Returns the copy of a root. Its vertices get numbers from `next_vertex` on.
+  RootPatch copy_of(RootPatch root, std::uint32_t& next_vertex) {
+    root.input = {face(root.input.first), face(root.input.second)};
+    for (int c = 0; c < root.corner_count; ++c) {
+      const auto [vertex, is_new] = vertices.try_emplace(root.vertex[c], next_vertex);
+      next_vertex += is_new;
+      root.vertex[c] = vertex->second;
+    }
+    root.twin = number_in(roots, root.twin, RootPatch::no_twin);
+    if (root.twin == RootPatch::no_twin) root.is_behind = false;
+    return root;
+  }
+
+  /// Returns the neighbour of a copied root; none where the other root is not copied.
+  std::optional<Neighbour> copy_of(std::optional<Neighbour> neighbour) const {
+    const auto there = neighbour ? roots.find(neighbour->root) : roots.end();
+    if (there == roots.end()) return std::nullopt;
+    neighbour->root = there->second;
+    return neighbour;
+  }
+};
+
+CopiedObject copied_object(std::span<const SceneObject> objects, const SceneObject& copy) {
+  CopiedObject copied{.objects = objects, .first_face = {}, .roots = {}, .vertices = {}};
+  std::uint32_t next = copy.first_face;
+  for (const std::uint32_t source : objects_with_hanging(objects, *copy.copy_of)) {
+    copied.first_face.emplace(source, next);
+    next += objects[source].face_count;
+  }
+  return copied;
 }
 
 }  // namespace
@@ -48,37 +75,20 @@ void BaseMesh::append_copies(std::span<const SceneObject> objects) {
     for (int c = 0; c < roots_[r].corner_count; ++c) next_vertex = std::max(next_vertex, roots_[r].vertex[c] + 1);
     if (const auto object = object_of_face(objects, roots_[r].input.first)) roots_of[*object].push_back(r);
   }
-  for (std::size_t copy = objects_.size(); copy < objects.size(); ++copy) {
-    CopyNumbers numbers{.first_face = first_faces(objects, objects[copy]), .roots = {}, .vertices = {}};
+  for (std::size_t n = objects_.size(); n < objects.size(); ++n) {
+    CopiedObject copied = copied_object(objects, objects[n]);
     std::vector<std::uint32_t> sources;
-    for (const auto& [object, first] : numbers.first_face)
+    for (const auto& [object, first] : copied.first_face)
       sources.insert(sources.end(), roots_of[object].begin(), roots_of[object].end());
     std::ranges::sort(sources);
     for (const std::uint32_t source : sources) {
-      const auto number = static_cast<std::uint32_t>(roots_.size() + numbers.roots.size());
-      numbers.roots.emplace(source, number);
-      roots_of[copy].push_back(number);
+      roots_of[n].push_back(static_cast<std::uint32_t>(roots_.size() + copied.roots.size()));
+      copied.roots.emplace(source, roots_of[n].back());
     }
     for (const std::uint32_t source : sources) {
-      RootPatch root = roots_[source];
-      root.input = {face_of_copy(numbers, objects, root.input.first), face_of_copy(numbers, objects, root.input.second)};
-      for (int c = 0; c < root.corner_count; ++c) {
-        const auto [vertex, is_new] = numbers.vertices.try_emplace(root.vertex[c], next_vertex);
-        next_vertex += is_new;
-        root.vertex[c] = vertex->second;
-      }
-      const auto twin = numbers.roots.find(root.twin);
-      root.is_behind = root.is_behind && twin != numbers.roots.end();
-      root.twin = twin == numbers.roots.end() ? RootPatch::no_twin : twin->second;
-      auto across = neighbours_[source];
-      for (auto& other : across) {
-        if (!other) continue;
-        const auto there = numbers.roots.find(other->root);
-        if (there == numbers.roots.end()) other.reset();
-        else other->root = there->second;
-      }
-      roots_.push_back(root);
-      neighbours_.push_back(across);
+      roots_.push_back(copied.copy_of(roots_[source], next_vertex));
+      auto& across = neighbours_.emplace_back();
+      std::ranges::transform(neighbours_[source], across.begin(), [&](const auto& other) { return copied.copy_of(other); });
       if (has_textures()) texture_points_.push_back(std::array(texture_points_[source]));
       if (has_colours()) corner_colours_.push_back(std::array(corner_colours_[source]));
     }

@@ -10,14 +10,21 @@ bool is_finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std:
 
 }  // namespace
 
-std::vector<std::uint32_t> faces_with_hanging(std::span<const SceneObject> objects, std::uint32_t which) {
-  std::vector<std::uint32_t> faces;
+std::vector<std::uint32_t> objects_with_hanging(std::span<const SceneObject> objects, std::uint32_t which) {
+  std::vector<std::uint32_t> found{which};
   std::vector<bool> hangs(objects.size());
   hangs[which] = true;
-  for (std::size_t n = which; n < objects.size(); ++n) {
-    if (objects[n].parent && hangs[*objects[n].parent]) hangs[n] = true;
-    for (std::uint32_t k = 0; hangs[n] && k < objects[n].face_count; ++k) faces.push_back(objects[n].first_face + k);
+  for (std::uint32_t n = which + 1; n < objects.size(); ++n) {
+    hangs[n] = objects[n].parent && hangs[*objects[n].parent];
+    if (hangs[n]) found.push_back(n);
   }
+  return found;
+}
+
+std::vector<std::uint32_t> faces_with_hanging(std::span<const SceneObject> objects, std::uint32_t which) {
+  std::vector<std::uint32_t> faces;
+  for (const std::uint32_t n : objects_with_hanging(objects, which))
+    for (std::uint32_t k = 0; k < objects[n].face_count; ++k) faces.push_back(objects[n].first_face + k);
   return faces;
 }
 

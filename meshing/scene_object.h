@@ -33,7 +33,9 @@ struct SceneObject {
   friend bool operator==(const SceneObject&, const SceneObject&) = default;
 };
 
-/// Returns the faces of an object and of those that hang from it, in the order of the objects. Requires: no fault_in(objects).
+/// Returns the numbers of an object and of those that hang from it, ascending. Requires: no fault_in(objects).
+std::vector<std::uint32_t> objects_with_hanging(std::span<const SceneObject> objects, std::uint32_t which);
+/// Returns their faces, in the order of the objects. Requires: no fault_in(objects).
 std::vector<std::uint32_t> faces_with_hanging(std::span<const SceneObject> objects, std::uint32_t which);
 
 /// Returns why object `which` cannot be part of a scene with so many faces; nothing if it can. Names are not compared.

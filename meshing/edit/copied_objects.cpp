@@ -61,6 +61,10 @@ void append_copies(Scene& scene, std::span<const SceneEdit> edits) {
   }
 }
 
+bool has_copies(std::span<const SceneEdit> edits) {
+  return std::ranges::any_of(edits, [](const SceneEdit& edit) { return std::holds_alternative<ObjectCopy>(edit); });
+}
+
 CheckedCopies::CheckedCopies(Scene& scene) : scene_(scene) {
   for (std::uint32_t n = 0; n < scene.objects.size(); ++n) {
     const SceneObject& object = scene.objects[n];

@@ -22,7 +22,10 @@ void append_copy(Scene& scene, std::string name, std::uint32_t of);
 /// back 7)". Requires: !fault_in(edits, scene).
 void append_copies(Scene& scene, std::span<const SceneEdit> edits);
 
-/// Of a scene with copies of objects and no other edit: returns whether the object is a copy that was taken back.
+/// Returns whether any edit adds a copy.
+bool has_copies(std::span<const SceneEdit> edits);
+
+/// Returns whether an object is a copy that an undo took back. Requires: its scene has copies of objects, but no other edits.
 inline bool is_taken_back(const SceneObject& object) { return object.copy_of && object.is_hidden; }
 
 /// Makes copies of objects in a scene, one after the other, after it has looked for their faults.

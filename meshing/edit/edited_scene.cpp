@@ -287,10 +287,6 @@ class Editor {
   std::map<std::size_t, ObjectEdit> object_edits_;               // by number of the object
 };
 
-}  // namespace
-
-namespace {
-
 std::optional<EditFault> first_fault(std::span<const SceneEdit> edits, auto&& fault_of) {
   for (std::size_t n = 0; n < edits.size(); ++n)
     if (std::optional<EditFault> fault = fault_of(edits[n])) {
@@ -303,17 +299,17 @@ std::optional<EditFault> first_fault(std::span<const SceneEdit> edits, auto&& fa
 }  // namespace
 
 std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene) {
-  const auto is_copy = [](const SceneEdit& edit) { return std::holds_alternative<ObjectCopy>(edit); };
-  if (std::ranges::none_of(edits, is_copy))
-    return first_fault(edits, [check = Check(scene)](const SceneEdit& edit) mutable { return std::visit(check, edit); });
+  const auto fault_of_others = [edits](Check check) {
+    return first_fault(edits, [&check](const SceneEdit& edit) { return std::visit(check, edit); });
+  };
+  if (!has_copies(edits)) return fault_of_others(Check(scene));
   Scene with_copies = scene;
   CheckedCopies copies(with_copies);
   const auto fault = first_fault(edits, [&](const SceneEdit& edit) {
     const auto* copy = std::get_if<ObjectCopy>(&edit);
     return copy ? copies.make(*copy) : std::nullopt;
   });
-  if (fault) return fault;
-  return first_fault(edits, [check = Check(with_copies)](const SceneEdit& edit) mutable { return std::visit(check, edit); });
+  return fault ? fault : fault_of_others(Check(with_copies));
 }
 
 std::optional<std::string> object_too_far(const Scene& submitted, const Scene& edited) {

@@ -34,7 +34,8 @@ struct LightEdit {
   std::optional<double> dim;  ///< multiplies its intensity, in [0, 1e6]; 0 is off
   std::optional<Rgb> intensity;
   std::optional<Vec3> position;
-  /// Of a luminaire its aim; plane 0 of its web turns with it by the shortest way from where the scene as submitted has it.
+  /// Where the light shines to. A luminaire, with plane 0 of its web, is turned to it by the shortest way from its submitted
+  /// direction.
   std::optional<Vec3> direction;
   std::optional<ConeAngles> cone;     ///< of a spot
   std::optional<PhotometricWeb> web;  ///< of a luminaire, in place of the one it has

@@ -20,7 +20,7 @@ namespace alvor {
 struct SceneContent {
   Scene scene;    ///< as it was submitted, or as edits have made it
   BaseMesh mesh;  ///< at least one root
-  /// Of an edited scene what was submitted; else null.
+  /// The content before all edits; null if `scene` is as submitted.
   std::shared_ptr<const SceneContent> submitted = nullptr;
 };
 

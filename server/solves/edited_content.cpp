@@ -63,11 +63,10 @@ bool shines(const Scene& scene) {
 
 /// Returns the fault of a step in a scene with the objects that steps before have added.
 std::optional<EditFault> fault_in(const EditStep& step, std::span<const KeptEdit> before, const Scene& submitted) {
-  std::vector<SceneEdit> copies = that_hold(before).value_or(std::vector<SceneEdit>());
-  std::erase_if(copies, [](const SceneEdit& edit) { return !std::holds_alternative<ObjectCopy>(edit); });
-  if (copies.empty()) return fault_in(step.edits, submitted);
+  const auto hold = that_hold(before);
+  if (!hold || !has_copies(*hold)) return fault_in(step.edits, submitted);
   Scene with_copies = submitted;
-  append_copies(with_copies, copies);
+  append_copies(with_copies, *hold);
   return fault_in(step.edits, with_copies);
 }
 

@@ -197,16 +197,7 @@ TEST(EditedSolve, BeginsAnewWhereNothingReflectedAndShowsNoDarknessMeanwhile) {
   for (auto revision = before.revision; revision < steps.size(); ++revision) EXPECT_EQ(steps[revision].unlit_fraction, 0);
   EXPECT_GE(steps.back().rays, before.rays);
   EXPECT_GE(steps.back().elapsed_s, before.elapsed_s);
-  const auto mean = [](const EditedSolve& solve) {
-    double sum = 0, area = 0;
-    for (const LeafValue& leaf : solve.leaves()) {
-      const double own = area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch));
-      sum += own * leaf.irradiance.mean();
-      area += own;
-    }
-    return sum / area;
-  };
-  EXPECT_NEAR(mean(edited), mean(anew), 0.05 * mean(anew));
+  EXPECT_NEAR(mean_irradiance(edited), mean_irradiance(anew), 0.05 * mean_irradiance(anew));
 }
 
 TEST(EditedSolve, GoesOnFromACheckpointOfBeforeTheEdit) {

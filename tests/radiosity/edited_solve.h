@@ -60,6 +60,19 @@ class EditedSolve {
   std::shared_ptr<LiveSolve> live_;
 };
 
+/// Returns the mean irradiance of the first `roots` root patches, by area.
+inline double mean_irradiance(const EditedSolve& solve, std::size_t roots) {
+  double sum = 0, area = 0;
+  for (const LeafValue& leaf : solve.leaves()) {
+    if (leaf.patch.root_face() >= roots) continue;
+    const double own = area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch));
+    sum += own * leaf.irradiance.mean();
+    area += own;
+  }
+  return sum / area;
+}
+inline double mean_irradiance(const EditedSolve& solve) { return mean_irradiance(solve, solve.mesh().roots().size()); }
+
 /// Returns the root mean square of the differences over the leaves, as a share of the mean; each leaf counts for the same.
 inline double difference(const std::vector<LeafValue>& a, const std::vector<LeafValue>& b) {
   EXPECT_EQ(a.size(), b.size());

@@ -56,19 +56,10 @@ TEST(MovedObjects, ACopyIsLitAsAnObjectThatWasSubmittedThereAndGoesWhenItIsTaken
     if (!is_taken_back) edits.push_back(ObjectEdit{.name = "second box", .move = by});
     solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits); });
   };
-  const auto mean = [](const EditedSolve& of, std::uint32_t roots) {
-    double sum = 0, area = 0;
-    for (const LeafValue& leaf : of.leaves()) {
-      if (leaf.patch.root_face() >= roots) continue;
-      const double own = area_of(of.mesh(), shape_of(of.mesh(), leaf.patch));
-      sum += own * leaf.irradiance.mean(), area += own;
-    }
-    return sum / area;
-  };
   const auto roots = static_cast<std::uint32_t>(solve.mesh().roots().size());
-  const double before = mean(solve, roots);
+  const double before = mean_irradiance(solve, roots);
   edit(false);
-  // The same scene with the second box as faces of its own, at the end as the copy's.
+  // The scene with the second box submitted as further faces. They come after all others, as those of the copy do.
   Scene with = submitted;
   for (std::uint32_t k = 0; k < submitted.objects[2].face_count; ++k) {
     std::vector<Vec3> corners;
@@ -79,10 +70,10 @@ TEST(MovedObjects, ACopyIsLitAsAnObjectThatWasSubmittedThereAndGoesWhenItIsTaken
   const EditedSolve anew(with, options);
   ASSERT_EQ(solve.mesh().roots().size(), anew.mesh().roots().size());
   EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
-  EXPECT_GT(std::abs(mean(solve, roots) - before), 0.002 * before) << "the box takes light away";
+  EXPECT_GT(std::abs(mean_irradiance(solve, roots) - before), 0.002 * before) << "the box takes light away";
   edit(true);
   for (const LeafValue& leaf : solve.leaves()) EXPECT_TRUE(leaf.patch.root_face() < roots || leaf.irradiance.max() == 0);
-  EXPECT_NEAR(mean(solve, roots), before, 0.04 * before);
+  EXPECT_NEAR(mean_irradiance(solve, roots), before, 0.04 * before);
 }
 
 /// A sheet of one side lies above the floor, where its back hides what is below it, and is moved or taken away.

@@ -184,8 +184,8 @@ TEST(SkyThroughAHole, BringsTheSkyComponentOfAUniformSky) {
   }
 }
 
-// Of a wall whose horizon crosses the window, each point sees the sky in the part of the window above its horizon. The lower edge
-// of that part lies on the horizon, where the sky ends.
+// The walls here stand so that the plane of a wall crosses the window: a point of such a wall sees only the part of the window
+// before its plane. One side of that part lies on the horizon, where the sky ends.
 TEST(SkyThroughAHole, WallsSeeThePartOfAWindowAboveTheirHorizon) {
   std::vector<Vec3> hole;
   Scene scene = room_with_hole(false, hole);

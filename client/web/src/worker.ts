@@ -46,8 +46,6 @@ abstract class Shown {
   protected mesh!: BaseMesh;
   /** The mesh as submitted. */
   private messages: ReadMeshResponse[] = [];
-  /** Names of the objects that edits have added to it. */
-  private added: string[] = [];
   protected mirror!: Mirror;
   private surface!: Surface;
   /** Of the mesh's textures, when they have come. */
@@ -76,7 +74,6 @@ abstract class Shown {
 
   protected setMesh(messages: ReadMeshResponse[]): void {
     this.messages = messages;
-    this.added = [];
     this.mesh = new BaseMesh(messages);
     this.forget();
     this.tellMesh();
@@ -92,9 +89,9 @@ abstract class Shown {
   /** Shows how edits have made surfaces look. */
   protected setLook(look: Look): void {
     const added = look.objects.filter(({ copyOf }) => copyOf !== undefined);
-    const isAsBefore = added.length === this.added.length && added.every(({ name }, n) => name === this.added[n]);
+    const before = this.mesh.objects.filter(({ copyOf }) => copyOf !== undefined);
+    const isAsBefore = added.length === before.length && added.every(({ name }, n) => name === before[n].name);
     if (!isAsBefore) this.setObjects(withCopies(this.messages, added));
-    this.added = added.map(({ name }) => name);
     const { relit, moved } = this.mesh.applyLook(look);
     this.surface.onMaterials(relit);
     this.surface.onMoved(moved);

@@ -75,13 +75,7 @@ export class Mirror {
   apply(leaves: Leaves): void {
     for (let n = 0; n < leaves.count; ++n)
       if (leaves.face[n] >= this.rootCount) throw new BadFrame(`root patch ${leaves.face[n]} is not in the mesh`);
-    for (let n = 0; n < leaves.count; ++n) {
-      const node = this.grow(leaves.face[n], leaves.path[n]);
-      this.hash.remove(this.root[node], this.path[node], this.rgb, 3 * node);
-      for (let band = 0; band < 3; ++band) this.rgb[3 * node + band] = leaves.rgb[3 * n + band];
-      this.hash.add(this.root[node], this.path[node], this.rgb, 3 * node);
-      this.listener?.onValue(node);
-    }
+    for (let n = 0; n < leaves.count; ++n) this.setLeaf(leaves.face[n], leaves.path[n], leaves.rgb, 3 * n);
   }
 
   /** Takes the leaves and errors of a mirror that has fewer roots. Requires: newly made. */
@@ -92,14 +86,20 @@ export class Mirror {
 
   private copy(other: Mirror, root: number): void {
     for (const leaf of other.leavesUnder(root)) {
-      const node = this.grow(root, other.path[leaf]);
-      this.hash.remove(root, this.path[node], this.rgb, 3 * node);
-      this.rgb.set(other.rgb.subarray(3 * leaf, 3 * leaf + 3), 3 * node);
-      this.hash.add(root, this.path[node], this.rgb, 3 * node);
+      const node = this.setLeaf(root, other.path[leaf], other.rgb, 3 * leaf);
       this.errors[node] = other.errors[leaf];
-      this.listener?.onValue(node);
       this.listener?.onError?.(node);
     }
+  }
+
+  /** Gives the leaf of this id the irradiance rgb[at], rgb[at + 1], rgb[at + 2], and returns it. */
+  private setLeaf(face: number, path: number, rgb: Float32Array, at: number): number {
+    const node = this.grow(face, path);
+    this.hash.remove(face, path, this.rgb, 3 * node);
+    for (let band = 0; band < 3; ++band) this.rgb[3 * node + band] = rgb[at + band];
+    this.hash.add(face, path, this.rgb, 3 * node);
+    this.listener?.onValue(node);
+    return node;
   }
 
   /** Requires: the mirror is a state of the solve. Throws BadFrame if there are no such leaves. */

@@ -22,15 +22,13 @@ export function editsThatHold(steps: EditStep[]): Edit[] {
   return replay(steps).hold.flatMap(({ edits }) => edits);
 }
 
+const addedBy = (edits: Edit[]) => edits.flatMap(({ part }) => (part.case === "copy" ? [part.value.name] : []));
+
 /** Returns the names of objects that edits have added. */
-export function copiesThatHold(steps: EditStep[]): string[] {
-  return editsThatHold(steps).flatMap(({ part }) => (part.case === "copy" ? [part.value.name] : []));
-}
+export const copiesThatHold = (steps: EditStep[]) => addedBy(editsThatHold(steps));
 
 /** Returns the names of objects that edits have added, with those that were taken back. */
-export function copiesEverMade(steps: EditStep[]): string[] {
-  return steps.flatMap(({ edits }) => edits).flatMap(({ part }) => (part.case === "copy" ? [part.value.name] : []));
-}
+export const copiesEverMade = (steps: EditStep[]) => addedBy(steps.flatMap(({ edits }) => edits));
 
 /** Returns whether two edits set the same fields of the same part. */
 export function areAlike(a: Edit, b: Edit): boolean {

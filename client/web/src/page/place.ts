@@ -1,4 +1,4 @@
-// Where the parts of a scene lie that can be moved, after the edits that hold.
+// Where objects and lights lie after edits.
 
 import * as THREE from "three";
 import type { Edit } from "../gen/alvor/v1/solve_service_pb";
