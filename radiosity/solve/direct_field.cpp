@@ -46,18 +46,30 @@ void DirectField::choose_lights() {
   OwnedLights faces = lights_of_faces(scene_, unit, [this](std::uint32_t root) { return forests_.cover(root); });
   OwnedLights others = lights_beside_faces(scene_, unit);
   for (const auto* list : {&faces, &others})
-    for (const auto& light : *list) {
-      power_ += light->power();
-      if (light->extent()) near_power_ += light->power();
-    }
+    for (const auto& light : *list) power_ += light->power();
+  for (const auto& light : faces) sent_power_ += light->power();
   if (!plan_.emission_by_rows()) owned_lights_ = std::move(faces);
   std::ranges::move(others, std::back_inserter(owned_lights_));
   for (const auto& light : owned_lights_) (light->extent() ? tree_lights_ : lights_).push_back(light.get());
+  counts_arrivals_ = std::ranges::any_of(owned_lights_, [this](const auto& light) { return !is_face(*light); });
   has_distant_lights_ = !lights_.empty();
-  if (tree_lights_.size() > most_one_by_one) light_tree_ = std::make_unique<LightTree>(tree_lights_);
-  else lights_.insert(lights_.end(), tree_lights_.begin(), tree_lights_.end());
+  if (tree_lights_.size() > most_one_by_one) {
+    light_tree_ = std::make_unique<LightTree>(tree_lights_);
+    count_tree();
+  } else {
+    lights_.insert(lights_.end(), tree_lights_.begin(), tree_lights_.end());
+  }
   std::ranges::stable_sort(lights_, std::ranges::greater{}, [](const LightSource* light) { return light->power(); });
   waiting_power_ = power_;
+}
+
+bool DirectField::is_face(const LightSource& light) const { return light.number() < forests_.mesh().roots().size(); }
+
+/// What arrives from a tree of faces and other lights is not told apart.
+void DirectField::count_tree() {
+  counts_arrivals_of_tree_ = std::ranges::none_of(tree_lights_, [this](const LightSource* light) { return is_face(*light); });
+  for (const LightSource* light : tree_lights_)
+    if (!counts_arrivals_of_tree_ && !is_face(*light)) sent_power_ += light->power();
 }
 
 void DirectField::heed_error(double error_so_far) {
@@ -72,9 +84,16 @@ void DirectField::heed_error(double error_so_far) {
 }
 
 double DirectField::emitted_power() const {
-  if (!has_distant_lights_ || waiting_power_ > 0) return power_;
-  double power = near_power_;
-  for (const NodeIndex leaf : forests_.leaves().leaves()) power += forests_.leaf_area(leaf) * from_afar_[leaf];
+  return has_distant_lights_ && waiting_power_ == 0 ? sent_power_ + arrived_power() : power_;
+}
+
+double DirectField::power_lost_on_the_way() const {
+  return counts_arrivals_ && !has_distant_lights_ && waiting_power_ == 0 ? power_ - sent_power_ - arrived_power() : 0;
+}
+
+double DirectField::arrived_power() const {
+  double power = 0;
+  for (const NodeIndex leaf : forests_.leaves().leaves()) power += forests_.leaf_area(leaf) * arrived_[leaf];
   return power;
 }
 
@@ -82,7 +101,7 @@ void DirectField::fit_to_nodes() {
   const std::size_t count = forests_.leaves().node_count();
   light_.resize(count);
   shares_.resize(count);
-  if (has_distant_lights_) from_afar_.resize(count);
+  if (counts_arrivals_) arrived_.resize(count);
   ray_level_.resize(count);
   is_known_.resize(count);
   is_lit_.resize(count);
@@ -93,7 +112,7 @@ void DirectField::hand_down(NodeIndex split_leaf) {
     const NodeIndex child = forests_.leaves().child(split_leaf, k);
     light_[child] = light_[split_leaf];
     ray_level_[child] = ray_level_[split_leaf];
-    if (has_distant_lights_) from_afar_[child] = from_afar_[split_leaf];
+    if (counts_arrivals_) arrived_[child] = arrived_[split_leaf];
     is_lit_[child] = is_lit_[split_leaf];
   }
 }
@@ -128,8 +147,8 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
   if (light_tree_) spread_out(forests_.leaves(), leaves);  // else all leaves get the light of a light at once
   const std::vector<Receiver> receivers = receivers_of(leaves, rows);
   std::vector<DirectLight> light(leaves.size());
-  if (has_distant_lights_)
-    for (const NodeIndex leaf : leaves) from_afar_[leaf] = 0;
+  if (counts_arrivals_)
+    for (const NodeIndex leaf : leaves) arrived_[leaf] = 0;
   const auto show_part = [&](std::size_t first, std::size_t count, double power, bool is_of_all) {
     show(std::span(leaves).subspan(first, count), std::span(light).subspan(first, count), is_of_all);
     const double share = unlit > 0 ? static_cast<double>(count) / static_cast<double>(unlit) : 1;
@@ -144,9 +163,12 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
       const auto part = std::span(receivers).subspan(first, count);
       const auto part_light = std::span(light).subspan(first, count);
       for (const LightSource* next : lights_) add_one(*next, part, std::span(leaves).subspan(first, count), part_light);
+      const auto part_leaves = std::span(leaves).subspan(first, count);
+      if (counts_arrivals_of_tree_) count_arrivals(part_leaves, part_light, -1);
       share(part, part_light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
         add_direct_light(scene_, *light_tree_, own, options_.seed, budget_, own_light, shadow_needs());
       });
+      if (counts_arrivals_of_tree_) count_arrivals(part_leaves, part_light, 1);
       if (budget_.settle(ranks_)) return;
       show_part(first, count, waiting, true);
     }
@@ -221,16 +243,17 @@ std::vector<DirectLight> DirectField::trace_unknown(const LightSource& next, std
 /// Adds one light to the light of `receivers`, which are these leaves.
 void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                           std::span<DirectLight> light) {
-  const bool is_distant = !next.extent();
-  if (is_distant)
-    for (std::size_t n = 0; n < leaves.size(); ++n)
-      from_afar_[leaves[n]] -= static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
+  if (!is_face(next)) count_arrivals(leaves, light, -1);
   // Summed apart from the other lights, so that the bits are the same whether shares are kept or not.
   const auto brought = shares_.keeps(next) ? trace_unknown(next, receivers, leaves) : trace_one(next, receivers);
   for (std::size_t n = 0; n < leaves.size(); ++n) light[n] += brought[n];
-  if (is_distant)
-    for (std::size_t n = 0; n < leaves.size(); ++n)
-      from_afar_[leaves[n]] += static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
+  if (!is_face(next)) count_arrivals(leaves, light, 1);
+}
+
+/// Adds the light of these leaves to what has arrived: with the sign -1 before a light is added, with 1 after it.
+void DirectField::count_arrivals(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, float sign) {
+  for (std::size_t n = 0; n < leaves.size(); ++n)
+    arrived_[leaves[n]] += sign * static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
 }
 
 void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {
@@ -265,18 +288,25 @@ double DirectField::unlit_fraction() const {
 void DirectField::save_light(PlainWriter& out) const {
   const auto leaves = forests_.leaves().leaves();
   save_at(leaves, light_, out);
-  if (has_distant_lights_) save_at(leaves, from_afar_, out);
+  if (counts_arrivals_) save_at(leaves, arrived_, out);
   save_flags(leaves, is_known_, out);
   save_flags(leaves, is_lit_, out);
 }
 
-void DirectField::load_light(PlainReader& in) {
+void DirectField::load_light(PlainReader& in, std::uint32_t version) {
   fit_to_nodes();
   const auto leaves = forests_.leaves().leaves();
   load_at(leaves, light_, in, "direct light", [](const DirectLight& light) { return is_sound(light); });
-  if (has_distant_lights_) load_at(leaves, from_afar_, in, "light from afar", [](float light) { return std::isfinite(light); });
+  const auto load_arrived = [&] {
+    load_at(leaves, arrived_, in, "light that arrived", [](float light) { return std::isfinite(light); });
+  };
+  constexpr std::uint32_t first_of_lamps = 7;  // versions before counted distant lights only
+  if (version >= first_of_lamps ? counts_arrivals_ : has_distant_lights_) load_arrived();
   load_flags(leaves, is_known_, in);
   load_flags(leaves, is_lit_, in);
+  const bool has_lamps =
+      std::ranges::any_of(owned_lights_, [this](const auto& light) { return light->extent() && !is_face(*light); });
+  if (version < first_of_lamps && has_lamps) is_known_.assign(is_known_.size(), false);
 }
 
 void DirectField::save_ray_levels(PlainWriter& out) const { save_at(forests_.leaves().leaves(), ray_level_, out); }

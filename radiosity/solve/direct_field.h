@@ -30,6 +30,9 @@ class DirectField {
   /// Returns the power that all root patches and lamps emit, and what of distant lights arrives on leaves and does not go on
   /// through them (a rough estimate of it while light is waiting). Summed over bands, in emission units times m2.
   double emitted_power() const;
+  /// Returns the power of lamps, if no light is distant, that leaves the scene or fades in the medium before it meets anything:
+  /// no row tells of it. In emission units times m2; noise may make it negative. 0 while light is waiting.
+  double power_lost_on_the_way() const;
   /// Returns the part of the emitted power whose light has not been added to leaves yet, in emission units times m2.
   double waiting_power() const { return waiting_power_; }
 
@@ -83,7 +86,7 @@ class DirectField {
   void save_waiting(PlainWriter& out) const;
   void save_ray_levels(PlainWriter& out) const;
   /// Reads what save_light() wrote. Throws BadBytes.
-  void load_light(PlainReader& in);
+  void load_light(PlainReader& in, std::uint32_t version);
   /// Reads what save_waiting() wrote. Throws BadBytes.
   void load_waiting(PlainReader& in);
   /// Reads what save_ray_levels() wrote. Throws BadBytes.
@@ -105,6 +108,10 @@ class DirectField {
   template <class Add>
   void share(std::span<const Receiver> receivers, std::span<DirectLight> light, Add&& add);
   double stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const;
+  bool is_face(const LightSource& light) const;
+  void count_tree();
+  void count_arrivals(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, float sign);
+  double arrived_power() const;
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
@@ -126,12 +133,15 @@ class DirectField {
   LightShares shares_;
   std::unique_ptr<BlockerTree> blockers_;           ///< null until shadows are exact
   bool exact_faces_ = false, exact_exits_ = false;  ///< shadows of flat lights, and of those through exits, are exact
+  /// Some light is counted by what arrives of it: rows tell what is lost of the light of faces, but not of that of others.
+  bool counts_arrivals_ = false, counts_arrivals_of_tree_ = false;
   bool has_distant_lights_ = false;
-  double near_power_ = 0;                 ///< of faces and lamps
+  double sent_power_ = 0;                 ///< of lights that are not counted so
   double power_ = 0, waiting_power_ = 0;  ///< of all lights
   std::vector<DirectLight> light_;
-  /// Irradiance from distant lights, sum of bands, but for what goes straight on through the leaf; empty if there are none.
-  std::vector<float> from_afar_;
+  /// Irradiance from lights that are counted by what arrives, sum of bands, but for what goes straight on through the leaf; empty
+  /// if there are none.
+  std::vector<float> arrived_;
   std::vector<std::uint8_t> ray_level_;  ///< see Receiver
   std::vector<bool> is_known_;           ///< the leaf has its own light of all lights
   std::vector<bool> is_lit_;             ///< the leaf shows some light: its own, its parent's, or another leaf's of the face

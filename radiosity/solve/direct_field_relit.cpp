@@ -99,14 +99,15 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   lights_.clear();
   tree_lights_.clear();
   light_tree_.reset();
-  power_ = near_power_ = 0;
+  power_ = sent_power_ = 0;
   choose_lights();
   forms_ = forms_of_lights();
   choose_shares();
   fit_to_nodes();
   const KnownLights now = known_lights();
   auto factor = before.empty() ? std::nullopt : common_factor(before, now);
-  if (factor && has_distant_lights_ && !factor->is_grey()) factor.reset();  // from_afar_ is a sum of bands
+  // What arrives is a sum of bands; where no light is counted otherwise, scale() finds it anew.
+  if (factor && counts_arrivals_ && sent_power_ > 0 && !factor->is_grey()) factor.reset();
   scale(factor.value_or(Rgb{unit_change, unit_change, unit_change}));
   if (factor) waiting_power_ = share_waiting * power_;
   else {
@@ -118,7 +119,7 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   for (const NodeIndex leaf : forests_.leaves().leaves()) {
     if (plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) continue;
     light_[leaf] = {};
-    if (has_distant_lights_) from_afar_[leaf] = 0;
+    if (counts_arrivals_) arrived_[leaf] = 0;
     is_known_[leaf] = is_lit_[leaf] = false;
   }
   return factor;
@@ -196,8 +197,13 @@ void DirectField::scale(const Rgb& factor) {
     light.variance *= change * change;
     light.origin_variance *= change * change;
   }
+  if (sent_power_ == 0 && counts_arrivals_) {
+    for (const NodeIndex leaf : forests_.leaves().leaves())
+      arrived_[leaf] = static_cast<float>(stopped_by(leaf, light_[leaf].irradiance));
+    return;
+  }
   const auto mean = static_cast<float>(factor.mean());
-  for (float& light : from_afar_) light *= mean;
+  for (float& light : arrived_) light *= mean;
 }
 
 }  // namespace alvor

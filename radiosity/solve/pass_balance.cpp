@@ -24,9 +24,9 @@ Rgb Pass::taken_up(const TransportRow& row) const {
   return sum;
 }
 
-// The light that leaves a patch is lost in the share of directions in which its row finds no front. The part of a patch on which
-// a solid stands receives nothing, and its emission is lost. Without rows the lost power is taken to be what is not accounted for
-// otherwise.
+// The light that leaves a patch is lost in the share of directions in which its row finds no front; that of a lamp, where it
+// arrives nowhere. The part of a patch on which a solid stands receives nothing, and its emission is lost. Without rows the lost
+// power is taken to be what is not accounted for otherwise.
 PowerBalance Pass::balance() const {
   const DirectField& direct = state_.direct;
   PowerBalance balance{.emitted = state_.in_watts(direct.emitted_power())};
@@ -58,7 +58,7 @@ PowerBalance Pass::balance() const {
   balance.absorbed = state_.in_watts(absorbed.sum());
   balance.unshot = state_.in_watts(exchange_->unshot_power());
   const double not_seen_again = std::max(0.0, balance.emitted - balance.absorbed - balance.unshot);
-  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(lost.sum()) : not_seen_again;
+  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(lost.sum() + direct.power_lost_on_the_way()) : not_seen_again;
   return balance;
 }
 

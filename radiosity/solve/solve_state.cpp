@@ -182,7 +182,7 @@ void SolveState::load(PlainReader& in, std::uint32_t version) {
   fit_to_nodes();
   rows.load_rows(in, version);
   field.load(in);
-  direct.load_light(in);
+  direct.load_light(in, version);
   load_at(forests.leaves().leaves(), shot, in, "shot light", [](const RelativeLight& light) { return light.is_finite(); });
   rows.load_wanted(in);
   if (version >= 4) rows.load_guides(in);

@@ -50,7 +50,7 @@ TEST_F(CommandLights, LuminairesLightARoomInLux) {
   write("room.obj", room_of_eight());
   const std::string panel = "--luminaire '" ALVOR_SCENES "/luminaires/panel.ies@1,0.8,1:0,30,45' ";
   const auto mean = [&](const std::string& options) {
-    const Ran ran = run("solve room.obj --json " + panel + options);
+    const Ran ran = run("solve --json " + panel + "room.obj " + options);
     EXPECT_EQ(ran.status, 0) << ran.err;
     return nlohmann::json::parse(ran.out);
   };

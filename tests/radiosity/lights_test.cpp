@@ -4,6 +4,7 @@
 #include "radiosity/direct/face_light.h"
 #include "radiosity/direct/lights_of_scene.h"
 #include "radiosity/plan/plan.h"
+#include "radiosity/solve/solver.h"
 #include "tests/radiosity/light_rays.h"
 #include "tests/radiosity/solved.h"
 #include "tests/scenes.h"
@@ -317,6 +318,42 @@ TEST(PowerBalance, OfTheSunCountsWhatFirstArrives) {
   EXPECT_NEAR(outcome.balance.emitted, 3 * 10 * 64, 1);  // three bands, 64 m2
   EXPECT_NEAR(outcome.balance.absorbed, 0.5 * outcome.balance.emitted, 1);
   EXPECT_NEAR(outcome.balance.lost, 0.5 * outcome.balance.emitted, 1);
+}
+
+/// Returns a floor of 4 x 4 m and a wall, and a bulb between them and the open sky.
+Scene open_corner() {
+  Scene scene;
+  scene.materials.push_back(test::grey(0, 0.5));
+  test::add_polygon(scene, {{0, 0, 0}, {0, 0, 4}, {4, 0, 4}, {4, 0, 0}}, 0);
+  test::add_polygon(scene, {{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {0, 2, 0}}, 0);
+  Light bulb{"bulb", LightKind::point, {1, 1, 1}, {2, 1.5, 2}};
+  bulb.radius = 0.1;
+  scene.lights = {bulb};
+  return scene;
+}
+
+TEST(Lamps, LightThatLeavesTheSceneIsNoError) {
+  const BaseMesh mesh(open_corner());
+  SolutionLog log;
+  const SolveOutcome outcome = solve(mesh, {.tolerance = 0.03, .max_leaves = 20'000}, log, {});
+  EXPECT_EQ(outcome.reason, StopReason::tolerance) << log.last_step().estimated_error;
+  EXPECT_NEAR(outcome.balance.gap(), 0, 0.01);
+  EXPECT_NEAR(outcome.balance.emitted, 3 * 4 * std::numbers::pi, 1e-6) << "1 W/sr in each of three bands";
+  EXPECT_GT(outcome.balance.lost, 0.4 * outcome.balance.emitted) << "the upper half, and more";
+}
+
+TEST(Lamps, LightThatFadesInTheMediumIsNoError) {
+  Scene scene = test::coloured_room();
+  scene.materials[1].emission = {};
+  scene.absorption = {0.3, 0.3, 0.3};
+  Light bulb{"bulb", LightKind::point, {1, 1, 1}, {2, 2, 4}};
+  bulb.radius = 0.1;
+  scene.lights = {bulb};
+  const BaseMesh mesh(scene);
+  SolutionLog log;
+  const SolveOutcome outcome = solve(mesh, {.tolerance = 0.05, .max_leaves = 20'000}, log, {});
+  EXPECT_EQ(outcome.reason, StopReason::tolerance) << log.last_step().estimated_error;
+  EXPECT_NEAR(outcome.balance.gap(), 0, 0.02);
 }
 
 }  // namespace

@@ -90,29 +90,35 @@ void add_edit_command(CLI::App& app) {
       .add_option("--set", options->settings,
                   "material:NAME.FIELD=R,G,B with emission, reflectance or diffuse_transmittance, or light:NAME.FIELD=X,Y,Z with "
                   "intensity, position or direction, or light:NAME.cone=INNER,OUTER in degrees")
-      ->type_name("SETTING");
+      ->type_name("SETTING")
+      ->allow_extra_args(false);
   command
       .add_option("--dim", options->dims,
                   "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off")
-      ->type_name("DIM");
+      ->type_name("DIM")
+      ->allow_extra_args(false);
   command
       .add_option("--web", options->webs,
                   "NAME=FILE: a photometric file (IES, EULUMDAT) in place of the one that a luminaire has")
-      ->type_name("WEB");
+      ->type_name("WEB")
+      ->allow_extra_args(false);
   command.add_option("--absorption", options->absorption, "Absorption coefficient of the medium, 1/m per band")
       ->type_name("R,G,B");
   command
       .add_option("--copy", options->copies, "NEW=NAME: add an object, a copy of another one as the scene was submitted with it")
-      ->type_name("COPY");
+      ->type_name("COPY")
+      ->allow_extra_args(false);
   command
       .add_option("--move", options->moves, "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it")
-      ->type_name("MOVE");
+      ->type_name("MOVE")
+      ->allow_extra_args(false);
   command
       .add_option("--turn", options->turns,
                   "NAME=DEGREES: turn an object about the vertical through its middle, counter-clockwise seen from above")
-      ->type_name("TURN");
-  command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME");
-  command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME");
+      ->type_name("TURN")
+      ->allow_extra_args(false);
+  command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME")->allow_extra_args(false);
+  command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME")->allow_extra_args(false);
   add_sky_options(command, options->sky);
   command.get_option("--north")->description("Degrees, clockwise seen from above, from the scene's north to that of --sun (0)");
   command.add_flag("--no-daylight", options->no_daylight, "Let no sun, sky or surroundings shine");

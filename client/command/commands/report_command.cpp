@@ -253,8 +253,7 @@ void add_plane_options(CLI::App& command, ReportCommand& options) {
       .add_option("--observer", options.observers,
                   "Compute the glare for an eye at E that looks at T: EX,EY,EZ,TX,TY,TZ; any number of times (four in each room)")
       ->type_name("E,T")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);
 }
 
 }  // namespace

@@ -22,8 +22,7 @@ void add_light_options(CLI::App& command, LightOptions& options) {
                   "Hang a luminaire: FILE.ies@x,y,z or FILE.ldt@x,y,z:turn,tilt,spin (metres, degrees; down if no angles); "
                   "any number of times")
       ->type_name("FILE@PLACE")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);
   command
       .add_option("--luminous-efficacy", options.efficacy,
                   "Lumens per watt of luminaires, sun and sky in a radiometric scene (179)")

@@ -34,8 +34,7 @@ void add_translucent_option(CLI::App& command, std::vector<std::string>& translu
           "Let a material scatter this share of light behind it, as cloth and paper do: one number, or one for each band; "
           "any number of times")
       ->type_name("MATERIAL=T")
-      ->expected(1)
-      ->take_all();
+      ->allow_extra_args(false);
 }
 
 void take_translucent(std::span<const std::string> translucent, v1::ImportOptions& options) {
