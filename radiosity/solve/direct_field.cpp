@@ -139,11 +139,13 @@ std::vector<Receiver> DirectField::receivers_of(std::span<const NodeIndex> leave
 
 void DirectField::add_new(const TracedRows& rows, const std::function<void()>& after_each) {
   std::vector<NodeIndex> leaves = unlit_leaves();
-  const std::size_t unlit = leaves.size();
+  const std::size_t all_unlit = leaves.size();
   std::erase_if(leaves, [&](NodeIndex leaf) {
     const NodeIndex row = forests_.row_of(leaf);
     return !rows.is_traced(row) && rows.may_be_lit(row);
   });
+  const std::size_t unlit = all_unlit - recall(leaves);
+  if (all_unlit > 0) waiting_power_ *= static_cast<double>(unlit) / static_cast<double>(all_unlit);
   if (light_tree_) spread_out(forests_.leaves(), leaves);  // else all leaves get the light of a light at once
   const std::vector<Receiver> receivers = receivers_of(leaves, rows);
   std::vector<DirectLight> light(leaves.size());
@@ -163,12 +165,11 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
       const auto part = std::span(receivers).subspan(first, count);
       const auto part_light = std::span(light).subspan(first, count);
       for (const LightSource* next : lights_) add_one(*next, part, std::span(leaves).subspan(first, count), part_light);
-      const auto part_leaves = std::span(leaves).subspan(first, count);
-      if (counts_arrivals_of_tree_) count_arrivals(part_leaves, part_light, -1);
-      share(part, part_light, [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
+      std::vector<DirectLight> brought(count);
+      share(part, std::span(brought), [&](std::span<const Receiver> own, std::span<DirectLight> own_light) {
         add_direct_light(scene_, *light_tree_, own, options_.seed, budget_, own_light, shadow_needs());
       });
-      if (counts_arrivals_of_tree_) count_arrivals(part_leaves, part_light, 1);
+      add(brought, std::span(leaves).subspan(first, count), part_light, counts_arrivals_of_tree_);
       if (budget_.settle(ranks_)) return;
       show_part(first, count, waiting, true);
     }
@@ -183,6 +184,34 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
   if (leaves.size() == unlit) waiting_power_ = 0;
 }
 
+/// Gives those leaves their light to which the shares of all lights are known, and takes them off the list. Returns how many.
+std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
+  const auto is_kept = [this](const LightSource* light) { return shares_.keeps(*light); };
+  if (light_tree_ || lights_.empty() || !std::ranges::all_of(lights_, is_kept)) return 0;
+  std::vector<std::uint8_t> is_recalled(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    DirectLight light;
+    float arrived = 0;
+    for (const LightSource* next : lights_) {
+      const auto brought = shares_.brought(*next, leaves[n]);
+      if (!brought) return;
+      light += *brought;
+      if (!is_face(*next)) arrived += stopped_by(leaves[n], brought->irradiance);
+    }
+    light_[leaves[n]] = light;
+    if (counts_arrivals_) arrived_[leaves[n]] = arrived;
+    is_recalled[n] = 1;
+  });
+  std::vector<NodeIndex> left;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    if (is_recalled[n]) note_known(leaves[n], true);
+    else left.push_back(leaves[n]);
+  }
+  const std::size_t recalled = leaves.size() - left.size();
+  leaves = std::move(left);
+  return recalled;
+}
+
 ShadowNeeds DirectField::shadow_needs() const {
   const bool has_partial_rays = std::ranges::any_of(lights_, &LightSource::has_partial_rays);
   return {plan_.needs(Feature::occlusion), plan_.needs(Feature::medium), has_partial_rays || plan_.needs(Feature::panes),
@@ -190,9 +219,9 @@ ShadowNeeds DirectField::shadow_needs() const {
 }
 
 /// Returns what a leaf keeps from going straight on of its irradiance, sum of bands. What goes on arrives on other leaves.
-double DirectField::stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const {
+float DirectField::stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const {
   const Rgb kept = Rgb{1, 1, 1} - forests_.material_of(leaf).regular_transmittance;
-  return forests_.cover(leaf) * (kept * irradiance).sum();
+  return static_cast<float>(forests_.cover(leaf) * (kept * irradiance).sum());
 }
 
 /// Collective. Calls add(receivers, light) with this rank's part of both, and shares the light.
@@ -243,25 +272,29 @@ std::vector<DirectLight> DirectField::trace_unknown(const LightSource& next, std
 /// Adds one light to the light of `receivers`, which are these leaves.
 void DirectField::add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                           std::span<DirectLight> light) {
-  if (!is_face(next)) count_arrivals(leaves, light, -1);
-  // Summed apart from the other lights, so that the bits are the same whether shares are kept or not.
-  const auto brought = shares_.keeps(next) ? trace_unknown(next, receivers, leaves) : trace_one(next, receivers);
-  for (std::size_t n = 0; n < leaves.size(); ++n) light[n] += brought[n];
-  if (!is_face(next)) count_arrivals(leaves, light, 1);
+  add(shares_.keeps(next) ? trace_unknown(next, receivers, leaves) : trace_one(next, receivers), leaves, light, !is_face(next));
 }
 
-/// Adds the light of these leaves to what has arrived: with the sign -1 before a light is added, with 1 after it.
-void DirectField::count_arrivals(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, float sign) {
-  for (std::size_t n = 0; n < leaves.size(); ++n)
-    arrived_[leaves[n]] += sign * static_cast<float>(stopped_by(leaves[n], light[n].irradiance));
+/// Adds what a light brings to the light of these leaves. It was summed apart from that of other lights, so that the bits are
+/// the same whether shares are kept or not.
+void DirectField::add(std::span<const DirectLight> brought, std::span<const NodeIndex> leaves, std::span<DirectLight> light,
+                      bool counts_arrivals) {
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    light[n] += brought[n];
+    if (counts_arrivals) arrived_[leaves[n]] += stopped_by(leaves[n], brought[n].irradiance);
+  });
 }
 
 void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     light_[leaves[n]] = light[n];
-    is_known_[leaves[n]] = is_of_all;
-    if (is_of_all && !is_lit_[leaves[n]]) show_on_whole_face(leaves[n]);
+    note_known(leaves[n], is_of_all);
   }
+}
+
+void DirectField::note_known(NodeIndex leaf, bool is_of_all) {
+  is_known_[leaf] = is_of_all;
+  if (is_of_all && !is_lit_[leaf]) show_on_whole_face(leaf);
 }
 
 /// Gives the light of this leaf to all leaves of its face that show none; they show it until their own is found.

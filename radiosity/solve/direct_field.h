@@ -102,19 +102,22 @@ class DirectField {
   std::vector<DirectLight> trace_one(const LightSource& next, std::span<const Receiver> receivers);
   std::vector<DirectLight> trace_unknown(const LightSource& next, std::span<const Receiver> receivers,
                                          std::span<const NodeIndex> leaves);
+  std::size_t recall(std::vector<NodeIndex>& leaves);
   ShadowNeeds shadow_needs() const;
   void add_one(const LightSource& next, std::span<const Receiver> receivers, std::span<const NodeIndex> leaves,
                std::span<DirectLight> light);
   template <class Add>
   void share(std::span<const Receiver> receivers, std::span<DirectLight> light, Add&& add);
-  double stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const;
+  float stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const;
   bool is_face(const LightSource& light) const;
   void count_tree();
-  void count_arrivals(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, float sign);
+  void add(std::span<const DirectLight> brought, std::span<const NodeIndex> leaves, std::span<DirectLight> light,
+           bool counts_arrivals);
   double arrived_power() const;
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
+  void note_known(NodeIndex leaf, bool is_of_all);
   void show_on_whole_face(NodeIndex leaf);
 
   const Forests& forests_;

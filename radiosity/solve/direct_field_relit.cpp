@@ -198,8 +198,7 @@ void DirectField::scale(const Rgb& factor) {
     light.origin_variance *= change * change;
   }
   if (sent_power_ == 0 && counts_arrivals_) {
-    for (const NodeIndex leaf : forests_.leaves().leaves())
-      arrived_[leaf] = static_cast<float>(stopped_by(leaf, light_[leaf].irradiance));
+    for (const NodeIndex leaf : forests_.leaves().leaves()) arrived_[leaf] = stopped_by(leaf, light_[leaf].irradiance);
     return;
   }
   const auto mean = static_cast<float>(factor.mean());

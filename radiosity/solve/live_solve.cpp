@@ -93,8 +93,8 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
     const bool may_mend = state.ranks.is_alone() && state.options.form_factors != FormFactorMethod::analytic &&
                           !plan.emission_by_rows() && has_same_frame_and_neighbours(*own_mesh_, edited);
     if (!may_mend) return false;
-    const BaseMesh before = std::exchange(*own_mesh_, edited);
-    state.note_moved(before, plan, is_alike);
+    BaseMesh before = std::exchange(*own_mesh_, edited);
+    state.note_moved(std::move(before), plan, is_alike);
     has_unseen_move = true;
   } else {
     *own_mesh_ = edited;

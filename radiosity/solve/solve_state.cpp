@@ -146,22 +146,27 @@ void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   fit_to_nodes();
 }
 
-void SolveState::note_moved(const BaseMesh& before, Plan new_plan, bool reflects_as_before) {
-  const MovedRoots moved(before, mesh);
+void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before) {
+  MovedRoots roots(before, mesh);
+  move_.emplace(std::move(before), std::move(roots));
   scene = LocalScene(mesh);
   forests.note_moved();
   note_relit(std::move(new_plan), reflects_as_before);
-  direct.note_moved(moved);
-  const std::vector<NodeIndex> lost = rows.note_moved(before, moved);
-  std::vector<NodeIndex> leaves, of_moved = forests.rows().leaves();
-  for (const NodeIndex row : lost) forests.append_leaves_of_row(row, leaves);
-  std::erase_if(of_moved, [&](NodeIndex row) { return !moved.has(forests.rows().id(row).root_face()); });
+  if (!rows.carry_light()) return;
+  std::vector<NodeIndex> of_moved = forests.rows().leaves();
+  std::erase_if(of_moved, [this](NodeIndex row) { return !move_->roots.has(forests.rows().id(row).root_face()); });
+  std::vector<RelativeLight> irradiance;  // without slopes: that of light at the old place says nothing at the new one
+  for (const NodeIndex row : of_moved) irradiance.push_back(field.irradiance(row));
+  field.set(of_moved, irradiance);
+}
+
+void SolveState::mend_moved() {
+  if (!move_) return;
+  direct.note_moved(move_->roots);
+  std::vector<NodeIndex> leaves;
+  for (const NodeIndex row : rows.note_moved(move_->before, move_->roots)) forests.append_leaves_of_row(row, leaves);
   for (const NodeIndex leaf : leaves) direct.forget(leaf);
-  if (rows.carry_light()) {  // a slope of light at the old place says nothing at the new one
-    std::vector<RelativeLight> irradiance;
-    for (const NodeIndex row : of_moved) irradiance.push_back(field.irradiance(row));
-    field.set(of_moved, irradiance);
-  }
+  move_.reset();
 }
 
 void SolveState::save(PlainWriter& out) const {

@@ -4,11 +4,13 @@
 #include "radiosity/direct/emission_unit.h"
 #include "radiosity/solve/direct_field.h"
 #include "radiosity/solve/forests.h"
+#include "radiosity/solve/moved_roots.h"
 #include "radiosity/solve/row_field.h"
 #include "radiosity/solve/traced_rows.h"
 #include "solution/leaf_value.h"
 
 #include <bit>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -85,9 +87,13 @@ class SolveState {
   /// by one factor, indirect light has, too. Requires: rows and forests are those of the mesh as it is now.
   void note_relit(Plan new_plan, bool reflects_as_before);
 
-  /// Takes roots of the mesh that have moved since it was `before`, and materials and lights as note_relit() does. Light and rows
-  /// that others are not in the way of stay. Requires: one rank; no frame, neighbour or twin has changed.
-  void note_moved(const BaseMesh& before, Plan new_plan, bool reflects_as_before);
+  /// Takes roots of the mesh that have moved since it was `before`, and materials and lights as note_relit() does. leaf_values()
+  /// then has the light of before; mend_moved() must be called before a pass begins. Requires: one rank; no frame, neighbour or
+  /// twin has changed.
+  void note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before);
+  /// Mends rows and forgets direct light that the roots of the last note_moved() were or are in the way of. Does nothing a
+  /// second time.
+  void mend_moved();
 
   /// Collective. Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on, with
   /// any number of ranks; all else is computed again.
@@ -97,6 +103,11 @@ class SolveState {
   void load(PlainReader& in, std::uint32_t version);
 
  private:
+  struct Move {
+    BaseMesh before;
+    MovedRoots roots;
+  };
+  std::optional<Move> move_;  ///< that rows and direct light do not heed yet
   EmissionUnit unit_{mesh};
   Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();

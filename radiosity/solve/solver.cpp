@@ -82,6 +82,7 @@ class Run {
     if (std::exchange(live_.has_unseen_move, false)) {  // objects are seen where they are, in the light of before
       publish();
       requests_.heed_edits(false);
+      state_.mend_moved();
     }
     const StopReason reason = pass_until_done();
     const bool is_as_fine_as_may_be =
