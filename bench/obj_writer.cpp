@@ -37,6 +37,11 @@ void ObjWriter::stand_at(const Place& place) {
 
 void ObjWriter::object(const std::string& name) { text_.append("o ").append(name).append("\n"); }
 
+void ObjWriter::numbered_object(const std::string& name) {
+  const std::string number = std::to_string(++numbers_[name]);
+  object(name + '.' + std::string(number.size() < 3 ? 3 - number.size() : 0, '0') + number);
+}
+
 void ObjWriter::box(const char* material, Vec3 low, Vec3 high, unsigned left_out, bool inwards) {
   const int first = vertex_count_ + 1;
   for (const double y : {low.y, high.y}) {

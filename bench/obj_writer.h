@@ -3,6 +3,7 @@
 
 #include "meshing/vec3.h"
 
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,8 @@ class ObjWriter {
 
   /// Begins an object of this name, which no other has: later faces belong to it.
   void object(const std::string& name);
+  /// Begins an object with this name and a number from 1: "desk.001".
+  void numbered_object(const std::string& name);
 
   /// Adds a box: a solid with its fronts outwards, or a room with its fronts inwards. `left_out` names faces to leave out.
   void box(const char* material, Vec3 low, Vec3 high, unsigned left_out = 0, bool inwards = false);
@@ -53,6 +56,7 @@ class ObjWriter {
   void coordinate(double metres);
 
   std::string text_;
+  std::map<std::string, int> numbers_;  ///< of the newest object of each name
   std::string_view material_;
   Place place_;
   double cosine_ = 1, sine_ = 0;

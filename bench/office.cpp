@@ -61,6 +61,7 @@ class Builder {
   void add_corridor(const Place& place, bool is_first, bool is_last) {
     const Vec3 low{0, 0, -corridor_wide / 2}, high{bay_pitch, storey_high, corridor_wide / 2};
     ObjWriter& obj = block_.obj;
+    obj.numbered_object("corridor");
     obj.stand_at(place);
     obj.box("carpet", low, high, ~bottom, true);
     obj.box("ceiling", low, high, ~top, true);
@@ -75,6 +76,7 @@ class Builder {
     DoorwayWall wall = door_wall;
     wall.from = -wall_thick / 2, wall.to = room_wide + wall_thick / 2;
     ObjWriter& obj = block_.obj;
+    obj.numbered_object("corridor_wall");
     obj.stand_at(room);
     if (!has_doorway) return obj.box("wall", {wall.from, 0, -wall_thick}, {wall.to, storey_high, -wall_thick}, ~z_low);
     add_doorway_wall(obj, "wall", wall, -wall_thick, false);
@@ -84,6 +86,7 @@ class Builder {
   void add_room(const Place& place, bool has_doorway) {
     ++block_.rooms;
     const int lamps = lamps_due(block_.rooms);
+    block_.obj.numbered_object("room");
     add_room_shell(block_.obj, place, has_doorway);
     add_lamps(block_.obj, place, lamps);
     block_.lamps += lamps;

@@ -39,11 +39,13 @@ void add_screen(ObjWriter& obj, Place place) {
 void add_workplace(Furnishing& in, double x) {
   constexpr double top_y = 0.74;
   const double desk_x = x + in.chance.between(-0.08, 0.08);
+  in.obj.numbered_object("desk");
   add_table(in.obj, "beech", in.at({desk_x, 4.55}), 1.5, 0.75, top_y);
   add_screen(in.obj, in.at({desk_x, 4.7, in.chance.between(-15, 15), top_y}));
   in.obj.stand_at(in.at({desk_x, 4.32, in.chance.between(-6, 6), top_y}));
   in.obj.box("plastic", {-0.22, 0, -0.07}, {0.22, 0.02, 0.07}, bottom);
   const char* seat = in.chance.below(2) ? "blue" : "charcoal";
+  in.obj.numbered_object("chair");
   add_chair(in.obj, seat, in.at({desk_x + in.chance.between(-0.1, 0.1), 3.85, in.chance.between(-30, 30)}));
   in.boards.push_back({in.at({desk_x + 0.35, 4.5, 0, top_y}), 0.35, 0.25, 0.2});
 }
@@ -51,6 +53,7 @@ void add_workplace(Furnishing& in, double x) {
 /// Adds a shelf with its back at z = 0 of its place.
 void add_shelf(Furnishing& in, const Place& inner) {
   constexpr double wide = 0.9, tall = 2.0, deep = 0.32, thick = 0.025, step = 0.39;
+  in.obj.numbered_object("shelf");
   in.obj.stand_at(in.at(inner));
   for (const double x : {0.0, wide - thick}) in.obj.box("beech", {x, 0, 0}, {x + thick, tall, deep}, bottom);
   in.obj.box("beech", {thick, 0, 0.005}, {wide - thick, tall - 0.005, 0.02}, bottom | x_low | x_high);
@@ -67,6 +70,7 @@ void add_far_shelf(Furnishing& in) { add_shelf(in, {room_wide - 0.02, 2.3 + in.c
 
 void add_cupboard(Furnishing& in) {
   const Place place = in.at({0.4 + in.chance.between(0, 0.6), 0.02});
+  in.obj.numbered_object("cupboard");
   in.obj.stand_at(place);
   in.obj.box("steel", {0, 0, 0}, {1.2, 1.0, 0.45}, bottom | top);
   in.obj.box("beech", {-0.01, 1.0, 0}, {1.21, 1.03, 0.48});
@@ -77,6 +81,7 @@ void add_cupboard(Furnishing& in) {
 
 void add_meeting(Furnishing& in) {
   const double x = 2.15 + in.chance.between(-0.05, 0.05);
+  in.obj.numbered_object("meeting");
   add_table(in.obj, "beech", in.at({x, 1.75}), 0.9, 0.9, 0.72);
   for (const double side : {-1.0, 1.0})
     add_chair(in.obj, "charcoal", in.at({x + 0.8 * side, 1.75, -90 * side + in.chance.between(-15, 15)}));
@@ -130,6 +135,7 @@ void furnish(ObjWriter& obj, const Place& room, int face_limit, Chance& chance) 
   // Leaves out one piece, which differs from room to room.
   for (const Piece& piece : std::span(pieces).first(pieces.size() - 1))
     if (obj.face_count() + piece.faces <= face_limit) piece.add(in);
+  obj.numbered_object("things");
   fill_boards(in, face_limit);
 }
 

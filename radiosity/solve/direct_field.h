@@ -74,8 +74,10 @@ class DirectField {
   std::optional<Rgb> note_relit(double unit_change);
 
   /// Takes roots that have moved: the next add_new() finds again what each light brings where the way to it leads by places where
-  /// they were or are. Requires: one rank; the scene is the new one, and note_relit() was called.
-  void note_moved(const MovedRoots& moved);
+  /// they were or are. Of many lights, and of skies, only `in_sight` is asked: the rows, by node, from which or from beside which
+  /// these places are seen. Requires: one rank; the scene is the new one, and note_relit() was called.
+  using RowsInSight = std::function<std::vector<std::uint8_t>()>;
+  void note_moved(const MovedRoots& moved, const RowsInSight& in_sight);
 
   /// Makes room for new nodes of the leaf forest.
   void fit_to_nodes();
@@ -97,8 +99,9 @@ class DirectField {
   std::vector<LightForm> forms_of_lights() const;
   void choose_shares();
   void scale(const Rgb& factor);
+  using LeavesInSight = std::function<std::vector<std::uint8_t>()>;
   std::vector<std::uint8_t> whose_way_changed(const LightSource& light, const MovedRoots& moved,
-                                              std::span<const NodeIndex> leaves) const;
+                                              std::span<const NodeIndex> leaves, const LeavesInSight& in_sight) const;
   std::vector<DirectLight> trace_one(const LightSource& next, std::span<const Receiver> receivers);
   std::vector<DirectLight> trace_unknown(const LightSource& next, std::span<const Receiver> receivers,
                                          std::span<const NodeIndex> leaves);

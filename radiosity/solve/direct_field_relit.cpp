@@ -125,15 +125,16 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   return factor;
 }
 
-/// Returns for each leaf whether what the light brings to it may have changed.
+/// Returns for each leaf whether what the light brings to it may have changed. Of light from all around only leaves in sight of
+/// the move, which `in_sight` tells, have other light.
 std::vector<std::uint8_t> DirectField::whose_way_changed(const LightSource& light, const MovedRoots& moved,
-                                                         std::span<const NodeIndex> leaves) const {
+                                                         std::span<const NodeIndex> leaves, const LeavesInSight& in_sight) const {
   const auto form = std::ranges::find(owned_lights_, light.number(), [](const auto& owned) { return owned->number(); });
   const LightForm& is = forms_[static_cast<std::size_t>(form - owned_lights_.begin())];
-  const bool is_moved = std::ranges::any_of(is.roots, [&](std::uint32_t root) { return moved.has(root); });
   const auto extent = light.extent();
   const bool is_sun = is.light && is.light->kind == LightKind::directional;
-  if (is_moved || (!extent && !is_sun)) return std::vector<std::uint8_t>(leaves.size(), 1);
+  if (moved.has_any(is.roots)) return std::vector<std::uint8_t>(leaves.size(), 1);
+  if (!extent && !is_sun) return in_sight();
   const BaseMesh& mesh = forests_.mesh();
   const double far = 3 * mesh.extent();
   const auto to_metres = [&](Vec3 p) { return scene_.frame().to_metres(p); };
@@ -155,7 +156,7 @@ std::vector<std::uint8_t> DirectField::whose_way_changed(const LightSource& ligh
   return changed;
 }
 
-void DirectField::note_moved(const MovedRoots& moved) {
+void DirectField::note_moved(const MovedRoots& moved, const RowsInSight& in_sight) {
   blockers_.reset();
   if (exact_faces_ || exact_exits_) blockers_ = std::make_unique<BlockerTree>(scene_);
   const auto is_shining = [this](std::uint32_t number) {
@@ -163,14 +164,24 @@ void DirectField::note_moved(const MovedRoots& moved) {
   };
   shares_.keep_only(is_shining);
   const std::vector<NodeIndex> leaves = forests_.leaves().leaves();
-  std::vector<std::uint8_t> is_lost(leaves.size(), light_tree_ ? 1 : 0);  // of many lights some way leads by, mostly
+  const LeavesInSight leaves_in_sight = [&, by_row = std::vector<std::uint8_t>()]() mutable {
+    if (by_row.empty()) by_row = in_sight();
+    std::vector<std::uint8_t> seeing(leaves.size());
+    for (std::size_t n = 0; n < leaves.size(); ++n) seeing[n] = by_row[forests_.row_of(leaves[n])];
+    return seeing;
+  };
+  std::vector<std::uint8_t> is_lost(leaves.size());
+  if (light_tree_) {
+    const bool has_moved = std::ranges::any_of(forms_, [&](const LightForm& form) { return moved.has_any(form.roots); });
+    is_lost = has_moved ? std::vector<std::uint8_t>(leaves.size(), 1) : leaves_in_sight();
+  }
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     if (!moved.has(forests_.leaves().id(leaves[n]).root_face())) continue;
     is_lost[n] = 1;
     shares_.forget(leaves[n]);
   }
   for (std::size_t k = 0; k < owned_lights_.size() && !light_tree_; ++k) {
-    const auto changed = whose_way_changed(*owned_lights_[k], moved, leaves);
+    const auto changed = whose_way_changed(*owned_lights_[k], moved, leaves, leaves_in_sight);
     for (std::size_t n = 0; n < leaves.size(); ++n) {
       if (!changed[n]) continue;
       is_lost[n] = 1;

@@ -2,7 +2,7 @@
 //
 // A solve fills vectors of tens of megabytes, by leaf and by row, many times a second. Each time the kernel hands out their pages
 // one by one, 4 KiB each, and later reads miss the TLB. With huge pages the furnished room at 2.5 % takes 10 % less time on two
-// threads, in the same memory (ARCHITECTURE.md). Nothing happens where the kernel's setting is "never".
+// threads, in the same memory (docs/design/performance.md). Nothing happens where the kernel's setting is "never".
 
 #include <sys/mman.h>
 #include <cstdint>

@@ -42,19 +42,7 @@ std::vector<BoundingBox> boxes_of(const BaseMesh& mesh, Counts&& counts) {
   return boxes;
 }
 
-/// Returns whether the segment meets the box (slabs; Kay and Kajiya 1986).
-bool meets(const BoundingBox& box, Vec3 from, Vec3 to) {
-  double first = 0, last = 1;
-  const auto cut = [&](double start, double way, double low, double high) {
-    if (way == 0) return start >= low && start <= high;
-    const double a = (low - start) / way, b = (high - start) / way;
-    first = std::max(first, std::min(a, b)), last = std::min(last, std::max(a, b));
-    return first <= last;
-  };
-  const Vec3 way = to - from;
-  return cut(from.x, way.x, box.low.x, box.high.x) && cut(from.y, way.y, box.low.y, box.high.y) &&
-         cut(from.z, way.z, box.low.z, box.high.z);
-}
+bool meets(const BoundingBox& box, Vec3 from, Vec3 to) { return share_before(box, from, to).has_value(); }
 
 /// Returns whether a shaft between two spheres may meet the box: the parts of its axis meet a box that is larger by the largest
 /// radius of the part.
@@ -71,6 +59,21 @@ bool shaft_meets(const BoundingBox& box, Vec3 from, double from_radius, Vec3 to,
 
 }  // namespace
 
+// Slabs (Kay and Kajiya 1986).
+std::optional<double> share_before(const BoundingBox& box, Vec3 from, Vec3 to) {
+  double first = 0, last = 1;
+  const auto cut = [&](double start, double way, double low, double high) {
+    if (way == 0) return start >= low && start <= high;
+    const double a = (low - start) / way, b = (high - start) / way;
+    first = std::max(first, std::min(a, b)), last = std::min(last, std::max(a, b));
+    return first <= last;
+  };
+  const Vec3 way = to - from;
+  const bool is_met = cut(from.x, way.x, box.low.x, box.high.x) && cut(from.y, way.y, box.low.y, box.high.y) &&
+                      cut(from.z, way.z, box.low.z, box.high.z);
+  return is_met ? std::optional(first) : std::nullopt;
+}
+
 MovedRoots::MovedRoots(const BaseMesh& before, const BaseMesh& after) : moved_(after.roots().size()) {
   for (std::uint32_t r = 0; r < moved_.size(); ++r) moved_[r] = is_elsewhere(before.roots()[r], after.roots()[r]);
   const auto has_free_edge = [&](std::uint32_t root) {
@@ -83,6 +86,12 @@ MovedRoots::MovedRoots(const BaseMesh& before, const BaseMesh& after) : moved_(a
   const auto is_moved = [this](std::uint32_t root) { return has(root); };
   old_boxes_ = boxes_of(before, is_moved);
   new_boxes_ = boxes_of(after, is_moved);
+}
+
+std::vector<BoundingBox> MovedRoots::boxes() const {
+  std::vector<BoundingBox> boxes = old_boxes_;
+  boxes.insert(boxes.end(), new_boxes_.begin(), new_boxes_.end());
+  return boxes;
 }
 
 bool MovedRoots::touch(const BoundingBox& box) const {

@@ -4,7 +4,9 @@
 #include "meshing/base_mesh.h"
 #include "meshing/bounding_box.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,9 @@ class MovedRoots {
 
   bool is_empty() const { return old_boxes_.empty() && new_boxes_.empty(); }
   bool has(std::uint32_t root) const { return moved_[root] != 0; }
+  bool has_any(std::span<const std::uint32_t> roots) const {
+    return std::ranges::any_of(roots, [this](std::uint32_t root) { return has(root); });
+  }
   /// Returns whether a box touches one in which moved roots were or are.
   bool touch(const BoundingBox& box) const;
   /// Returns whether a ray that starts up to `radius` from `from` and ends at `to` may meet moved roots where they are now. May
@@ -30,6 +35,8 @@ class MovedRoots {
   /// Returns whether part of a box in which moved roots are now, or were if `also_before`, lies in front of the plane through
   /// `point`.
   bool are_in_front(Vec3 point, Vec3 normal, bool also_before) const;
+  /// Returns the boxes in which moved roots were, and those in which they are, each a little larger than what is in it.
+  std::vector<BoundingBox> boxes() const;
   /// Returns whether rays from outside may meet the back of a moved root that has no other side. They do not if moved roots
   /// enclose solids.
   bool show_backs() const { return show_backs_; }
@@ -39,5 +46,8 @@ class MovedRoots {
   bool show_backs_ = false;
   std::vector<BoundingBox> old_boxes_, new_boxes_;
 };
+
+/// Returns the share of the way between two points that lies before the box; 0 from inside it. Nothing if the way misses it.
+std::optional<double> share_before(const BoundingBox& box, Vec3 from, Vec3 to);
 
 }  // namespace alvor

@@ -1,5 +1,6 @@
 #include "radiosity/solve/solve_state.h"
 
+#include "radiosity/solve/moved_sight.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <tbb/parallel_for.h>
@@ -160,9 +161,25 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   field.set(of_moved, irradiance);
 }
 
+/// Returns for each row, by node, whether it or one beside it sees a place of moved roots.
+std::vector<std::uint8_t> SolveState::rows_in_sight(const MovedRoots& moved) {
+  const std::vector<NodeIndex> all = forests.rows().leaves();
+  std::vector<Viewpoint> viewpoints;
+  for (const NodeIndex row : all) viewpoints.push_back({forests.rows().shape(row), options.seed + row});
+  const auto sees = see_moved(scene, moved, viewpoints, budget);
+  const auto neighbours = forests.row_neighbours(all);
+  std::vector<std::uint8_t> in_sight(forests.rows().node_count());
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (!sees[n]) continue;
+    in_sight[all[n]] = 1;
+    for (const NodeIndex beside : neighbours[n]) in_sight[beside] = 1;
+  }
+  return in_sight;
+}
+
 void SolveState::mend_moved() {
   if (!move_) return;
-  direct.note_moved(move_->roots);
+  direct.note_moved(move_->roots, [this] { return rows_in_sight(move_->roots); });
   std::vector<NodeIndex> leaves;
   for (const NodeIndex row : rows.note_moved(move_->before, move_->roots)) forests.append_leaves_of_row(row, leaves);
   for (const NodeIndex leaf : leaves) direct.forget(leaf);

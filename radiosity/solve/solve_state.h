@@ -111,6 +111,7 @@ class SolveState {
   EmissionUnit unit_{mesh};
   Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
+  std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
 };
 

@@ -76,6 +76,41 @@ TEST(MovedObjects, ACopyIsLitAsAnObjectThatWasSubmittedThereAndGoesWhenItIsTaken
   EXPECT_NEAR(mean_irradiance(solve, roots), before, 0.04 * before);
 }
 
+/// Two closed rooms of eight lamps each; in one of them stands a box. With so many lamps, it is not known what each of them
+/// brings.
+TEST(MovedObjects, AmongManyLampsWhatDoesNotSeeThemIsNotLitAnew) {
+  Scene submitted;
+  submitted.materials = {test::grey(0, 0.5), test::grey(1, 0)};
+  for (const double x : {0.0, 10.0}) {
+    test::add_box(submitted, {x, 0, 0}, {x + 4, 3, 4}, true);
+    for (int lamp = 0; lamp < 8; ++lamp) {
+      const double low = x + 0.4 + 0.9 * (lamp % 4), z = lamp < 4 ? 1 : 3;
+      test::add_polygon(submitted, {{low, 2.9, z}, {low + 0.3, 2.9, z}, {low + 0.3, 2.9, z + 0.3}, {low, 2.9, z + 0.3}}, 1);
+    }
+  }
+  const auto roots_of_other_room = static_cast<std::uint32_t>(submitted.faces.size()) / 2;
+  submitted.objects = {{.name = "box", .first_face = static_cast<std::uint32_t>(submitted.faces.size()), .face_count = 6}};
+  test::add_box(submitted, {1, 0.5, 1}, {1.5, 1, 1.5}, false);
+  const SolveOptions options{.tolerance = 0.03, .max_leaves = 20'000};
+  EditedSolve solve(submitted, options);
+  const auto of_other_room = [&] {
+    std::vector<LeafValue> leaves = solve.leaves();
+    std::erase_if(leaves, [&](const LeafValue& leaf) {
+      return leaf.patch.root_face() < roots_of_other_room || leaf.patch.root_face() >= 2 * roots_of_other_room;
+    });
+    return leaves;
+  };
+  const auto before = of_other_room();
+  const std::uint64_t rays = solve.last().rays;
+  solve.edit([&](Scene& scene) {
+    scene = edited_scene(submitted, std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = Vec3{1, 0.2, 1}}});
+  });
+  EXPECT_LT(test::difference(of_other_room(), before), 1e-6);
+  EXPECT_LT(static_cast<double>(solve.last().rays - rays), 0.6 * static_cast<double>(rays));
+  const EditedSolve anew(submitted, options, solve.scene());
+  EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
+}
+
 /// A sheet of one side lies above the floor, where its back hides what is below it, and is moved or taken away.
 TEST(MovedObjects, WhatASheetOfOneSideHidIsSeenAgain) {
   Scene submitted = test::coloured_room();

@@ -1,0 +1,51 @@
+#include "radiosity/solve/moved_sight.h"
+
+#include "radiosity/rays/ray_source.h"
+
+#include <tbb/parallel_for.h>
+
+namespace alvor {
+
+namespace {
+
+Vec3 point_in(const BoundingBox& box, RandomStream& random) {
+  const Vec3 size = box.high - box.low;
+  const double x = random.next(), y = random.next(), z = random.next();
+  return box.low + Vec3{x * size.x, y * size.y, z * size.z};
+}
+
+/// Requires: there are boxes, and they are those of the moved roots.
+bool sees(const LocalScene& scene, const MovedRoots& moved, std::span<const BoundingBox> boxes, const Viewpoint& patch,
+          RayBudget& budget) {
+  const RootPatch& root = scene.mesh().roots()[patch.shape.root];
+  if (!moved.are_in_front(root.corners[0], root.normal, true)) return false;
+  RandomStream random(patch.seed, PatchId::root(patch.shape.root));
+  const PatchPoints points = sample_points(scene, patch.shape, random);
+  const std::uint32_t first = random.next_below(static_cast<std::uint32_t>(boxes.size()));
+  RayPacket rays;
+  for (std::size_t o = 0; o < RayPacket::width; ++o) {
+    const BoundingBox& box = boxes[(first + o) % boxes.size()];
+    const Vec3 from{points.x[o], points.y[o], points.z[o]}, from_metres = scene.frame().to_metres(from);
+    const Vec3 to = point_in(box, random);
+    const auto enters = share_before(box, from_metres, to);
+    if (!enters || *enters <= 0) return true;
+    rays.set(o, from, scene.frame().to_local(to) - from, static_cast<float>(*enters));
+  }
+  std::uint16_t blocked = 0;
+  budget.spend(RayPacket::width, [&] { scene.visibility().occlusions({&rays, 1}, {&blocked, 1}); });
+  return blocked != 0xffff;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> see_moved(const LocalScene& scene, const MovedRoots& moved, std::span<const Viewpoint> patches,
+                                    RayBudget& budget) {
+  std::vector<std::uint8_t> seen(patches.size());
+  const std::vector<BoundingBox> boxes = moved.boxes();
+  if (boxes.empty()) return seen;
+  tbb::parallel_for(std::size_t{0}, patches.size(),
+                    [&](std::size_t n) { seen[n] = sees(scene, moved, boxes, patches[n], budget); });
+  return seen;
+}
+
+}  // namespace alvor
