@@ -46,6 +46,27 @@ Scene room_in_the_morning() {
   return scene;
 }
 
+Scene room_of_objects_and_many_lamps() {
+  Scene scene = test::room_of_objects();
+  const auto shining = static_cast<std::uint32_t>(scene.materials.size());
+  scene.materials.push_back(test::grey(9, 0));
+  for (int n = 0; n < 14; ++n) {
+    const double x = 0.3 + 0.25 * n;
+    test::add_polygon(scene, {{x, 2.9, 0.5}, {x + 0.1, 2.9, 0.5}, {x + 0.1, 2.9, 1}, {x, 2.9, 1}}, shining);
+  }
+  return scene;
+}
+/// A box on the ground, under the open sky.
+Scene box_under_the_sky() {
+  Scene scene;
+  scene.materials.push_back(test::grey(0, 0.5));
+  test::add_polygon(scene, {{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}}, 0);
+  scene.objects = {{.name = "box", .first_face = 1, .face_count = 6}};
+  test::add_box(scene, {-1, 0.1, -1}, {0, 1, 0}, false);
+  of_daylight({.sky = Daylight::Sky::cie, .cie_number = 1})(scene);
+  return scene;
+}
+
 struct Case {
   std::string name;
   Scene (*scene)();
@@ -117,6 +138,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"ABoxIsLiftedOffTheFloor", test::room_of_objects, of_object({.name = "box", .move = Vec3{0, 0.4, 0}})},
                     Case{"ABoxIsHidden", test::room_of_objects, of_object({.name = "box", .hidden = true})},
                     Case{"ALampMoves", test::room_of_objects, of_object({.name = "lamp", .move = Vec3{-0.8, -0.3, 1}})},
+                    Case{"ABoxMovesAmongManyLamps", room_of_objects_and_many_lamps,
+                         of_object({.name = "box", .move = Vec3{0.3, 0.2, 1.7}})},
+                    Case{"ABoxMovesUnderTheSky", box_under_the_sky, of_object({.name = "box", .move = Vec3{1, 0.2, 0.7}})},
                     Case{"AllSurfacesShine", [] { return test::furnace(1, 0.5); },
                          [](Scene& s) {
                            s.materials[0].reflectance = {0.2, 0.4, 0.6};
