@@ -89,6 +89,7 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
   if (has_too_many_leaves()) return false;
   if (!may_go_on(*own_mesh_, state.plan, edited, plan)) return false;
   const bool is_alike = reflects_alike(*own_mesh_, edited);
+  std::optional<double> factor;
   if (has_moved(*own_mesh_, edited)) {
     const bool may_mend = state.ranks.is_alone() && state.options.form_factors != FormFactorMethod::analytic &&
                           !plan.emission_by_rows() && has_same_frame_and_neighbours(*own_mesh_, edited);
@@ -98,13 +99,28 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
     has_unseen_move = true;
   } else {
     *own_mesh_ = edited;
-    state.note_relit(plan, is_alike);
+    factor = state.note_relit(plan, is_alike);
   }
-  if (!error_before_edit) error_before_edit = progress.error.total();
   edited_at_s = progress.elapsed_s;
+  if (factor && may_scale()) {
+    scale(*factor);
+    return true;
+  }
+  ended_with.reset();
+  if (!error_before_edit) error_before_edit = progress.error.total();
   progress.error.unshot = 1;
   progress.leaves_before = progress.idle_passes = 0;
   return true;
+}
+
+/// Returns whether what was told of the light holds of a multiple of it.
+bool LiveSolve::may_scale() const { return ended_with && state.ranks.is_alone() && told_errors.size() == state.leaf_count(); }
+
+void LiveSolve::scale(double factor) {
+  for (float& error : told_errors) error = static_cast<float>(std::min(factor * error, 1e37));
+  for (double* power : {&progress.balance.emitted, &progress.balance.absorbed, &progress.balance.lost, &progress.balance.unshot})
+    *power *= factor;
+  is_scaled = true;
 }
 
 void LiveSolve::save(PlainWriter& out) const {

@@ -4,6 +4,7 @@
 #include "radiosity/solve/pass.h"
 #include "radiosity/solve/solve_control.h"
 #include "radiosity/solve/solve_state.h"
+#include "radiosity/solve/solver.h"
 #include "solution/solution_log.h"
 
 #include <functional>
@@ -44,6 +45,8 @@ class LiveSolve {
 
  private:
   bool has_too_many_leaves() const;
+  bool may_scale() const;
+  void scale(double factor);
 
   std::optional<BaseMesh> own_mesh_;
 
@@ -60,6 +63,11 @@ class LiveSolve {
   double error_at_first_end = 0;
   /// Until the first estimate after an edit: the estimated error of before.
   std::optional<double> error_before_edit;
+  /// The errors told last, W/m2, in the order of the leaves; of other leaves where there are more or fewer. Kept for edits only.
+  std::vector<float> told_errors;
+  std::optional<StopReason> ended_with;  ///< the tolerance or a limit of the mesh; nothing if the solve has not ended by one
+  /// The last edit multiplied all light by one factor, and nothing was published since. Only if ended_with has a value.
+  bool is_scaled = false;
   bool has_unseen_move = false;  ///< the last edit moved or hid objects, and nothing was published since
   bool is_refreshing = false;    ///< the log shows an older solution, and nothing is published before the first pass is done
 };

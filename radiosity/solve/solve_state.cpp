@@ -128,7 +128,7 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
 
-void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
+std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
   const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);
   const double change = ratio >= least_kept && ratio <= 1 / least_kept ? ratio : 0;
@@ -143,8 +143,11 @@ void SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
     std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
     field.set(dark, std::vector<RelativeLight>(dark.size()));
   }
+  const std::size_t leaves_before = leaf_count();
   forests.split_as_at_start(plan);
   fit_to_nodes();
+  const bool is_scaled = factor && factor->is_grey() && reflects_as_before && change > 0 && leaf_count() == leaves_before;
+  return is_scaled ? std::optional(factor->r / change) : std::nullopt;
 }
 
 void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before) {

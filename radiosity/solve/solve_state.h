@@ -84,8 +84,9 @@ class SolveState {
 
   /// Takes the materials and lights of the mesh, which have changed, with a plan of the mesh as it is now. What is not known any
   /// more is found by the next pass. `reflects_as_before` says that only emission and lights have changed: where all of them have
-  /// by one factor, indirect light has, too. Requires: rows and forests are those of the mesh as it is now.
-  void note_relit(Plan new_plan, bool reflects_as_before);
+  /// by one factor, indirect light has, too. Returns the factor by which all light was multiplied, if nothing else has changed.
+  /// Requires: rows and forests are those of the mesh as it is now.
+  std::optional<double> note_relit(Plan new_plan, bool reflects_as_before);
 
   /// Takes roots of the mesh that have moved since it was `before`, and materials and lights as note_relit() does. leaf_values()
   /// then has the light of before; mend_moved() must be called before a pass begins. Requires: one rank; no frame, neighbour or

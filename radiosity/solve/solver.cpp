@@ -84,9 +84,10 @@ class Run {
       requests_.heed_edits(false);
       state_.mend_moved();
     }
-    const StopReason reason = pass_until_done();
+    const StopReason reason = std::exchange(live_.is_scaled, false) ? show_scaled() : pass_until_done();
     const bool is_as_fine_as_may_be =
         reason == StopReason::tolerance || reason == StopReason::max_leaves || reason == StopReason::max_depth;
+    live_.ended_with = is_as_fine_as_may_be ? std::optional(reason) : std::nullopt;
     if (is_as_fine_as_may_be && live_.leaves_at_first_end == 0) {
       live_.leaves_at_first_end = state_.leaf_count();
       live_.error_at_first_end = is_.error.total();
@@ -106,6 +107,14 @@ class Run {
   }
 
  private:
+  /// Shows the light of a solve that had ended, which an edit has multiplied by one factor. Relative errors are what they were.
+  StopReason show_scaled() {
+    is_showing_scaled_ = true;
+    publish();
+    is_showing_scaled_ = false;
+    return *live_.ended_with;
+  }
+
   StopReason pass_until_done() {
     for (;;) {
       save_if_due();
@@ -222,7 +231,7 @@ class Run {
     step.shots = is_.shots;
     step.rays = budget_.rays();
     step.leaves = state_.leaf_count();
-    step.unshot_fraction = pass_->unshot_fraction();
+    step.unshot_fraction = is_showing_scaled_ ? log_.last_step().unshot_fraction : pass_->unshot_fraction();
     step.estimated_error = is_.error.total();
     step.unlit_fraction = state_.direct.unlit_fraction();
     step.area_within = by_place_.area_within;
@@ -230,11 +239,19 @@ class Run {
     step.is_provisional = live_.error_before_edit.has_value();
     step.displayed_error = displayed_error * std::min(1.0, live_.error_before_edit.value_or(is_.error.total()));
     if (state_.plan.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
-    log_.publish(state_.leaf_values(), step, pass_->leaf_errors(is_.error));
+    log_.publish(state_.leaf_values(), step, leaf_errors());
     requests_.heed_edits(true);
     published_at_ = clock_.elapsed_s();
     publishing_s_ = published_at_ - before;
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return requests_.made_here().any(); });
+  }
+
+  /// Returns the told errors of leaves; none where they are not known.
+  std::vector<float> leaf_errors() {
+    if (is_showing_scaled_) return live_.told_errors;
+    std::vector<float> errors = pass_->leaf_errors(is_.error);
+    if (!errors.empty() && control_.live) live_.told_errors = errors;
+    return errors;
   }
 
   /// Collective.
@@ -312,6 +329,7 @@ class Run {
   Ranks& ranks_;
   StopRequests requests_{control_, clock_, options_.time_limit_s + live_.edited_at_s};
   std::optional<Pass> pass_{state_};
+  bool is_showing_scaled_ = false;
   bool has_stalled_ = false;  // the last exchange ended before it converged
   double published_at_ = 0, publishing_s_ = 0;
 };

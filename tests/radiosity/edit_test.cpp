@@ -196,6 +196,22 @@ TEST(EditedSolve, RecoloursAndDimsAllLampsWithoutARay) {
   EXPECT_LT(difference(edited.leaves(), half), 1e-5);
 }
 
+TEST(EditedSolve, TellsTheSameErrorsOfAMultipleOfTheLightAtOnce) {
+  EditedSolve edited(test::coloured_room(), {.tolerance = 0.05});
+  const Step before = edited.last();
+  const auto errors = [&] { return edited.log().since({.errors = {.are_wanted = true}}).errors.value(); };
+  const auto told = errors();
+  const double absorbed = edited.outcome.balance.absorbed;
+  edited.edit([](Scene& scene) { scene.materials[1].emission = 0.25 * scene.materials[1].emission; });
+  EXPECT_EQ(edited.last().revision, before.revision + 1) << "one state more, and no other";
+  EXPECT_EQ(edited.last().estimated_error, before.estimated_error);
+  EXPECT_FALSE(edited.last().is_provisional);
+  EXPECT_EQ(edited.outcome.reason, StopReason::tolerance);
+  EXPECT_NEAR(edited.outcome.balance.absorbed, 0.25 * absorbed, 1e-9 * absorbed);
+  EXPECT_EQ(errors().codes, told.codes);
+  EXPECT_EQ(errors().coding.scale(), told.coding.scale() - 2) << "a quarter of the light, a quarter of the error";
+}
+
 TEST(EditedSolve, DimsOneOfTwoLampsWithoutARayAndShowsItBeforeLightHasGoneRound) {
   EditedSolve edited(room_with_two_lamps(), {.tolerance = 0.06});
   const Step before = edited.last();
