@@ -349,6 +349,8 @@ class MovingGroups {
 void move(RootPatch& root, const Placement& motion) {
   for (int c = 0; c < root.corner_count; ++c) root.corners[c] = motion.point(root.corners[c]);
   root.normal = normalized(motion.direction(root.normal));
+  constexpr double rounding = 1e-9;  // a turn does not change the area
+  if (const double larger = dot(motion.x, motion.x); std::abs(larger - 1) > rounding) root.area *= larger;
 }
 
 /// Gives the vertices of roots numbers that no root of another group has.

@@ -31,6 +31,8 @@ v1::Edit message_of(const SceneEdit& edit) {
     if (object->dim) part.set_dim(*object->dim);
     if (object->move) *part.mutable_move() = encode_vector(*object->move);
     if (object->turn) part.set_turn(*object->turn);
+    if (object->turn_axis) *part.mutable_turn_axis() = encode_vector(*object->turn_axis);
+    if (object->scale) part.set_scale(*object->scale);
     if (object->hidden) part.set_hidden(*object->hidden);
   } else if (const auto* copy = std::get_if<ObjectCopy>(&edit)) {
     message.mutable_copy()->set_name(copy->name);
@@ -63,10 +65,13 @@ LightEdit light_of(const v1::LightEdit& message) {
 }
 
 ObjectEdit object_of(const v1::ObjectEdit& message) {
-  ObjectEdit edit{.name = message.name(), .dim = {}, .move = {}, .turn = {}, .hidden = {}};
+  ObjectEdit edit;
+  edit.name = message.name();
   if (message.has_dim()) edit.dim = message.dim();
   if (message.has_move()) edit.move = decode_vector(message.move());
   if (message.has_turn()) edit.turn = message.turn();
+  if (message.has_turn_axis()) edit.turn_axis = decode_vector(message.turn_axis());
+  if (message.has_scale()) edit.scale = message.scale();
   if (message.has_hidden()) edit.hidden = message.hidden();
   return edit;
 }

@@ -18,6 +18,7 @@ namespace alvor {
 namespace {
 
 constexpr double most_dim = 1e6, most_emission = 1e30, farthest = 1e9, most_turn = 1e6, most_absorption = 1e6;
+constexpr double least_scale = 0.01, most_scale = 100, shortest_axis = 1e-9, longest_axis = 1e9;
 
 /// Finds the parts of one kind by their names. Of two that have one name the first counts.
 template <class Part>
@@ -89,9 +90,15 @@ class Check {
   std::optional<EditFault> operator()(const ObjectEdit& edit) {
     const SceneObject* object = objects_.find(edit.name);
     if (!object || is_taken_back(*object)) return unknown("object", edit.name);
-    if (!edit.dim && !edit.move && !edit.turn && !edit.hidden) return EditFault{0, "object", "sets nothing"};
+    if (!edit.dim && !edit.move && !edit.turn && !edit.turn_axis && !edit.scale && !edit.hidden)
+      return EditFault{0, "object", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
     if (edit.turn && !(std::abs(*edit.turn) <= most_turn)) return EditFault{0, "object.turn", "must be in [-1e6, 1e6] degrees"};
+    if (edit.turn_axis && !edit.turn) return EditFault{0, "object.turn_axis", "is given without a turn"};
+    if (edit.turn_axis && !(length(*edit.turn_axis) > shortest_axis && length(*edit.turn_axis) < longest_axis))
+      return EditFault{0, "object.turn_axis", "must not be zero"};
+    if (edit.scale && !(*edit.scale >= least_scale && *edit.scale <= most_scale))
+      return EditFault{0, "object.scale", "must be in [0.01, 100]"};
     return edit.move ? fault_of_move(*object, *edit.move) : std::nullopt;
   }
 
@@ -144,14 +151,22 @@ class Check {
   Named<const SceneObject> objects_;
 };
 
-/// Returns the turn about the vertical through the middle of the box, then the shift.
-Placement motion_of(const ObjectEdit& edit, const BoundingBox& box, UpAxis up) {
-  const double angle = std::remainder(edit.turn.value_or(0), 360.0) * std::numbers::pi / 180;
+/// Returns a turn about an axis through the origin, counter-clockwise seen from where it points to (Rodrigues).
+Placement turn_about(Vec3 axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
+  const auto turned = [&](Vec3 v) { return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis; };
+  return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1}), {}};
+}
+
+/// Returns the change of size and the turn about the middle of the box, then the shift.
+Placement motion_of(const ObjectEdit& edit, const BoundingBox& box, UpAxis up) {
+  const double angle = std::remainder(edit.turn.value_or(0), 360.0) * std::numbers::pi / 180, size = edit.scale.value_or(1);
+  const Vec3 vertical = up == UpAxis::z ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
   Placement motion;
-  if (angle != 0 && up == UpAxis::z) motion.x = {c, s, 0}, motion.y = {-s, c, 0};
-  if (angle != 0 && up == UpAxis::y) motion.x = {c, 0, -s}, motion.z = {s, 0, c};
-  if (angle != 0 && !box.is_empty()) {
+  if (angle != 0) motion = turn_about(normalized(edit.turn_axis.value_or(vertical)), angle);
+  if (size != 1)
+    for (Vec3* axis : {&motion.x, &motion.y, &motion.z}) *axis = size * *axis;
+  if ((angle != 0 || size != 1) && !box.is_empty()) {
     const Vec3 middle = lerp(box.low, box.high, 0.5);
     motion.origin = middle - motion.direction(middle);
   }
@@ -186,7 +201,8 @@ class Editor {
     ObjectEdit& all = object_edits_[static_cast<std::size_t>(objects_.find(edit.name) - scene_.objects.data())];
     if (edit.dim) all.dim = edit.dim;
     if (edit.move) all.move = edit.move;
-    if (edit.turn) all.turn = edit.turn;
+    if (edit.turn) all.turn = edit.turn, all.turn_axis = edit.turn_axis;
+    if (edit.scale) all.scale = edit.scale;
     if (edit.hidden) all.hidden = edit.hidden;
   }
 
@@ -232,7 +248,7 @@ class Editor {
   /// edits; its own motion is applied to its faces before that of the other.
   void edit_objects() {
     std::vector<double> dim(scene_.objects.size(), 1);
-    const auto moves = [](const auto& edit) { return edit.second.move || edit.second.turn; };
+    const auto moves = [](const auto& edit) { return edit.second.move || edit.second.turn || edit.second.scale; };
     std::optional<ObjectBoxes> boxes;
     if (std::ranges::any_of(object_edits_, moves)) boxes.emplace(scene_);
     for (std::size_t n = 0; n < dim.size(); ++n) {

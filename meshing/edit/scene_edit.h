@@ -48,6 +48,8 @@ struct ObjectEdit {
   std::optional<double> dim;   ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
   std::optional<Vec3> move;    ///< metres, from where the scene as submitted has it
   std::optional<double> turn;  ///< degrees counter-clockwise seen from above, about the middle of its box, before `move`
+  std::optional<Vec3> turn_axis;  ///< of `turn`, in place of the vertical: it points to who sees the turn counter-clockwise
+  std::optional<double> scale;    ///< multiplies lengths, about the middle of its box, before `turn`; in [0.01, 100]
   std::optional<bool> hidden;  ///< whether it is taken away
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };

@@ -92,7 +92,7 @@ class Comparer {
         state_(mesh, {.tolerance = options.tolerance, .seed = options.seed, .forced_on = {Feature::indirect_rows}}, budget_) {}
 
   Comparison run() {
-    if (state_.direct.emitted_power() <= 0) return {};
+    if (state_.emitted_power() <= 0) return {};
     adapt();
     Comparison comparison;
     if (!stop_.stop_requested()) comparison.converged = converge();

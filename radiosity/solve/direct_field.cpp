@@ -83,18 +83,13 @@ void DirectField::heed_error(double error_so_far) {
   if ((exact_faces_ || exact_exits_) && !blockers_) blockers_ = std::make_unique<BlockerTree>(scene_);
 }
 
-double DirectField::emitted_power() const {
-  return has_distant_lights_ && waiting_power_ == 0 ? sent_power_ + arrived_power() : power_;
+double DirectField::emitted_power(double arrived) const {
+  return has_distant_lights_ && waiting_power_ == 0 ? sent_power_ + arrived : power_;
 }
 
-double DirectField::power_lost_on_the_way() const {
-  return counts_arrivals_ && !has_distant_lights_ && waiting_power_ == 0 ? power_ - sent_power_ - arrived_power() : 0;
-}
-
-double DirectField::arrived_power() const {
-  double power = 0;
-  for (const NodeIndex leaf : forests_.leaves().leaves()) power += forests_.leaf_area(leaf) * arrived_[leaf];
-  return power;
+double DirectField::power_lost_on_the_way(double arrived) const {
+  if (!counts_arrivals_ || has_distant_lights_ || waiting_power_ > 0) return 0;
+  return std::max(0.0, power_ - sent_power_ - arrived);
 }
 
 void DirectField::fit_to_nodes() {
@@ -189,6 +184,7 @@ std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
   const auto is_kept = [this](const LightSource* light) { return shares_.keeps(*light); };
   if (light_tree_ || lights_.empty() || !std::ranges::all_of(lights_, is_kept)) return 0;
   std::vector<std::uint8_t> is_recalled(leaves.size());
+  std::vector<DirectLight> recalled_light(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     DirectLight light;
     float arrived = 0;
@@ -198,13 +194,13 @@ std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
       light += *brought;
       if (!is_face(*next)) arrived += stopped_by(leaves[n], brought->irradiance);
     }
-    light_[leaves[n]] = light;
+    recalled_light[n] = light;
     if (counts_arrivals_) arrived_[leaves[n]] = arrived;
     is_recalled[n] = 1;
   });
   std::vector<NodeIndex> left;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
-    if (is_recalled[n]) note_known(leaves[n], true);
+    if (is_recalled[n]) show_one(leaves[n], recalled_light[n], true);
     else left.push_back(leaves[n]);
   }
   const std::size_t recalled = leaves.size() - left.size();
@@ -286,13 +282,11 @@ void DirectField::add(std::span<const DirectLight> brought, std::span<const Node
 }
 
 void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {
-  for (std::size_t n = 0; n < leaves.size(); ++n) {
-    light_[leaves[n]] = light[n];
-    note_known(leaves[n], is_of_all);
-  }
+  for (std::size_t n = 0; n < leaves.size(); ++n) show_one(leaves[n], light[n], is_of_all);
 }
 
-void DirectField::note_known(NodeIndex leaf, bool is_of_all) {
+void DirectField::show_one(NodeIndex leaf, const DirectLight& light, bool is_of_all) {
+  light_[leaf] = light;
   is_known_[leaf] = is_of_all;
   if (is_of_all && !is_lit_[leaf]) show_on_whole_face(leaf);
 }

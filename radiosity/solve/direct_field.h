@@ -27,12 +27,17 @@ class DirectField {
   RelativeLight emission_by_rows(std::uint32_t root) const {
     return plan_.emission_by_rows() ? emission_of(root) : RelativeLight{};
   }
-  /// Returns the power that all root patches and lamps emit, and what of distant lights arrives on leaves and does not go on
-  /// through them (a rough estimate of it while light is waiting). Summed over bands, in emission units times m2.
-  double emitted_power() const;
+  /// Returns the irradiance of a leaf's visible part from lights that are counted by what arrives of them, but for what goes
+  /// straight on through the leaf; sum of bands, in emission units. Requires: counts_arrivals().
+  float arrived(NodeIndex leaf) const { return arrived_[leaf]; }
+  bool counts_arrivals() const { return counts_arrivals_; }
+  /// Returns the power that all root patches and lamps emit. If a light is distant: what root patches emit, and what of all other
+  /// lights arrives, which is `arrived` (all that they may send, while light is waiting). Summed over bands, in emission units
+  /// times m2, as `arrived` is: arrived(leaf) summed over the leaves' visible areas.
+  double emitted_power(double arrived) const;
   /// Returns the power of lamps, if no light is distant, that leaves the scene or fades in the medium before it meets anything:
-  /// no row tells of it. In emission units times m2; noise may make it negative. 0 while light is waiting.
-  double power_lost_on_the_way() const;
+  /// no row tells of it. As emitted_power(); 0 while light is waiting. Of lamps in a tree with faces it is not known, and 0.
+  double power_lost_on_the_way(double arrived) const;
   /// Returns the part of the emitted power whose light has not been added to leaves yet, in emission units times m2.
   double waiting_power() const { return waiting_power_; }
 
@@ -99,9 +104,15 @@ class DirectField {
   std::vector<LightForm> forms_of_lights() const;
   void choose_shares();
   void scale(const Rgb& factor);
-  using LeavesInSight = std::function<std::vector<std::uint8_t>()>;
-  std::vector<std::uint8_t> whose_way_changed(const LightSource& light, const MovedRoots& moved,
-                                              std::span<const NodeIndex> leaves, const LeavesInSight& in_sight) const;
+  std::vector<Light> forms_of_scene() const;
+  struct FarEnd {
+    Vec3 middle;
+    double radius = 0;
+  };
+  std::function<FarEnd(Vec3 leaf, double radius)> way_to(const LightSource& light) const;
+  using LeavesInSight = std::function<const std::vector<std::uint8_t>&()>;
+  void mark_changed(const LightSource& light, const MovedRoots& moved, std::span<const NodeIndex> leaves,
+                    const LeavesInSight& in_sight, std::span<std::uint8_t> changed) const;
   std::vector<DirectLight> trace_one(const LightSource& next, std::span<const Receiver> receivers);
   std::vector<DirectLight> trace_unknown(const LightSource& next, std::span<const Receiver> receivers,
                                          std::span<const NodeIndex> leaves);
@@ -116,11 +127,10 @@ class DirectField {
   void count_tree();
   void add(std::span<const DirectLight> brought, std::span<const NodeIndex> leaves, std::span<DirectLight> light,
            bool counts_arrivals);
-  double arrived_power() const;
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
-  void note_known(NodeIndex leaf, bool is_of_all);
+  void show_one(NodeIndex leaf, const DirectLight& light, bool is_of_all);
   void show_on_whole_face(NodeIndex leaf);
 
   const Forests& forests_;
@@ -132,6 +142,7 @@ class DirectField {
   std::vector<RelativeLight> emission_;  ///< by material
   OwnedLights owned_lights_;
   std::vector<LightForm> forms_;                 ///< of owned_lights_; none unless keep_shares() was called
+  std::vector<Light> forms_of_scene_;            ///< of the lights that they were made from
   std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first
   std::vector<const LightSource*> tree_lights_;  ///< the others
   std::unique_ptr<LightTree> light_tree_;        ///< null if there are no others

@@ -61,9 +61,17 @@ std::vector<LightForm> DirectField::forms_of_lights() const {
   return forms;
 }
 
+/// Returns the lights of the scene that are no faces, but how bright they are.
+std::vector<Light> DirectField::forms_of_scene() const {
+  std::vector<Light> forms(forests_.mesh().lights().begin(), forests_.mesh().lights().end());
+  for (Light& form : forms) form.intensity = {};
+  return forms;
+}
+
 void DirectField::keep_shares() {
   keeps_shares_ = ranks_.is_alone();
   forms_ = forms_of_lights();
+  forms_of_scene_ = forms_of_scene();
   choose_shares();
 }
 
@@ -106,6 +114,9 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   fit_to_nodes();
   const KnownLights now = known_lights();
   auto factor = before.empty() ? std::nullopt : common_factor(before, now);
+  // Lights of a sky have no forms, and where it makes none, numbers of others are not those of the scene.
+  auto scene_before = std::exchange(forms_of_scene_, forms_of_scene());
+  if (scene_before != forms_of_scene_) factor.reset();
   // What arrives is a sum of bands; where no light is counted otherwise, scale() finds it anew.
   if (factor && counts_arrivals_ && sent_power_ > 0 && !factor->is_grey()) factor.reset();
   scale(factor.value_or(Rgb{unit_change, unit_change, unit_change}));
@@ -125,35 +136,59 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
   return factor;
 }
 
-/// Returns for each leaf whether what the light brings to it may have changed. Of light from all around only leaves in sight of
-/// the move, which `in_sight` tells, have other light.
-std::vector<std::uint8_t> DirectField::whose_way_changed(const LightSource& light, const MovedRoots& moved,
-                                                         std::span<const NodeIndex> leaves, const LeavesInSight& in_sight) const {
-  const auto form = std::ranges::find(owned_lights_, light.number(), [](const auto& owned) { return owned->number(); });
-  const LightForm& is = forms_[static_cast<std::size_t>(form - owned_lights_.begin())];
-  const auto extent = light.extent();
-  const bool is_sun = is.light && is.light->kind == LightKind::directional;
-  if (moved.has_any(is.roots)) return std::vector<std::uint8_t>(leaves.size(), 1);
-  if (!extent && !is_sun) return in_sight();
-  const BaseMesh& mesh = forests_.mesh();
-  const double far = 3 * mesh.extent();
+/// Returns the way from leaves to a light, if it comes by one: what of it lies farthest, and how large that is, for a leaf at a
+/// place. Metres.
+std::function<DirectField::FarEnd(Vec3, double)> DirectField::way_to(const LightSource& light) const {
   const auto to_metres = [&](Vec3 p) { return scene_.frame().to_metres(p); };
-  std::vector<std::uint8_t> changed(leaves.size());
+  const double far = 3 * forests_.mesh().extent();
+  const auto form = std::ranges::find(owned_lights_, light.number(), [](const auto& owned) { return owned->number(); });
+  const auto& is = forms_[static_cast<std::size_t>(form - owned_lights_.begin())].light;
+  if (const auto extent = light.extent()) {
+    const Vec3 middle = lerp(to_metres(extent->low), to_metres(extent->high), 0.5);
+    const double radius = length(to_metres(extent->high) - middle);
+    return [=](Vec3, double) { return FarEnd{middle, radius}; };
+  }
+  if (is && is->kind == LightKind::directional && light.aperture().empty()) {
+    const Vec3 way = far * is->direction;
+    const double spread = far * std::tan(is->angular_diameter / 2);
+    return [=](Vec3 leaf, double radius) { return FarEnd{leaf - way, radius + spread}; };
+  }
+  if (light.aperture().empty()) return nullptr;
+  BoundingBox box;
+  for (const Vec3 corner : light.aperture()) box.add(to_metres(corner));
+  const Vec3 middle = lerp(box.low, box.high, 0.5);
+  const double half = length(box.high - middle);
+  return [=](Vec3 leaf, double radius) {  // through the aperture, and on
+    const double times = std::max(1.0, far / std::max(length(middle - leaf), 1e-9 * far));
+    return FarEnd{leaf + times * (middle - leaf), radius + times * (half + radius)};
+  };
+}
+
+/// Marks in `changed` the leaves to which what the light brings may have changed. Of light from all around those in sight of the
+/// move, which `in_sight` tells, have other light.
+void DirectField::mark_changed(const LightSource& light, const MovedRoots& moved, std::span<const NodeIndex> leaves,
+                               const LeavesInSight& in_sight, std::span<std::uint8_t> changed) const {
+  const auto form = std::ranges::find(owned_lights_, light.number(), [](const auto& owned) { return owned->number(); });
+  if (moved.has_any(forms_[static_cast<std::size_t>(form - owned_lights_.begin())].roots)) {
+    std::ranges::fill(changed, std::uint8_t{1});
+    return;
+  }
+  const auto far_end = way_to(light);
+  if (!far_end) {
+    const auto& seeing = in_sight();
+    for (std::size_t n = 0; n < leaves.size(); ++n) changed[n] |= seeing[n];
+    return;
+  }
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    if (changed[n]) return;
     const Vec3 leaf = forests_.leaf_centres()[leaves[n]];
     const PatchShape shape = forests_.leaves().shape(leaves[n]);
-    const auto corners = corners_of(mesh, shape);
+    const auto corners = corners_of(forests_.mesh(), shape);
     double radius = 0;
     for (int c = 0; c < shape.corner_count; ++c) radius = std::max(radius, length(corners[static_cast<std::size_t>(c)] - leaf));
-    if (is_sun) {
-      const double spread = far * std::tan(is.light->angular_diameter / 2);
-      changed[n] = moved.may_meet(leaf, radius, leaf - far * is.light->direction, radius + spread);
-    } else {
-      const Vec3 middle = lerp(to_metres(extent->low), to_metres(extent->high), 0.5);
-      changed[n] = moved.may_meet(leaf, radius, middle, length(to_metres(extent->high) - middle));
-    }
+    const FarEnd end = far_end(leaf, radius);
+    changed[n] = moved.may_meet(leaf, radius, end.middle, end.radius);
   });
-  return changed;
 }
 
 void DirectField::note_moved(const MovedRoots& moved, const RowsInSight& in_sight) {
@@ -164,10 +199,11 @@ void DirectField::note_moved(const MovedRoots& moved, const RowsInSight& in_sigh
   };
   shares_.keep_only(is_shining);
   const std::vector<NodeIndex> leaves = forests_.leaves().leaves();
-  const LeavesInSight leaves_in_sight = [&, by_row = std::vector<std::uint8_t>()]() mutable {
-    if (by_row.empty()) by_row = in_sight();
-    std::vector<std::uint8_t> seeing(leaves.size());
-    for (std::size_t n = 0; n < leaves.size(); ++n) seeing[n] = by_row[forests_.row_of(leaves[n])];
+  std::vector<std::uint8_t> seeing;
+  const LeavesInSight leaves_in_sight = [&]() -> const std::vector<std::uint8_t>& {
+    if (!seeing.empty()) return seeing;
+    const std::vector<std::uint8_t> by_row = in_sight();
+    for (const NodeIndex leaf : leaves) seeing.push_back(by_row[forests_.row_of(leaf)]);
     return seeing;
   };
   std::vector<std::uint8_t> is_lost(leaves.size());
@@ -180,12 +216,18 @@ void DirectField::note_moved(const MovedRoots& moved, const RowsInSight& in_sigh
     is_lost[n] = 1;
     shares_.forget(leaves[n]);
   }
-  for (std::size_t k = 0; k < owned_lights_.size() && !light_tree_; ++k) {
-    const auto changed = whose_way_changed(*owned_lights_[k], moved, leaves, leaves_in_sight);
+  for (const auto& light : owned_lights_) {
+    if (light_tree_ && light->extent()) continue;
+    if (!shares_.keeps(*light)) {
+      mark_changed(*light, moved, leaves, leaves_in_sight, is_lost);
+      continue;
+    }
+    std::vector<std::uint8_t> changed(leaves.size());
+    mark_changed(*light, moved, leaves, leaves_in_sight, changed);
     for (std::size_t n = 0; n < leaves.size(); ++n) {
       if (!changed[n]) continue;
       is_lost[n] = 1;
-      shares_.forget(*owned_lights_[k], leaves[n]);
+      shares_.forget(*light, leaves[n]);
     }
   }
   double lost = 0;

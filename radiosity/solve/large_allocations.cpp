@@ -5,6 +5,7 @@
 // threads, in the same memory (docs/design/performance.md). Nothing happens where the kernel's setting is "never".
 
 #include <sys/mman.h>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
 #include <new>
@@ -28,8 +29,10 @@ constexpr std::uintptr_t huge_page = std::uintptr_t{2} << 20;
 void want_huge_pages(void* block, std::size_t size) {
   const auto begin = reinterpret_cast<std::uintptr_t>(block);
   const std::uintptr_t first = (begin + huge_page - 1) / huge_page * huge_page, end = (begin + size) / huge_page * huge_page;
+  const int error_before = errno;
   // A refusal costs time only.
   if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+  errno = error_before;
 }
 
 }  // namespace

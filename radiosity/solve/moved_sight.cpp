@@ -4,14 +4,23 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace alvor {
 
 namespace {
 
-Vec3 point_in(const BoundingBox& box, RandomStream& random) {
+/// Returns a point of a box, in front of a plane through `from` where one of eight is.
+Vec3 point_in(const BoundingBox& box, Vec3 from, Vec3 normal, RandomStream& random) {
+  constexpr int most_tries = 8;
   const Vec3 size = box.high - box.low;
-  const double x = random.next(), y = random.next(), z = random.next();
-  return box.low + Vec3{x * size.x, y * size.y, z * size.z};
+  Vec3 point;
+  for (int n = 0; n < most_tries; ++n) {
+    const double x = random.next(), y = random.next(), z = random.next();
+    point = box.low + Vec3{x * size.x, y * size.y, z * size.z};
+    if (dot(point - from, normal) > 0) break;
+  }
+  return point;
 }
 
 /// Requires: there are boxes, and they are those of the moved roots.
@@ -21,12 +30,14 @@ bool sees(const LocalScene& scene, const MovedRoots& moved, std::span<const Boun
   if (!moved.are_in_front(root.corners[0], root.normal, true)) return false;
   RandomStream random(patch.seed, PatchId::root(patch.shape.root));
   const PatchPoints points = sample_points(scene, patch.shape, random);
-  const std::uint32_t first = random.next_below(static_cast<std::uint32_t>(boxes.size()));
+  const std::size_t first = random.next_below(static_cast<std::uint32_t>(boxes.size()));
+  // Of more than sixteen boxes some are passed over, evenly, so that old and new places have their share.
+  const std::size_t step = std::max<std::size_t>(1, boxes.size() / RayPacket::width);
   RayPacket rays;
   for (std::size_t o = 0; o < RayPacket::width; ++o) {
-    const BoundingBox& box = boxes[(first + o) % boxes.size()];
+    const BoundingBox& box = boxes[(first + step * o) % boxes.size()];
     const Vec3 from{points.x[o], points.y[o], points.z[o]}, from_metres = scene.frame().to_metres(from);
-    const Vec3 to = point_in(box, random);
+    const Vec3 to = point_in(box, from_metres, root.normal, random);
     const auto enters = share_before(box, from_metres, to);
     if (!enters || *enters <= 0) return true;
     rays.set(o, from, scene.frame().to_local(to) - from, static_cast<float>(*enters));

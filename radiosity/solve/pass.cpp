@@ -115,7 +115,7 @@ void Pass::show_what_came_since() {
 }
 
 double Pass::unshot_fraction() const {
-  const double emitted = state_.direct.emitted_power();
+  const double emitted = state_.emitted_power();
   if (emitted <= 0) return 0;
   return (exchange_ ? exchange_->unshot_power() : state_.unshot_power()) / emitted;
 }

@@ -29,7 +29,7 @@ Rgb Pass::taken_up(const TransportRow& row) const {
 // power is taken to be what is not accounted for otherwise.
 PowerBalance Pass::balance() const {
   const DirectField& direct = state_.direct;
-  PowerBalance balance{.emitted = state_.in_watts(direct.emitted_power())};
+  PowerBalance balance{.emitted = state_.in_watts(state_.emitted_power())};
   if (!exchange_) return balance;
   const auto patches = system_->patches();
   std::vector<Rgb> taken(patches.size());
@@ -58,7 +58,7 @@ PowerBalance Pass::balance() const {
   balance.absorbed = state_.in_watts(absorbed.sum());
   balance.unshot = state_.in_watts(exchange_->unshot_power());
   const double not_seen_again = std::max(0.0, balance.emitted - balance.absorbed - balance.unshot);
-  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(lost.sum() + direct.power_lost_on_the_way()) : not_seen_again;
+  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(lost.sum() + state_.power_lost_on_the_way()) : not_seen_again;
   return balance;
 }
 

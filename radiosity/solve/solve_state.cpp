@@ -128,6 +128,13 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
 
+double SolveState::arrived_power() const {
+  double power = 0;
+  if (direct.counts_arrivals())
+    for (const NodeIndex leaf : forests.leaves().leaves()) power += visible_area(leaf) * direct.arrived(leaf);
+  return power;
+}
+
 std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
   const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);
@@ -146,11 +153,13 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   const std::size_t leaves_before = leaf_count();
   forests.split_as_at_start(plan);
   fit_to_nodes();
-  const bool is_scaled = factor && factor->is_grey() && reflects_as_before && change > 0 && leaf_count() == leaves_before;
+  const bool is_scaled = factor && factor->is_grey() && !plan.emission_by_rows() && reflects_as_before && change > 0 &&
+                         leaf_count() == leaves_before;
   return is_scaled ? std::optional(factor->r / change) : std::nullopt;
 }
 
 void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before) {
+  assert(!move_);
   MovedRoots roots(before, mesh);
   move_.emplace(std::move(before), std::move(roots));
   scene = LocalScene(mesh);

@@ -63,6 +63,9 @@ class SolveState {
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
   /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
   std::vector<LeafValue> leaf_values() const;
+  /// Returns the power that the scene emits, and what of that of lamps is lost on the way: see DirectField.
+  double emitted_power() const { return direct.emitted_power(arrived_power()); }
+  double power_lost_on_the_way() const { return direct.power_lost_on_the_way(arrived_power()); }
   /// Returns light in W/m2, such as an ambient irradiance that is displayed with leaf_values().
   Rgb in_watts_per_m2(const RelativeLight& light) const { return unit_.to_watts_per_m2(light); }
   /// Returns W for a power in emission units times m2.
@@ -112,6 +115,7 @@ class SolveState {
   EmissionUnit unit_{mesh};
   Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
+  double arrived_power() const;
   std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
 };

@@ -31,6 +31,7 @@ SceneEdit without_values(SceneEdit edit) {
     clear(light->cone), clear(light->web);
   } else if (auto* object = std::get_if<ObjectEdit>(&edit)) {
     clear(object->dim), clear(object->move), clear(object->turn), clear(object->hidden);
+    clear(object->turn_axis), clear(object->scale);
   } else if (std::holds_alternative<DaylightEdit>(edit)) {
     edit = DaylightEdit{};
   } else if (std::holds_alternative<MediumEdit>(edit)) {

@@ -123,6 +123,8 @@ void write_edit_seeds(const fs::path& directory) {
   object.set_name("block");
   object.mutable_move()->set_x(0.5);
   object.set_turn(30);
+  object.mutable_turn_axis()->set_x(1);
+  object.set_scale(0.5);
   step.add_edits()->mutable_object()->set_name("lamp");
   step.mutable_edits(1)->mutable_object()->set_hidden(true);
   step.add_edits()->mutable_material()->set_name("m0");

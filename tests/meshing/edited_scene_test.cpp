@@ -108,6 +108,33 @@ TEST(EditedScene, ObjectsTurnAboutTheirMiddleAndThenMoveWithThoseThatHangFromThe
   EXPECT_LT(length(edited.objects[1].placement.origin - edited.objects[1].motion.origin), 1e-12);
 }
 
+TEST(EditedScene, ObjectsGrowAboutTheirMiddleAndTurnAboutAnyAxis) {
+  const Scene scene = lamps();
+  const Scene edited = edited_scene(
+      scene, std::vector<SceneEdit>{ObjectEdit{.name = "stand", .turn = 90, .turn_axis = Vec3{0, 0, -4}, .scale = 3}});
+  EXPECT_FALSE(find_fault(edited));
+  const std::size_t left = scene.objects[1].first_face;
+  const auto before = corners_of(scene, left), after = corners_of(edited, left);
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Vec3 middle{1.25, 2.9, 1.25}, from = before[c] - middle;  // seen from -z, x goes to -y
+    EXPECT_LT(length(after[c] - (middle + 3 * Vec3{from.y, -from.x, from.z})), 1e-12);
+  }
+  const BaseMesh submitted(scene), mesh = submitted.edited_as(edited);
+  for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) {
+    const bool is_of_stand = edited.objects[1].first_face <= mesh.roots()[root].input.first &&
+                             mesh.roots()[root].input.first < edited.objects[1].first_face + 2;
+    EXPECT_NEAR(mesh.roots()[root].area, (is_of_stand ? 9 : 1) * submitted.roots()[root].area, 1e-12) << root;
+  }
+  const auto reason = [&](const ObjectEdit& edit) {
+    const auto fault = fault_in(std::vector<SceneEdit>{edit}, scene);
+    return fault ? fault->field + ": " + fault->reason : "none";
+  };
+  EXPECT_EQ(reason({.name = "stand", .scale = 0}), "object.scale: must be in [0.01, 100]");
+  EXPECT_EQ(reason({.name = "stand", .scale = std::nan("")}), "object.scale: must be in [0.01, 100]");
+  EXPECT_EQ(reason({.name = "stand", .turn_axis = Vec3{0, 0, 1}}), "object.turn_axis: is given without a turn");
+  EXPECT_EQ(reason({.name = "stand", .turn = 1, .turn_axis = Vec3{}}), "object.turn_axis: must not be zero");
+}
+
 TEST(EditedScene, WhatHangsFromAHiddenObjectIsHiddenAndShinesNoMore) {
   const Scene scene = lamps();
   const Scene edited = edited_scene(

@@ -67,6 +67,15 @@ Scene box_under_the_sky() {
   return scene;
 }
 
+/// The sky comes before the other lights, and its light does not get in.
+Scene closed_room_under_a_sky() {
+  Scene scene = test::coloured_room();
+  scene.lights = room_in_the_morning().lights;
+  const auto sky = std::ranges::find(scene.lights, LightKind::sky, &Light::kind);
+  std::rotate(scene.lights.begin(), sky, sky + 1);
+  return scene;
+}
+
 struct Case {
   std::string name;
   Scene (*scene)();
@@ -136,11 +145,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"ABoxMoves", test::room_of_objects, of_object({.name = "box", .move = Vec3{0.3, 0, 1.7}})},
                     Case{"ABoxTurnsAndStaysOnTheFloor", test::room_of_objects, of_object({.name = "box", .turn = 30})},
                     Case{"ABoxIsLiftedOffTheFloor", test::room_of_objects, of_object({.name = "box", .move = Vec3{0, 0.4, 0}})},
+                    Case{"ABoxGrows", test::room_of_objects, of_object({.name = "box", .move = Vec3{0, 0.6, 1.5}, .scale = 1.5})},
+                    Case{"ABoxTips", test::room_of_objects,
+                         of_object({.name = "box", .move = Vec3{0, 0.8, 1}, .turn = 40, .turn_axis = Vec3{1, 0, 0.2}})},
+                    Case{"ALampShrinks", test::room_of_objects, of_object({.name = "lamp", .scale = 0.5})},
                     Case{"ABoxIsHidden", test::room_of_objects, of_object({.name = "box", .hidden = true})},
                     Case{"ALampMoves", test::room_of_objects, of_object({.name = "lamp", .move = Vec3{-0.8, -0.3, 1}})},
                     Case{"ABoxMovesAmongManyLamps", room_of_objects_and_many_lamps,
                          of_object({.name = "box", .move = Vec3{0.3, 0.2, 1.7}})},
                     Case{"ABoxMovesUnderTheSky", box_under_the_sky, of_object({.name = "box", .move = Vec3{1, 0.2, 0.7}})},
+                    Case{"AllSurfacesShineLessBesideASun",
+                         [] {
+                           Scene scene = test::furnace(1, 0.5);
+                           scene.lights = {{"sun", LightKind::directional, {5, 5, 5}, {}, {0, -1, 0}}};
+                           return scene;
+                         },
+                         [](Scene& s) {
+                           s.materials[0].emission = {0.3, 0.3, 0.3};
+                         }},
+                    Case{"ALampMovesUnderASkyThatIsNotSeen", closed_room_under_a_sky,
+                         [](Scene& s) { std::ranges::find(s.lights, LightKind::point, &Light::kind)->position = {1, 1.5, 1}; }},
                     Case{"AllSurfacesShine", [] { return test::furnace(1, 0.5); },
                          [](Scene& s) {
                            s.materials[0].reflectance = {0.2, 0.4, 0.6};
@@ -194,6 +218,23 @@ TEST(EditedSolve, RecoloursAndDimsAllLampsWithoutARay) {
   auto half = before;
   for (LeafValue& leaf : half) leaf.irradiance = 0.5f * leaf.irradiance;
   EXPECT_LT(difference(edited.leaves(), half), 1e-5);
+}
+
+// The faces of a room whose lamp is off show nothing, and then their light again, each leaf its own.
+TEST(EditedSolve, ARoomIsDarkAndLitAgainAsItWas) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(20, 0), test::grey(30, 0)};
+  for (const std::uint32_t room : {0u, 1u}) {
+    const double x = 10 * room;
+    test::add_box(scene, {x, 0, 0}, {x + 4, 3, 4}, true);
+    test::add_polygon(scene, {{x + 1, 2.9, 1}, {x + 1.5, 2.9, 1}, {x + 1.5, 2.9, 1.5}, {x + 1, 2.9, 1.5}}, 1 + room);
+  }
+  EditedSolve edited(scene, {.tolerance = 0.05, .max_leaves = 20'000});
+  const auto before = edited.leaves();
+  edited.edit([](Scene& off) { off.materials[1].emission = {}; });
+  EXPECT_LT(mean_irradiance(edited, scene.faces.size() / 2), 1e-6);
+  edited.edit([&](Scene& on) { on = scene; });
+  EXPECT_LT(difference(edited.leaves(), before), 1e-3);
 }
 
 TEST(EditedSolve, TellsTheSameErrorsOfAMultipleOfTheLightAtOnce) {

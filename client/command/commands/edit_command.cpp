@@ -23,7 +23,7 @@ namespace {
 struct EditCommand {
   std::string solve;
   ServerChoice server;
-  std::vector<std::string> settings, dims, webs, copies, moves, turns, hidden, shown;
+  std::vector<std::string> settings, dims, webs, copies, moves, turns, scales, hidden, shown;
   std::string absorption;
   SkyOptions sky;
   bool no_daylight = false;
@@ -42,6 +42,7 @@ v1::EditStep step_of(const EditCommand& command) {
   for (const std::string& copy : command.copies) *step.add_edits() = edit_of_copy(copy);
   for (const std::string& move : command.moves) *step.add_edits() = edit_of_move(move);
   for (const std::string& turn : command.turns) *step.add_edits() = edit_of_turn(turn);
+  for (const std::string& scale : command.scales) *step.add_edits() = edit_of_scale(scale);
   for (const std::string& name : command.hidden) *step.add_edits() = edit_of_hidden(name, true);
   for (const std::string& name : command.shown) *step.add_edits() = edit_of_hidden(name, false);
   const auto daylight = daylight_of(command.sky);
@@ -51,11 +52,12 @@ v1::EditStep step_of(const EditCommand& command) {
   if (command.undo || command.redo) step.set_kind(command.undo ? v1::EditStep::UNDO : v1::EditStep::REDO);
   const bool is_edit = step.kind() != v1::EditStep::UNDO && step.kind() != v1::EditStep::REDO;
   if (is_edit == (step.edits_size() == 0))
-    throw Failure(ExitStatus::usage,
-                  is_edit
-                      ? "nothing to edit: give --set, --dim, --web, --absorption, --copy, --move, --turn, --hide, --show, --sun, "
-                        "--time, --sky, --no-daylight, --script, --undo or --redo"
-                      : "--undo and --redo stand alone");
+    throw Failure(
+        ExitStatus::usage,
+        is_edit
+            ? "nothing to edit: give --set, --dim, --web, --absorption, --copy, --move, --turn, --scale, --hide, --show, --sun, "
+              "--time, --sky, --no-daylight, --script, --undo or --redo"
+            : "--undo and --redo stand alone");
   step.set_author(command.author);
   return step;
 }
@@ -114,8 +116,14 @@ void add_edit_command(CLI::App& app) {
       ->allow_extra_args(false);
   command
       .add_option("--turn", options->turns,
-                  "NAME=DEGREES: turn an object about the vertical through its middle, counter-clockwise seen from above")
+                  "NAME=DEGREES: turn an object about the vertical through its middle, counter-clockwise seen from above; "
+                  "NAME=DEGREES,X,Y,Z: about an axis of this direction, seen from where it points to")
       ->type_name("TURN")
+      ->allow_extra_args(false);
+  command
+      .add_option("--scale", options->scales,
+                  "NAME=FACTOR: make an object so many times as large as the scene as submitted has it, about its middle")
+      ->type_name("SCALE")
       ->allow_extra_args(false);
   command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME")->allow_extra_args(false);
   command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME")->allow_extra_args(false);

@@ -161,7 +161,18 @@ v1::Edit edit_of_turn(const std::string& turn) {
   const Named named = split_object("--turn", turn);
   v1::Edit edit;
   edit.mutable_object()->set_name(named.name);
-  edit.mutable_object()->set_turn(numbers_of("--turn", turn, named.value, 1)[0]);
+  const bool has_axis = named.value.find(',') != std::string::npos;
+  const auto n = numbers_of("--turn", turn, named.value, has_axis ? 4 : 1);
+  edit.mutable_object()->set_turn(n[0]);
+  if (has_axis) set_vector(std::span(n).subspan(1), *edit.mutable_object()->mutable_turn_axis());
+  return edit;
+}
+
+v1::Edit edit_of_scale(const std::string& scale) {
+  const Named named = split_object("--scale", scale);
+  v1::Edit edit;
+  edit.mutable_object()->set_name(named.name);
+  edit.mutable_object()->set_scale(numbers_of("--scale", scale, named.value, 1)[0]);
   return edit;
 }
 

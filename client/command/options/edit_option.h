@@ -16,11 +16,12 @@ v1::Edit edit_of_dim(const std::string& dim);
 v1::Edit edit_of_web(const std::string& web);
 /// Returns the edit of `--absorption R,G,B`. Throws Failure (usage) that names the option.
 v1::Edit edit_of_absorption(const std::string& absorption);
-/// Returns the edits of `--copy NEW=NAME`, `--move NAME=X,Y,Z`, `--turn NAME=DEGREES`, `--hide NAME` and `--show NAME`, of
-/// objects. Throw Failure (usage) that names the option.
+/// Returns the edits of `--copy NEW=NAME`, `--move NAME=X,Y,Z`, `--turn NAME=DEGREES[,X,Y,Z]`, `--scale NAME=FACTOR`, `--hide
+/// NAME` and `--show NAME`, of objects. Throw Failure (usage) that names the option.
 v1::Edit edit_of_copy(const std::string& copy);
 v1::Edit edit_of_move(const std::string& move);
 v1::Edit edit_of_turn(const std::string& turn);
+v1::Edit edit_of_scale(const std::string& scale);
 v1::Edit edit_of_hidden(const std::string& name, bool hidden);
 /// Returns the step of a JSON file: {"edits": [{"material": {"name": "wall", "reflectance": {"r": 0.2, "g": 0.2, "b": 0.2}}}]},
 /// with the fields of EditStep. Throws Failure (usage) that names the file.

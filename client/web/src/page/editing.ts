@@ -174,7 +174,7 @@ export class Editing {
     const edits = editsThatHold(this.steps);
     const own = object && ownMotion(name, edits);
     let position: Bands | undefined = own ? [own.move.x, own.move.y, own.move.z] : light?.position;
-    const turn = own?.turn;
+    const turn = own && (own.turnAxis ? 0 : own.turn); // sliding it turns the object about the vertical instead
     let hidden = false;
     let reflectance = material?.hasTexture ? undefined : material?.reflectance;
     let emission = material?.emission;
@@ -307,13 +307,13 @@ export class Editing {
   private async duplicate(): Promise<void> {
     const { name } = this.chosen;
     const source = this.parts.objects.find((object) => object.name === name)!;
-    const { move, turn } = besideOf(source, this.parts, editsThatHold(this.steps), this.up);
+    const motion = besideOf(source, this.parts, editsThatHold(this.steps), this.up);
     const copy = freeName(name, new Set([...this.parts.objects.map((object) => object.name), ...copiesEverMade(this.steps)]));
     const wanted = `object:${copy}`;
     this.wanted = wanted;
     const edits = [
       create(EditSchema, { part: { case: "copy", value: { name: copy, of: name } } }),
-      create(EditSchema, { part: { case: "object", value: { name: copy, turn, move } } }),
+      create(EditSchema, { part: { case: "object", value: { name: copy, ...motion } } }),
     ];
     const isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits, author: this.author }));
     if (!isTaken && this.wanted === wanted) this.wanted = "";

@@ -12,30 +12,33 @@ export interface Place {
   motion: THREE.Matrix4;
   /** The value of the edit that moves the part: of an object how far it was moved, of a light its position. */
   value: Vector;
-  /** From the axes of `value` to those of the scene: the object that this one hangs from may be turned. */
+  /** From the axes of `value` to those of the scene: the object that this one hangs from may be turned and have another size. */
   axes: THREE.Matrix4;
 }
 
 export const upOf = (isZUp: boolean) => (isZUp ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0, 1, 0));
 
 /** What edits say of an object itself. */
-export function ownMotion(name: string, edits: Edit[]): { move: Vector; turn: number } {
-  const own = { move: { x: 0, y: 0, z: 0 }, turn: 0 };
+export function ownMotion(name: string, edits: Edit[]): { move: Vector; turn: number; turnAxis?: Vector; scale: number } {
+  const own: ReturnType<typeof ownMotion> = { move: { x: 0, y: 0, z: 0 }, turn: 0, scale: 1 };
   for (const { part } of edits) {
     if (part.case !== "object" || part.value.name !== name) continue;
     if (part.value.move) own.move = part.value.move;
-    own.turn = part.value.turn ?? own.turn;
+    if (part.value.turn !== undefined) [own.turn, own.turnAxis] = [part.value.turn, part.value.turnAxis];
+    own.scale = part.value.scale ?? own.scale;
   }
   return own;
 }
 
 /** Returns the motion of an object: its own, then that of the object that it hangs from. */
 function motionOf(object: Parts["objects"][0], parts: Parts, edits: Edit[], up: THREE.Vector3): THREE.Matrix4 {
-  const { move, turn } = ownMotion(object.name, edits);
+  const { move, turn, turnAxis: axis, scale } = ownMotion(object.name, edits);
+  const about = axis ? new THREE.Vector3(axis.x, axis.y, axis.z).normalize() : up;
   const middle = boxOf(object).getCenter(new THREE.Vector3());
   const own = new THREE.Matrix4()
     .makeTranslation(middle.clone().add(new THREE.Vector3(move.x, move.y, move.z)))
-    .multiply(new THREE.Matrix4().makeRotationAxis(up, THREE.MathUtils.degToRad(turn)))
+    .multiply(new THREE.Matrix4().makeRotationAxis(about, THREE.MathUtils.degToRad(turn)))
+    .multiply(new THREE.Matrix4().makeScale(scale, scale, scale))
     .multiply(new THREE.Matrix4().makeTranslation(middle.negate()));
   return motionOfParent(object, parts, edits, up).multiply(own);
 }
@@ -53,12 +56,12 @@ export function placeOfObject(object: Parts["objects"][0], parts: Parts, edits: 
     box: boxOf(object),
     motion: motionOf(object, parts, edits, up),
     value: ownMotion(object.name, edits).move,
-    axes: new THREE.Matrix4().extractRotation(motionOfParent(object, parts, edits, up)),
+    axes: motionOfParent(object, parts, edits, up).setPosition(0, 0, 0),
   };
 }
 
-/** Returns what brings a copy of an object beside the object: a copy hangs from nothing. */
-export function besideOf(object: Parts["objects"][0], parts: Parts, edits: Edit[], up: THREE.Vector3): { move: Vector; turn: number } {
+/** Returns what brings a copy of an object beside the object, turned and as large as it: a copy hangs from nothing. */
+export function besideOf(object: Parts["objects"][0], parts: Parts, edits: Edit[], up: THREE.Vector3) {
   const box = boxOf(object);
   const motion = motionOf(object, parts, edits, up);
   const before = box.getCenter(new THREE.Vector3());
@@ -66,12 +69,21 @@ export function besideOf(object: Parts["objects"][0], parts: Parts, edits: Edit[
   const longest = Math.max(there.x, there.y, there.z);
   const move = before.clone().applyMatrix4(motion).sub(before);
   move.x += 1.1 * Math.max(there.x, longest / 4); // a thin panel's copy is to be seen beside it
-  return { move: { x: move.x, y: move.y, z: move.z }, turn: turnOf(object, parts, edits) };
+  return { move: { x: move.x, y: move.y, z: move.z }, ...turnAndSize(motion, up) };
 }
 
-function turnOf({ name, parent }: Parts["objects"][0], parts: Parts, edits: Edit[]): number {
-  const above = parts.objects.find((object) => object.name === parent);
-  return ownMotion(name, edits).turn + (above ? turnOf(above, parts, edits) : 0);
+/** Takes a motion without a mirror apart; of turns about the vertical there is no axis. */
+function turnAndSize(motion: THREE.Matrix4, up: THREE.Vector3): { turn?: number; turnAxis?: Vector; scale?: number } {
+  const [turned, size] = [new THREE.Quaternion(), new THREE.Vector3()];
+  motion.decompose(new THREE.Vector3(), turned, size);
+  const axis = new THREE.Vector3(turned.x, turned.y, turned.z);
+  const rounded = (x: number): number => Number(x.toFixed(6));
+  const angle = rounded(2 * THREE.MathUtils.radToDeg(Math.atan2(axis.length(), turned.w)));
+  const scale = rounded(size.x) === 1 ? undefined : size.x;
+  if (angle === 0) return { scale };
+  const alongUp = axis.normalize().dot(up);
+  if (Math.abs(alongUp) > 1 - 1e-9) return { turn: alongUp > 0 ? angle : -angle, scale };
+  return { turn: angle, turnAxis: { x: axis.x, y: axis.y, z: axis.z }, scale };
 }
 
 /** Returns where a light at `position` lies. `centre`: of the mesh, in the scene's own coordinates. */

@@ -10,7 +10,7 @@ const LEAST_SIZE = 0.02; // a light has no size
 const FARTHEST = 4;
 const KEY_STEP = 0.02;
 
-/** In the scene's axes, metres from the middle of the mesh: a box, and the rigid motion that brings it to where it is. */
+/** In the scene's axes, metres from the middle of the mesh: a box, and the motion that brings it to where it is. */
 export interface MovedBox {
   box: THREE.Box3;
   motion: THREE.Matrix4;

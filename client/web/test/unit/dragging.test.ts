@@ -2,13 +2,13 @@ import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import { create } from "@bufbuild/protobuf";
 import { EditSchema } from "../../src/gen/alvor/v1/solve_service_pb";
-import type { Bands, Parts } from "../../src/messages";
+import type { Bands, Parts, Vector } from "../../src/messages";
 import { besideOf, placeOfLight, placeOfObject } from "../../src/page/place";
 import { axesOfView, draggedTo, grabbedBy } from "../../src/view/dragging";
 
 const UP = new THREE.Vector3(0, 0, 1);
 const v = (x: number, y: number, z: number) => new THREE.Vector3(x, y, z);
-const near = (a: THREE.Vector3, b: THREE.Vector3) => expect(a.distanceTo(b)).toBeLessThan(1e-9);
+const near = (a: THREE.Vector3, b: THREE.Vector3, most = 1e-9) => expect(a.distanceTo(b)).toBeLessThan(most);
 const towards = (from: THREE.Vector3, to: THREE.Vector3) => ({ origin: from, direction: to.clone().sub(from).normalize() });
 
 // A table of 2 by 1 m, and a lamp on one end of it.
@@ -20,7 +20,8 @@ const PARTS: Parts = {
     { name: "lamp", parent: "table", isAdded: false, shines: true, isRoom: false, low: [1.6, 0.4, 0.8], high: [1.8, 0.6, 1] },
   ],
 };
-const objectEdit = (name: string, change: { move?: { x: number; y: number; z: number }; turn?: number }) =>
+type Change = { move?: Vector; turn?: number; turnAxis?: Vector; scale?: number };
+const objectEdit = (name: string, change: Change) =>
   create(EditSchema, { part: { case: "object", value: { name, ...change } } });
 const place = (name: string, edits: ReturnType<typeof objectEdit>[]) =>
   placeOfObject(PARTS.objects.find((one) => one.name === name)!, PARTS, edits, UP);
@@ -34,6 +35,19 @@ describe("the place of a part", () => {
     expect(lamp.value).toMatchObject({ x: -1, y: 0, z: 0 });
     near(v(1, 0, 0).applyMatrix4(lamp.axes), v(0, 1, 0));
     near(v(1, 0, 0).applyMatrix4(place("table", edits).axes), v(1, 0, 0));
+  });
+  it("is where it is made larger and tipped about its middle", () => {
+    const table = place("table", [objectEdit("table", { scale: 2, turn: 90, turnAxis: { x: 3, y: 0, z: 0 } })]);
+    near(v(2, 1, 0.5).applyMatrix4(table.motion), v(3, 0.5, 1.5)); // from (1, 0.5, 0.5): 1, 0.5, 0 is 2, 1, 0, then 2, 0, 1
+  });
+  it("of a copy of what is tipped and larger is that of the other, moved aside", () => {
+    const edits = [objectEdit("table", { scale: 2, turn: 30, turnAxis: { x: 0, y: 1, z: 0 } }), objectEdit("lamp", { turn: 40 })];
+    const { move, ...turned } = besideOf(PARTS.objects[1], PARTS, edits, UP);
+    const alone = { ...PARTS.objects[1], name: "copy", parent: undefined };
+    const copy = placeOfObject(alone, { ...PARTS, objects: [alone] }, [objectEdit("copy", { move, ...turned })], UP);
+    const aside = v(1.7, 0.5, 0.9).applyMatrix4(copy.motion).sub(v(1.7, 0.5, 0.9).applyMatrix4(place("lamp", edits).motion));
+    near(v(1.6, 0.4, 1).applyMatrix4(copy.motion), v(1.6, 0.4, 1).applyMatrix4(place("lamp", edits).motion).add(aside), 1e-6);
+    expect(aside.x).toBeGreaterThan(0.4);
   });
   it("of a copy is beside the other, as it is turned, whatever that hangs from", () => {
     const edits = [objectEdit("table", { turn: 90, move: { x: 0, y: 5, z: 0 } }), objectEdit("lamp", { turn: 10 })];
