@@ -99,7 +99,7 @@ class Check {
       return EditFault{0, "object.turn_axis", "must not be zero"};
     if (edit.scale && !(*edit.scale >= least_scale && *edit.scale <= most_scale))
       return EditFault{0, "object.scale", "must be in [0.01, 100]"};
-    return edit.move ? fault_of_move(*object, *edit.move) : std::nullopt;
+    return edit.move ? fault_of_move(*object, edit) : std::nullopt;
   }
 
   std::optional<EditFault> operator()(const ObjectCopy&) { return {}; }  // CheckedCopies
@@ -129,11 +129,13 @@ class Check {
     return fault ? std::optional(EditFault{0, "light.web", *fault}) : std::nullopt;
   }
   /// The object must stay within a box about the scene that is longer than the scene by its length on each side.
-  std::optional<EditFault> fault_of_move(const SceneObject& object, Vec3 move) {
+  std::optional<EditFault> fault_of_move(const SceneObject& object, const ObjectEdit& edit) {
     if (!boxes_) boxes_.emplace(scene_);
-    const BoundingBox& box = boxes_->of_object[static_cast<std::size_t>(&object - scene_.objects.data())];
+    BoundingBox box = boxes_->of_object[static_cast<std::size_t>(&object - scene_.objects.data())];
     if (box.is_empty()) return EditFault{0, "object.move", "'" + object.name + "' has no faces"};
     const BoundingBox most = about(boxes_->of_scene);
+    const Vec3 move = *edit.move, middle = lerp(box.low, box.high, 0.5);
+    box.low = lerp(middle, box.low, edit.scale.value_or(1)), box.high = lerp(middle, box.high, edit.scale.value_or(1));
     if (std::isfinite(length(move)) && most.holds(box.low + move) && most.holds(box.high + move)) return {};
     return EditFault{0, "object.move", "'" + object.name + "' would lie farther from the scene than the scene is long"};
   }

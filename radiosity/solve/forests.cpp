@@ -21,12 +21,6 @@ constexpr double start_area = 1e-3;
 // because light from one place would seem to come from another. Chosen.
 constexpr double start_textured_edge = 1.0 / 32, start_contrast = 0.05;
 
-double area_of_roots(const BaseMesh& mesh) {
-  double area = 0;
-  for (const RootPatch& root : mesh.roots()) area += root.area;
-  return area;
-}
-
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
   double longest = 0;
@@ -64,7 +58,7 @@ void load_leaves(PatchForest& forest, PlainReader& in) {
 
 Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits)
     : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
-  area_ = area_of_roots(mesh);
+  for (const RootPatch& root : mesh.roots()) area_ += root.area;
   split_as_at_start(plan);
 }
 
@@ -155,11 +149,7 @@ bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
 
 void Forests::note_moved() {
   for (NodeIndex row = 0; row < row_centre_.size(); ++row) row_centre_[row] = centre_of(mesh_, rows_.shape(row));
-  for (NodeIndex leaf = 0; leaf < leaf_centre_.size(); ++leaf) {
-    const PatchShape shape = leaves_.shape(leaf);
-    leaf_centre_[leaf] = centre_of(mesh_, shape), leaf_area_[leaf] = area_of(mesh_, shape);
-  }
-  area_ = area_of_roots(mesh_);
+  for (NodeIndex leaf = 0; leaf < leaf_centre_.size(); ++leaf) leaf_centre_[leaf] = centre_of(mesh_, leaves_.shape(leaf));
 }
 
 void Forests::note_relit() {
@@ -173,7 +163,10 @@ void Forests::save(PlainWriter& out) const {
   save_leaves(leaves_, out);
 }
 
+// Where the limit of leaves was reached, an edit may have left leaves coarser than they are at the start.
 void Forests::load(PlainReader& in) {
+  rows_ = leaves_ = PatchForest(mesh_);
+  row_centre_.clear(), leaf_centre_.clear(), leaf_area_.clear(), leaf_surface_.clear();
   load_leaves(rows_, in);
   load_leaves(leaves_, in);
   fit_to_nodes();

@@ -18,12 +18,19 @@ constexpr double much_worse = 1.25;
 // Leaves that a split of a translucent leaf adds, the most of any.
 constexpr std::uint64_t leaves_of_a_split = 6;
 
+/// Returns whether two areas differ by no more than rounding: patches of roots that grow are other ones from the start.
+bool is_as_large(double a, double b) {
+  constexpr double rounding = 1e-9;
+  return std::abs(a - b) <= rounding * std::max(a, b);
+}
+
 /// Returns whether the roots differ only in where they are, whether they are hidden, and in what relighting changes.
 bool has_same_roots(const BaseMesh& before, const BaseMesh& after) {
   return std::ranges::equal(before.roots(), after.roots(), [&](const RootPatch& a, const RootPatch& b) {
     const Material &was = before.materials()[a.material], &is = after.materials()[b.material];
-    return a.corner_count == b.corner_count && a.twin == b.twin && was.regular_transmittance == is.regular_transmittance &&
-           was.is_translucent() == is.is_translucent() && was.texture.has_value() == is.texture.has_value();
+    return a.corner_count == b.corner_count && a.twin == b.twin && is_as_large(a.area, b.area) &&
+           was.regular_transmittance == is.regular_transmittance && was.is_translucent() == is.is_translucent() &&
+           was.texture.has_value() == is.texture.has_value();
   });
 }
 

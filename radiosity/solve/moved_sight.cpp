@@ -32,10 +32,10 @@ bool sees(const LocalScene& scene, const MovedRoots& moved, std::span<const Boun
   const PatchPoints points = sample_points(scene, patch.shape, random);
   const std::size_t first = random.next_below(static_cast<std::uint32_t>(boxes.size()));
   // Of more than sixteen boxes some are passed over, evenly, so that old and new places have their share.
-  const std::size_t step = std::max<std::size_t>(1, boxes.size() / RayPacket::width);
+  const std::size_t spread = std::max<std::size_t>(boxes.size(), RayPacket::width);
   RayPacket rays;
   for (std::size_t o = 0; o < RayPacket::width; ++o) {
-    const BoundingBox& box = boxes[(first + step * o) % boxes.size()];
+    const BoundingBox& box = boxes[(first + o * spread / RayPacket::width) % boxes.size()];
     const Vec3 from{points.x[o], points.y[o], points.z[o]}, from_metres = scene.frame().to_metres(from);
     const Vec3 to = point_in(box, from_metres, root.normal, random);
     const auto enters = share_before(box, from_metres, to);

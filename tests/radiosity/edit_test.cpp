@@ -348,6 +348,10 @@ TEST(EditedSolve, HasNoRowsFinerThanLeavesWhereAHiddenObjectIsShownAtTheLimitOfL
   const Forests& forests = before->state.forests;
   for (const NodeIndex row : forests.rows().leaves())
     EXPECT_EQ(forests.leaves().id(forests.leaf_node_of(row)), forests.rows().id(row));
+  const SolveOptions options{.tolerance = 1e-3, .max_leaves = 500};
+  LiveSolve again(edited.mesh(), Plan(edited.mesh(), options), options, Ranks::alone(), true);
+  again.load(plain_bytes([&](PlainWriter& out) { before->save(out); }));
+  EXPECT_EQ(again.state.leaf_count(), before->state.leaf_count()) << "of a checkpoint";
 }
 
 TEST(EditedSolve, GivesTheTimeLimitAnewToEachEdit) {

@@ -8,7 +8,7 @@ import type { Bands, Parts, Vector } from "../messages";
 import { DaylightControls } from "./daylight";
 import { button, byId, input, select } from "./dom";
 import { areAlike, copiesEverMade, copiesThatHold, editsThatHold, freeName, textOfStep, undoAndRedo } from "./edits";
-import { besideOf, ownMotion, placeOfLight, placeOfObject, type Place } from "./place";
+import { besideOf, isTipped, ownMotion, placeOfLight, placeOfObject, type Place } from "./place";
 import { colourOf, linearOf } from "./srgb";
 
 /** Sends a step to the server. Returns whether it was taken. */
@@ -174,7 +174,7 @@ export class Editing {
     const edits = editsThatHold(this.steps);
     const own = object && ownMotion(name, edits);
     let position: Bands | undefined = own ? [own.move.x, own.move.y, own.move.z] : light?.position;
-    const turn = own && (own.turnAxis ? 0 : own.turn); // sliding it turns the object about the vertical instead
+    const turn = own && (isTipped(own.turnAxis, this.up) ? 0 : own.turn); // sliding it turns the object about the vertical instead
     let hidden = false;
     let reflectance = material?.hasTexture ? undefined : material?.reflectance;
     let emission = material?.emission;

@@ -65,6 +65,7 @@ function textOfEdit({ part }: Edit): string {
   if (part.case === "object" && part.value.hidden !== undefined) return `${name}, ${part.value.hidden ? "taken away" : "brought back"}`;
   if (part.case === "object" && part.value.move) return `${name}, moved`;
   if (part.case === "object" && part.value.turn !== undefined) return `${name}, turned to ${Math.round(part.value.turn)}°`;
+  if (part.case === "object" && part.value.scale !== undefined) return `${name}, ${percent(part.value.scale)} of its size`;
   const dim = part.case !== "material" ? part.value.dim : undefined;
   return dim === undefined ? name : `${name} at ${percent(dim)}`;
 }

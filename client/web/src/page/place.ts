@@ -16,6 +16,9 @@ export interface Place {
   axes: THREE.Matrix4;
 }
 
+// What ObjectEdit.scale may be.
+const [LEAST_SCALE, MOST_SCALE] = [0.01, 100];
+
 export const upOf = (isZUp: boolean) => (isZUp ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0, 1, 0));
 
 /** What edits say of an object itself. */
@@ -29,6 +32,10 @@ export function ownMotion(name: string, edits: Edit[]): { move: Vector; turn: nu
   }
   return own;
 }
+
+/** Returns whether a turn is about another axis than the vertical one, as seen from above. */
+export const isTipped = (axis: Vector | undefined, up: THREE.Vector3): boolean =>
+  axis !== undefined && new THREE.Vector3(axis.x, axis.y, axis.z).normalize().dot(up) < 1 - 1e-9;
 
 /** Returns the motion of an object: its own, then that of the object that it hangs from. */
 function motionOf(object: Parts["objects"][0], parts: Parts, edits: Edit[], up: THREE.Vector3): THREE.Matrix4 {
@@ -76,10 +83,12 @@ export function besideOf(object: Parts["objects"][0], parts: Parts, edits: Edit[
 function turnAndSize(motion: THREE.Matrix4, up: THREE.Vector3): { turn?: number; turnAxis?: Vector; scale?: number } {
   const [turned, size] = [new THREE.Quaternion(), new THREE.Vector3()];
   motion.decompose(new THREE.Vector3(), turned, size);
+  if (turned.w < 0) turned.set(-turned.x, -turned.y, -turned.z, -turned.w); // at most half a turn
   const axis = new THREE.Vector3(turned.x, turned.y, turned.z);
   const rounded = (x: number): number => Number(x.toFixed(6));
   const angle = rounded(2 * THREE.MathUtils.radToDeg(Math.atan2(axis.length(), turned.w)));
-  const scale = rounded(size.x) === 1 ? undefined : size.x;
+  const limited = rounded(THREE.MathUtils.clamp(size.x, LEAST_SCALE, MOST_SCALE));
+  const scale = limited === 1 ? undefined : limited;
   if (angle === 0) return { scale };
   const alongUp = axis.normalize().dot(up);
   if (Math.abs(alongUp) > 1 - 1e-9) return { turn: alongUp > 0 ? angle : -angle, scale };

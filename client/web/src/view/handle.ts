@@ -64,7 +64,7 @@ export class Handle<Place extends MovedBox> {
   setPlace(place: Place | undefined): void {
     if (this.held && place) return;
     this.release();
-    this.place = place && { ...place, box: this.largeEnough(place.box) };
+    this.place = place && { ...place, box: this.largeEnough(place) };
     this.moved.set(0, 0, 0);
     this.show();
   }
@@ -77,8 +77,8 @@ export class Handle<Place extends MovedBox> {
     this.lines.visible = visible;
   }
 
-  private largeEnough(box: THREE.Box3): THREE.Box3 {
-    const least = LEAST_SIZE * this.extent;
+  private largeEnough({ box, motion }: Place): THREE.Box3 {
+    const least = (LEAST_SIZE * this.extent) / motion.getMaxScaleOnAxis();
     const size = box.getSize(new THREE.Vector3()).max(new THREE.Vector3(least, least, least));
     return new THREE.Box3().setFromCenterAndSize(box.getCenter(new THREE.Vector3()), size);
   }

@@ -49,6 +49,11 @@ describe("the place of a part", () => {
     near(v(1.6, 0.4, 1).applyMatrix4(copy.motion), v(1.6, 0.4, 1).applyMatrix4(place("lamp", edits).motion).add(aside), 1e-6);
     expect(aside.x).toBeGreaterThan(0.4);
   });
+  it("of a copy of what is turned clockwise is turned clockwise, and not larger than may be", () => {
+    const edits = [objectEdit("table", { turn: -160, scale: 50 }), objectEdit("lamp", { scale: 10 })];
+    expect(besideOf(PARTS.objects[0], PARTS, edits, UP)).toMatchObject({ turn: -160, scale: 50 });
+    expect(besideOf(PARTS.objects[1], PARTS, edits, UP).scale).toBe(100);
+  });
   it("of a copy is beside the other, as it is turned, whatever that hangs from", () => {
     const edits = [objectEdit("table", { turn: 90, move: { x: 0, y: 5, z: 0 } }), objectEdit("lamp", { turn: 10 })];
     const lamp = PARTS.objects[1];
