@@ -161,7 +161,7 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
 void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before) {
   assert(!move_);
   MovedRoots roots(before, mesh);
-  move_.emplace(std::move(before), std::move(roots));
+  move_ = Move{std::move(before), std::move(roots)};
   scene = LocalScene(mesh);
   forests.note_moved();
   note_relit(std::move(new_plan), reflects_as_before);
