@@ -1,7 +1,6 @@
 #include "meshing/base_mesh.h"
 
 #include "meshing/bounding_box.h"
-#include "meshing/face_object.h"
 #include "meshing/polygon.h"
 #include "meshing/weld.h"
 #include "meshing/welded_faces.h"
@@ -300,106 +299,6 @@ void BaseMesh::add_backs() {
           Neighbour{roots_[other->root].twin, roots_[other->root].corner_count - 1 - other->edge, other->smooth};
     }
   }
-}
-
-BaseMesh BaseMesh::edited_as(const Scene& scene) const {
-  BaseMesh edited = *this;
-  edited.append_copies(scene.objects);
-  edited.materials_ = scene.materials;
-  edited.lights_ = scene.lights;
-  edited.absorption_ = scene.absorption;
-  edited.objects_ = scene.objects;
-  for (RootPatch& root : edited.roots_) root.material = scene.faces[root.input.first].material;
-  edited.separate_objects(true);
-  return edited;
-}
-
-namespace {
-
-/// Roots that are where they were submitted, or that move together. Each object that is moved or hidden is a group of its own
-/// unless it moves as another one does.
-class MovingGroups {
- public:
-  static constexpr std::uint32_t at_rest = ~0u;
-
-  explicit MovingGroups(std::span<const SceneObject> objects) : objects_(objects), group_(objects.size(), at_rest) {
-    std::vector<std::uint32_t> first;
-    for (std::uint32_t n = 0; n < objects.size(); ++n) {
-      if (!objects[n].is_hidden && objects[n].motion == Placement{}) continue;
-      const auto same = std::ranges::find_if(first, [&](std::uint32_t other) {
-        return objects[other].motion == objects[n].motion && objects[other].is_hidden == objects[n].is_hidden;
-      });
-      group_[n] = same == first.end() ? n : *same;
-      if (group_[n] == n && first.size() < most_compared) first.push_back(n);
-    }
-  }
-
-  /// Returns the first object of the group that a face belongs to.
-  std::uint32_t of_face(std::uint32_t face) const {
-    const auto object = object_of_face(objects_, face);
-    return object ? group_[*object] : at_rest;
-  }
-
- private:
-  static constexpr std::size_t most_compared = 100;  // so that the time stays linear
-  std::span<const SceneObject> objects_;
-  std::vector<std::uint32_t> group_;  // by object
-};
-
-void move(RootPatch& root, const Placement& motion) {
-  for (int c = 0; c < root.corner_count; ++c) root.corners[c] = motion.point(root.corners[c]);
-  root.normal = normalized(motion.direction(root.normal));
-  constexpr double rounding = 1e-9;  // a turn does not change the area
-  if (const double larger = dot(motion.x, motion.x); std::abs(larger - 1) > rounding) root.area *= larger;
-}
-
-/// Gives the vertices of roots numbers that no root of another group has.
-void separate_vertices(std::span<RootPatch> roots, std::span<const std::uint32_t> group) {
-  std::uint32_t next = 0;
-  for (const RootPatch& root : roots)
-    for (int c = 0; c < root.corner_count; ++c) next = std::max(next, root.vertex[c] + 1);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;  // by group and vertex
-  for (std::size_t r = 0; r < roots.size(); ++r)
-    for (int c = 0; c < roots[r].corner_count && group[r] != MovingGroups::at_rest; ++c) {
-      std::uint32_t& vertex = roots[r].vertex[c];
-      const auto [number, is_new] = numbers.try_emplace({group[r], vertex}, next);
-      next += is_new;
-      vertex = number->second;
-    }
-}
-
-}  // namespace
-
-/// Takes roots of objects that are hidden or have moved from those that do not move with them. Puts them where the motions say if
-/// they are not there yet.
-void BaseMesh::separate_objects(bool are_to_move) {
-  if (std::ranges::none_of(objects_, [](const SceneObject& o) { return o.is_hidden || o.motion != Placement{}; })) return;
-  const MovingGroups groups(objects_);
-  std::vector<std::uint32_t> group;
-  for (const RootPatch& root : roots_) group.push_back(groups.of_face(root.input.first));
-  separate_vertices(roots_, group);
-  for (std::uint32_t r = 0; r < roots_.size(); ++r) {
-    RootPatch& root = roots_[r];
-    for (int e = 0; e < root.corner_count; ++e)
-      if (auto& other = neighbours_[r][e]; other && group[other->root] != group[r]) other.reset();
-    if (root.twin != RootPatch::no_twin && group[root.twin] != group[r]) root.twin = RootPatch::no_twin, root.is_behind = false;
-    if (group[r] == MovingGroups::at_rest) continue;
-    if (are_to_move) move(root, objects_[group[r]].motion);
-    root.is_hidden = objects_[group[r]].is_hidden;
-    if (root.is_hidden) root.is_behind = true;
-  }
-  if (are_to_move && !is_within_frame()) find_bounds();
-}
-
-/// Returns whether all roots lie in the cube about the centre that is as long as the extent.
-bool BaseMesh::is_within_frame() const {
-  BoundingBox frame;
-  frame.add(centre_ - Vec3{extent_ / 2, extent_ / 2, extent_ / 2});
-  frame.add(centre_ + Vec3{extent_ / 2, extent_ / 2, extent_ / 2});
-  return std::ranges::all_of(roots_, [&](const RootPatch& root) {
-    return std::ranges::all_of(std::span(root.corners).first(static_cast<std::size_t>(root.corner_count)),
-                               [&](const Vec3& corner) { return frame.holds(corner); });
-  });
 }
 
 std::optional<Neighbour> BaseMesh::across(std::uint32_t root, int edge) const { return neighbours_[root][edge]; }

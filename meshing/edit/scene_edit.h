@@ -34,8 +34,8 @@ struct LightEdit {
   std::optional<double> dim;  ///< multiplies its intensity, in [0, 1e6]; 0 is off
   std::optional<Rgb> intensity;
   std::optional<Vec3> position;
-  /// Where the light shines to. A luminaire, with plane 0 of its web, is turned to it by the shortest way from its submitted
-  /// direction.
+  /// The direction into which a spot, a luminaire or a sun shines. A luminaire turns to it, with plane 0 of its web, by the
+  /// smallest angle from the direction that the submitted scene has.
   std::optional<Vec3> direction;
   std::optional<ConeAngles> cone;     ///< of a spot
   std::optional<PhotometricWeb> web;  ///< of a luminaire, in place of the one it has
@@ -45,12 +45,12 @@ struct LightEdit {
 /// Sets what is given of an object and of those that hang from it.
 struct ObjectEdit {
   std::string name;
-  std::optional<double> dim;   ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
-  std::optional<Vec3> move;    ///< metres, from where the scene as submitted has it
-  std::optional<double> turn;  ///< degrees counter-clockwise seen from above, about the middle of its box, before `move`
+  std::optional<double> dim;      ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
+  std::optional<Vec3> move;       ///< metres, from where the scene as submitted has it
+  std::optional<double> turn;     ///< degrees counter-clockwise seen from above, about the middle of its box, before `move`
   std::optional<Vec3> turn_axis;  ///< of `turn`, in place of the vertical: it points to who sees the turn counter-clockwise
   std::optional<double> scale;    ///< multiplies lengths, about the middle of its box, before `turn`; in [0.01, 100]
-  std::optional<bool> hidden;  ///< whether it is taken away
+  std::optional<bool> hidden;     ///< whether it is taken away
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
 

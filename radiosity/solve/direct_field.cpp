@@ -65,11 +65,13 @@ void DirectField::choose_lights() {
 
 bool DirectField::is_face(const LightSource& light) const { return light.number() < forests_.mesh().roots().size(); }
 
-/// What arrives from a tree of faces and other lights is not told apart.
+/// Decides how the light of light_tree_ is counted. A tree tells only the sum of its lights: if emitting faces are among them,
+/// what arrives of the others is not known, and they count as faces do, by what they send.
 void DirectField::count_tree() {
   counts_arrivals_of_tree_ = std::ranges::none_of(tree_lights_, [this](const LightSource* light) { return is_face(*light); });
+  if (counts_arrivals_of_tree_) return;
   for (const LightSource* light : tree_lights_)
-    if (!counts_arrivals_of_tree_ && !is_face(*light)) sent_power_ += light->power();
+    if (!is_face(*light)) sent_power_ += light->power();
 }
 
 void DirectField::heed_error(double error_so_far) {
@@ -83,13 +85,13 @@ void DirectField::heed_error(double error_so_far) {
   if ((exact_faces_ || exact_exits_) && !blockers_) blockers_ = std::make_unique<BlockerTree>(scene_);
 }
 
-double DirectField::emitted_power(double arrived) const {
-  return has_distant_lights_ && waiting_power_ == 0 ? sent_power_ + arrived : power_;
+double DirectField::emitted_power(const std::function<double()>& arrived) const {
+  return has_distant_lights_ && waiting_power_ == 0 ? sent_power_ + arrived() : power_;
 }
 
-double DirectField::power_lost_on_the_way(double arrived) const {
+double DirectField::power_lost_on_the_way(const std::function<double()>& arrived) const {
   if (!counts_arrivals_ || has_distant_lights_ || waiting_power_ > 0) return 0;
-  return std::max(0.0, power_ - sent_power_ - arrived);
+  return std::max(0.0, power_ - sent_power_ - arrived());
 }
 
 void DirectField::fit_to_nodes() {
@@ -324,11 +326,9 @@ void DirectField::load_light(PlainReader& in, std::uint32_t version) {
   fit_to_nodes();
   const auto leaves = forests_.leaves().leaves();
   load_at(leaves, light_, in, "direct light", [](const DirectLight& light) { return is_sound(light); });
-  const auto load_arrived = [&] {
-    load_at(leaves, arrived_, in, "light that arrived", [](float light) { return std::isfinite(light); });
-  };
   constexpr std::uint32_t first_of_lamps = 7;  // versions before counted distant lights only
-  if (version >= first_of_lamps ? counts_arrivals_ : has_distant_lights_) load_arrived();
+  if (version >= first_of_lamps ? counts_arrivals_ : has_distant_lights_)
+    load_at(leaves, arrived_, in, "light that arrived", [](float light) { return std::isfinite(light); });
   load_flags(leaves, is_known_, in);
   load_flags(leaves, is_lit_, in);
   const bool has_lamps =

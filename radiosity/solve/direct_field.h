@@ -32,12 +32,12 @@ class DirectField {
   float arrived(NodeIndex leaf) const { return arrived_[leaf]; }
   bool counts_arrivals() const { return counts_arrivals_; }
   /// Returns the power that all root patches and lamps emit. If a light is distant: what root patches emit, and what of all other
-  /// lights arrives, which is `arrived` (all that they may send, while light is waiting). Summed over bands, in emission units
-  /// times m2, as `arrived` is: arrived(leaf) summed over the leaves' visible areas.
-  double emitted_power(double arrived) const;
+  /// lights arrives (all that they may send, while light is waiting). Summed over bands, in emission units times m2, as what
+  /// `arrived` returns: arrived(leaf) times the visible area, summed over leaves. It is called only where it is needed.
+  double emitted_power(const std::function<double()>& arrived) const;
   /// Returns the power of lamps, if no light is distant, that leaves the scene or fades in the medium before it meets anything:
   /// no row tells of it. As emitted_power(); 0 while light is waiting. Of lamps in a tree with faces it is not known, and 0.
-  double power_lost_on_the_way(double arrived) const;
+  double power_lost_on_the_way(const std::function<double()>& arrived) const;
   /// Returns the part of the emitted power whose light has not been added to leaves yet, in emission units times m2.
   double waiting_power() const { return waiting_power_; }
 
@@ -102,7 +102,9 @@ class DirectField {
  private:
   void choose_lights();
   std::vector<LightForm> forms_of_lights() const;
+  const LightForm& form_of(const LightSource& light) const;
   void choose_shares();
+  void keep_shares_of_present_lights();
   void scale(const Rgb& factor);
   std::vector<Light> forms_of_scene() const;
   struct FarEnd {
@@ -124,6 +126,8 @@ class DirectField {
   void share(std::span<const Receiver> receivers, std::span<DirectLight> light, Add&& add);
   float stopped_by(NodeIndex leaf, const RelativeLight& irradiance) const;
   bool is_face(const LightSource& light) const;
+  /// Returns whether light_ is of lights alone that are counted by what arrives of them.
+  bool counts_all_arrivals() const { return counts_arrivals_ && sent_power_ == 0; }
   void count_tree();
   void add(std::span<const DirectLight> brought, std::span<const NodeIndex> leaves, std::span<DirectLight> light,
            bool counts_arrivals);

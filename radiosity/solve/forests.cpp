@@ -163,7 +163,8 @@ void Forests::save(PlainWriter& out) const {
   save_leaves(leaves_, out);
 }
 
-// Where the limit of leaves was reached, an edit may have left leaves coarser than they are at the start.
+// The saved forests may be coarser than those of a new solve: an edit that lights further faces at the limit of leaves cannot
+// split them as the start of a solve does. So the forests are built again from the roots.
 void Forests::load(PlainReader& in) {
   rows_ = leaves_ = PatchForest(mesh_);
   row_centre_.clear(), leaf_centre_.clear(), leaf_area_.clear(), leaf_surface_.clear();

@@ -103,7 +103,6 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
     if (!may_mend) return false;
     BaseMesh before = std::exchange(*own_mesh_, edited);
     state.note_moved(std::move(before), plan, is_alike);
-    has_unseen_move = true;
   } else {
     *own_mesh_ = edited;
     factor = state.note_relit(plan, is_alike);

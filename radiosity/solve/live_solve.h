@@ -68,8 +68,7 @@ class LiveSolve {
   std::optional<StopReason> ended_with;  ///< the tolerance or a limit of the mesh; nothing if the solve has not ended by one
   /// The last edit multiplied all light by one factor, and nothing was published since. Only if ended_with has a value.
   bool is_scaled = false;
-  bool has_unseen_move = false;  ///< the last edit moved or hid objects, and nothing was published since
-  bool is_refreshing = false;    ///< the log shows an older solution, and nothing is published before the first pass is done
+  bool is_refreshing = false;  ///< the log shows an older solution, and nothing is published before the first pass is done
 };
 
 /// Returns the state from which a solve of `mesh` goes on, or a new one. Throws BadBytes.

@@ -31,7 +31,8 @@ bool sees(const LocalScene& scene, const MovedRoots& moved, std::span<const Boun
   RandomStream random(patch.seed, PatchId::root(patch.shape.root));
   const PatchPoints points = sample_points(scene, patch.shape, random);
   const std::size_t first = random.next_below(static_cast<std::uint32_t>(boxes.size()));
-  // Of more than sixteen boxes some are passed over, evenly, so that old and new places have their share.
+  // There is a ray for each of sixteen boxes. Of more boxes only some get one, evenly spread over the list, which has the old
+  // places first and then the new ones.
   const std::size_t spread = std::max<std::size_t>(boxes.size(), RayPacket::width);
   RayPacket rays;
   for (std::size_t o = 0; o < RayPacket::width; ++o) {

@@ -128,10 +128,10 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
   if (rows[row].crosses_contact() && leaves.size() > 1) split_row(row);
 }
 
+/// Requires: direct.counts_arrivals().
 double SolveState::arrived_power() const {
   double power = 0;
-  if (direct.counts_arrivals())
-    for (const NodeIndex leaf : forests.leaves().leaves()) power += visible_area(leaf) * direct.arrived(leaf);
+  for (const NodeIndex leaf : forests.leaves().leaves()) power += visible_area(leaf) * direct.arrived(leaf);
   return power;
 }
 
@@ -190,7 +190,7 @@ std::vector<std::uint8_t> SolveState::rows_in_sight(const MovedRoots& moved) {
 }
 
 void SolveState::mend_moved() {
-  if (!move_) return;
+  assert(move_);
   direct.note_moved(move_->roots, [this] { return rows_in_sight(move_->roots); });
   std::vector<NodeIndex> leaves;
   for (const NodeIndex row : rows.note_moved(move_->before, move_->roots)) forests.append_leaves_of_row(row, leaves);

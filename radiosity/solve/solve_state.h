@@ -64,8 +64,12 @@ class SolveState {
   /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
   std::vector<LeafValue> leaf_values() const;
   /// Returns the power that the scene emits, and what of that of lamps is lost on the way: see DirectField.
-  double emitted_power() const { return direct.emitted_power(arrived_power()); }
-  double power_lost_on_the_way() const { return direct.power_lost_on_the_way(arrived_power()); }
+  double emitted_power() const {
+    return direct.emitted_power([this] { return arrived_power(); });
+  }
+  double power_lost_on_the_way() const {
+    return direct.power_lost_on_the_way([this] { return arrived_power(); });
+  }
   /// Returns light in W/m2, such as an ambient irradiance that is displayed with leaf_values().
   Rgb in_watts_per_m2(const RelativeLight& light) const { return unit_.to_watts_per_m2(light); }
   /// Returns W for a power in emission units times m2.
@@ -95,8 +99,9 @@ class SolveState {
   /// then has the light of before; mend_moved() must be called before a pass begins. Requires: one rank; no frame, neighbour or
   /// twin has changed.
   void note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before);
-  /// Mends rows and forgets direct light that the roots of the last note_moved() were or are in the way of. Does nothing a
-  /// second time.
+  /// Returns whether roots have moved that mend_moved() has not heeded.
+  bool has_unmended_move() const { return move_.has_value(); }
+  /// Mends rows and forgets direct light that the moved roots were or are in the way of. Requires: has_unmended_move().
   void mend_moved();
 
   /// Collective. Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on, with

@@ -79,12 +79,12 @@ class Run {
 
   SolveOutcome run() {
     if (log_.head() == 0) publish();
-    if (std::exchange(live_.has_unseen_move, false)) {  // objects are seen where they are, in the light of before
+    if (state_.has_unmended_move()) {  // objects are seen where they are, in the light of before
       publish();
       requests_.heed_edits(false);
       state_.mend_moved();
     }
-    const StopReason reason = std::exchange(live_.is_scaled, false) ? show_scaled() : pass_until_done();
+    const StopReason reason = live_.is_scaled ? show_scaled() : pass_until_done();
     const bool is_as_fine_as_may_be =
         reason == StopReason::tolerance || reason == StopReason::max_leaves || reason == StopReason::max_depth;
     live_.ended_with = is_as_fine_as_may_be ? std::optional(reason) : std::nullopt;
@@ -109,9 +109,8 @@ class Run {
  private:
   /// Shows the light of a solve that had ended, which an edit has multiplied by one factor. Relative errors are what they were.
   StopReason show_scaled() {
-    is_showing_scaled_ = true;
     publish();
-    is_showing_scaled_ = false;
+    live_.is_scaled = false;
     return *live_.ended_with;
   }
 
@@ -231,7 +230,7 @@ class Run {
     step.shots = is_.shots;
     step.rays = budget_.rays();
     step.leaves = state_.leaf_count();
-    step.unshot_fraction = is_showing_scaled_ ? log_.last_step().unshot_fraction : pass_->unshot_fraction();
+    step.unshot_fraction = live_.is_scaled ? log_.last_step().unshot_fraction : pass_->unshot_fraction();
     step.estimated_error = is_.error.total();
     step.unlit_fraction = state_.direct.unlit_fraction();
     step.area_within = by_place_.area_within;
@@ -248,7 +247,7 @@ class Run {
 
   /// Returns the told errors of leaves; none where they are not known.
   std::vector<float> leaf_errors() {
-    if (is_showing_scaled_) return live_.told_errors;
+    if (live_.is_scaled) return live_.told_errors;
     std::vector<float> errors = pass_->leaf_errors(is_.error);
     if (!errors.empty() && control_.live) live_.told_errors = errors;
     return errors;
@@ -329,7 +328,6 @@ class Run {
   Ranks& ranks_;
   StopRequests requests_{control_, clock_, options_.time_limit_s + live_.edited_at_s};
   std::optional<Pass> pass_{state_};
-  bool is_showing_scaled_ = false;
   bool has_stalled_ = false;  // the last exchange ended before it converged
   double published_at_ = 0, publishing_s_ = 0;
 };

@@ -88,45 +88,29 @@ void add_edit_command(CLI::App& app) {
       "edit", "Change materials, lights, objects and daylight of a solve on a server, while it runs or afterwards");
   command.add_option("solve", options->solve, "Name of the solve: scenes/SCENE/solves/SOLVE")->required()->type_name("SOLVE");
   add_server_option(command, options->server, "Server that holds the solve").required();
-  command
-      .add_option("--set", options->settings,
-                  "material:NAME.FIELD=R,G,B with emission, reflectance or diffuse_transmittance, or light:NAME.FIELD=X,Y,Z with "
-                  "intensity, position or direction, or light:NAME.cone=INNER,OUTER in degrees")
-      ->type_name("SETTING")
-      ->allow_extra_args(false);
-  command
-      .add_option("--dim", options->dims,
-                  "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off")
-      ->type_name("DIM")
-      ->allow_extra_args(false);
-  command
-      .add_option("--web", options->webs,
-                  "NAME=FILE: a photometric file (IES, EULUMDAT) in place of the one that a luminaire has")
-      ->type_name("WEB")
-      ->allow_extra_args(false);
+  const auto add_repeatable = [&](const char* name, std::vector<std::string>& values, const char* type, const char* help) {
+    command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+  };
+  add_repeatable("--set", options->settings, "SETTING",
+                 "material:NAME.FIELD=R,G,B with emission, reflectance or diffuse_transmittance, or light:NAME.FIELD=X,Y,Z with "
+                 "intensity, position or direction, or light:NAME.cone=INNER,OUTER in degrees");
+  add_repeatable("--dim", options->dims, "DIM",
+                 "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off");
+  add_repeatable("--web", options->webs, "WEB",
+                 "NAME=FILE: a photometric file (IES, EULUMDAT) in place of the one that a luminaire has");
   command.add_option("--absorption", options->absorption, "Absorption coefficient of the medium, 1/m per band")
       ->type_name("R,G,B");
-  command
-      .add_option("--copy", options->copies, "NEW=NAME: add an object, a copy of another one as the scene was submitted with it")
-      ->type_name("COPY")
-      ->allow_extra_args(false);
-  command
-      .add_option("--move", options->moves, "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it")
-      ->type_name("MOVE")
-      ->allow_extra_args(false);
-  command
-      .add_option("--turn", options->turns,
-                  "NAME=DEGREES: turn an object about the vertical through its middle, counter-clockwise seen from above; "
-                  "NAME=DEGREES,X,Y,Z: about an axis of this direction, seen from where it points to")
-      ->type_name("TURN")
-      ->allow_extra_args(false);
-  command
-      .add_option("--scale", options->scales,
-                  "NAME=FACTOR: make an object so many times as large as the scene as submitted has it, about its middle")
-      ->type_name("SCALE")
-      ->allow_extra_args(false);
-  command.add_option("--hide", options->hidden, "Take an object away")->type_name("NAME")->allow_extra_args(false);
-  command.add_option("--show", options->shown, "Bring an object back")->type_name("NAME")->allow_extra_args(false);
+  add_repeatable("--copy", options->copies, "COPY",
+                 "NEW=NAME: add an object, a copy of another one as the scene was submitted with it");
+  add_repeatable("--move", options->moves, "MOVE",
+                 "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it");
+  add_repeatable("--turn", options->turns, "TURN",
+                 "NAME=DEGREES: turn an object about the vertical through its middle, counter-clockwise seen from above; "
+                 "NAME=DEGREES,X,Y,Z: about an axis of this direction, seen from where it points to");
+  add_repeatable("--scale", options->scales, "SCALE",
+                 "NAME=FACTOR: make an object so many times as large as the scene as submitted has it, about its middle");
+  add_repeatable("--hide", options->hidden, "NAME", "Take an object away");
+  add_repeatable("--show", options->shown, "NAME", "Bring an object back");
   add_sky_options(command, options->sky);
   command.get_option("--north")->description("Degrees, clockwise seen from above, from the scene's north to that of --sun (0)");
   command.add_flag("--no-daylight", options->no_daylight, "Let no sun, sky or surroundings shine");

@@ -42,6 +42,12 @@ Named split_object(const std::string& option, const std::string& text) {
   return {"object", text.substr(0, equals), text.substr(equals + 1)};
 }
 
+v1::Edit edit_of_object(const std::string& name) {
+  v1::Edit edit;
+  edit.mutable_object()->set_name(name);
+  return edit;
+}
+
 std::vector<double> numbers_of(const std::string& option, const std::string& text, const std::string& value, std::size_t count) {
   std::vector<double> numbers;
   const char *at = value.data(), *const end = at + value.size();
@@ -151,16 +157,14 @@ v1::Edit edit_of_copy(const std::string& copy) {
 
 v1::Edit edit_of_move(const std::string& move) {
   const Named named = split_object("--move", move);
-  v1::Edit edit;
-  edit.mutable_object()->set_name(named.name);
+  v1::Edit edit = edit_of_object(named.name);
   set_vector(numbers_of("--move", move, named.value, 3), *edit.mutable_object()->mutable_move());
   return edit;
 }
 
 v1::Edit edit_of_turn(const std::string& turn) {
   const Named named = split_object("--turn", turn);
-  v1::Edit edit;
-  edit.mutable_object()->set_name(named.name);
+  v1::Edit edit = edit_of_object(named.name);
   const bool has_axis = named.value.find(',') != std::string::npos;
   const auto n = numbers_of("--turn", turn, named.value, has_axis ? 4 : 1);
   edit.mutable_object()->set_turn(n[0]);
@@ -170,15 +174,13 @@ v1::Edit edit_of_turn(const std::string& turn) {
 
 v1::Edit edit_of_scale(const std::string& scale) {
   const Named named = split_object("--scale", scale);
-  v1::Edit edit;
-  edit.mutable_object()->set_name(named.name);
+  v1::Edit edit = edit_of_object(named.name);
   edit.mutable_object()->set_scale(numbers_of("--scale", scale, named.value, 1)[0]);
   return edit;
 }
 
 v1::Edit edit_of_hidden(const std::string& name, bool hidden) {
-  v1::Edit edit;
-  edit.mutable_object()->set_name(name);
+  v1::Edit edit = edit_of_object(name);
   edit.mutable_object()->set_hidden(hidden);
   return edit;
 }

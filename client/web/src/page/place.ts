@@ -1,4 +1,4 @@
-// Where objects and lights lie after edits.
+// The places of a scene's objects and lights when its edits are made, for the handle by which a part is dragged.
 
 import * as THREE from "three";
 import type { Edit } from "../gen/alvor/v1/solve_service_pb";
@@ -16,7 +16,7 @@ export interface Place {
   axes: THREE.Matrix4;
 }
 
-// What ObjectEdit.scale may be.
+// The least and the largest ObjectEdit.scale that the server takes.
 const [LEAST_SCALE, MOST_SCALE] = [0.01, 100];
 
 export const upOf = (isZUp: boolean) => (isZUp ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0, 1, 0));
