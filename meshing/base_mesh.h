@@ -8,9 +8,12 @@
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 namespace alvor {
@@ -76,6 +79,10 @@ struct BaseMeshOptions {
   std::stop_token stop = {};
 };
 
+class BaseMesh;
+/// The meshes of scenes that edits have added as objects, by SceneObject::from_scene. None is null.
+using AddedMeshes = std::map<std::string, std::shared_ptr<const BaseMesh>>;
+
 /// Immutable once built; safe to read from any thread.
 class BaseMesh {
  public:
@@ -84,11 +91,15 @@ class BaseMesh {
   /// roots: its back comes after all fronts. If all faces are degenerate, there are no roots.
   explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
   /// Returns this mesh with the materials, lights and medium of `scene`, and its objects where their `motion` puts them. Roots
-  /// keep their numbers; those of copies of objects (SceneObject::copy_of) come after them, object by object, in the order of the
-  /// roots that they are copies of; those of objects that do not move together are no neighbours, and no twins. Faces that come
-  /// to lie in one place are not joined. Requires: !find_fault(scene); no edit has changed this mesh's scene; `scene` differs
-  /// from it only in what edits change (edited_scene()).
-  BaseMesh edited_as(const Scene& scene) const;
+  /// keep their numbers; those of objects that edits added (SceneObject::is_added()) come after them, object by object, in the
+  /// order of the roots that they are copies of, of this mesh or of one of `added`; those of objects that do not move together
+  /// are no neighbours, and no twins. Faces that come to lie in one place are not joined. Requires: !find_fault(scene); no edit
+  /// has changed this mesh's scene; `scene` differs from it only in what edits change (edited_scene()); `added` has the meshes of
+  /// all scenes that it was made with.
+  BaseMesh edited_as(const Scene& scene, const AddedMeshes& added = {}) const;
+  /// Returns this mesh with the further roots of `other`, which come after all, hidden. Requires: `other` follows from the same
+  /// scene by edits (edited_as()), and has at least as many roots.
+  BaseMesh with_hidden_roots_of(const BaseMesh& other) const;
 
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
@@ -124,7 +135,12 @@ class BaseMesh {
   void find_neighbours(const std::stop_token& stop);
   void add_backs();
   void separate_objects(bool are_to_move);
-  void append_copies(std::span<const SceneObject> objects);
+  void append_objects(std::span<const SceneObject> objects, const AddedMeshes& added);
+  void append_copy(std::span<const SceneObject> objects, const SceneObject& copy,
+                   std::span<const std::vector<std::uint32_t>> roots_of, std::uint32_t& next_vertex);
+  void append_mesh(const BaseMesh& added, std::uint32_t first_face, std::uint32_t& next_vertex);
+  void append_root(const BaseMesh& from, std::uint32_t root);
+  std::uint32_t first_free_vertex() const;
 
   std::vector<RootPatch> roots_;
   std::vector<std::array<TexturePoint, 4>> texture_points_;  // by root; none if no root has a texture

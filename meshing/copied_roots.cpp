@@ -1,4 +1,4 @@
-// The part of BaseMesh that copies the roots of objects.
+// The part of BaseMesh that appends the roots of objects that edits added: copies of its own roots, or of those of another mesh.
 
 #include "meshing/base_mesh.h"
 #include "meshing/face_object.h"
@@ -66,33 +66,77 @@ CopiedObject copied_object(std::span<const SceneObject> objects, const SceneObje
 
 }  // namespace
 
-/// Appends the roots of those of `objects` that come after the objects of this mesh, and so are copies.
-void BaseMesh::append_copies(std::span<const SceneObject> objects) {
+/// Appends the roots of those of `objects` that come after the objects of this mesh, and so were added.
+void BaseMesh::append_objects(std::span<const SceneObject> objects, const AddedMeshes& added) {
   if (objects.size() <= objects_.size()) return;
   std::vector<std::vector<std::uint32_t>> roots_of(objects.size());
-  std::uint32_t next_vertex = 0;
-  for (std::uint32_t r = 0; r < roots_.size(); ++r) {
-    for (int c = 0; c < roots_[r].corner_count; ++c) next_vertex = std::max(next_vertex, roots_[r].vertex[c] + 1);
+  for (std::uint32_t r = 0; r < roots_.size(); ++r)
     if (const auto object = object_of_face(objects, roots_[r].input.first)) roots_of[*object].push_back(r);
-  }
+  std::uint32_t next_vertex = first_free_vertex();
   for (std::size_t n = objects_.size(); n < objects.size(); ++n) {
-    CopiedObject copied = copied_object(objects, objects[n]);
-    std::vector<std::uint32_t> sources;
-    for (const auto& [object, first] : copied.first_face)
-      sources.insert(sources.end(), roots_of[object].begin(), roots_of[object].end());
-    std::ranges::sort(sources);
-    for (const std::uint32_t source : sources) {
-      roots_of[n].push_back(static_cast<std::uint32_t>(roots_.size() + copied.roots.size()));
-      copied.roots.emplace(source, roots_of[n].back());
-    }
-    for (const std::uint32_t source : sources) {
-      roots_.push_back(copied.copy_of(roots_[source], next_vertex));
-      auto& across = neighbours_.emplace_back();
-      std::ranges::transform(neighbours_[source], across.begin(), [&](const auto& other) { return copied.copy_of(other); });
-      if (has_textures()) texture_points_.push_back(std::array(texture_points_[source]));
-      if (has_colours()) corner_colours_.push_back(std::array(corner_colours_[source]));
-    }
+    const auto first = static_cast<std::uint32_t>(roots_.size());
+    if (objects[n].from_scene.empty()) append_copy(objects, objects[n], roots_of, next_vertex);
+    else append_mesh(*added.at(objects[n].from_scene), objects[n].first_face, next_vertex);
+    for (std::uint32_t r = first; r < roots_.size(); ++r) roots_of[n].push_back(r);
   }
+}
+
+void BaseMesh::append_copy(std::span<const SceneObject> objects, const SceneObject& copy,
+                           std::span<const std::vector<std::uint32_t>> roots_of, std::uint32_t& next_vertex) {
+  CopiedObject copied = copied_object(objects, copy);
+  std::vector<std::uint32_t> sources;
+  for (const auto& [object, first] : copied.first_face)
+    sources.insert(sources.end(), roots_of[object].begin(), roots_of[object].end());
+  std::ranges::sort(sources);
+  for (const std::uint32_t source : sources)
+    copied.roots.emplace(source, static_cast<std::uint32_t>(roots_.size() + copied.roots.size()));
+  for (const std::uint32_t source : sources) {
+    append_root(*this, source);
+    roots_.back() = copied.copy_of(roots_.back(), next_vertex);
+    for (auto& other : neighbours_.back()) other = copied.copy_of(other);
+  }
+}
+
+/// Appends all roots of a mesh, turned upright, as those of faces from `first_face` on.
+void BaseMesh::append_mesh(const BaseMesh& added, std::uint32_t first_face, std::uint32_t& next_vertex) {
+  const auto first_root = static_cast<std::uint32_t>(roots_.size());
+  const std::uint32_t first_vertex = next_vertex;
+  next_vertex += added.first_free_vertex();
+  const Placement turn = turn_upright(added.up_, up_);
+  for (std::uint32_t r = 0; r < added.roots_.size(); ++r) {
+    append_root(added, r);
+    RootPatch& root = roots_.back();
+    for (int c = 0; c < root.corner_count; ++c) {
+      root.corners[c] = turn.point(root.corners[c]);
+      root.vertex[c] += first_vertex;
+    }
+    root.normal = turn.direction(root.normal);
+    root.input.first += first_face;
+    if (root.input.second != InputFaces::none) root.input.second += first_face;
+    if (root.twin != RootPatch::no_twin) root.twin += first_root;
+    for (auto& other : neighbours_.back())
+      if (other) other->root += first_root;
+  }
+}
+
+/// Appends a copy of a root of a mesh, which may be this one, with its neighbours and the values of its corners.
+void BaseMesh::append_root(const BaseMesh& from, std::uint32_t root) {
+  constexpr RgbF white{1, 1, 1};
+  if (from.has_textures()) texture_points_.resize(roots_.size());
+  if (from.has_colours()) corner_colours_.resize(roots_.size(), {white, white, white, white});
+  if (has_textures()) texture_points_.push_back(from.has_textures() ? from.texture_points_[root] : std::array<TexturePoint, 4>{});
+  if (has_colours())
+    corner_colours_.push_back(from.has_colours() ? from.corner_colours_[root] : std::array{white, white, white, white});
+  neighbours_.push_back(std::array(from.neighbours_[root]));
+  roots_.push_back(RootPatch(from.roots_[root]));
+}
+
+/// Returns a number above those of all vertices of roots.
+std::uint32_t BaseMesh::first_free_vertex() const {
+  std::uint32_t next = 0;
+  for (const RootPatch& root : roots_)
+    for (int c = 0; c < root.corner_count; ++c) next = std::max(next, root.vertex[c] + 1);
+  return next;
 }
 
 }  // namespace alvor

@@ -51,11 +51,8 @@ void move(RootPatch& root, const Placement& motion) {
   if (const double larger = dot(motion.x, motion.x); std::abs(larger - 1) > rounding) root.area *= larger;
 }
 
-/// Gives the vertices of roots numbers that no root of another group has.
-void separate_vertices(std::span<RootPatch> roots, std::span<const std::uint32_t> group) {
-  std::uint32_t next = 0;
-  for (const RootPatch& root : roots)
-    for (int c = 0; c < root.corner_count; ++c) next = std::max(next, root.vertex[c] + 1);
+/// Gives the vertices of roots numbers, from `next` on, that no root of another group has.
+void separate_vertices(std::span<RootPatch> roots, std::span<const std::uint32_t> group, std::uint32_t next) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;  // by group and vertex
   for (std::size_t r = 0; r < roots.size(); ++r)
     for (int c = 0; c < roots[r].corner_count && group[r] != MovingGroups::at_rest; ++c) {
@@ -68,16 +65,30 @@ void separate_vertices(std::span<RootPatch> roots, std::span<const std::uint32_t
 
 }  // namespace
 
-BaseMesh BaseMesh::edited_as(const Scene& scene) const {
+BaseMesh BaseMesh::edited_as(const Scene& scene, const AddedMeshes& added) const {
   BaseMesh edited = *this;
-  edited.append_copies(scene.objects);
+  edited.append_objects(scene.objects, added);
   edited.materials_ = scene.materials;
   edited.lights_ = scene.lights;
   edited.absorption_ = scene.absorption;
   edited.objects_ = scene.objects;
   for (RootPatch& root : edited.roots_) root.material = scene.faces[root.input.first].material;
   edited.separate_objects(true);
+  if (!edited.is_within_frame()) edited.find_bounds();
   return edited;
+}
+
+BaseMesh BaseMesh::with_hidden_roots_of(const BaseMesh& other) const {
+  BaseMesh all = *this;
+  const auto first_material = static_cast<std::uint32_t>(all.materials_.size());
+  all.materials_.insert(all.materials_.end(), other.materials_.begin(), other.materials_.end());
+  for (auto r = static_cast<std::uint32_t>(roots_.size()); r < other.roots_.size(); ++r) {
+    all.append_root(other, r);
+    RootPatch& root = all.roots_.back();
+    root.material += first_material;
+    root.is_hidden = root.is_behind = true;
+  }
+  return all;
 }
 
 /// Takes roots of objects that are hidden or have moved from those that do not move with them. Puts them where the motions say if
@@ -87,7 +98,7 @@ void BaseMesh::separate_objects(bool are_to_move) {
   const MovingGroups groups(objects_);
   std::vector<std::uint32_t> group;
   for (const RootPatch& root : roots_) group.push_back(groups.of_face(root.input.first));
-  separate_vertices(roots_, group);
+  separate_vertices(roots_, group, first_free_vertex());
   for (std::uint32_t r = 0; r < roots_.size(); ++r) {
     RootPatch& root = roots_[r];
     for (int e = 0; e < root.corner_count; ++e)
@@ -98,7 +109,6 @@ void BaseMesh::separate_objects(bool are_to_move) {
     root.is_hidden = objects_[group[r]].is_hidden;
     if (root.is_hidden) root.is_behind = true;
   }
-  if (are_to_move && !is_within_frame()) find_bounds();
 }
 
 /// Returns whether all roots lie in the cube about the centre that is as long as the extent.

@@ -50,6 +50,8 @@ class NeighbourTable {
   /// Returns the neighbours of each of `leaves`, in that order; computes in parallel. Requires: leaves of the forest as it is
   /// now, each once.
   std::vector<SmoothNeighbours> of(std::span<const NodeIndex> leaves);
+  /// To be called when the forest's nodes have other numbers.
+  void forget() { known_.clear(), is_known_.clear(); }
 
  private:
   const PatchForest& forest_;

@@ -76,6 +76,15 @@ void PatchForest::split_down_to(std::span<const LeafValue> patches) {
   }
 }
 
+void PatchForest::append(const AppendedRoots& roots) {
+  for (NodeIndex& child : first_child_)
+    if (child != 0) child = roots.moved(child);
+  roots.make_room(first_child_);
+  roots.make_room(ids_);
+  for (NodeIndex root = roots.first; root < roots.first + roots.count; ++root) ids_[root] = PatchId::root(root);
+  leaf_count_ += roots.count;
+}
+
 void PatchForest::split_one(NodeIndex leaf) {
   assert(is_leaf(leaf));
   const auto first = static_cast<NodeIndex>(ids_.size());

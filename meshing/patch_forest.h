@@ -14,6 +14,19 @@ namespace alvor {
 /// Index of a patch within its forest. Roots come first, in the order of the mesh; the four children of a patch are consecutive.
 using NodeIndex = std::uint32_t;
 
+/// Roots that a mesh got at its end. Their nodes come after those of the roots before; all further nodes move up.
+struct AppendedRoots {
+  NodeIndex first = 0;  ///< the first of them
+  NodeIndex count = 0;
+
+  NodeIndex moved(NodeIndex node) const { return node < first ? node : node + count; }
+  /// Inserts values of the new roots into values by node, if there are any.
+  template <class Values>
+  void make_room(Values& by_node) const {
+    if (!by_node.empty()) by_node.insert(by_node.begin() + first, count, typename Values::value_type{});
+  }
+};
+
 struct RefinementLimits {
   int max_level = 10;
   std::uint64_t max_leaves = 200'000;
@@ -66,6 +79,8 @@ class PatchForest {
   bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
   /// Splits until every patch of `patches` is a node, without balancing, each side by itself. Requires: valid ids of this mesh.
   void split_down_to(std::span<const LeafValue> patches);
+  /// Takes roots that the mesh has got, as leaves. Requires: `first` is the number of roots before.
+  void append(const AppendedRoots& roots);
 
  private:
   bool split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);

@@ -58,6 +58,12 @@ enum class Quantity : std::uint8_t { radiometric, photometric };
 /// The axis that points up. It does not affect the light; it orients pictures and solution files.
 enum class UpAxis : std::uint8_t { y, z };
 
+/// Returns the turn about x that brings what stands upright where `from` points up to where `to` does.
+constexpr Placement turn_upright(UpAxis from, UpAxis to) {
+  if (from == to) return {};
+  return to == UpAxis::z ? Placement{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}} : Placement{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {}};
+}
+
 struct Scene {
   std::vector<Vec3> vertices;          ///< metres
   std::vector<std::uint32_t> corners;  ///< indices of vertices

@@ -29,7 +29,11 @@ struct SceneObject {
   /// The object, of a lower number, of which an edit made this one. Its faces are copies of faces_with_hanging() of that one, in
   /// their order.
   std::optional<std::uint32_t> copy_of;
+  /// The resource name of the scene whose faces, all of them, in their order, an edit added as this object; else empty.
+  std::string from_scene;
 
+  /// Returns whether an edit added the object.
+  bool is_added() const { return copy_of || !from_scene.empty(); }
   friend bool operator==(const SceneObject&, const SceneObject&) = default;
 };
 

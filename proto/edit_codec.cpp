@@ -37,6 +37,7 @@ v1::Edit message_of(const SceneEdit& edit) {
   } else if (const auto* copy = std::get_if<ObjectCopy>(&edit)) {
     message.mutable_copy()->set_name(copy->name);
     message.mutable_copy()->set_of(copy->of);
+    message.mutable_copy()->set_scene(copy->scene);
   } else if (const auto* medium = std::get_if<MediumEdit>(&edit)) {
     *message.mutable_medium()->mutable_absorption_per_meter() = encode(medium->absorption);
   } else if (const auto* daylight = std::get_if<DaylightEdit>(&edit)) {
@@ -99,7 +100,8 @@ std::optional<EditStep> decode(const v1::EditStep& message) {
     else if (edit.has_light()) step.edits.emplace_back(light_of(edit.light()));
     else if (edit.has_object()) step.edits.emplace_back(object_of(edit.object()));
     else if (edit.has_medium()) step.edits.emplace_back(MediumEdit{decode(edit.medium().absorption_per_meter())});
-    else if (edit.has_copy()) step.edits.emplace_back(ObjectCopy{edit.copy().name(), edit.copy().of()});
+    else if (edit.has_copy())
+      step.edits.emplace_back(ObjectCopy{edit.copy().name(), edit.copy().of(), false, edit.copy().scene()});
     else if (const auto daylight = decode_daylight(edit.daylight()); daylight && edit.has_daylight())
       step.edits.emplace_back(DaylightEdit{*daylight});
     else return std::nullopt;

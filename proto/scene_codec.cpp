@@ -33,6 +33,7 @@ SceneObject decode_object(const v1::SceneObject& message) {
                      .is_hidden = message.hidden()};
   if (message.has_parent()) object.parent = message.parent();
   if (message.has_copy_of()) object.copy_of = message.copy_of();
+  object.from_scene = message.from_scene();
   return object;
 }
 
@@ -76,6 +77,7 @@ v1::SceneObject encode(const SceneObject& object) {
   message.set_name(as_utf8(object.name));
   if (object.parent) message.set_parent(*object.parent);
   if (object.copy_of) message.set_copy_of(*object.copy_of);
+  message.set_from_scene(object.from_scene);
   encode(object.placement, *message.mutable_transform());
   encode(object.motion, *message.mutable_motion());
   message.set_hidden(object.is_hidden);

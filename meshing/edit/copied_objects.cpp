@@ -37,7 +37,40 @@ void append_copy(Scene& scene, std::string name, std::uint32_t of) {
   scene.objects.push_back(std::move(copy));
 }
 
-void append_copies(Scene& scene, std::span<const SceneEdit> edits) {
+namespace {
+
+/// Appends the materials of another scene, with names that no material has.
+void append_materials(Scene& scene, const std::string& object, const Scene& added) {
+  std::unordered_set<std::string> names;
+  for (const Material& material : scene.materials) names.insert(material.name);
+  for (Material material : added.materials) {
+    material.name += " of " + object;
+    while (!names.insert(material.name).second) material.name += "'";
+    scene.materials.push_back(std::move(material));
+  }
+}
+
+}  // namespace
+
+void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added) {
+  const auto first_face = static_cast<std::uint32_t>(scene.faces.size());
+  const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
+  const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
+  const Placement turn = turn_upright(added.up, scene.up);
+  append_materials(scene, name, added);
+  for (const Vec3 vertex : added.vertices) scene.vertices.push_back(turn.point(vertex));
+  for (const Face& face : added.faces) {
+    std::vector<std::uint32_t> ring;
+    for (const std::uint32_t vertex : added.corners_of(face)) ring.push_back(first_vertex + vertex);
+    scene.add_face(ring, first_material + face.material, added.texture_points_of(face), added.colours_of(face));
+  }
+  SceneObject object{.name = std::move(name), .placement = turn, .first_face = first_face};
+  object.face_count = static_cast<std::uint32_t>(added.faces.size());
+  object.from_scene = resource_name;
+  scene.objects.push_back(std::move(object));
+}
+
+void append_copies(Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
   std::unordered_map<std::string, std::uint32_t> newest;  // object of a name, when the edit was made
   std::vector<std::uint32_t> taken_back;
   for (const SceneEdit& edit : edits) {
@@ -46,7 +79,8 @@ void append_copies(Scene& scene, std::span<const SceneEdit> edits) {
     if (newest.empty())
       for (std::uint32_t n = 0; n < scene.objects.size(); ++n) newest.emplace(scene.objects[n].name, n);
     const auto number = static_cast<std::uint32_t>(scene.objects.size());
-    append_copy(scene, copy->name, newest.at(copy->of));
+    if (copy->scene.empty()) append_copy(scene, copy->name, newest.at(copy->of));
+    else append_scene(scene, copy->name, copy->scene, *added.at(copy->scene));
     newest[copy->name] = number;
     if (copy->is_taken_back) taken_back.push_back(number);
   }
@@ -65,31 +99,60 @@ bool has_copies(std::span<const SceneEdit> edits) {
   return std::ranges::any_of(edits, [](const SceneEdit& edit) { return std::holds_alternative<ObjectCopy>(edit); });
 }
 
-CheckedCopies::CheckedCopies(Scene& scene) : scene_(scene) {
+CheckedCopies::CheckedCopies(Scene& scene, const AddedScenes& added) : scene_(scene), added_(added) {
   for (std::uint32_t n = 0; n < scene.objects.size(); ++n) {
     const SceneObject& object = scene.objects[n];
     if (!is_taken_back(object)) names_.emplace(object.name, n);
-    if (object.copy_of) ++copies_, copied_faces_ += object.face_count;
+    if (object.is_added()) ++copies_, copied_faces_ += object.face_count;
   }
   room_ = std::max(least_room, scene.faces.size() - copied_faces_);
 }
 
-std::optional<EditFault> CheckedCopies::make(const ObjectCopy& copy) {
+/// Returns why a scene cannot be added as an object.
+std::optional<std::string> CheckedCopies::fault_in(const Scene& added) const {
+  if (!added.lights.empty())
+    return "has light '" + added.lights.front().name + "', which is no face: only faces can be added, and they may emit";
+  const bool emits =
+      std::ranges::any_of(added.faces, [&](const Face& face) { return !added.materials[face.material].emission.is_zero(); });
+  if (emits && added.quantity != scene_.quantity)
+    return "emits in lumens, and the solve's scene in watts, or the other way round";
+  return std::nullopt;
+}
+
+std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
   if (copy.name.empty() || copy.name.size() > longest_name) return EditFault{0, "copy.name", "must have 1 to 1000 bytes"};
   if (names_.contains(copy.name)) return EditFault{0, "copy.name", "there is an object '" + copy.name + "'"};
-  const auto of = names_.find(copy.of);
-  if (of == names_.end()) return EditFault{0, "copy.of", "'" + copy.of + "' is no object of the scene"};
-  const std::size_t faces = faces_with_hanging(scene_.objects, of->second).size(), with = copied_faces_ + faces;
-  if (faces == 0) return EditFault{0, "copy.of", "'" + copy.of + "' has no faces"};
-  if (with > room_)
-    return EditFault{0, "copy.of",
-                     "copies, with those that were taken back, would have " + std::to_string(with) + " faces, at most " +
-                         std::to_string(room_) + " are allowed"};
+  if (!copy.of.empty() && !copy.scene.empty()) return EditFault{0, "copy.scene", "is given, and so is copy.of"};
+  const bool is_of_scene = !copy.scene.empty();
+  const std::string field = is_of_scene ? "copy.scene" : "copy.of", source = "'" + (is_of_scene ? copy.scene : copy.of) + "' ";
+  std::size_t faces = 0;
+  if (is_of_scene) {
+    const auto added = added_.find(copy.scene);
+    if (added == added_.end()) return EditFault{0, field, source + "is no scene"};
+    if (const auto reason = fault_in(*added->second)) return EditFault{0, field, source + *reason};
+    faces = added->second->faces.size();
+  } else {
+    const auto of = names_.find(copy.of);
+    if (of == names_.end()) return EditFault{0, field, source + "is no object of the scene"};
+    faces = faces_with_hanging(scene_.objects, of->second).size();
+  }
+  if (faces == 0) return EditFault{0, field, source + "has no faces"};
+  if (copied_faces_ + faces > room_)
+    return EditFault{0, field,
+                     "added objects, with those that were taken back, would have " + std::to_string(copied_faces_ + faces) +
+                         " faces, at most " + std::to_string(room_) + " are allowed"};
   if (copies_ == most_copies)
-    return EditFault{0, "copy.name", "there are 1000 copies, with those that were taken back, as many as are kept"};
-  copied_faces_ = with, ++copies_;
-  names_.emplace(copy.name, static_cast<std::uint32_t>(scene_.objects.size()));
-  append_copy(scene_, copy.name, of->second);
+    return EditFault{0, "copy.name", "there are 1000 added objects, with those that were taken back, as many as are kept"};
+  return std::nullopt;
+}
+
+std::optional<EditFault> CheckedCopies::make(const ObjectCopy& copy) {
+  if (auto fault = fault_in(copy)) return fault;
+  const auto number = static_cast<std::uint32_t>(scene_.objects.size());
+  if (copy.scene.empty()) append_copy(scene_, copy.name, names_.at(copy.of));
+  else append_scene(scene_, copy.name, copy.scene, *added_.at(copy.scene));
+  names_.emplace(copy.name, number);
+  ++copies_, copied_faces_ += scene_.objects.back().face_count;
   return std::nullopt;
 }
 

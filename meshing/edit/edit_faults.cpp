@@ -139,13 +139,13 @@ std::optional<EditFault> first_fault(std::span<const SceneEdit> edits, auto&& fa
 
 }  // namespace
 
-std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene) {
+std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene, const AddedScenes& added) {
   const auto fault_of_others = [edits](Check check) {
     return first_fault(edits, [&check](const SceneEdit& edit) { return std::visit(check, edit); });
   };
   if (!has_copies(edits)) return fault_of_others(Check(scene));
   Scene with_copies = scene;
-  CheckedCopies copies(with_copies);
+  CheckedCopies copies(with_copies, added);
   const auto fault = first_fault(edits, [&](const SceneEdit& edit) {
     const auto* copy = std::get_if<ObjectCopy>(&edit);
     return copy ? copies.make(*copy) : std::nullopt;

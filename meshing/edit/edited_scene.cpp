@@ -172,9 +172,9 @@ class Editor {
 
 }  // namespace
 
-Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits) {
+Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
   Scene edited = scene;
-  append_copies(edited, edits);
+  append_copies(edited, edits, added);
   Editor editor(std::move(edited));
   for (const SceneEdit& edit : edits) std::visit(editor, edit);
   return editor.take();

@@ -32,7 +32,7 @@ std::optional<std::vector<SceneEdit>> edits_that_hold(std::span<const EditStep> 
   for (const EditStep& step : steps)
     for (const SceneEdit& edit : step.edits)
       if (const auto* copy = std::get_if<ObjectCopy>(&edit))
-        edits.emplace_back(ObjectCopy{copy->name, copy->of, std::ranges::find(hold, &step) == hold.end()});
+        edits.emplace_back(ObjectCopy{copy->name, copy->of, std::ranges::find(hold, &step) == hold.end(), copy->scene});
   for (const EditStep* step : hold)
     std::ranges::copy_if(step->edits, std::back_inserter(edits),
                          [](const SceneEdit& edit) { return !std::holds_alternative<ObjectCopy>(edit); });

@@ -54,11 +54,13 @@ struct ObjectEdit {
   friend bool operator==(const ObjectEdit&, const ObjectEdit&) = default;
 };
 
-/// Adds an object: a copy of another one and of those that hang from it, without the motions and dimming of edits.
+/// Adds an object: a copy of another one and of those that hang from it, without the motions and dimming of edits; or of all
+/// faces of another scene.
 struct ObjectCopy {
   std::string name;            ///< not empty, and of no other object
-  std::string of;              ///< the name of the other one
+  std::string of;              ///< the name of the other one; empty where `scene` is not
   bool is_taken_back = false;  ///< set by edits_that_hold() where its step does not hold: it is hidden
+  std::string scene = {};      ///< the resource name of the other scene; else empty
   friend bool operator==(const ObjectCopy&, const ObjectCopy&) = default;
 };
 

@@ -41,6 +41,7 @@ DirectField::DirectField(const Forests& forests, const Plan& plan, const SolveOp
 // If most surfaces emit, as in a furnace, rows carry the emission, because a row that sums to 1 is exact and shadow rays are not.
 void DirectField::choose_lights() {
   const EmissionUnit unit(forests_.mesh());
+  faces_before_others_ = forests_.mesh().roots().size();
   emission_ = emission_by_material(forests_.mesh(), unit);
   // The first nodes of a forest are the roots.
   OwnedLights faces = lights_of_faces(scene_, unit, [this](std::uint32_t root) { return forests_.cover(root); });
@@ -63,7 +64,7 @@ void DirectField::choose_lights() {
   waiting_power_ = power_;
 }
 
-bool DirectField::is_face(const LightSource& light) const { return light.number() < forests_.mesh().roots().size(); }
+bool DirectField::is_face(const LightSource& light) const { return light.number() < faces_before_others_; }
 
 /// Decides how the light of light_tree_ is counted. A tree tells only the sum of its lights: if emitting faces are among them,
 /// what arrives of the others is not known, and they count as faces do, by what they send.
@@ -92,6 +93,15 @@ double DirectField::emitted_power(const std::function<double()>& arrived) const 
 double DirectField::power_lost_on_the_way(const std::function<double()>& arrived) const {
   if (!counts_arrivals_ || has_distant_lights_ || waiting_power_ > 0) return 0;
   return std::max(0.0, power_ - sent_power_ - arrived());
+}
+
+void DirectField::append(const AppendedRoots& roots) {
+  roots.make_room(light_);
+  shares_.append(roots);
+  roots.make_room(arrived_);
+  roots.make_room(ray_level_);
+  roots.make_room(is_known_);
+  roots.make_room(is_lit_);
 }
 
 void DirectField::fit_to_nodes() {

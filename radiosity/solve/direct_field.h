@@ -84,6 +84,8 @@ class DirectField {
   using RowsInSight = std::function<std::vector<std::uint8_t>()>;
   void note_moved(const MovedRoots& moved, const RowsInSight& in_sight);
 
+  /// Takes roots that the mesh has got; their leaves have no light. To be followed by note_relit().
+  void append(const AppendedRoots& roots);
   /// Makes room for new nodes of the leaf forest.
   void fit_to_nodes();
   /// Gives the children of a leaf that was split its light, until their own is found.
@@ -145,6 +147,7 @@ class DirectField {
   Ranks& ranks_;
   std::vector<RelativeLight> emission_;  ///< by material
   OwnedLights owned_lights_;
+  std::size_t faces_before_others_ = 0;          ///< number of root patches when they were made: others are numbered from there
   std::vector<LightForm> forms_;                 ///< of owned_lights_; none unless keep_shares() was called
   std::vector<Light> forms_of_scene_;            ///< of the lights that they were made from
   std::vector<const LightSource*> lights_;       ///< those that are added one by one, strongest first

@@ -16,8 +16,9 @@ namespace alvor {
 
 namespace {
 
-/// The lights that a field adds: by number, each one's form and colour.
-using KnownLights = std::map<std::uint32_t, std::pair<LightForm, RelativeLight>>;
+/// The lights that a field adds: by whether one is no face, and its number among those that are or are not, each one's form and
+/// colour.
+using KnownLights = std::map<std::pair<bool, std::size_t>, std::pair<LightForm, RelativeLight>>;
 
 /// Returns the factor, per band, by which all lights have changed; nothing if there is none.
 std::optional<Rgb> common_factor(const KnownLights& before, const KnownLights& now) {
@@ -101,7 +102,11 @@ void DirectField::choose_shares() {
 std::optional<Rgb> DirectField::note_relit(double unit_change) {
   const auto known_lights = [this] {
     KnownLights known;
-    for (std::size_t n = 0; n < forms_.size(); ++n) known[owned_lights_[n]->number()] = {forms_[n], owned_lights_[n]->colour()};
+    for (std::size_t n = 0; n < forms_.size(); ++n) {
+      const LightSource& light = *owned_lights_[n];
+      const bool is_other = !is_face(light);
+      known[{is_other, light.number() - (is_other ? faces_before_others_ : 0)}] = {forms_[n], light.colour()};
+    }
     return known;
   };
   const KnownLights before = known_lights();

@@ -58,8 +58,13 @@ void load_leaves(PatchForest& forest, PlainReader& in) {
 
 Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits)
     : mesh_(mesh), limits_(limits), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
-  for (const RootPatch& root : mesh.roots()) area_ += root.area;
+  find_area();
   split_as_at_start(plan);
+}
+
+void Forests::find_area() {
+  area_ = 0;
+  for (const RootPatch& root : mesh_.roots()) area_ += root.area;
 }
 
 void Forests::split_as_at_start(const Plan& plan) {
@@ -147,6 +152,18 @@ bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
   return is_done;
 }
 
+void Forests::append(const AppendedRoots& roots) {
+  rows_.append(roots), leaves_.append(roots);
+  row_neighbours_.forget(), leaf_neighbours_.forget();
+  for (std::vector<Vec3>* centres : {&row_centre_, &leaf_centre_}) roots.make_room(*centres);
+  roots.make_room(leaf_area_);
+  for (NodeIndex root = roots.first; root < roots.first + roots.count; ++root) {
+    row_centre_[root] = leaf_centre_[root] = centre_of(mesh_, leaves_.shape(root));
+    leaf_area_[root] = area_of(mesh_, leaves_.shape(root));
+  }
+  find_area();
+}
+
 void Forests::note_moved() {
   for (NodeIndex row = 0; row < row_centre_.size(); ++row) row_centre_[row] = centre_of(mesh_, rows_.shape(row));
   for (NodeIndex leaf = 0; leaf < leaf_centre_.size(); ++leaf) leaf_centre_[leaf] = centre_of(mesh_, leaves_.shape(leaf));
@@ -155,6 +172,7 @@ void Forests::note_moved() {
 void Forests::note_relit() {
   if (!mesh_.has_varying_reflectance()) return;
   reflectance_.emplace(mesh_);
+  leaf_surface_.resize(leaf_centre_.size());
   for (NodeIndex leaf = 0; leaf < leaf_surface_.size(); ++leaf) leaf_surface_[leaf] = reflectance_->of(leaves_.shape(leaf));
 }
 

@@ -58,6 +58,8 @@ class Forests {
   /// Splits a leaf of the row forest, as split_leaf() does in the leaf forest.
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
 
+  /// Takes roots that the mesh has got. To be followed by note_relit().
+  void append(const AppendedRoots& roots);
   /// Finds the middles of nodes again, after roots of the mesh have moved as rigid bodies.
   void note_moved();
   /// Finds the reflectances of nodes again, after the materials of the mesh have changed.
@@ -74,6 +76,7 @@ class Forests {
   void split_to_start(const Plan& plan);
   void split_to_show_textures(const Plan& plan);
   void fit_to_nodes();
+  void find_area();
 
   const BaseMesh& mesh_;
   const RefinementLimits limits_;

@@ -10,6 +10,16 @@ void LightShares::keep(const LightSource& light, const LightForm& form) {
   kept.shares.resize(nodes_);
 }
 
+void LightShares::append(const AppendedRoots& roots) {
+  std::map<std::uint32_t, Kept> by_light;
+  for (auto& [number, kept] : by_light_) {
+    roots.make_room(kept.shares);
+    by_light.emplace(roots.moved(number), std::move(kept));
+  }
+  by_light_ = std::move(by_light);
+  nodes_ += roots.count;
+}
+
 void LightShares::resize(std::size_t nodes) {
   nodes_ = nodes;
   for (auto& [number, kept] : by_light_) kept.shares.resize(nodes);

@@ -37,6 +37,8 @@ class LightShares {
     std::erase_if(by_light_, [&](const auto& kept) { return !stays(kept.first); });
   }
   std::size_t light_count() const { return by_light_.size(); }
+  /// Takes roots that the mesh has got: the numbers of lights that are no faces grow, too.
+  void append(const AppendedRoots& roots);
   /// Makes room for new nodes.
   void resize(std::size_t nodes);
   /// Sets the share of a light at a leaf from what it brings there. Requires: keeps(light).

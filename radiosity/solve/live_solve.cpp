@@ -94,13 +94,18 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
   assert(own_mesh_);
   if (state.options.strategy != Strategy::automatic) return false;  // what was shot is not known
   if (has_too_many_leaves()) return false;
-  if (!may_go_on(*own_mesh_, state.plan, edited, plan)) return false;
-  const bool is_alike = reflects_alike(*own_mesh_, edited);
+  const std::size_t roots_before = own_mesh_->roots().size();
+  const bool grows = edited.roots().size() > roots_before;
+  const std::optional grown = grows ? std::optional(own_mesh_->with_hidden_roots_of(edited)) : std::nullopt;
+  const BaseMesh& was = grown ? *grown : *own_mesh_;
+  if (!may_go_on(was, state.plan, edited, plan)) return false;
+  const bool is_alike = reflects_alike(was, edited);
   std::optional<double> factor;
-  if (has_moved(*own_mesh_, edited)) {
+  if (grows || has_moved(was, edited)) {
     const bool may_mend = state.ranks.is_alone() && state.options.form_factors != FormFactorMethod::analytic &&
-                          !plan.emission_by_rows() && has_same_frame_and_neighbours(*own_mesh_, edited);
+                          !plan.emission_by_rows() && has_same_frame_and_neighbours(was, edited);
     if (!may_mend) return false;
+    if (grown) *own_mesh_ = *grown, state.note_appended(roots_before);
     BaseMesh before = std::exchange(*own_mesh_, edited);
     state.note_moved(std::move(before), plan, is_alike);
   } else {

@@ -52,6 +52,11 @@ void RowField::scale(const Rgb& factor) {
   for (FieldFit& fit : fit_) fit.scale(factor);
 }
 
+void RowField::append(const AppendedRoots& roots) {
+  roots.make_room(irradiance_);
+  roots.make_room(fit_);
+}
+
 void RowField::fit_to_nodes() {
   if (!has_rows_) return;
   irradiance_.resize(forests_.rows().node_count());

@@ -31,6 +31,8 @@ class RowField {
   /// Multiplies the field by a factor for each band.
   void scale(const Rgb& factor);
 
+  /// Takes roots that the mesh has got; the field on them is zero.
+  void append(const AppendedRoots& roots);
   /// Makes room for new nodes of the row forest.
   void fit_to_nodes();
   /// Copies the field of a row that was split to its children.

@@ -158,6 +158,15 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   return is_scaled ? std::optional(factor->r / change) : std::nullopt;
 }
 
+void SolveState::note_appended(std::size_t roots_before) {
+  const AppendedRoots roots{static_cast<NodeIndex>(roots_before), static_cast<NodeIndex>(mesh.roots().size() - roots_before)};
+  forests.append(roots);
+  rows.append(roots);
+  field.append(roots);
+  direct.append(roots);
+  roots.make_room(shot);
+}
+
 void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_before) {
   assert(!move_);
   MovedRoots roots(before, mesh);

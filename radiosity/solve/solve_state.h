@@ -95,6 +95,10 @@ class SolveState {
   /// Requires: rows and forests are those of the mesh as it is now.
   std::optional<double> note_relit(Plan new_plan, bool reflects_as_before);
 
+  /// Takes roots that the mesh has got at its end since it had `roots_before`, all of them hidden. To be followed by note_relit()
+  /// or note_moved(). Requires: one rank.
+  void note_appended(std::size_t roots_before);
+
   /// Takes roots of the mesh that have moved since it was `before`, and materials and lights as note_relit() does. leaf_values()
   /// then has the light of before; mend_moved() must be called before a pass begins. Requires: one rank; no frame, neighbour or
   /// twin has changed.

@@ -92,6 +92,20 @@ void TracedRows::fit_to_nodes() {
   if (carry_light()) hit_leaves_.resize(count), found_among_.resize(count);
 }
 
+void TracedRows::append(const AppendedRoots& roots) {
+  roots.make_room(rows_);
+  roots.make_room(is_traced_);
+  for (auto& leaves : hit_leaves_)
+    for (NodeIndex& leaf : leaves) leaf = roots.moved(leaf);
+  for (std::size_t& nodes : found_among_) nodes += nodes > 0 ? roots.count : 0;
+  roots.make_room(hit_leaves_);
+  roots.make_room(found_among_);
+  std::map<NodeIndex, DirectionGuide> guides;
+  for (const auto& [row, guide] : guides_) guides.emplace(roots.moved(row), guide);
+  guides_ = std::move(guides);
+  for (NodeIndex& row : wanting_) row = roots.moved(row);
+}
+
 void TracedRows::forget(NodeIndex row) {
   rows_[row] = {};
   if (carry_light()) hit_leaves_[row] = {};

@@ -70,6 +70,8 @@ class TracedRows {
   void fit_to_nodes();
   /// Forgets the row of a node that was split.
   void forget(NodeIndex row);
+  /// Takes roots that the mesh has got; their rows are untraced.
+  void append(const AppendedRoots& roots);
   /// Takes roots that have moved since the mesh was `before`: sends the rays again that ended on them, or may meet them where
   /// they are now. Returns the rows that must be traced anew instead, which are forgotten: those of moved roots, those that touch
   /// places where these were or are, and where not all is known of the rays: under panes and media, with hemicubes, and where

@@ -87,7 +87,9 @@ SolveService::Reactor* SolveService::EditSolve(Context* context, const v1::EditS
   return keep(context, "EditSolve", [this, request, response](const std::string& tenant) {
     auto step = decode(request->step());
     if (!step) throw invalid_argument("step: an edit has no part, or the step is of a kind that this server does not know");
-    EditRequest edit{std::move(*step), request->step().author(), request->request_id(), request->step().continues(), {}};
+    EditRequest edit{std::move(*step), request->step().author(), request->request_id(), request->step().continues(), {}, {}};
+    for (const std::string& scene : scenes_added_by(edit.step))
+      if (auto use = scenes_.use_if_there(scene, tenant)) edit.added.emplace(scene, std::move(*use));
     if (request->has_base_revision()) edit.base_revision = request->base_revision();
     response->set_revision(solves_.edit(request->name(), edit, tenant));
     response->set_state(encode(solves_.find(request->name(), tenant)->describe()).state());

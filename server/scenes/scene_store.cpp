@@ -33,6 +33,7 @@ void forget_edits(Scene& scene) {
     if (object.is_hidden) throw invalid_argument("object '" + object.name + "': is hidden; leave its faces out instead");
     object.motion = {};
     object.copy_of.reset();
+    object.from_scene.clear();
   }
 }
 
@@ -192,10 +193,15 @@ void SceneStore::insert(std::shared_ptr<const StoredScene> scene) {
   scenes_[name] = {std::move(scene), std::make_shared<const int>(0)};
 }
 
-const SceneUse& SceneStore::entry(const std::string& name, const std::string& tenant) const {
+/// Returns null where there is none.
+const SceneUse* SceneStore::known(const std::string& name, const std::string& tenant) const {
   const auto found = scenes_.find(name);
-  if (found == scenes_.end() || found->second.scene->creator.tenant != tenant) throw not_found(name);
-  return found->second;
+  return found == scenes_.end() || found->second.scene->creator.tenant != tenant ? nullptr : &found->second;
+}
+
+const SceneUse& SceneStore::entry(const std::string& name, const std::string& tenant) const {
+  if (const SceneUse* use = known(name, tenant)) return *use;
+  throw not_found(name);
 }
 
 std::shared_ptr<const StoredScene> SceneStore::find(const std::string& name, const std::string& tenant) const {
@@ -206,6 +212,12 @@ std::shared_ptr<const StoredScene> SceneStore::find(const std::string& name, con
 SceneUse SceneStore::use(const std::string& name, const std::string& tenant) const {
   Lock hold(lock_);
   return entry(name, tenant);
+}
+
+std::optional<SceneUse> SceneStore::use_if_there(const std::string& name, const std::string& tenant) const {
+  Lock hold(lock_);
+  const SceneUse* use = known(name, tenant);
+  return use ? std::optional(*use) : std::nullopt;
 }
 
 Page<const StoredScene> SceneStore::list(const PageRequest& request, const std::string& tenant) const {
@@ -223,7 +235,8 @@ void SceneStore::remove(const std::string& name, const std::string& tenant) {
   Lock hold(lock_);
   // Other uses are only handed out under this lock, so a count of one cannot grow meanwhile.
   const SceneUse& use = entry(name, tenant);
-  if (use.token.use_count() > 1) throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves: delete them first");
+  if (use.token.use_count() > 1)
+    throw StatusError(grpc::FAILED_PRECONDITION, name + " has solves, or was added to one: delete these first");
   if (archive_) archive_->remove_scene(use.scene->number);
   requests_.remove(use.scene->creator);
   removed = std::move(scenes_.extract(name).mapped());

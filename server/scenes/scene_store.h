@@ -12,16 +12,22 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace alvor {
+
+struct SceneContent;
+/// Contents of scenes that edits have added as objects, by resource name. None is null.
+using AddedContents = std::map<std::string, std::shared_ptr<const SceneContent>>;
 
 struct SceneContent {
   Scene scene;    ///< as it was submitted, or as edits have made it
   BaseMesh mesh;  ///< at least one root
   /// The content before all edits; null if `scene` is as submitted.
   std::shared_ptr<const SceneContent> submitted = nullptr;
+  AddedContents added = {};  ///< of all scenes that edits have ever added
 };
 
 /// The content of scenes by its hash. Content in use is in memory once. Thread-safe.
@@ -89,12 +95,15 @@ class SceneStore {
   /// Returns the scene of this name. Throws NOT_FOUND.
   std::shared_ptr<const StoredScene> find(const std::string& name, const std::string& tenant = {}) const;
   SceneUse use(const std::string& name, const std::string& tenant = {}) const;
+  /// As use(), but returns nothing where that throws NOT_FOUND.
+  std::optional<SceneUse> use_if_there(const std::string& name, const std::string& tenant) const;
   Page<const StoredScene> list(const PageRequest& request, const std::string& tenant = {}) const;
   /// Deletes the scene. Throws NOT_FOUND, or FAILED_PRECONDITION while it is in use.
   void remove(const std::string& name, const std::string& tenant = {});
   std::size_t count() const;
 
  private:
+  const SceneUse* known(const std::string& name, const std::string& tenant) const ALVOR_REQUIRES(lock_);
   const SceneUse& entry(const std::string& name, const std::string& tenant) const ALVOR_REQUIRES(lock_);
   std::shared_ptr<const StoredScene> repeated(const Caller& caller, const SceneRecord& facts) const;
   void check_quota(const std::string& tenant, std::uint64_t bytes) const;

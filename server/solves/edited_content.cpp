@@ -51,6 +51,7 @@ std::size_t bytes_of(const KeptEdit& edit) {
   std::size_t bytes = 100 + edit.author.size() + edit.request_id.size();
   for (const SceneEdit& each : edit.step.edits) {
     bytes += 200 + name_of(each).size();
+    if (const auto* copy = std::get_if<ObjectCopy>(&each)) bytes += copy->of.size() + copy->scene.size();
     if (const auto* light = std::get_if<LightEdit>(&each); light && light->web)
       bytes += 4 * light->web->intensities.size() + 8 * (light->web->planes.size() + light->web->angles.size());
   }
@@ -63,15 +64,14 @@ bool shines(const Scene& scene) {
 }
 
 /// Returns the fault of a step in a scene with the objects that steps before have added.
-std::optional<EditFault> fault_in(const EditStep& step, std::span<const KeptEdit> before, const Scene& submitted) {
+std::optional<EditFault> fault_in(const EditStep& step, std::span<const KeptEdit> before, const Scene& submitted,
+                                  const AddedContents& added) {
   const auto hold = that_hold(before);
-  if (!hold || !has_copies(*hold)) return fault_in(step.edits, submitted);
-  Scene with_copies = submitted;
-  append_copies(with_copies, *hold);
-  return fault_in(step.edits, with_copies);
+  if (!hold || !has_copies(*hold)) return fault_in(step.edits, submitted, scenes_of(added));
+  return fault_in(step.edits, with_added_objects(submitted, before, added), scenes_of(added));
 }
 
-void check(const EditRequest& request, std::span<const KeptEdit> before, const Scene& submitted) {
+void check(const EditRequest& request, std::span<const KeptEdit> before, const Scene& submitted, const AddedContents& added) {
   const EditStep& step = request.step;
   if (request.author.size() > longest_author)
     throw invalid_argument("step.author: " + std::to_string(request.author.size()) + " bytes, at most 256 are allowed");
@@ -80,24 +80,34 @@ void check(const EditRequest& request, std::span<const KeptEdit> before, const S
   if (!is_edit && !step.edits.empty()) throw invalid_argument("step.edits: an undo or redo has none");
   if (step.edits.size() > most_edits_of_step)
     throw invalid_argument("step.edits: " + std::to_string(step.edits.size()) + ", at most 1000 are allowed");
-  if (const auto fault = fault_in(step, before, submitted))
+  if (const auto fault = fault_in(step, before, submitted, added))
     throw invalid_argument("step.edits[" + std::to_string(fault->edit) + "]." + fault->field + ": " + fault->reason);
 }
 
 /// Requires: !find_fault(edited).
-std::shared_ptr<const SceneContent> relit(std::shared_ptr<const SceneContent> submitted, Scene edited) {
-  BaseMesh mesh = submitted->mesh.edited_as(edited);
-  return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh), std::move(submitted)});
+std::shared_ptr<const SceneContent> relit(std::shared_ptr<const SceneContent> submitted, Scene edited,
+                                          const AddedContents& added) {
+  AddedMeshes meshes;
+  for (const auto& [name, content] : added) meshes[name] = {content, &content->mesh};
+  BaseMesh mesh = submitted->mesh.edited_as(edited, meshes);
+  return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh), std::move(submitted), added});
 }
 
 }  // namespace
 
-EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request, std::shared_ptr<const SceneContent> submitted) {
+AddedScenes scenes_of(const AddedContents& contents) {
+  AddedScenes scenes;
+  for (const auto& [name, content] : contents) scenes[name] = {content, &content->scene};
+  return scenes;
+}
+
+EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request, std::shared_ptr<const SceneContent> submitted,
+                        const AddedContents& added) {
   const std::uint64_t newest = newest_revision(edits);
   if (request.base_revision && *request.base_revision != newest)
     throw StatusError(grpc::ABORTED, "base_revision: " + std::to_string(*request.base_revision) +
                                          ", but the newest edits are of revision " + std::to_string(newest));
-  check(request, edits, submitted->scene);
+  check(request, edits, submitted->scene, added);
   const bool replaces =
       request.continues && !edits.empty() && edits.back().author == request.author && are_alike(edits.back().step, request.step);
   if (replaces) edits.pop_back();
@@ -110,7 +120,7 @@ EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request,
                       "the solve has " + std::to_string(edits.size() - 1) + " steps of edits, as many as are kept");
   const auto hold = that_hold(edits);
   if (!hold) throw StatusError(grpc::FAILED_PRECONDITION, "step.kind: there is nothing to undo or redo");
-  Scene edited = edited_scene(submitted->scene, *hold);
+  Scene edited = edited_scene(submitted->scene, *hold, scenes_of(added));
   if (const auto fault = find_fault(edited)) throw invalid_argument("step.edits: then " + fault->text());
   if (const auto object = object_too_far(submitted->scene, edited))
     throw invalid_argument("step.edits: then '" + *object + "' would lie farther from the scene than the scene is long");
@@ -118,13 +128,27 @@ EditedContent with_step(std::vector<KeptEdit> edits, const EditRequest& request,
       std::ranges::any_of(*hold, [](const SceneEdit& edit) { return std::holds_alternative<DaylightEdit>(edit); });
   if (!shines(edited) && shines(submitted->scene) && !has_daylight)
     throw invalid_argument("step.edits: then nothing in the scene would shine");
-  return {std::move(edits), hold->empty() ? submitted : relit(submitted, std::move(edited))};
+  return {std::move(edits), hold->empty() ? submitted : relit(submitted, std::move(edited), added)};
 }
 
-std::shared_ptr<const SceneContent> edited_content(std::shared_ptr<const SceneContent> submitted,
-                                                   std::span<const KeptEdit> edits) {
+std::shared_ptr<const SceneContent> edited_content(std::shared_ptr<const SceneContent> submitted, std::span<const KeptEdit> edits,
+                                                   const AddedContents& added) {
   const auto hold = that_hold(edits);
-  return !hold || hold->empty() ? submitted : relit(submitted, edited_scene(submitted->scene, *hold));
+  if (!hold || hold->empty()) return submitted;
+  Scene edited = edited_scene(submitted->scene, *hold, scenes_of(added));
+  return relit(std::move(submitted), std::move(edited), added);
+}
+
+Scene with_added_objects(Scene submitted, std::span<const KeptEdit> edits, const AddedContents& added) {
+  append_copies(submitted, that_hold(edits).value(), scenes_of(added));
+  return submitted;
+}
+
+std::vector<std::string> scenes_added_by(const EditStep& step) {
+  std::vector<std::string> names;
+  for (const SceneEdit& edit : step.edits)
+    if (const auto* copy = std::get_if<ObjectCopy>(&edit); copy && !copy->scene.empty()) names.push_back(copy->scene);
+  return names;
 }
 
 }  // namespace alvor

@@ -70,13 +70,18 @@ Scene get_scene(PlainReader& in) {
 }  // namespace
 
 std::vector<std::byte> bytes_of_order(const SolveOptions& options, std::span<const std::byte> checkpoint, const Scene& submitted,
-                                      const Scene* edited) {
+                                      const Scene* edited, const AddedScenes& added) {
   return plain_bytes([&](PlainWriter& out) {
     put(options, out);
     put(checkpoint, out);
     put(submitted, out);
     out.put(std::uint8_t{edited != nullptr});
     if (edited) put(*edited, out);
+    out.put(std::uint64_t{added.size()});
+    for (const auto& [name, scene] : added) {
+      out.put_all(std::span(name));
+      put(*scene, out);
+    }
   });
 }
 
@@ -87,6 +92,10 @@ SolveOrder read_order(std::span<const std::byte> bytes) {
   order.checkpoint = in.get_all<char>();
   order.submitted = get_scene(in);
   if (in.get<std::uint8_t>() != 0) order.edited = get_scene(in);
+  for (auto left = in.get<std::uint64_t>(); left > 0; --left) {
+    const auto name = in.get_all<char>();
+    order.added[std::string(name.begin(), name.end())] = std::make_shared<const Scene>(get_scene(in));
+  }
   return order;
 }
 

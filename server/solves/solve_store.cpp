@@ -61,7 +61,10 @@ void SolveStore::restore(Archive::SolveRow row, const SceneStore& scenes) {
   } catch (const StatusError& fault) {
     refusal = fault.what();
   }
-  auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, how, options_.keeping);
+  std::map<std::string, SceneUse> added;
+  for (const KeptEdit& edit : row.facts.edits)
+    for (const std::string& other : scenes_added_by(edit.step)) added[other] = scenes.use(other, row.tenant);
+  auto solve = std::make_shared<StoredSolve>(std::move(row), scene.scene, std::move(added), how, options_.keeping);
   const auto complain = [&](const std::string& fault) { options_.logger->error("solve {} cannot be kept: {}", name, fault); };
   if (solve->ended()) {
   } else if (!refusal.empty()) {
@@ -219,6 +222,7 @@ std::uint64_t SolveStore::edit(const std::string& name, const EditRequest& reque
     solve = edited.solve;
     bytes = edited.scene.scene->facts.content_bytes;
   }
+  for (const auto& [other, use] : request.added) bytes += use.scene->facts.content_bytes;
   const auto leave = [&] {
     Lock hold(lock_);
     --entry(name, tenant).editors;

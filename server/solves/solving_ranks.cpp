@@ -93,8 +93,9 @@ class SolvingRanks::Gang {
     if (options.threads == all_.threads()) of_others.threads = 0;  // of machines that may have more or fewer
     // A solve on several ranks begins anew after an edit.
     const auto checkpoint = control.checkpoint_mesh ? std::span<const std::byte>() : control.checkpoint;
-    std::vector<std::byte> order = scene.submitted ? bytes_of_order(of_others, checkpoint, scene.submitted->scene, &scene.scene)
-                                                   : bytes_of_order(of_others, checkpoint, scene.scene, nullptr);
+    std::vector<std::byte> order =
+        scene.submitted ? bytes_of_order(of_others, checkpoint, scene.submitted->scene, &scene.scene, scenes_of(scene.added))
+                        : bytes_of_order(of_others, checkpoint, scene.scene, nullptr);
     const auto together = or_end_all(all_.ranks(), [&] {
       auto called = all_.call_together(workers_);
       send(*called, std::move(order));
@@ -170,7 +171,9 @@ void SolvingRanks::take_part(Ranks& gang) {
   SolveOrder order = read_order(bytes);
   bytes = {};
   BaseMesh mesh(std::exchange(order.submitted, {}));
-  if (order.edited) mesh = mesh.edited_as(*order.edited);
+  AddedMeshes added;
+  for (const auto& [name, scene] : std::exchange(order.added, {})) added[name] = std::make_shared<const BaseMesh>(*scene);
+  if (order.edited) mesh = mesh.edited_as(*order.edited, added);
   order.edited.reset();
   SolutionLog nowhere;
   const SolveControl control{

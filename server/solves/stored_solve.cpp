@@ -39,8 +39,8 @@ StoredSolve::StoredSolve(std::uint64_t solve_number, std::shared_ptr<const Store
   facts_.create_time = SolveRecord::Clock::now();
 }
 
-StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& solve_options,
-                         Keeping keeping)
+StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, std::map<std::string, SceneUse> added,
+                         const SolveOptions& solve_options, Keeping keeping)
     : number(row.number),
       name(row.facts.name),
       creator{std::move(row.tenant), std::move(row.request_id)},
@@ -49,7 +49,8 @@ StoredSolve::StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScen
       scene_(std::move(scene)),
       keeping_(std::move(keeping)),
       facts_(std::move(row.facts)),
-      lineage_(std::move(row.lineage)) {
+      lineage_(std::move(row.lineage)),
+      added_(std::move(added)) {
   newest_edits_ = newest_revision(facts_.edits);
   if (!facts_.checkpoint_time) log_ = std::make_shared<SolutionLog>();
   is_log_kept_ = facts_.checkpoint_time && is_final(facts_.status);

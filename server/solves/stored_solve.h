@@ -12,6 +12,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -56,8 +57,9 @@ class StoredSolve {
   /// QUEUED. Nothing is kept of it before keep() is called.
   StoredSolve(std::uint64_t solve_number, std::shared_ptr<const StoredScene> scene, Caller caller, const SolveSpec& spec,
               const SolveOptions& options, Keeping keeping);
-  /// As the archive has it. One that was running is QUEUED again.
-  StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, const SolveOptions& options, Keeping keeping);
+  /// As the archive has it, with the scenes that its edits add. One that was running is QUEUED again.
+  StoredSolve(Archive::SolveRow row, std::shared_ptr<const StoredScene> scene, std::map<std::string, SceneUse> added,
+              const SolveOptions& options, Keeping keeping);
 
   const std::uint64_t number;
   const std::string name;
@@ -105,8 +107,8 @@ class StoredSolve {
   v1::Look look() const;
   /// Gives back what is kept in memory for edits.
   void drop_live();
-  /// Says that the server does not hold it any more; those who do may go on reading it.
-  void note_removed() { is_removed_ = true; }
+  /// Says that the server does not hold it any more; those who do may go on reading it. Lets scenes go that its edits have added.
+  void note_removed();
   bool is_removed() const { return is_removed_; }
 
   SolveStatus status() const;
@@ -135,6 +137,7 @@ class StoredSolve {
   void keep_live(std::shared_ptr<LiveSolve> live);
   std::shared_ptr<const SceneContent> content_of(std::span<const KeptEdit> edits, const CallStop& stop) const;
   std::vector<KeptEdit> edits() const;
+  std::map<std::string, SceneUse> added_scenes() const;
   void save_in_memory(std::vector<std::string> state);
   void keep_checkpoint(std::vector<std::string> state, const std::function<void(SolveRecord&)>& change = {});
   std::vector<std::byte> take_checkpoint();
@@ -153,7 +156,8 @@ class StoredSolve {
   std::map<std::string, std::uint64_t> lineage_ ALVOR_GUARDED_BY(lock_);
   /// Checkpoint of a paused solve where it is not in the archive, as the pieces that the archive would have.
   std::vector<std::string> state_in_memory_ ALVOR_GUARDED_BY(lock_);
-  std::shared_ptr<LiveSolve> live_ ALVOR_GUARDED_BY(lock_);  ///< null: none is kept, or it runs
+  std::shared_ptr<LiveSolve> live_ ALVOR_GUARDED_BY(lock_);        ///< null: none is kept, or it runs
+  std::map<std::string, SceneUse> added_ ALVOR_GUARDED_BY(lock_);  ///< scenes that edits have added, by name
   std::atomic<bool> is_removed_ = false;
   std::uint64_t edits_of_run_ ALVOR_GUARDED_BY(lock_) = 0;  ///< newest_revision() that the last run was given
   std::atomic<std::uint64_t> newest_edits_ = 0;             ///< newest_revision()

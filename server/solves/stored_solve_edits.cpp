@@ -13,23 +13,19 @@ namespace alvor {
 
 namespace {
 
-/// Returns the material of each face, before all edits but copies of objects.
-std::vector<std::uint32_t> submitted_materials(const Scene& before, std::span<const SceneObject> objects) {
-  std::vector<std::uint32_t> materials;
-  for (const Face& face : before.faces) materials.push_back(face.material);
-  for (auto copy = before.objects.size(); copy < objects.size(); ++copy)
-    for (const std::uint32_t source : faces_with_hanging(objects, *objects[copy].copy_of))
-      materials.push_back(std::uint32_t{materials[source]});
-  return materials;
+/// Returns the contents of scenes.
+AddedContents contents_of(const std::map<std::string, SceneUse>& scenes, const CallStop& stop) {
+  AddedContents contents;
+  for (const auto& [name, use] : scenes) contents[name] = use.scene->content(stop);
+  return contents;
 }
 
-/// Appends runs of faces that have other materials than before.
+/// Appends runs of faces that have other materials than before. Requires: both have the same faces.
 void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
   v1::FaceMaterials* run = nullptr;
-  const std::vector<std::uint32_t> submitted = submitted_materials(before, after.objects);
   for (std::uint32_t face = 0; face < after.faces.size(); ++face) {
     const std::uint32_t material = after.faces[face].material;
-    if (material == submitted[face]) {
+    if (material == before.faces[face].material) {
       run = nullptr;
       continue;
     }
@@ -42,19 +38,25 @@ void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
   }
 }
 
-void add_objects(std::span<const SceneObject> objects, std::size_t submitted, v1::Look& look) {
+/// Appends objects that are not as the submitted scene, which has so many materials, has them. `added`: the contents of added
+/// scenes.
+void add_objects(std::span<const SceneObject> objects, std::size_t materials, const AddedContents& added, v1::Look& look) {
   for (std::uint32_t n = 0; n < objects.size(); ++n) {
-    const bool is_added = n >= submitted;
+    const bool is_added = objects[n].is_added();
     if (!objects[n].is_hidden && !is_added && objects[n].motion == Placement{}) continue;
     v1::LookOfObject& changed = *look.add_objects();
     changed.set_number(n);
     encode(objects[n].motion, *changed.mutable_motion());
     changed.set_hidden(objects[n].is_hidden);
     if (!is_added) continue;
-    changed.set_copy_of(*objects[n].copy_of);
+    if (objects[n].copy_of) changed.set_copy_of(*objects[n].copy_of);
     changed.set_name(as_utf8(objects[n].name));
     changed.set_first_face(objects[n].first_face);
     changed.set_face_count(objects[n].face_count);
+    if (objects[n].from_scene.empty()) continue;
+    changed.set_from_scene(objects[n].from_scene);
+    changed.set_first_material(static_cast<std::uint32_t>(materials));
+    materials += added.at(objects[n].from_scene)->scene.materials.size();
   }
 }
 
@@ -69,6 +71,17 @@ std::vector<KeptEdit> StoredSolve::edits() const {
   return facts_.edits;
 }
 
+std::map<std::string, SceneUse> StoredSolve::added_scenes() const {
+  Lock hold(lock_);
+  return added_;
+}
+
+void StoredSolve::note_removed() {
+  is_removed_ = true;
+  Lock hold(lock_);
+  for (auto& [added, use] : added_) use.token.reset();
+}
+
 std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<void()>& admit) {
   Lock alone(editing_lock_);
   const std::vector<KeptEdit> before = edits();
@@ -78,7 +91,9 @@ std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<
         if (known.step != request.step) throw other_request(request.request_id);
         return known.revision;
       }
-  EditedContent after = with_step(before, request, scene_->content());
+  std::map<std::string, SceneUse> added = added_scenes();
+  added.insert(request.added.begin(), request.added.end());
+  EditedContent after = with_step(before, request, scene_->content(), contents_of(added, {}));
   const std::uint64_t revision = newest_revision(after.edits);
   admit();
   Lock keep(keeping_lock_);
@@ -95,6 +110,7 @@ std::uint64_t StoredSolve::edit(const EditRequest& request, const std::function<
   Lock hold(lock_);
   facts_.edits = std::move(after.edits);
   if (is_final(facts_.status)) facts_.queue_again();
+  added_ = std::move(added);
   edited_ = {revision, std::move(after.content)};
   newest_edits_ = revision;
   return revision;
@@ -107,7 +123,7 @@ std::shared_ptr<const SceneContent> StoredSolve::content_of(std::span<const Kept
     Lock hold(lock_);
     if (edited_.first == revision && edited_.second) return edited_.second;
   }
-  auto edited = edited_content(scene_->content(stop), edits);
+  auto edited = edited_content(scene_->content(stop), edits, contents_of(added_scenes(), stop));
   Lock hold(lock_);
   if (revision >= edited_.first) edited_ = {revision, edited};
   return edited;
@@ -117,19 +133,21 @@ std::shared_ptr<const SceneContent> StoredSolve::content(const CallStop& stop) c
 
 v1::Look StoredSolve::look() const {
   const std::vector<KeptEdit> newest = edits();
-  const auto before = scene_->content(), after = content_of(newest, {});
+  const auto after = content_of(newest, {});
+  const Scene& submitted = after->submitted ? after->submitted->scene : after->scene;
+  const Scene before = with_added_objects(submitted, newest, after->added);
   v1::Look look;
   look.set_edits(newest_revision(newest));
   for (std::uint32_t n = 0; n < after->scene.materials.size(); ++n) {
     const Material& material = after->scene.materials[n];
-    if (n < before->scene.materials.size() && look_alike(before->scene.materials[n], material)) continue;
+    if (n < before.materials.size() && look_alike(before.materials[n], material)) continue;
     v1::LookOfMaterial& changed = *look.add_materials();
     changed.set_number(n);
     *changed.mutable_material() = encode(material);
     changed.mutable_material()->clear_texture();
   }
-  add_faces(before->scene, after->scene, look);
-  add_objects(after->scene.objects, before->scene.objects.size(), look);
+  add_faces(before, after->scene, look);
+  add_objects(after->scene.objects, submitted.materials.size(), after->added, look);
   return look;
 }
 

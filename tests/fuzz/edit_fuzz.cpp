@@ -26,6 +26,23 @@ std::shared_ptr<const SceneContent> room() {
   return std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
 }
 
+/// Returns scenes that can be added: one of the other up axis, and one with a lamp that is no face, which cannot.
+AddedContents others() {
+  AddedContents others;
+  for (const bool has_lamp : {false, true}) {
+    Scene scene;
+    scene.materials = {test::grey(1, 0.5)};
+    scene.materials[0].two_sided = true;
+    test::add_box(scene, {1, 1, 1}, {2, 2, 2}, false);
+    scene.up = UpAxis::z;
+    if (has_lamp) scene.lights = {Light{"bulb", LightKind::point, {1, 1, 1}, {3, 2, 4}}};
+    BaseMesh mesh(scene);
+    others[has_lamp ? "scenes/lamp" : "scenes/box"] =
+        std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
+  }
+  return others;
+}
+
 /// The mesh has the submitted roots, somewhere, then those of added objects, and its links lead both ways.
 void check(const BaseMesh& submitted, const BaseMesh& mesh) {
   const auto roots = mesh.roots();
@@ -45,6 +62,7 @@ void check(const BaseMesh& submitted, const BaseMesh& mesh) {
 
 void run(fuzz::Input input) {
   static const auto submitted = room();
+  static const auto added = others();
   std::vector<KeptEdit> edits;
   for (int n = 0; n < 50 && !input.empty(); ++n) {
     v1::EditStep message;
@@ -56,11 +74,11 @@ void run(fuzz::Input input) {
     request.step = *step;
     request.author = message.author();
     try {
-      EditedContent edited = with_step(edits, request, submitted);
+      EditedContent edited = with_step(edits, request, submitted, added);
       edits = std::move(edited.edits);
       expect(!find_fault(edited.content->scene));
       check(submitted->mesh, edited.content->mesh);
-      const auto replayed = edited_content(submitted, edits);
+      const auto replayed = edited_content(submitted, edits, added);
       for (std::uint32_t r = 0; r < replayed->mesh.roots().size(); ++r)
         expect(replayed->mesh.roots()[r].corners == edited.content->mesh.roots()[r].corners);
     } catch (const StatusError&) {}

@@ -133,6 +133,8 @@ void write_edit_seeds(const fs::path& directory) {
   step.mutable_edits(3)->mutable_light()->set_dim(0.5);
   step.add_edits()->mutable_copy()->set_name("second lamp");
   step.mutable_edits(4)->mutable_copy()->set_of("lamp");
+  step.add_edits()->mutable_copy()->set_name("third lamp");
+  step.mutable_edits(5)->mutable_copy()->set_scene("scenes/box");
   v1::EditStep undo;
   undo.set_kind(v1::EditStep::UNDO);
   const auto text = [](const v1::EditStep& of) { return '\0' + fuzz::as_text(of.SerializeAsString()); };

@@ -24,15 +24,15 @@ class EditedSolve {
       : options_(options), submitted_(scene), mesh_(submitted_), scene_(scene) {
     run();
   }
-  /// Begins with an edited scene.
-  EditedSolve(const Scene& submitted, const SolveOptions& options, const Scene& edited)
-      : options_(options), submitted_(submitted), mesh_(submitted_.edited_as(edited)), scene_(edited) {
+  /// Begins with an edited scene, to which edits have added scenes of these meshes.
+  EditedSolve(const Scene& submitted, const SolveOptions& options, const Scene& edited, const AddedMeshes& added = {})
+      : options_(options), submitted_(submitted), mesh_(submitted_.edited_as(edited, added)), scene_(edited) {
     run();
   }
 
-  void edit(const Change& change) {
+  void edit(const Change& change, const AddedMeshes& added = {}) {
     change(scene_);
-    mesh_ = submitted_.edited_as(scene_);
+    mesh_ = submitted_.edited_as(scene_, added);
     ++edits_;
     run();
   }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <random>
 
 namespace alvor {
@@ -74,6 +75,62 @@ TEST(MovedObjects, ACopyIsLitAsAnObjectThatWasSubmittedThereAndGoesWhenItIsTaken
   edit(true);
   for (const LeafValue& leaf : solve.leaves()) EXPECT_TRUE(leaf.patch.root_face() < roots || leaf.irradiance.max() == 0);
   EXPECT_NEAR(mean_irradiance(solve, roots), before, 0.04 * before);
+}
+
+/// Returns a table with a lamp on it, as a scene of its own.
+Scene table_with_lamp() {
+  Scene table;
+  table.materials = {test::grey(0, 0.4), test::grey(30, 0)};
+  test::add_box(table, {0, 0.7, 0}, {0.8, 0.75, 0.6}, false);
+  test::add_polygon(table, {{0.3, 0.9, 0.2}, {0.5, 0.9, 0.2}, {0.5, 0.9, 0.4}, {0.3, 0.9, 0.4}}, 1);
+  return table;
+}
+
+struct Addition {
+  std::string name;
+  SceneEdit edit;
+  Vec3 move;
+  AddedScenes scenes;
+  AddedMeshes meshes;
+  bool shines;
+};
+
+std::vector<Addition> additions() {
+  const auto table = std::make_shared<const Scene>(table_with_lamp());
+  const auto mesh = std::make_shared<const BaseMesh>(*table);
+  return {{"second box", ObjectCopy{"second box", "box"}, {0.8, 0.3, 1}, {}, {}, false},
+          {"second lamp", ObjectCopy{"second lamp", "lamp"}, {1.2, -0.3, 1}, {}, {}, true},
+          {"table",
+           ObjectCopy{.name = "table", .of = "", .scene = "scenes/table"},
+           {1.2, 0, 1},
+           {{"scenes/table", table}},
+           {{"scenes/table", mesh}},
+           true}};
+}
+
+// A bulb is a light that is no face. Its number comes after those of all roots, of which there are more then.
+TEST(MovedObjects, WhatIsAddedCostsFewRaysAndIsLitAsInASolveThatBeginsWithIt) {
+  for (const bool has_bulb : {false, true})
+    for (const Addition& addition : additions()) {
+      SCOPED_TRACE(addition.name + (has_bulb ? " with a bulb" : ""));
+      Scene submitted = test::room_of_objects();
+      if (has_bulb) submitted.lights = {Light{"bulb", LightKind::point, {2, 2, 2}, {1, 2, 4}}};
+      const SolveOptions options{.tolerance = 0.03, .max_leaves = 40'000};
+      EditedSolve solve(submitted, options);
+      const Step before = solve.last();
+      const std::vector<SceneEdit> edits{addition.edit, ObjectEdit{.name = addition.name, .move = addition.move}};
+      ASSERT_FALSE(fault_in(edits, submitted, addition.scenes));
+      solve.edit([&](Scene& scene) { scene = edited_scene(submitted, edits, addition.scenes); }, addition.meshes);
+      const auto steps = solve.log().steps();
+      const auto first = std::ranges::find_if(steps, [&](const Step& step) { return step.edits > before.edits; });
+      ASSERT_NE(first, steps.end());
+      EXPECT_TRUE(first->is_provisional) << "what was known is shown at once";
+      const EditedSolve anew(submitted, options, solve.scene(), addition.meshes);
+      const auto told = std::find_if(first, steps.end(), [](const Step& step) { return !step.is_provisional; });
+      const auto rays = static_cast<double>(told->rays - before.rays);
+      EXPECT_LT(rays, (addition.shines ? 0.6 : 0.3) * static_cast<double>(anew.last().rays)) << "up to the first estimate";
+      EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
+    }
 }
 
 /// Two closed rooms of eight lamps each; in one of them stands a box. With so many lamps, it is not known what each of them

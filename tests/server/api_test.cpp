@@ -191,7 +191,8 @@ TEST(Api, SceneLivesAsLongAsItsSolves) {
   const std::string scene = client.create_scene(squares(1), "").name();
   const std::string solve = client.create_solve(scene, {}).name();
   EXPECT_EQ(error_of([&] { client.delete_solve(solve); }), "FAILED_PRECONDITION: " + solve + " has not ended: cancel it first");
-  EXPECT_EQ(error_of([&] { client.delete_scene(scene); }), "FAILED_PRECONDITION: " + scene + " has solves: delete them first");
+  EXPECT_EQ(error_of([&] { client.delete_scene(scene); }),
+            "FAILED_PRECONDITION: " + scene + " has solves, or was added to one: delete these first");
   client.cancel_solve(solve);
   Client::Watch watch;
   EXPECT_EQ(client.watch_solve(solve, watch, [](auto&) {}).state(), v1::Solve::CANCELLED);

@@ -1,20 +1,14 @@
 // EditSolve: what is asked and refused, who sees it, and that nothing of it is lost.
 
-#include "client/rpc/client.h"
-#include "meshing/patch_place.h"
-#include "proto/codec.h"
+#include "tests/server/editing.h"
 #include "radiosity/solve/solver.h"
-#include "tests/radiosity/solve_scenes.h"
-#include "tests/server/alvord_process.h"
 #include "tests/server/refusal.h"
-#include "tests/server/test_server.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <random>
 #include <thread>
@@ -22,110 +16,8 @@
 namespace alvor {
 namespace {
 
-namespace fs = std::filesystem;
-
-v1::EditStep recolour(const std::string& material, double r, double g, double b) {
-  v1::EditStep step;
-  v1::MaterialEdit& edit = *step.add_edits()->mutable_material();
-  edit.set_name(material);
-  *edit.mutable_reflectance() = encode(Rgb{r, g, b});
-  return step;
-}
-
-v1::EditStep dim_light(const std::string& light, double dim) {
-  v1::EditStep step;
-  step.add_edits()->mutable_light()->set_name(light);
-  step.mutable_edits(0)->mutable_light()->set_dim(dim);
-  return step;
-}
-
-v1::EditStep moved(const std::string& object, double x, double y, double z) {
-  v1::EditStep step;
-  step.add_edits()->mutable_object()->set_name(object);
-  v1::Vector3& move = *step.mutable_edits(0)->mutable_object()->mutable_move();
-  move.set_x(x), move.set_y(y), move.set_z(z);
-  return step;
-}
-
-v1::EditStep undo() {
-  v1::EditStep step;
-  step.set_kind(v1::EditStep::UNDO);
-  return step;
-}
-v1::EditStep redo() {
-  v1::EditStep step;
-  step.set_kind(v1::EditStep::REDO);
-  return step;
-}
-
-/// Returns a room whose materials, lights and objects have names: the block on the floor, and two lamps of one material.
-Scene room() {
-  Scene scene = test::room_with_lamps_and_sun();
-  for (std::size_t n = 0; n < scene.materials.size(); ++n) scene.materials[n].name = "m" + std::to_string(n);
-  const auto first = static_cast<std::uint32_t>(scene.faces.size());
-  test::add_polygon(scene, {{0.2, 2.9, 0.2}, {0.6, 2.9, 0.2}, {0.6, 2.9, 0.6}, {0.2, 2.9, 0.6}}, 1);
-  test::add_polygon(scene, {{3.2, 2.9, 0.2}, {3.6, 2.9, 0.2}, {3.6, 2.9, 0.6}, {3.2, 2.9, 0.6}}, 1);
-  for (std::uint32_t n = 0; n < 2; ++n) {
-    SceneObject lamp;
-    lamp.name = "lamp." + std::to_string(n);
-    lamp.first_face = first + n;
-    lamp.face_count = 1;
-    scene.objects.push_back(lamp);
-  }
-  return scene;
-}
-
-v1::SolveSpec coarse() {
-  v1::SolveSpec spec;
-  spec.set_tolerance(0.1);
-  spec.set_max_elements(3000);
-  return spec;
-}
-
-ServiceOptions live_options() {
-  ServiceOptions options;
-  options.solves.keeping.keeps_live = true;
-  return options;
-}
-
-double mean(const Scene& scene, const std::vector<LeafValue>& leaves) {
-  const BaseMesh mesh(scene);
-  double sum = 0, area = 0;
-  for (const LeafValue& leaf : leaves) {
-    const double own = area_of(mesh, shape_of(mesh, leaf.patch));
-    sum += own * leaf.irradiance.mean();
-    area += own;
-  }
-  return sum / area;
-}
-
-class EditingTest : public testing::Test {
- protected:
-  EditingTest() {
-    scene_name = client.create_scene(room(), "").name();
-    solve = client.create_solve(scene_name, coarse()).name();
-    end();
-  }
-  /// Waits for the end of the solve and returns its leaves.
-  std::vector<LeafValue> end() {
-    Client::Watch watch;
-    last = client.watch_solve(solve, watch, [](auto&) {});
-    return watch.mirror.leaves();
-  }
-  std::string refusal(const v1::EditStep& step, std::optional<std::uint64_t> base = std::nullopt) {
-    try {
-      client.edit_solve(solve, step, base);
-    } catch (const RpcError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  TestServer server{live_options()};
-  Client client{server.channel()};
-  std::string scene_name, solve;
-  v1::Solve last;
-};
+using test::EditingTest, test::coarse, test::dim_light, test::live_options, test::mean, test::moved, test::recolour, test::redo,
+    test::room, test::undo;
 
 TEST_F(EditingTest, AFinishedSolveGoesOnAndItsSceneStays) {
   const auto before = end();
@@ -156,106 +48,6 @@ TEST_F(EditingTest, UndoAndRedoAreEdits) {
   EXPECT_EQ(client.read_scene(solve).materials[0].reflectance, (Rgb{0.1, 0.1, 0.1}));
   client.edit_solve(solve, dim_light("sun", 0.5));
   EXPECT_NE(refusal(redo()).find("FAILED_PRECONDITION"), std::string::npos);
-}
-
-TEST_F(EditingTest, ObjectsOfOneMaterialAreDimmedByThemselves) {
-  v1::EditStep step;
-  step.add_edits()->mutable_object()->set_name("lamp.1");
-  step.mutable_edits(0)->mutable_object()->set_dim(0);
-  client.edit_solve(solve, step);
-  const Scene edited = client.read_scene(solve);
-  const auto emission_of = [&](const std::string& object) {
-    const auto it = std::ranges::find(edited.objects, object, &SceneObject::name);
-    return edited.materials[edited.faces[it->first_face].material].emission;
-  };
-  EXPECT_EQ(emission_of("lamp.0"), room().materials[1].emission);
-  EXPECT_TRUE(emission_of("lamp.1").is_zero());
-  end();
-  EXPECT_EQ(last.state(), v1::Solve::SUCCEEDED);
-}
-
-TEST_F(EditingTest, ObjectsAreMovedAndTakenAway) {
-  const std::size_t roots = BaseMesh(room()).roots().size();
-  v1::EditStep step = moved("lamp.0", 1, -0.5, 2);
-  step.add_edits()->mutable_object()->set_name("lamp.1");
-  step.mutable_edits(1)->mutable_object()->set_hidden(true);
-  client.edit_solve(solve, step);
-  const Scene edited = client.read_scene(solve);
-  const auto corner = [](const Scene& scene, std::size_t face) { return scene.vertices[scene.corners_of(scene.faces[face])[0]]; };
-  const std::size_t lamp = room().objects[0].first_face;
-  EXPECT_EQ(corner(edited, lamp), corner(room(), lamp) + (Vec3{1, -0.5, 2}));
-  EXPECT_EQ(edited.objects[0].motion.origin, (Vec3{1, -0.5, 2}));
-  EXPECT_TRUE(edited.objects[1].is_hidden);
-  const auto leaves = end();
-  EXPECT_EQ(last.state(), v1::Solve::SUCCEEDED);
-  for (const LeafValue& leaf : leaves) {
-    if (leaf.patch.root_face() != roots - 1) continue;
-    EXPECT_TRUE(leaf.irradiance.is_zero());
-  }
-  try {
-    client.create_scene(edited, "");
-    ADD_FAILURE() << "a scene with a hidden object was taken";
-  } catch (const RpcError& error) {
-    EXPECT_NE(std::string(error.what()).find("INVALID_ARGUMENT: object 'lamp.1': is hidden"), std::string::npos) << error.what();
-  }
-}
-
-v1::EditStep copied(const std::string& name, const std::string& of, double x, double y, double z) {
-  v1::EditStep step = moved(name, x, y, z);
-  v1::ObjectCopy& copy = *step.add_edits()->mutable_copy();
-  copy.set_name(name);
-  copy.set_of(of);
-  return step;
-}
-
-TEST_F(EditingTest, ObjectsAreAddedAsCopiesAndTakenBack) {
-  const std::size_t leaves = end().size(), roots = BaseMesh(room()).roots().size();
-  client.edit_solve(solve, copied("lamp.2", "lamp.0", 1, -1, 1));
-  const auto with = end();
-  EXPECT_GE(with.size(), leaves / 2);
-  EXPECT_EQ(with.back().patch.root_face(), roots);
-  const Scene edited = client.read_scene(solve);
-  ASSERT_EQ(edited.objects.size(), room().objects.size() + 1);
-  EXPECT_EQ(edited.objects.back().name, "lamp.2");
-  EXPECT_EQ(edited.faces.size(), room().faces.size() + 1);
-  const BaseMesh mesh = BaseMesh(client.read_scene(scene_name)).edited_as(edited);
-  ASSERT_EQ(mesh.roots().size(), roots + 1);
-  EXPECT_NEAR(mesh.roots().back().corners[0].y, 1.9, 1e-12);
-
-  EXPECT_THAT(refusal(copied("lamp.2", "lamp.1", 0, 0, 0)), testing::HasSubstr("step.edits[1].copy.name"));
-  EXPECT_THAT(refusal(copied("lamp.3", "lamp.9", 0, 0, 0)), testing::HasSubstr("step.edits[1].copy.of"));
-  EXPECT_THAT(refusal(copied("lamp.3", "lamp.0", 1e12, 0, 0)), testing::HasSubstr("step.edits[0].object.move"));
-  client.edit_solve(solve, undo());
-  for (const LeafValue& leaf : end()) EXPECT_TRUE(leaf.patch.root_face() < roots || leaf.irradiance.max() == 0);
-  EXPECT_THAT(refusal(moved("lamp.2", 0, 0, 0)), testing::HasSubstr("step.edits[0].object.name"));
-  client.edit_solve(solve, copied("lamp.2", "lamp.1", -1, -1, 1));
-  EXPECT_EQ(end().back().patch.root_face(), roots + 1) << "numbers of roots are not used again";
-}
-
-TEST_F(EditingTest, AWatchKnowsOfAddedObjectsBeforeTheirLeaves) {
-  const auto stub = v1::SolveService::NewStub(server.channel());
-  const std::size_t roots = BaseMesh(room()).roots().size();
-  client.edit_solve(solve, copied("lamp.2", "lamp.0", 1, -1, 1));
-  end();
-  grpc::ClientContext context;
-  v1::WatchSolveRequest request;
-  request.set_name(solve);
-  request.set_detail(v1::DETAIL_DISPLAY);
-  const auto reader = stub->WatchSolve(&context, request);
-  v1::WatchSolveResponse frame;
-  ASSERT_TRUE(reader->Read(&frame));
-  ASSERT_TRUE(frame.has_look()) << "the first frame";
-  ASSERT_EQ(frame.look().objects_size(), 1);
-  const v1::LookOfObject& copy = frame.look().objects(0);
-  EXPECT_EQ(copy.number(), room().objects.size());
-  EXPECT_EQ(copy.name(), "lamp.2");
-  EXPECT_TRUE(copy.has_copy_of());
-  EXPECT_EQ(copy.first_face(), room().faces.size());
-  EXPECT_EQ(copy.face_count(), 1u);
-  EXPECT_EQ(copy.motion(9), 1);
-  EXPECT_EQ(frame.look().faces_size(), 0) << "it has the material of the other";
-  EXPECT_GT(roots, 0u);
-  context.TryCancel();
 }
 
 TEST_F(EditingTest, ADayPassesAndIsOneStep) {
@@ -524,80 +316,6 @@ TEST(Editing, OfAnotherTenantIsNotFound) {
   const EditRequest request{.step = {EditStep::Kind::edit, {LightEdit{.name = "bulb", .dim = 0.5}}}};
   EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { solves.edit(solve->name, request, "ben"); }), solve->name + " does not exist");
   EXPECT_EQ(solves.edit(solve->name, request, "ann"), 1u);
-}
-
-class KeptEditsTest : public testing::Test {
- protected:
-  KeptEditsTest() { fs::remove_all(directory); }
-  ~KeptEditsTest() override { fs::remove_all(directory); }
-  std::vector<std::string> arguments() const {
-    return {"--listen", "127.0.0.1:0", "--data", directory.string(), "--checkpoint-interval", "0.05"};
-  }
-  static Client client_of(Alvord& alvord) {
-    return Client(grpc::CreateChannel(alvord.address(), grpc::InsecureChannelCredentials()));
-  }
-  const fs::path directory = fs::temp_directory_path() / ("alvor_edits_" + std::to_string(getpid()) + "_" +
-                                                          testing::UnitTest::GetInstance()->current_test_info()->name());
-};
-
-TEST_F(KeptEditsTest, KilledInTheMiddleOfEditsEveryAcknowledgedOneIsThereAndNoneTwice) {
-  std::string scene, solve;
-  std::vector<double> acknowledged;
-  for (int round = 0; round < 4; ++round) {
-    Alvord alvord(arguments());
-    Client client = client_of(alvord);
-    if (round == 0) {
-      v1::SolveSpec spec = coarse();
-      spec.set_tolerance(0.05);
-      *spec.mutable_step_pause() = encode_seconds(0.01);
-      scene = client.create_scene(room(), "").name();
-      solve = client.create_solve(scene, spec).name();
-    }
-    const v1::Solve now = client.get_solve(solve);
-    ASSERT_EQ(now.edits_size(), static_cast<int>(acknowledged.size())) << round;
-    for (int n = 0; n < now.edits_size(); ++n) {
-      EXPECT_EQ(now.edits(n).edits(0).material().reflectance().r(), acknowledged[static_cast<std::size_t>(n)]);
-      EXPECT_EQ(now.edits(n).revision(), static_cast<std::uint64_t>(n + 1));
-    }
-    for (int n = 0; n < 5 + round; ++n) {
-      const double value = 0.01 * static_cast<double>(acknowledged.size() + 1);
-      client.edit_solve(solve, recolour("m0", value, value, value));
-      acknowledged.push_back(value);
-      std::this_thread::sleep_for(std::chrono::milliseconds(17 * round));
-    }
-    alvord.kill();
-  }
-  Alvord alvord(arguments());
-  Client client = client_of(alvord);
-  Client::Watch watch;
-  const v1::Solve ended = client.watch_solve(solve, watch, [](auto&) {});
-  EXPECT_EQ(ended.state(), v1::Solve::SUCCEEDED);
-  EXPECT_EQ(ended.last_step().edits(), acknowledged.size());
-  EXPECT_EQ(client.read_scene(solve).materials[0].reflectance.r, acknowledged.back());
-}
-
-TEST_F(KeptEditsTest, AFinishedSolveIsEditedAfterARestart) {
-  std::string solve;
-  {
-    Alvord alvord(arguments());
-    Client client = client_of(alvord);
-    solve = client.create_solve(client.create_scene(room(), "").name(), coarse()).name();
-    Client::Watch watch;
-    client.watch_solve(solve, watch, [](auto&) {});
-    alvord.kill();
-  }
-  Alvord alvord(arguments());
-  Client client = client_of(alvord);
-  Client::Watch watch;
-  client.watch_solve(solve, watch, [](auto&) {});
-  const double before = mean(room(), watch.mirror.leaves());
-  client.edit_solve(solve, recolour("m0", 0.1, 0.1, 0.1));
-  // The watch goes on from what it has, without a reset.
-  const std::uint64_t revision = watch.mirror.revision();
-  const v1::Solve ended = client.watch_solve(solve, watch, [](auto&) {});
-  EXPECT_GT(watch.mirror.revision(), revision);
-  EXPECT_EQ(ended.last_step().edits(), 1u);
-  EXPECT_LT(mean(room(), watch.mirror.leaves()), 0.9 * before);
 }
 
 }  // namespace

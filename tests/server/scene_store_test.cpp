@@ -76,7 +76,8 @@ TEST(SceneStore, KeepsScenesThatAreInUse) {
   const std::string name = store.add(squares(1), "")->facts.name;
   {
     const SceneUse use = store.use(name);
-    EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { store.remove(name); }), name + " has solves: delete them first");
+    EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { store.remove(name); }),
+              name + " has solves, or was added to one: delete these first");
   }
   store.remove(name);
   EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { store.find(name); }), name + " does not exist");

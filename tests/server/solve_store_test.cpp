@@ -239,7 +239,8 @@ TEST_F(SolveStoreTest, RunningSolveCannotBeDeletedAndItsSceneNeither) {
             solve->name + " has not ended: cancel it first");
   stage.finish();
   ended(solve);
-  EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { scenes.remove(scene); }), scene + " has solves: delete them first");
+  EXPECT_EQ(refusal_of(grpc::FAILED_PRECONDITION, [&] { scenes.remove(scene); }),
+            scene + " has solves, or was added to one: delete these first");
   solves.remove(solve->name);
   scenes.remove(scene);
   EXPECT_EQ(refusal_of(grpc::NOT_FOUND, [&] { solves.find(solve->name); }), solve->name + " does not exist");
@@ -327,7 +328,10 @@ TEST(SolveSpec, FieldsOutsideTheirRangeAreRefusedByName) {
       {"solve.spec.tolerance: nan is outside (0, 1]", [](auto& s) { s.set_tolerance(NAN); }},
       {"solve.spec.area_share: 1.5 is outside (0, 1]", [](auto& s) { s.set_area_share(1.5); }},
       {"solve.spec.area_share: nan is outside (0, 1]", [](auto& s) { s.set_area_share(NAN); }},
-      {"solve.spec.objects: 1001 are more than 1000", [](auto& s) { for (int n = 0; n <= 1000; ++n) s.add_objects("x"); }},
+      {"solve.spec.objects: 1001 are more than 1000",
+       [](auto& s) {
+         for (int n = 0; n <= 1000; ++n) s.add_objects("x");
+       }},
       {"solve.spec.max_depth: 16 is outside [0, 15]", [](auto& s) { s.set_max_depth(16); }},
       {"solve.spec.max_elements: 101 is more than 100, the limit of this server", [](auto& s) { s.set_max_elements(101); }},
       {"solve.spec.min_edge_meters: -1 is not a finite length >= 0", [](auto& s) { s.set_min_edge_meters(-1); }},

@@ -4,6 +4,7 @@
 #include "client/command/commands/connection.h"
 #include "client/command/commands/follow.h"
 #include "client/command/commands/interrupt.h"
+#include "client/command/commands/submitted_scene.h"
 #include "client/command/options/edit_option.h"
 #include "client/command/options/sky_options.h"
 #include "client/command/options/solve_name.h"
@@ -11,9 +12,11 @@
 #include "client/command/output/notes.h"
 #include "client/command/output/numbers.h"
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace alvor {
@@ -23,7 +26,7 @@ namespace {
 struct EditCommand {
   std::string solve;
   ServerChoice server;
-  std::vector<std::string> settings, dims, webs, copies, moves, turns, scales, hidden, shown;
+  std::vector<std::string> settings, dims, webs, copies, additions, moves, turns, scales, hidden, shown;
   std::string absorption;
   SkyOptions sky;
   bool no_daylight = false;
@@ -40,6 +43,7 @@ v1::EditStep step_of(const EditCommand& command) {
   for (const std::string& web : command.webs) *step.add_edits() = edit_of_web(web);
   if (!command.absorption.empty()) *step.add_edits() = edit_of_absorption(command.absorption);
   for (const std::string& copy : command.copies) *step.add_edits() = edit_of_copy(copy);
+  for (const std::string& addition : command.additions) *step.add_edits() = edit_of_addition(addition);
   for (const std::string& move : command.moves) *step.add_edits() = edit_of_move(move);
   for (const std::string& turn : command.turns) *step.add_edits() = edit_of_turn(turn);
   for (const std::string& scale : command.scales) *step.add_edits() = edit_of_scale(scale);
@@ -55,20 +59,57 @@ v1::EditStep step_of(const EditCommand& command) {
     throw Failure(
         ExitStatus::usage,
         is_edit
-            ? "nothing to edit: give --set, --dim, --web, --absorption, --copy, --move, --turn, --scale, --hide, --show, --sun, "
-              "--time, --sky, --no-daylight, --script, --undo or --redo"
+            ? "nothing to edit: give --set, --dim, --web, --absorption, --copy, --add, --move, --turn, --scale, --hide, --show, "
+              "--sun, --time, --sky, --no-daylight, --script, --undo or --redo"
             : "--undo and --redo stand alone");
   step.set_author(command.author);
   return step;
 }
 
+/// The scene files of a step's additions, submitted. Deletes these scenes again, unless keep() is called.
+class SubmittedAdditions {
+ public:
+  SubmittedAdditions(Client& client, v1::EditStep& step) : client_(client) {
+    for (v1::Edit& edit : *step.mutable_edits())
+      if (const std::string& scene = edit.copy().scene(); !scene.empty() && !is_of_server(scene))
+        edit.mutable_copy()->set_scene(submitted(scene));
+  }
+  ~SubmittedAdditions() {
+    for (const std::string& scene : scenes_) {
+      try {
+        client_.delete_scene(scene);
+      } catch (const RpcError&) {  // it is used meanwhile, or the connection is lost
+      }
+    }
+  }
+  SubmittedAdditions(const SubmittedAdditions&) = delete;
+  void keep() { scenes_.clear(); }
+
+ private:
+  static bool is_of_server(const std::string& scene) { return scene.starts_with("scenes/"); }
+  std::string submitted(const std::filesystem::path& file) {
+    RawScene bytes = scene_bytes(file, "");
+    SceneImport import;
+    import.options = import_options(bytes.file, file);
+    const v1::Scene scene = submit(client_, std::move(bytes), import, file);
+    scenes_.push_back(scene.name());
+    warn(std::vector<std::string>(scene.warnings().begin(), scene.warnings().end()));
+    return scene.name();
+  }
+
+  Client& client_;
+  std::vector<std::string> scenes_;
+};
+
 void run_edit(const EditCommand& command) {
   scene_name_of(command.solve);
-  const v1::EditStep step = step_of(command);
+  v1::EditStep step = step_of(command);
   Interrupt interrupt;
   Connection connection(command.server);
   Client& client = connection.client();
+  SubmittedAdditions additions(client, step);
   const v1::EditSolveResponse edited = client.edit_solve(command.solve, step, command.base_revision);
+  additions.keep();
   notes() << "edits of revision " << edited.revision() << '\n';
   if (!command.wait || edited.state() == v1::Solve::PAUSED) return;
   const FollowOptions options{std::chrono::steady_clock::now(), false};
@@ -102,6 +143,10 @@ void add_edit_command(CLI::App& app) {
       ->type_name("R,G,B");
   add_repeatable("--copy", options->copies, "COPY",
                  "NEW=NAME: add an object, a copy of another one as the scene was submitted with it");
+  add_repeatable(
+      "--add", options->additions, "ADDITION",
+      "NEW=FILE: add an object, all faces of a scene file, where the file has them; the file is submitted as a scene of "
+      "its own, which stays. Or NEW=scenes/SCENE: a scene of the server");
   add_repeatable("--move", options->moves, "MOVE",
                  "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it");
   add_repeatable("--turn", options->turns, "TURN",

@@ -2,8 +2,10 @@
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
+#include "client/command/commands/edited_mesh.h"
 #include "client/command/commands/interrupt.h"
 #include "client/command/commands/outputs.h"
+#include "client/command/commands/submitted_scene.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
 #include "client/command/options/light_options.h"
@@ -85,11 +87,9 @@ v1::SolveSpec spec_of(const SolveCommand& command) {
 
 SceneImport import_of(const SolveCommand& command, const std::string& file) {
   SceneImport import;
-  v1::ImportOptions& options = import.options;
+  v1::ImportOptions& options = import.options = import_options(file, command.scene);
   take_light_options(command.light, import);
   take_translucent(command.translucent, options);
-  options.set_scene_file(file);
-  options.set_display_name(as_utf8(std::filesystem::path(name_of(command.scene)).filename().string()));
   Scene given;
   take_absorption(command.absorption, given);
   if (!given.absorption.is_zero()) *options.mutable_absorption_per_meter() = encode(given.absorption);
@@ -97,35 +97,20 @@ SceneImport import_of(const SolveCommand& command, const std::string& file) {
   return import;
 }
 
-// Sends the scene's files. If the server refuses them, reports that as a fault of the file, which it knows by another name.
-v1::Scene submit(Client& client, RawScene scene, const SceneImport& import, const std::filesystem::path& path) {
-  const auto find = [&](const std::string& name) {
-    const auto of_light = import.files.find(name);
-    return of_light != import.files.end() ? std::optional(of_light->second) : read_beside(scene.folder, name);
-  };
-  try {
-    return client.import_scene(import.options, std::move(scene.bytes), find);
-  } catch (const RpcError& error) {
-    if (error.code != grpc::StatusCode::INVALID_ARGUMENT) throw;
-    const std::string reason = reason_of(error), name = scene.file + ": ";
-    throw SceneFileError(name_of(path) + ": " + (reason.starts_with(name) ? reason.substr(name.size()) : reason));
-  }
-}
-
 /// A solve that has been followed to its end.
-struct Solved {
+struct FollowedSolve {
   std::optional<BaseMesh> mesh;  ///< with the edits that somebody made meanwhile
   std::vector<std::string> warnings;
   Followed followed;
 };
 
-Solved solve_and_follow(const SolveCommand& command, RawScene bytes) {
+FollowedSolve solve_and_follow(const SolveCommand& command, RawScene bytes) {
   const SceneImport import = import_of(command, bytes.file);
   Interrupt interrupt;
   Connection connection(command.server);
   Client& client = connection.client();
   const v1::Scene scene = submit(client, std::move(bytes), import, command.scene);
-  Solved solved;
+  FollowedSolve solved;
   solved.warnings.assign(scene.warnings().begin(), scene.warnings().end());
   warn(solved.warnings);
   solved.mesh.emplace(client.with_patience([&] { return client.read_scene(scene.name()); }));
@@ -134,14 +119,14 @@ Solved solve_and_follow(const SolveCommand& command, RawScene bytes) {
   if (connection.remote()) progress() << solve.name() << '\n';
   solved.followed = follow_own(client, solve, options, interrupt.token());
   const auto& steps = solved.followed.mirror.steps();
-  if (!steps.empty() && steps.back().edits > 0) solved.mesh = solved.mesh->edited_as(client.read_scene(solve.name()));
+  if (!steps.empty() && steps.back().edits > 0) solved.mesh = read_edited_mesh(client, *solved.mesh, solve.name());
   return solved;
 }
 
 void run_solve(const SolveCommand& command) {
   require_inputs({{InputKind::scene, command.scene}}, command.format);
   prepare_outputs(command.outputs);
-  const Solved solved = solve_and_follow(command, scene_bytes(command.scene, command.format));
+  const FollowedSolve solved = solve_and_follow(command, scene_bytes(command.scene, command.format));
   deliver(command.outputs, *solved.mesh, solved.followed, solved.warnings);
 }
 

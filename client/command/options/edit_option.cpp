@@ -155,6 +155,16 @@ v1::Edit edit_of_copy(const std::string& copy) {
   return edit;
 }
 
+v1::Edit edit_of_addition(const std::string& addition) {
+  const auto equals = addition.find('=');
+  if (equals == std::string::npos || equals + 1 == addition.size())
+    refuse("--add", addition, "must be NEW=FILE or NEW=scenes/SCENE, with the name of a new object");
+  v1::Edit edit;
+  edit.mutable_copy()->set_name(addition.substr(0, equals));
+  edit.mutable_copy()->set_scene(addition.substr(equals + 1));
+  return edit;
+}
+
 v1::Edit edit_of_move(const std::string& move) {
   const Named named = split_object("--move", move);
   v1::Edit edit = edit_of_object(named.name);

@@ -19,6 +19,9 @@ v1::Edit edit_of_absorption(const std::string& absorption);
 /// Returns the edits of `--copy NEW=NAME`, `--move NAME=X,Y,Z`, `--turn NAME=DEGREES[,X,Y,Z]`, `--scale NAME=FACTOR`, `--hide
 /// NAME` and `--show NAME`, of objects. Throw Failure (usage) that names the option.
 v1::Edit edit_of_copy(const std::string& copy);
+/// Returns the edit of `--add NEW=FILE` or `--add NEW=scenes/SCENE`. The file, or the scene, is in `copy.scene`. Throws Failure
+/// (usage) that names the option.
+v1::Edit edit_of_addition(const std::string& addition);
 v1::Edit edit_of_move(const std::string& move);
 v1::Edit edit_of_turn(const std::string& turn);
 v1::Edit edit_of_scale(const std::string& scale);

@@ -24,6 +24,9 @@ export type Bands = [number, number, number];
 
 /** What of a scene can be edited, as it was submitted. */
 export interface Parts {
+  /** Of the box around all, metres from the middle of the mesh. */
+  low: Bands;
+  high: Bands;
   lights: { name: string; intensity: Bands; position?: Bands }[];
   /**
    * Objects with faces, their own or of objects that hang from them. `parent`: what it hangs from. `isAdded`: by an edit, which may have been

@@ -126,6 +126,13 @@ export async function sendSceneFiles(api: Api, files: File[]): Promise<Scene> {
   return sendWaiting(api);
 }
 
+/** Sends a scene with its parts, all of which are among the files. Throws as sendSceneFiles() does. */
+export async function sendSceneAlone(api: Api, files: File[]): Promise<Scene> {
+  const scene = sceneAmong(files);
+  if (!scene) throw new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}`);
+  return new SceneUpload(files, scene).send(api);
+}
+
 /** Sends the last scene without the parts that it lacks. */
 export async function sendWithoutParts(api: Api): Promise<Scene> {
   waiting?.renounce();

@@ -6,7 +6,7 @@ import type { ReadMeshResponse } from "./gen/alvor/v1/scene_service_pb";
 import { Detail, type Look, type WatchSolveResponse } from "./gen/alvor/v1/solve_service_pb";
 import type { Counters, FromWorker, ToWorker } from "./messages";
 import { BaseMesh } from "./mirror/base_mesh";
-import { withCopies } from "./mirror/copies";
+import { addedObjects, addedScenes, withAdded } from "./mirror/copies";
 import { brightnessOf } from "./mirror/brightness";
 import { decodeErrors } from "./mirror/errors";
 import { BadFrame, decodeLeaves } from "./mirror/leaves";
@@ -50,7 +50,11 @@ abstract class Shown {
   private surface!: Surface;
   /** Of the mesh's textures, when they have come. */
   private images?: Image[];
-  private areImagesAsked = false;
+  /** The meshes of scenes that edits have added, by name. */
+  protected readonly scenes = new Map<string, ReadMeshResponse[]>();
+  /** The scenes whose images were asked for; undefined before any were. */
+  private imagesAsked?: string;
+  private look: Pick<Look, "objects"> = { objects: [] };
   protected ambient: [number, number, number] = [0, 0, 0];
   private isDrawn = true;
   protected isChanged = false;
@@ -60,7 +64,8 @@ abstract class Shown {
   constructor(private readonly longestSide: number) {}
 
   abstract run(): Promise<void>;
-  protected abstract readImages(): Promise<Image[]>;
+  /** `added`: the scenes that edits have added. */
+  protected abstract readImages(added: string[]): Promise<Image[]>;
 
   drawn(): void {
     this.isDrawn = true;
@@ -74,6 +79,7 @@ abstract class Shown {
 
   protected setMesh(messages: ReadMeshResponse[]): void {
     this.messages = messages;
+    this.look = { objects: [] };
     this.mesh = new BaseMesh(messages);
     this.forget();
     this.tellMesh();
@@ -86,12 +92,12 @@ abstract class Shown {
     tell({ kind: "mesh", centre, extent, corners, counts, isZUp, isPhotometric, parts: partsOf(this.mesh), ...tablesOf(this.mesh) });
   }
 
-  /** Shows how edits have made surfaces look. */
+  /** Shows how edits have made surfaces look. Requires: `scenes` has the scenes that were added. */
   protected setLook(look: Look): void {
-    const added = look.objects.filter(({ copyOf }) => copyOf !== undefined);
-    const before = this.mesh.objects.filter(({ copyOf }) => copyOf !== undefined);
+    const [added, before] = [addedObjects(look), addedObjects(this.look)];
     const isAsBefore = added.length === before.length && added.every(({ name }, n) => name === before[n].name);
-    if (!isAsBefore) this.setObjects(withCopies(this.messages, added));
+    this.look = look;
+    if (!isAsBefore) this.setObjects(withAdded(this.messages, look, this.scenes));
     const { relit, moved } = this.mesh.applyLook(look);
     this.surface.onMaterials(relit);
     this.surface.onMoved(moved);
@@ -141,13 +147,16 @@ abstract class Shown {
     void this.showImages(); // not before: the first light needs none
   }
 
-  /** Reads the images of the textures, once, and sends them to the page. */
+  /** Reads the images of the textures, once until further ones are added, and sends them to the page. */
   private async showImages(): Promise<void> {
-    if (this.areImagesAsked || !this.mesh.hasTextures) return;
-    this.areImagesAsked = true;
+    const added = addedScenes(this.look);
+    if (this.imagesAsked === added.join() || !this.mesh.hasTextures) return;
+    this.imagesAsked = added.join();
     try {
-      this.images = await this.readImages();
-      await this.sendSheet(this.images);
+      const images = await this.readImages(added);
+      if (this.imagesAsked !== added.join()) return; // others have been asked for since
+      this.images = images;
+      await this.sendSheet(images);
     } catch (error) {
       tell({ kind: "no images", reason: reasonOf(error) });
     }
@@ -189,7 +198,7 @@ class Watch extends Shown {
   async run(): Promise<void> {
     for (let wait = 100, lost = false; ; wait = Math.min(2 * wait, LONGEST_WAIT_MS)) {
       try {
-        if (!this.mesh) this.setMesh(await this.readMesh());
+        if (!this.mesh) this.setMesh(await this.readMesh(sceneOf(this.solve)));
         const onFirst = () => {
           this.tellConnected(lost);
           wait = 100;
@@ -206,14 +215,21 @@ class Watch extends Shown {
     }
   }
 
-  protected readImages(): Promise<Image[]> {
-    return readImages(this.api, sceneOf(this.solve));
+  protected async readImages(added: string[]): Promise<Image[]> {
+    const images = await readImages(this.api, sceneOf(this.solve));
+    for (const scene of added) images.push(...(await readImages(this.api, scene)));
+    return images;
   }
 
-  private async readMesh(): Promise<ReadMeshResponse[]> {
+  private async readMesh(scene: string): Promise<ReadMeshResponse[]> {
     const messages = [];
-    for await (const message of this.api.scenes.readMesh({ name: sceneOf(this.solve) })) messages.push(message);
+    for await (const message of this.api.scenes.readMesh({ name: scene })) messages.push(message);
     return messages;
+  }
+
+  /** Reads the meshes of scenes that a look tells were added, where they are not known yet. */
+  private async readAdded(look: Look): Promise<void> {
+    for (const scene of addedScenes(look)) if (!this.scenes.has(scene)) this.scenes.set(scene, await this.readMesh(scene));
   }
 
   protected override forget(): void {
@@ -266,6 +282,7 @@ class Watch extends Shown {
         tell({ kind: "connection", state: "closing", reason: frame.closing.reason });
         return;
       }
+      if (frame.look) await this.readAdded(frame.look);
       this.take(frame);
       if (frame.ended && !this.hasEnded) {
         this.show();

@@ -129,7 +129,7 @@ TEST_F(WorkLostTest, HasNothingToDoWithTheTimeOfDay) {
   }
   Archive archive(directory, clock());
   SceneStore scenes(&archive);
-  const StoredSolve solve(archive.solves().at(0), scenes.use("scenes/s1").scene, {}, {.archive = &archive});
+  const StoredSolve solve(archive.solves().at(0), scenes.use("scenes/s1").scene, {}, {}, {.archive = &archive});
   EXPECT_EQ(solve.describe().work_lost, 7s);
 }
 

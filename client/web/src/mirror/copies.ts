@@ -1,8 +1,15 @@
-// The root patches of objects that edits have added: copies of others.
+// The root patches of objects that edits have added: copies of others, or all of another scene.
 
-import { create } from "@bufbuild/protobuf";
-import { ReadMeshResponseSchema, SceneObjectSchema, type ReadMeshResponse, type SceneObject } from "../gen/alvor/v1/scene_service_pb";
-import type { LookOfObject } from "../gen/alvor/v1/solve_service_pb";
+import { clone, create } from "@bufbuild/protobuf";
+import {
+  MaterialSchema,
+  ReadMeshResponseSchema,
+  SceneObjectSchema,
+  UpAxis,
+  type ReadMeshResponse,
+  type SceneObject,
+} from "../gen/alvor/v1/scene_service_pb";
+import type { Look, LookOfObject } from "../gen/alvor/v1/solve_service_pb";
 
 /** Returns the faces of an object and of those that hang from it, in the order of the objects. */
 function facesWithHanging(objects: SceneObject[], which: number): number[] {
@@ -56,7 +63,85 @@ function withCopy(messages: ReadMeshResponse[], copy: LookOfObject): ReadMeshRes
   return [...messages, added];
 }
 
-/** Returns the messages of a mesh with the objects that a look tells were added, where they were before edits moved them. */
-export function withCopies(messages: ReadMeshResponse[], objects: LookOfObject[]): ReadMeshResponse[] {
-  return objects.filter(({ copyOf }) => copyOf !== undefined).reduce(withCopy, messages);
+const countOf = <T>(messages: ReadMeshResponse[], list: (message: ReadMeshResponse) => T[]) =>
+  messages.reduce((count, message) => count + list(message).length, 0);
+
+/** Turns x, y, z of points about x where the axis that points up is another one. */
+export function turnedUpright(coordinates: number[], wasZUp: boolean, isZUp: boolean): number[] {
+  if (wasZUp === isZUp) return coordinates;
+  const sign = isZUp ? 1 : -1; // y becomes z and z becomes -y, or back
+  return coordinates.map((value, n) => [value, -sign * coordinates[n + 1], sign * coordinates[n - 1]][n % 3]);
+}
+
+/** How many images the textures of a mesh have. */
+const imagesOf = (messages: ReadMeshResponse[]) =>
+  Math.max(0, ...messages.flatMap(({ sceneMaterials }) => sceneMaterials.map(({ texture }) => (texture ? texture.image + 1 : 0))));
+
+/** Appends the root patches of another scene, as one object. Its images come after all others. */
+function withScene(messages: ReadMeshResponse[], object: LookOfObject, added: ReadMeshResponse[]): ReadMeshResponse[] {
+  const isZUp = ([first]: ReadMeshResponse[]) => first?.upAxis === UpAxis.Z;
+  const firstRoot = countOf(messages, ({ cornerCounts }) => cornerCounts);
+  const firstImage = imagesOf(messages);
+  const parts = added.map((message) =>
+    create(ReadMeshResponseSchema, {
+      cornerCounts: message.cornerCounts,
+      cornerCoordinates: turnedUpright(message.cornerCoordinates, isZUp(added), isZUp(messages)),
+      materials: message.materials.map((material) => object.firstMaterial + material),
+      sceneFaces: message.sceneFaces.map((face) => object.firstFace + face),
+      secondSceneFaces: message.cornerCounts.map((_, n) => {
+        const second = message.secondSceneFaces[n] ?? 0;
+        return second > 0 ? object.firstFace + second : 0;
+      }),
+      neighbours: message.neighbours.map((code) => (code === 0n ? 0n : code + BigInt(8 * firstRoot))),
+      textureCoordinates: message.textureCoordinates,
+      cornerColors: message.cornerColors,
+      sceneMaterials: message.sceneMaterials.map((material) => {
+        const own = clone(MaterialSchema, material);
+        own.name += ` of ${object.name}`;
+        if (own.texture) own.texture.image += firstImage;
+        return own;
+      }),
+    }),
+  );
+  const { name, firstFace, faceCount, fromScene } = object;
+  const holder = create(ReadMeshResponseSchema, {
+    sceneObjects: [create(SceneObjectSchema, { name, firstFace, faceCount, fromScene })],
+  });
+  return alike([...messages, ...parts, holder]);
+}
+
+/** Gives all corners texture coordinates, and colours, where some have them. */
+function alike(messages: ReadMeshResponse[]): ReadMeshResponse[] {
+  const filled = (list: (message: ReadMeshResponse) => number[], size: number, value: number) => {
+    if (countOf(messages, list) === 0) return (message: ReadMeshResponse) => list(message);
+    return (message: ReadMeshResponse) => {
+      const length = (size * message.cornerCoordinates.length) / 3;
+      return list(message).length === length ? list(message) : new Array<number>(length).fill(value);
+    };
+  };
+  const coordinates = filled(({ textureCoordinates }) => textureCoordinates, 2, 0);
+  const colours = filled(({ cornerColors }) => cornerColors, 3, 1);
+  return messages.map((message) => ({ ...message, textureCoordinates: coordinates(message), cornerColors: colours(message) }));
+}
+
+/** Objects that edits have added, in the order of their numbers. */
+export const addedObjects = ({ objects }: Pick<Look, "objects">) =>
+  objects.filter(({ copyOf, fromScene }) => copyOf !== undefined || fromScene !== "");
+
+/** The scenes whose faces a look tells were added, one after the other: their images come in this order. */
+export const addedScenes = (look: Pick<Look, "objects">) => addedObjects(look).flatMap(({ fromScene }) => (fromScene ? [fromScene] : []));
+
+/**
+ * Returns the messages of a mesh with the objects that a look tells were added, where they were before edits moved them. Requires: `scenes` has
+ * the meshes of addedScenes().
+ */
+export function withAdded(
+  messages: ReadMeshResponse[],
+  look: Pick<Look, "objects">,
+  scenes: ReadonlyMap<string, ReadMeshResponse[]> = new Map(),
+): ReadMeshResponse[] {
+  return addedObjects(look).reduce(
+    (all, object) => (object.fromScene ? withScene(all, object, scenes.get(object.fromScene)!) : withCopy(all, object)),
+    messages,
+  );
 }

@@ -13,8 +13,8 @@ interface Extent {
   shines: boolean;
 }
 
-/** Returns the objects that have faces, with those that hang from them. */
-function objectsOf(mesh: BaseMesh): Parts["objects"] {
+/** Returns the box around all, and the objects that have faces, with those that hang from them. */
+function extentsOf(mesh: BaseMesh): Pick<Parts, "low" | "high" | "objects"> {
   const shines = mesh.materials.map(({ emission }) => Math.max(...bandsOf(emission)) > 0);
   const nothing = (): Extent => ({ low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity], shines: false });
   const extents = mesh.objects.map(nothing);
@@ -39,14 +39,15 @@ function objectsOf(mesh: BaseMesh): Parts["objects"] {
     if (parent !== undefined) add(extents[parent], extents[extents.length - 1 - n]);
   });
   const sides = ({ low, high }: Extent) => low.map((x, k) => high[k] - x);
-  return mesh.objects.flatMap(({ name, parent, copyOf }, n) => {
+  const objects = mesh.objects.flatMap(({ name, parent, copyOf, fromScene }, n) => {
     const own = sides(extents[n]);
     const isRoom = sides(all).filter((side, k) => own[k] >= 0.9 * side).length >= 2;
     const { low, high, shines } = extents[n];
     const above = parent === undefined ? undefined : mesh.objects[parent].name;
-    const isAdded = copyOf !== undefined;
+    const isAdded = copyOf !== undefined || fromScene !== "";
     return own[0] >= 0 ? [{ name, parent: above, isAdded, shines, isRoom, low: low as Bands, high: high as Bands }] : [];
   });
+  return { low: all.low as Bands, high: all.high as Bands, objects };
 }
 
 /** Requires: no edit was applied yet. */
@@ -57,7 +58,7 @@ export function partsOf(mesh: BaseMesh): Parts {
       intensity: bandsOf(intensity),
       position: NEAR.includes(kind) ? [position?.x ?? 0, position?.y ?? 0, position?.z ?? 0] : undefined,
     })),
-    objects: objectsOf(mesh),
+    ...extentsOf(mesh),
     materials: mesh.materials.map(({ name, emission, reflectance, texture }) => ({
       name,
       emission: bandsOf(emission),

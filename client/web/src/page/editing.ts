@@ -2,9 +2,11 @@
 
 import { create } from "@bufbuild/protobuf";
 import * as THREE from "three";
+import type { Api } from "../api";
 import { DaylightSchema, type Daylight } from "../gen/alvor/v1/scene_service_pb";
 import { EditSchema, EditStep_Kind, EditStepSchema, type Edit, type EditStep } from "../gen/alvor/v1/solve_service_pb";
 import type { Bands, Parts, Vector } from "../messages";
+import { sendAddition } from "./addition";
 import { DaylightControls } from "./daylight";
 import { button, byId, input, select } from "./dom";
 import { areAlike, copiesEverMade, copiesThatHold, editsThatHold, freeName, textOfStep, undoAndRedo } from "./edits";
@@ -13,6 +15,8 @@ import { colourOf, linearOf } from "./srgb";
 
 /** Sends a step to the server. Returns whether it was taken. */
 type Send = (step: EditStep) => Promise<boolean>;
+/** Does what a person asked for, and says why it could not be done. Returns whether it could. */
+type Attempt = (action: () => Promise<void>) => Promise<boolean>;
 /** Shows where the chosen part is; nothing where none is chosen that can be moved. */
 type ShowPlace = (place: Place | undefined) => void;
 
@@ -35,7 +39,7 @@ interface Present {
 const DAYLIGHT = "daylight";
 
 export class Editing {
-  private parts: Parts = { lights: [], objects: [], materials: [] };
+  private parts: Parts = { low: [0, 0, 0], high: [0, 0, 0], lights: [], objects: [], materials: [] };
   private centre: Bands = [0, 0, 0];
   private up = new THREE.Vector3();
   private steps: EditStep[] = [];
@@ -53,7 +57,9 @@ export class Editing {
   );
 
   constructor(
+    private readonly api: Api,
     private readonly send: Send,
+    private readonly attempt: Attempt,
     private readonly showPlace: ShowPlace,
   ) {
     select("edit-part").addEventListener("change", () => this.showChosen());
@@ -63,6 +69,7 @@ export class Editing {
     input("edit-turn").addEventListener("input", () => this.slide(this.objectEdit({ turn: input("edit-turn").valueAsNumber })));
     input("edit-hidden").addEventListener("change", () => this.hide(input("edit-hidden").checked));
     button("edit-copy").addEventListener("click", () => void this.duplicate());
+    input("edit-add").addEventListener("change", () => void this.attempt(() => this.add([...(input("edit-add").files ?? [])])));
     button("undo").addEventListener("click", () => this.step(EditStep_Kind.UNDO));
     button("redo").addEventListener("click", () => this.step(EditStep_Kind.REDO));
     input("edit-author").value = sessionStorage.getItem("author") ?? "";
@@ -308,15 +315,33 @@ export class Editing {
     const { name } = this.chosen;
     const source = this.parts.objects.find((object) => object.name === name)!;
     const motion = besideOf(source, this.parts, editsThatHold(this.steps), this.up);
-    const copy = freeName(name, new Set([...this.parts.objects.map((object) => object.name), ...copiesEverMade(this.steps)]));
-    const wanted = `object:${copy}`;
-    this.wanted = wanted;
-    const edits = [
+    const copy = freeName(name, this.takenNames);
+    await this.sendAdded(copy, [
       create(EditSchema, { part: { case: "copy", value: { name: copy, of: name } } }),
       create(EditSchema, { part: { case: "object", value: { name: copy, ...motion } } }),
-    ];
+    ]);
+  }
+
+  /** Adds what is in scene files as an object. */
+  private async add(files: File[]): Promise<void> {
+    input("edit-add").value = ""; // the same files may be chosen again
+    if (files.length === 0) return;
+    const stand = { low: this.parts.low, high: this.parts.high, centre: this.centre, isZUp: this.up.z > 0.5 };
+    const { scene, name, edits } = await sendAddition(this.api, files, this.takenNames, stand);
+    if (!(await this.sendAdded(name, edits))) await this.api.scenes.deleteScene({ name: scene });
+  }
+
+  private get takenNames(): Set<string> {
+    return new Set([...this.parts.objects.map(({ name }) => name), ...copiesEverMade(this.steps)]);
+  }
+
+  /** Sends edits that add an object, which is chosen when it is there. Returns whether they were taken. */
+  private async sendAdded(name: string, edits: Edit[]): Promise<boolean> {
+    const wanted = `object:${name}`;
+    this.wanted = wanted;
     const isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits, author: this.author }));
     if (!isTaken && this.wanted === wanted) this.wanted = "";
+    return isTaken;
   }
 
   private step(kind: EditStep_Kind): void {

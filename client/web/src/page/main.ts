@@ -45,7 +45,9 @@ const handle = new Handle<Place>(room, byId("room"), {
   onChange: () => (isStale = true),
 });
 const editing = new Editing(
+  api,
   (step) => attempt(() => edit(step)),
+  attempt,
   (place) => handle.setPlace(place),
 );
 const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), viewChanged);

@@ -191,6 +191,26 @@ describe("edits on the page", () => {
     await Promise.all([ann.close(), ben.close(), late.close()]);
   });
 
+  it("add what is in a file as an object on the floor, which everyone sees", async () => {
+    const { name, ann, ben } = await two();
+    const cube = [0, 1].flatMap((z) => [[0, 0, z], [1, 0, z], [1, 1, z], [0, 1, z]]);
+    const sides = ["4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"];
+    const lines = [...cube.map((corner) => `v ${corner.map((x) => 100 * x).join(" ")}`), ...sides.map((side) => `f ${side}`)];
+    const file = { name: "cube.obj", mimeType: "model/obj", buffer: Buffer.from(lines.join("\n")) };
+    for (const wanted of ["cube", "cube 2"]) {
+      await ann.setInputFiles("#edit-add", file);
+      await expect.poll(() => ann.inputValue("#edit-part")).toBe(`object:${wanted}`);
+      await expect.poll(() => ben.textContent("#edit-news")).toContain(`${wanted}, added`);
+    }
+    await waitForState(ben, "Done");
+    const [{ value }] = (await server.api.solves.getSolve({ name })).edits[0].edits.flatMap(({ part }) => (part.case === "object" ? [part] : []));
+    expect(Math.abs(value.move!.x - (278 - 50))).toBeLessThan(2); // the middle of the box is at 278
+    expect(value.move!.y).toBe(0);
+    await ann.setInputFiles("#edit-add", { ...file, name: "broken.obj", buffer: Buffer.from("f 1 2 3") });
+    await expect.poll(() => ann.textContent("#state")).toContain("broken.obj");
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
   it("leave a part where it was, where the server refuses its place", async () => {
     const { ann, ben } = await two(await withBlocks());
     await click(ann, BLOCK);

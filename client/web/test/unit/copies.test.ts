@@ -1,9 +1,9 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
+import { MaterialSchema, ReadMeshResponseSchema, UpAxis } from "../../src/gen/alvor/v1/scene_service_pb";
 import { LookOfObjectSchema } from "../../src/gen/alvor/v1/solve_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
-import { withCopies } from "../../src/mirror/copies";
+import { addedScenes, withAdded } from "../../src/mirror/copies";
 import { Mirror } from "../../src/mirror/mirror";
 
 const across = (root: number, edge: number) => BigInt(1 + 8 * root + 2 * edge + 1);
@@ -34,9 +34,11 @@ const messages = [
 const copy = (number: number, copyOf: number, firstFace: number, faceCount: number) =>
   create(LookOfObjectSchema, { number, copyOf, name: `copy ${number}`, firstFace, faceCount });
 
+const material = (image: number | undefined) => create(MaterialSchema, { texture: image === undefined ? undefined : { image } });
+
 describe("added objects", () => {
   it("have copies of the root patches of another, and of those that hang from it", () => {
-    const copied = withCopies(messages, [copy(2, 0, 4, 3), copy(3, 1, 7, 2)]);
+    const copied = withAdded(messages, { objects: [copy(2, 0, 4, 3), copy(3, 1, 7, 2)] });
     expect(copied).toHaveLength(4);
     const [, , whole, part] = copied;
     expect(whole.cornerCounts).toEqual([4, 4]);
@@ -47,16 +49,49 @@ describe("added objects", () => {
     expect(whole.neighbours).toEqual([0n, across(4, 3), 0n, 0n, 0n, 0n, 0n, across(3, 1)]); // not those of the wall
     expect(part.sceneFaces).toEqual([7]);
     expect(part.neighbours).toEqual([0n, 0n, 0n, 0n]);
-    expect(withCopies(messages, [create(LookOfObjectSchema, { number: 0, hidden: true })])).toBe(messages);
+    expect(withAdded(messages, { objects: [create(LookOfObjectSchema, { number: 0, hidden: true })] })).toBe(messages);
   });
   it("make a mesh whose other root patches and middle are as before", () => {
     const before = new BaseMesh(messages);
-    const after = new BaseMesh(withCopies(messages, [copy(2, 0, 4, 3)]));
+    const after = new BaseMesh(withAdded(messages, { objects: [copy(2, 0, 4, 3)] }));
     expect(after.rootCount).toBe(5);
     expect(after.centre).toEqual(before.centre);
     expect([...after.corners.subarray(0, before.corners.length)]).toEqual([...before.corners]);
     expect(after.objects.at(-1)).toMatchObject({ name: "copy 2", copyOf: 0 });
     expect(after.objectOfFace(6)?.name).toBe("copy 2");
+  });
+  it("may be all of another scene, with its materials and images", () => {
+    const textured = create(ReadMeshResponseSchema, {
+      cornerCounts: [3],
+      materials: [1],
+      sceneFaces: [0],
+      secondSceneFaces: [0],
+      cornerCoordinates: [0, 0, 0, 1, 0, 0, 0, 2, 3],
+      neighbours: [0n, across(0, 2), across(0, 1)],
+      textureCoordinates: [0, 0, 1, 0, 0.5, 1],
+      sceneMaterials: [{ name: "oak" }, { name: "leaf", texture: { image: 0 } }],
+      sceneObjects: [{ name: "leaves", firstFace: 0, faceCount: 1 }],
+      upAxis: UpAxis.Z,
+    });
+    const object = create(LookOfObjectSchema, { number: 2, name: "plant", firstFace: 4, faceCount: 1, fromScene: "scenes/p", firstMaterial: 3 });
+    const own = messages.map((message, n) => ({ ...message, sceneMaterials: n === 0 ? [material(0), material(undefined), material(2)] : [] }));
+    const all = withAdded(own, { objects: [object, { ...object, number: 3, name: "second", firstFace: 5, firstMaterial: 5 }] }, new Map([["scenes/p", [textured]]]));
+    const added = all[2];
+    expect(added.materials).toEqual([4]);
+    expect(added.sceneFaces).toEqual([4]);
+    expect(added.secondSceneFaces).toEqual([0]);
+    expect(added.cornerCoordinates).toEqual([0, 0, -0, 1, 0, -0, 0, 3, -2]); // y points up
+    expect(added.neighbours).toEqual([0n, across(3, 2), across(3, 1)]);
+    expect(added.sceneMaterials.map(({ name, texture }) => [name, texture?.image])).toEqual([["oak of plant", undefined], ["leaf of plant", 3]]);
+    const mesh = new BaseMesh(all);
+    expect(mesh.rootCount).toBe(5);
+    expect(mesh.hasTextures).toBe(true);
+    expect(mesh.materials[mesh.material[4]].name).toBe("leaf of second");
+    expect(mesh.materials[mesh.material[4]].texture?.image).toBe(4);
+    expect(mesh.objects.slice(2).map(({ name, fromScene }) => [name, fromScene])).toEqual([["plant", "scenes/p"], ["second", "scenes/p"]]);
+    expect(mesh.objectOfFace(5)?.name).toBe("second");
+    expect(addedScenes({ objects: [object, copy(3, 0, 5, 3)] })).toEqual(["scenes/p"]);
+    expect(textured.sceneMaterials[1].texture?.image).toBe(0); // it may be added again
   });
   it("leave what is known of the light", () => {
     const before = new Mirror(3);

@@ -13,6 +13,8 @@ const towards = (from: THREE.Vector3, to: THREE.Vector3) => ({ origin: from, dir
 
 // A table of 2 by 1 m, and a lamp on one end of it.
 const PARTS: Parts = {
+  low: [0, 0, 0],
+  high: [1, 1, 1],
   lights: [],
   materials: [],
   objects: [

@@ -1,0 +1,170 @@
+// Scenes whose faces edits add to another scene, as objects.
+
+#include "meshing/base_mesh.h"
+#include "meshing/edit/copied_objects.h"
+#include "meshing/edit/edited_scene.h"
+#include "tests/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace alvor {
+namespace {
+
+/// A box whose base lies in the plane y = 0, and a sheet of two sides that emits, in a scene where y points up.
+Scene box_and_sheet() {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(3, 0.2)};
+  scene.materials[1].two_sided = true;
+  scene.materials[0].name = "wood", scene.materials[1].name = "glow";
+  test::add_box(scene, {0, 0, 0}, {1, 2, 3}, false);
+  test::add_polygon(scene, {{0, 2.5, 0}, {1, 2.5, 0}, {1, 2.5, 1}, {0, 2.5, 1}}, 1);
+  return scene;
+}
+
+AddedScenes scenes(Scene scene) { return {{"scenes/thing", std::make_shared<const Scene>(std::move(scene))}}; }
+
+AddedMeshes meshes_of(const AddedScenes& scenes) {
+  AddedMeshes meshes;
+  for (const auto& [name, scene] : scenes) meshes[name] = std::make_shared<const BaseMesh>(*scene);
+  return meshes;
+}
+
+ObjectCopy thing(const std::string& name, bool is_taken_back = false) {
+  return {.name = name, .of = "", .is_taken_back = is_taken_back, .scene = "scenes/thing"};
+}
+
+TEST(AddedScene, IsAnObjectOfItsFacesAndMaterialsAfterAllOthers) {
+  const Scene room = test::room_of_objects();
+  const AddedScenes added = scenes(box_and_sheet());
+  const std::vector<SceneEdit> edits{thing("thing"), ObjectEdit{.name = "thing", .move = Vec3{0, 0, 1}},
+                                     MaterialEdit{.name = room.materials[0].name, .reflectance = Rgb{0.1, 0.1, 0.1}}};
+  ASSERT_FALSE(fault_in(edits, room, added));
+  const Scene edited = edited_scene(room, edits, added);
+  ASSERT_FALSE(find_fault(edited)) << find_fault(edited)->text();
+  ASSERT_EQ(edited.objects.size(), room.objects.size() + 1);
+  const SceneObject& object = edited.objects.back();
+  EXPECT_EQ(object.from_scene, "scenes/thing");
+  EXPECT_EQ(object.first_face, room.faces.size());
+  EXPECT_EQ(object.face_count, 7u);
+  ASSERT_EQ(edited.materials.size(), room.materials.size() + 2);
+  EXPECT_EQ(edited.materials.back().name, "glow of thing");
+  EXPECT_EQ(edited.faces.back().material, edited.materials.size() - 1);
+
+  const BaseMesh submitted(room), mesh = submitted.edited_as(edited, meshes_of(added));
+  const auto roots = static_cast<std::uint32_t>(submitted.roots().size());
+  ASSERT_EQ(mesh.roots().size(), roots + 8) << "six sides, a front and a back";
+  for (std::uint32_t r = 0; r < roots; ++r) EXPECT_EQ(mesh.roots()[r].corners, submitted.roots()[r].corners);
+  std::uint32_t neighbours = 0;
+  for (std::uint32_t r = roots; r < mesh.roots().size(); ++r)
+    for (int e = 0; e < mesh.roots()[r].corner_count; ++e)
+      if (const auto other = mesh.across(r, e)) {
+        ++neighbours;
+        EXPECT_EQ(mesh.across(other->root, other->edge)->root, r);
+      }
+  EXPECT_EQ(neighbours, 24u) << "the box is closed";
+  EXPECT_EQ(mesh.roots()[roots + 7].twin, roots + 6);
+  EXPECT_EQ(mesh.material_of(roots + 7).emission, (Rgb{3, 3, 3}));
+  EXPECT_EQ(mesh.roots()[roots + 6].corners[0].z, 1) << "moved";
+}
+
+TEST(AddedScene, StandsUprightWhateverPointsUpInIt) {
+  for (const UpAxis up : {UpAxis::y, UpAxis::z})
+    for (const UpAxis other : {UpAxis::y, UpAxis::z}) {
+      Scene room = test::room_of_objects(), upright = box_and_sheet();
+      room.up = up, upright.up = other;
+      const AddedScenes added = scenes(upright);
+      const Scene edited = edited_scene(room, std::vector<SceneEdit>{thing("thing")}, added);
+      const auto height = [&](Vec3 p, UpAxis axis) { return axis == UpAxis::y ? p.y : p.z; };
+      for (std::size_t v = 0; v < upright.vertices.size(); ++v)
+        EXPECT_EQ(height(edited.vertices[room.vertices.size() + v], up), height(upright.vertices[v], other));
+      const BaseMesh mesh = BaseMesh(room).edited_as(edited, meshes_of(added));
+      for (const RootPatch& root : mesh.roots()) {
+        if (root.input.first < room.faces.size()) continue;
+        const auto corners = edited.corners_of(edited.faces[root.input.first]);
+        EXPECT_EQ(root.corners[0], edited.vertices[corners[0]]);
+        EXPECT_GT(dot(root.normal, cross(root.corners[1] - root.corners[0], root.corners[2] - root.corners[0])), 0);
+      }
+    }
+}
+
+TEST(AddedScene, MayHaveTexturesAndColoursWhereTheOtherHasNone) {
+  const Scene room = test::room_of_objects();
+  Scene coloured;
+  coloured.materials = {test::grey(0, 0.5)};
+  coloured.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  const RgbF red{1, 0, 0};
+  coloured.add_face(std::vector<std::uint32_t>{0, 1, 2}, 0, {}, std::vector<RgbF>{red, red, red});
+  const auto image = std::make_shared<ColourImage>();
+  image->columns = image->rows = 1;
+  image->texels = {10, 20, 30};
+  coloured.materials[0].texture = Texture{.image = image};
+  coloured.texture_points = {{0, 0}, {1, 0}, {0.5, 1}};
+  ASSERT_FALSE(find_fault(coloured)) << find_fault(coloured)->text();
+  const AddedScenes added = scenes(coloured);
+  const Scene edited = edited_scene(room, std::vector<SceneEdit>{thing("first"), thing("second")}, added);
+  ASSERT_FALSE(find_fault(edited)) << find_fault(edited)->text();
+  const BaseMesh mesh = BaseMesh(room).edited_as(edited, meshes_of(added));
+  const auto last = static_cast<std::uint32_t>(mesh.roots().size()) - 1;
+  for (const std::uint32_t root : {last - 1, last}) {
+    EXPECT_EQ(mesh.texture_points(root)[2], (TexturePoint{0.5, 1}));
+    EXPECT_EQ(mesh.corner_colours(root)[1], red);
+  }
+  EXPECT_EQ(mesh.corner_colours(0)[0], (RgbF{1, 1, 1}));
+  EXPECT_EQ(mesh.texture_points(0)[0], (TexturePoint{0, 0}));
+}
+
+TEST(AddedScene, CanBeCopiedAndTakenBack) {
+  const Scene room = test::room_of_objects();
+  const AddedScenes added = scenes(box_and_sheet());
+  const EditStep first{.edits = {thing("thing")}}, second{.edits = {ObjectCopy{"another", "thing"}}};
+  const EditStep undo{.kind = EditStep::Kind::undo, .edits = {}};
+  const std::vector<EditStep> steps{first, second, undo};
+  const Scene edited = edited_scene(room, *edits_that_hold(steps), added);
+  ASSERT_EQ(edited.objects.size(), room.objects.size() + 2);
+  EXPECT_FALSE(edited.objects[room.objects.size()].is_hidden);
+  EXPECT_TRUE(edited.objects.back().is_hidden);
+  EXPECT_TRUE(is_taken_back(edited.objects.back()));
+  const BaseMesh submitted(room), mesh = submitted.edited_as(edited, meshes_of(added));
+  ASSERT_EQ(mesh.roots().size(), submitted.roots().size() + 16);
+  EXPECT_TRUE(mesh.roots().back().is_hidden);
+  EXPECT_FALSE(mesh.roots()[submitted.roots().size()].is_hidden);
+  EXPECT_FALSE(find_fault(edited));
+}
+
+TEST(AddedScene, FaultsNameTheirField) {
+  const Scene room = test::room_of_objects();
+  const auto fault = [&](const ObjectCopy& copy, Scene scene) {
+    const auto found = fault_in(std::vector<SceneEdit>{copy}, room, scenes(std::move(scene)));
+    return found ? found->field + ": " + found->reason : "";
+  };
+  EXPECT_EQ(fault(thing("thing"), box_and_sheet()), "");
+  EXPECT_EQ(fault({.name = "a", .of = "", .scene = "scenes/other"}, box_and_sheet()), "copy.scene: 'scenes/other' is no scene");
+  EXPECT_EQ(fault({.name = "a", .of = "box", .scene = "scenes/thing"}, box_and_sheet()),
+            "copy.scene: is given, and so is copy.of");
+  EXPECT_EQ(fault(thing("box"), box_and_sheet()), "copy.name: there is an object 'box'");
+  Scene lit = box_and_sheet();
+  lit.lights = {Light{"bulb", LightKind::point, {1, 1, 1}, {0, 1, 0}}};
+  EXPECT_NE(fault(thing("thing"), lit).find("copy.scene: 'scenes/thing' has light 'bulb'"), std::string::npos);
+  Scene photometric = box_and_sheet();
+  photometric.quantity = Quantity::photometric;
+  EXPECT_NE(fault(thing("thing"), photometric).find("copy.scene: 'scenes/thing' emits in lumens"), std::string::npos);
+  photometric.materials[1].emission = {};
+  EXPECT_EQ(fault(thing("thing"), photometric), "") << "it emits nothing";
+  Scene large = box_and_sheet();
+  for (int n = 0; n < 100'000; ++n) test::add_polygon(large, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 0);
+  EXPECT_NE(fault(thing("thing"), large).find("copy.scene: added objects"), std::string::npos);
+}
+
+TEST(AddedScene, MayNotLieFarFromTheOther) {
+  const Scene room = test::room_of_objects();
+  Scene far = box_and_sheet();
+  for (Vec3& vertex : far.vertices) vertex = vertex + Vec3{1000, 0, 0};
+  const AddedScenes added = scenes(far);
+  const std::vector<SceneEdit> edits{thing("thing")};
+  EXPECT_EQ(object_too_far(room, edited_scene(room, edits, added)), "thing");
+}
+
+}  // namespace
+}  // namespace alvor
