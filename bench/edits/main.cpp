@@ -139,6 +139,13 @@ v1::EditStep hidden(const std::string& name) {
   return of_object(std::move(edit));
 }
 
+v1::EditStep added(const std::string& name, const std::string& of, const Vec3& by) {
+  v1::EditStep step = moved(name, by);
+  step.add_edits()->mutable_copy()->set_name(name);
+  step.mutable_edits(1)->mutable_copy()->set_of(of);
+  return step;
+}
+
 v1::EditStep recolour(const std::string& name, const Rgb& reflectance) {
   v1::EditStep step;
   step.add_edits()->mutable_material()->set_name(name);
@@ -325,6 +332,7 @@ int run(int count, char** arguments) {
   bench.row("move a chair by half a metre", moved("chair.003", {-0.3, 0, 0.4}));
   bench.row("turn a chair by 30 degrees", turned("chair.003", 30));
   bench.row("hide the table", hidden("table"));
+  bench.row("add another chair", added("chair.006", "chair.003", {0.5, 0, 0}));
   std::puts("");
   bench.slide("lamp.002");
   std::puts("");

@@ -100,17 +100,18 @@ class Pass {
     double area = 0, irradiance = 0, relative_to = 0;  ///< m2 that are visible and may be lit; emission units
     double error = 0;                                  ///< see ErrorByPlace
   };
+  RelativeLight irradiance_at(std::size_t place) const;
   double told_error(std::size_t place, const RelativeLight& irradiance, const ErrorEstimate& error) const;
   std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
   void tell_leaves(double share_of_interpolation);
   void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
   void guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up);
-  double heed_noise(NodeIndex leaf, double missed, double noise);
+  double heed_noise(std::size_t place, double missed, double noise);
   double rays_of_split(Candidate::Kind kind, NodeIndex patch) const;
   void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors);
   void drop_rays_that_do_not_help(double lasting_error);
   bool may_split(Candidate::Kind kind, NodeIndex patch) const;
-  double squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const;
+  double squared_contrast(std::size_t place, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   struct OriginMisfit {
     double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared

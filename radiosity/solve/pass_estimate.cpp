@@ -73,9 +73,11 @@ struct Field {
 
 /// Collective. Sets the slope of each leaf.
 void find_slopes(const Field& f, std::span<RelativeSlope> by_node, Ranks& ranks) {
+  const auto slope = [&](std::size_t n) { return leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); };
+  if (ranks.is_alone())
+    return tbb::parallel_for(std::size_t{0}, f.leaves.size(), [&](std::size_t n) { by_node[f.leaves[n]] = slope(n); });
   std::vector<RelativeSlope> slopes(f.leaves.size());
-  share_work(ranks, std::span(slopes),
-             [&](std::size_t n) { slopes[n] = leaf_slope(f.forest, f.leaves[n], f.neighbours[n], f.centre, f.value); });
+  share_work(ranks, std::span(slopes), [&](std::size_t n) { slopes[n] = slope(n); });
   for (std::size_t n = 0; n < slopes.size(); ++n) by_node[f.leaves[n]] = slopes[n];
 }
 
@@ -144,13 +146,13 @@ double Pass::visible_area(std::size_t patch) const {
 /// Returns the irradiance of each patch, mean over its leaves and over bands, by row node; in emission units.
 std::vector<double> Pass::irradiance_of_rows() const {
   std::vector<double> irradiance(state_.forests.rows().node_count());
-  for (std::size_t p = 0; p < system_->patches().size(); ++p) {
+  tbb::parallel_for(std::size_t{0}, system_->patches().size(), [&](std::size_t p) {
     const NodeIndex row = system_->rows()[p];
     double direct = 0;
     for (const NodeIndex leaf : system_->leaves_of(p))
       direct += state_.forests.leaf_area(leaf) * state_.direct[leaf].irradiance.mean();
     irradiance[row] = state_.field.irradiance(row).mean() + direct / system_->patches()[p].area;
-  }
+  });
   return irradiance;
 }
 
@@ -212,13 +214,19 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   add_candidates(Candidate::Kind::split_row, system_->rows(), errors);
 }
 
+/// Returns the irradiance of the leaf at a place in the system's list, in emission units.
+RelativeLight Pass::irradiance_at(std::size_t place) const {
+  const NodeIndex leaf = system_->leaves()[place];
+  return state_.direct[leaf].irradiance + state_.indirect(leaf, system_->row_of(place));
+}
+
 /// Returns the mean square deviation of the irradiance at a leaf's visible origins from a plane with the leaf's slope through
 /// their mean, less the noise of shadow rays, at least 0; in emission units squared.
-double Pass::squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const {
+double Pass::squared_contrast(std::size_t place_of_leaf, const RelativeSlope& slope) const {
   const Forests& forests = state_.forests;
+  const NodeIndex leaf = system_->leaves()[place_of_leaf], row = system_->row_of(place_of_leaf);
   const DirectLight& direct = state_.direct[leaf];
-  const NodeIndex row = forests.row_of(leaf);
-  const std::uint16_t hidden = state_.hidden_origins(leaf);
+  const std::uint16_t hidden = state_.hidden_origins(leaf, row);
   const PatchShape shape = forests.leaves().shape(leaf);
   const auto place = [&](Uv at) { return state_.mesh.roots()[shape.root].at(at.u, at.v); };
   const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
@@ -244,9 +252,10 @@ double Pass::squared_contrast(NodeIndex leaf, const RelativeSlope& slope) const 
 /// is the larger part, there is no edge to find, and smaller leaves are as noisy: then this adds a candidate that gives the leaf
 /// more shadow rays instead. So it does where a leaf cannot be split, and noise of its origins may be part of what is taken for
 /// missed.
-double Pass::heed_noise(NodeIndex leaf, double missed, double noise) {
+double Pass::heed_noise(std::size_t place, double missed, double noise) {
+  const NodeIndex leaf = system_->leaves()[place];
   const bool may_split = state_.forests.may_split_leaf(leaf);
-  const double doubtful = may_split ? 0 : state_.visible_area(leaf) * noise_of_origins * state_.direct[leaf].origin_variance;
+  const double doubtful = may_split ? 0 : system_->visible_area(place) * noise_of_origins * state_.direct[leaf].origin_variance;
   if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
     const double in_doubt = std::min(missed, doubtful) / 2, removed = removed_by_rays * noise + in_doubt;
     if (!may_split) lasting_error_ += missed - in_doubt;
@@ -265,11 +274,9 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   Forests& forests = state_.forests;
   const auto leaves = system_->leaves();
   std::vector<RelativeLight> irradiance(forests.leaves().node_count());
-  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    irradiance[leaves[n]] = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
-  });
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) { irradiance[leaves[n]] = irradiance_at(n); });
   double power = 0;
-  for (const NodeIndex leaf : leaves) power += state_.visible_area(leaf) * irradiance[leaf].mean();
+  for (std::size_t n = 0; n < leaves.size(); ++n) power += system_->visible_area(n) * irradiance[leaves[n]].mean();
   const auto neighbours = forests.leaf_neighbours(leaves);
   const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
   std::vector<RelativeSlope> slope(forests.leaves().node_count());
@@ -279,18 +286,18 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
     const NodeIndex leaf = leaves[n];
     const double miss = interpolation_error(leaf, neighbours[n], field.centre, field.value, slope);
     const double smooth = squared(miss) - noise_in_differences * state_.direct[leaf].variance;
-    const double contrast = squared_contrast(leaf, slope[leaf]);
-    errors[n] = state_.visible_area(leaf) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
+    const double contrast = squared_contrast(n, slope[leaf]);
+    errors[n] = system_->visible_area(n) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
   });
   leaf_squares_.resize(leaves.size());
   double told_interpolation = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const double noise = noise_in_display * state_.visible_area(leaves[n]) * state_.direct[leaves[n]].variance;
+    const double noise = noise_in_display * system_->visible_area(n) * state_.direct[leaves[n]].variance;
     error.interpolation += unseen_detail * errors[n];
     error.sampling += noise;
     leaf_squares_[n] = unseen_detail * std::max(0.0, errors[n]);
     told_interpolation += leaf_squares_[n];
-    errors[n] = heed_noise(leaves[n], std::max(0.0, errors[n]), noise);
+    errors[n] = heed_noise(n, std::max(0.0, errors[n]), noise);
   }
   tell_leaves(share_of(error.interpolation, told_interpolation));
   add_candidates(Candidate::Kind::split_leaf, leaves, errors);
@@ -303,7 +310,7 @@ void Pass::tell_leaves(double share_of_interpolation) {
   tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t p) {
     for (std::size_t n = patches[p].first_leaf; n < patches[p].first_leaf + patches[p].leaf_count; ++n) {
       const NodeIndex leaf = system_->leaves()[n];
-      const double area = state_.visible_area(leaf);
+      const double area = system_->visible_area(n);
       leaf_squares_[n] = (area > 0 ? share_of_interpolation * leaf_squares_[n] / area : 0) +
                          noise_in_display * state_.direct[leaf].variance + row_squares_[p];
     }
@@ -320,9 +327,7 @@ std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
   if (stage_ != Stage::estimated) return {};
   std::vector<float> errors(leaf_squares_.size());
   tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t n) {
-    const NodeIndex leaf = system_->leaves()[n];
-    const RelativeLight irradiance = state_.direct[leaf].irradiance + state_.indirect(leaf);
-    const double told = told_error(n, irradiance, error);
+    const double told = told_error(n, irradiance_at(n), error);
     errors[n] = static_cast<float>(std::min(state_.in_watts_per_m2({told, told, told}).r, 1e37));
   });
   return errors;

@@ -43,8 +43,8 @@ std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) con
   std::vector<PlaceError> places(leaves.size());
   const std::vector<std::uint8_t> counts = counting_roots(state_.mesh, state_.options.objects);
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    places[n].area = state_.rows.may_be_lit(state_.forests.row_of(leaves[n])) ? state_.visible_area(leaves[n]) : 0;
-    const RelativeLight irradiance = state_.direct[leaves[n]].irradiance + state_.indirect(leaves[n]);
+    places[n].area = state_.rows.may_be_lit(system_->row_of(n)) ? system_->visible_area(n) : 0;
+    const RelativeLight irradiance = irradiance_at(n);
     places[n].irradiance = irradiance.mean();
     places[n].error = told_error(n, irradiance, error);
   });

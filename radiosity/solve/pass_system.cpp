@@ -30,12 +30,23 @@ PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.r
     patches_.push_back(patch);
   }
   find_patches_behind();
-  for (const NodeIndex leaf : leaves_) {
-    const std::uint32_t root = forests.leaves().id(leaf).root_face();
-    own_radiosity_.push_back(state.direct.emission_by_rows(root) + state.scattered_direct_light(leaf));
-  }
+  describe_places();
   if (state.rows.carry_light())
     deal_.for_each_own(state.ranks, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
+}
+
+void PassSystem::describe_places() {
+  patch_of_place_.resize(leaves_.size());
+  visible_area_.resize(leaves_.size());
+  own_radiosity_.resize(leaves_.size());
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
+    const RelativeLight emission = state_.direct.emission_by_rows(state_.forests.rows().id(rows_[p]).root_face());
+    for (std::size_t n = patches_[p].first_leaf; n < patches_[p].first_leaf + patches_[p].leaf_count; ++n) {
+      patch_of_place_[n] = static_cast<std::uint32_t>(p);
+      visible_area_[n] = state_.visible_area(leaves_[n], rows_[p]);
+      own_radiosity_[n] = emission + state_.scattered_direct_light(leaves_[n]);
+    }
+  });
 }
 
 void PassSystem::find_patches_behind() {
@@ -91,14 +102,14 @@ Shooting PassSystem::shooting() const {
 
 LightByLeaf PassSystem::radiosity() const {
   LightByLeaf radiosity(state_.forests.leaves().node_count(), state_.plan.needs(Feature::three_bands));
-  for (std::size_t p = 0; p < patches_.size(); ++p) {
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
     const RelativeLight irradiance = state_.field.irradiance(rows_[p]);
     RelativeLight through;
     if (patches_[p].is_translucent())
       through = patches_[p].diffuse_transmittance * state_.field.irradiance(rows_[patches_[p].behind]);
     for (std::uint32_t k = patches_[p].first_leaf; k < patches_[p].first_leaf + patches_[p].leaf_count; ++k)
       radiosity.set(leaves_[k], own_radiosity_[k] + state_.forests.reflectance(leaves_[k]) * irradiance + through);
-  }
+  });
   return radiosity;
 }
 

@@ -25,6 +25,10 @@ class PassSystem {
     return leaves().subspan(patches_[patch].first_leaf, patches_[patch].leaf_count);
   }
 
+  NodeIndex row_of(std::size_t place) const { return rows_[patch_of_place_[place]]; }
+  /// Returns the area of the part of the leaf at a place that no solid hides, m2.
+  double visible_area(std::size_t place) const { return visible_area_[place]; }
+
   /// Returns which rank has the hits of each patch's row.
   const Deal& deal() const { return deal_; }
 
@@ -39,11 +43,14 @@ class PassSystem {
  private:
   std::unique_ptr<Exchange> begin_gathering() const;
   void find_patches_behind();
+  void describe_places();
 
   SolveState& state_;
   std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
   Deal deal_;
+  std::vector<std::uint32_t> patch_of_place_;
+  std::vector<double> visible_area_;          ///< by place
   std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and scattered direct light
   std::vector<Rgb> leaf_reflectance_;         ///< by place; none if no reflectance varies
 };

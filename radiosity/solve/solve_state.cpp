@@ -3,10 +3,13 @@
 #include "radiosity/solve/moved_sight.h"
 #include "radiosity/solve/saved_nodes.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <utility>
 
 namespace alvor {
@@ -73,16 +76,22 @@ std::vector<LeafValue> SolveState::leaf_values() const {
   std::vector<LeafValue> values(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     const NodeIndex leaf = leaves[n];
-    const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf));
+    const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf, forests.row_of(leaf)));
     values[n] = {forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))};
   });
   return values;
 }
 
 double SolveState::unshot_power() const {
-  double power = direct.waiting_power();
-  for (const NodeIndex leaf : forests.leaves().leaves()) power += forests.leaf_area(leaf) * scattered_direct_light(leaf).sum();
-  return power;
+  const std::vector<NodeIndex> leaves = forests.leaves().leaves();
+  const auto add_part = [&](const tbb::blocked_range<std::size_t>& part, double sum) {
+    for (std::size_t n = part.begin(); n < part.end(); ++n)
+      sum += forests.leaf_area(leaves[n]) * scattered_direct_light(leaves[n]).sum();
+    return sum;
+  };
+  constexpr std::size_t leaves_a_part = 4096;
+  const tbb::blocked_range<std::size_t> all(0, leaves.size(), leaves_a_part);
+  return direct.waiting_power() + tbb::parallel_deterministic_reduce(all, 0.0, add_part, std::plus());
 }
 
 bool SolveState::split_leaf(NodeIndex leaf) {
@@ -131,7 +140,7 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
 /// Requires: direct.counts_arrivals().
 double SolveState::arrived_power() const {
   double power = 0;
-  for (const NodeIndex leaf : forests.leaves().leaves()) power += visible_area(leaf) * direct.arrived(leaf);
+  for (const NodeIndex leaf : forests.leaves().leaves()) power += visible_area(leaf, forests.row_of(leaf)) * direct.arrived(leaf);
   return power;
 }
 

@@ -41,15 +41,16 @@ class SolveState {
   std::vector<RelativeLight> shot;  ///< by leaf node: radiosity that shots distributed so far; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
+  // In the functions below, `row` is forests.row_of(leaf).
+
   /// Returns the origins of a leaf that are hidden (TransportRow::hidden_origins), which only a row of the same place tells.
-  std::uint16_t hidden_origins(NodeIndex leaf) const {
-    const NodeIndex row = forests.row_of(leaf);
+  std::uint16_t hidden_origins(NodeIndex leaf, NodeIndex row) const {
     if (rows[row].is_hidden()) return 0xffff;
     return forests.rows().id(row) == forests.leaves().id(leaf) ? rows[row].hidden_origins : std::uint16_t{0};
   }
   /// Returns the area of the part of a leaf that no solid hides, m2.
-  double visible_area(NodeIndex leaf) const {
-    return forests.leaf_area(leaf) * (1 - std::popcount(hidden_origins(leaf)) / double(origins_per_patch));
+  double visible_area(NodeIndex leaf, NodeIndex row) const {
+    return forests.leaf_area(leaf) * (1 - std::popcount(hidden_origins(leaf, row)) / double(origins_per_patch));
   }
   /// Returns the direct light that a leaf reflects, and that comes through from the leaf behind it.
   RelativeLight scattered_direct_light(NodeIndex leaf) const {
@@ -59,7 +60,7 @@ class SolveState {
     return reflected + forests.material_of(leaf).diffuse_transmittance * direct[behind].irradiance;
   }
   /// Returns the irradiance that rows bring to the centre of a leaf.
-  RelativeLight indirect(NodeIndex leaf) const { return field.at(forests.row_of(leaf), forests.leaf_centres()[leaf]); }
+  RelativeLight indirect(NodeIndex leaf, NodeIndex row) const { return field.at(row, forests.leaf_centres()[leaf]); }
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
   /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
   std::vector<LeafValue> leaf_values() const;

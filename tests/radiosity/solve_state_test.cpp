@@ -63,7 +63,8 @@ TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {
     ASSERT_EQ(errors.size(), leaves.size());
     double squares = 0, power = 0, area = 0;
     for (std::size_t k = 0; k < leaves.size(); ++k) {
-      const double leaf_area = state.visible_area(state.forests.leaves().leaf_at(leaves[k].patch));
+      const NodeIndex leaf = state.forests.leaves().leaf_at(leaves[k].patch);
+      const double leaf_area = state.visible_area(leaf, state.forests.row_of(leaf));
       EXPECT_GE(errors[k], 0);
       if (leaves[k].irradiance.is_zero()) continue;  // under a solid
       squares += leaf_area * errors[k] * errors[k];

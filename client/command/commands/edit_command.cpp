@@ -93,7 +93,9 @@ class SubmittedAdditions {
     import.options = import_options(bytes.file, file);
     const v1::Scene scene = submit(client_, std::move(bytes), import, file);
     scenes_.push_back(scene.name());
-    warn(std::vector<std::string>(scene.warnings().begin(), scene.warnings().end()));
+    std::vector<std::string> warnings(scene.warnings().begin(), scene.warnings().end());
+    std::erase_if(warnings, [](const std::string& warning) { return warning.ends_with("the solution will be dark."); });
+    warn(warnings);
     return scene.name();
   }
 
