@@ -187,7 +187,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
 void BaseMesh::find_bounds() {
   BoundingBox box;
   for (const RootPatch& root : roots_)
-    for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[c]);
+    for (int c = 0; c < root.corner_count && counts_for_bounds(root); ++c) box.add(root.corners[c]);
   centre_ = lerp(box.low, box.high, 0.5);
   extent_ = box.longest_side();
 }

@@ -127,6 +127,7 @@ class BaseMesh {
 
  private:
   void find_bounds();
+  bool counts_for_bounds(const RootPatch& root) const;
   bool is_within_frame() const;
   void add_root(const Scene& scene, const WeldedFace& face, const std::array<std::uint32_t, 4>& piece);
   void add_roots(const Scene& scene, const WeldedFace& face);

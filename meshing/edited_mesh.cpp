@@ -111,13 +111,21 @@ void BaseMesh::separate_objects(bool are_to_move) {
   }
 }
 
-/// Returns whether all roots lie in the cube about the centre that is as long as the extent.
+/// Returns whether a root has a place: not if it is of an object that was added and taken back.
+bool BaseMesh::counts_for_bounds(const RootPatch& root) const {
+  if (!root.is_hidden) return true;
+  const auto object = object_of_face(objects_, root.input.first);
+  return !object || !objects_[*object].is_added();
+}
+
+/// Returns whether all roots that have a place lie in the cube about the centre that is as long as the extent.
 bool BaseMesh::is_within_frame() const {
   BoundingBox frame;
   frame.add(centre_ - Vec3{extent_ / 2, extent_ / 2, extent_ / 2});
   frame.add(centre_ + Vec3{extent_ / 2, extent_ / 2, extent_ / 2});
   return std::ranges::all_of(roots_, [&](const RootPatch& root) {
-    return std::ranges::all_of(std::span(root.corners).first(static_cast<std::size_t>(root.corner_count)),
+    return !counts_for_bounds(root) ||
+           std::ranges::all_of(std::span(root.corners).first(static_cast<std::size_t>(root.corner_count)),
                                [&](const Vec3& corner) { return frame.holds(corner); });
   });
 }

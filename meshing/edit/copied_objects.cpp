@@ -11,6 +11,11 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t longest_name = 1000, least_room = 100'000, most_copies = 1000;
+// Of added scenes: corners for each face that copies may have, and materials of a scene with them, beyond those that it has
+// without. Chosen: a scene of few faces must not take much memory.
+constexpr std::size_t corners_a_face = 8, most_materials = 10'000;
+
+std::string material_of_added(const std::string& material, const std::string& object) { return material + " of " + object; }
 
 }  // namespace
 
@@ -37,31 +42,23 @@ void append_copy(Scene& scene, std::string name, std::uint32_t of) {
   scene.objects.push_back(std::move(copy));
 }
 
-namespace {
-
-/// Appends the materials of another scene, with names that no material has.
-void append_materials(Scene& scene, const std::string& object, const Scene& added) {
-  std::unordered_set<std::string> names;
-  for (const Material& material : scene.materials) names.insert(material.name);
-  for (Material material : added.materials) {
-    material.name += " of " + object;
-    while (!names.insert(material.name).second) material.name += "'";
-    scene.materials.push_back(std::move(material));
-  }
-}
-
-}  // namespace
-
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added) {
   const auto first_face = static_cast<std::uint32_t>(scene.faces.size());
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
-  const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
+  for (const Material& material : added.materials) {
+    if (material.texture) scene.texture_points.resize(scene.corners.size());
+    scene.materials.push_back(material);
+    scene.materials.back().name = material_of_added(material.name, name);
+  }
   const Placement turn = turn_upright(added.up, scene.up);
-  append_materials(scene, name, added);
-  for (const Vec3 vertex : added.vertices) scene.vertices.push_back(turn.point(vertex));
+  std::unordered_map<std::uint32_t, std::uint32_t> own;  // vertices that faces use
   for (const Face& face : added.faces) {
     std::vector<std::uint32_t> ring;
-    for (const std::uint32_t vertex : added.corners_of(face)) ring.push_back(first_vertex + vertex);
+    for (const std::uint32_t vertex : added.corners_of(face)) {
+      const auto [found, is_new] = own.try_emplace(vertex, static_cast<std::uint32_t>(scene.vertices.size()));
+      if (is_new) scene.vertices.push_back(turn.point(added.vertices[vertex]));
+      ring.push_back(found->second);
+    }
     scene.add_face(ring, first_material + face.material, added.texture_points_of(face), added.colours_of(face));
   }
   SceneObject object{.name = std::move(name), .placement = turn, .first_face = first_face};
@@ -71,27 +68,24 @@ void append_scene(Scene& scene, std::string name, const std::string& resource_na
 }
 
 void append_copies(Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
+  if (!has_copies(edits)) return;
   std::unordered_map<std::string, std::uint32_t> newest;  // object of a name, when the edit was made
-  std::vector<std::uint32_t> taken_back;
+  std::unordered_set<std::string> names;                  // of those that were not taken back
+  for (std::uint32_t n = 0; n < scene.objects.size(); ++n)
+    newest.emplace(scene.objects[n].name, n), names.insert(scene.objects[n].name);
+  for (const SceneEdit& edit : edits)
+    if (const auto* copy = std::get_if<ObjectCopy>(&edit); copy && !copy->is_taken_back) names.insert(copy->name);
   for (const SceneEdit& edit : edits) {
     const auto* copy = std::get_if<ObjectCopy>(&edit);
     if (!copy) continue;
-    if (newest.empty())
-      for (std::uint32_t n = 0; n < scene.objects.size(); ++n) newest.emplace(scene.objects[n].name, n);
     const auto number = static_cast<std::uint32_t>(scene.objects.size());
-    if (copy->scene.empty()) append_copy(scene, copy->name, newest.at(copy->of));
-    else append_scene(scene, copy->name, copy->scene, *added.at(copy->scene));
+    std::string name = copy->name;
+    if (copy->is_taken_back) name += " (taken back " + std::to_string(number) + ")";
+    while (copy->is_taken_back && !names.insert(name).second) name += "'";
+    if (copy->scene.empty()) append_copy(scene, std::move(name), newest.at(copy->of));
+    else append_scene(scene, std::move(name), copy->scene, *added.at(copy->scene));
+    scene.objects.back().is_hidden = copy->is_taken_back;
     newest[copy->name] = number;
-    if (copy->is_taken_back) taken_back.push_back(number);
-  }
-  if (taken_back.empty()) return;
-  std::unordered_set<std::string> names;
-  for (const SceneObject& object : scene.objects) names.insert(object.name);
-  for (const std::uint32_t number : taken_back) {
-    SceneObject& object = scene.objects[number];
-    object.is_hidden = true;
-    object.name += " (taken back " + std::to_string(number) + ")";
-    while (!names.insert(object.name).second) object.name += "'";
   }
 }
 
@@ -104,18 +98,32 @@ CheckedCopies::CheckedCopies(Scene& scene, const AddedScenes& added) : scene_(sc
     const SceneObject& object = scene.objects[n];
     if (!is_taken_back(object)) names_.emplace(object.name, n);
     if (object.is_added()) ++copies_, copied_faces_ += object.face_count;
+    if (const auto from = added.find(object.from_scene); from != added.end()) added_materials_ += from->second->materials.size();
+    if (object.is_added()) first_added_ = std::min(first_added_, object.first_face);
   }
+  for (const Material& material : scene.materials) materials_.insert(material.name);
   room_ = std::max(least_room, scene.faces.size() - copied_faces_);
 }
 
 /// Returns why a scene cannot be added as an object.
-std::optional<std::string> CheckedCopies::fault_in(const Scene& added) const {
+std::optional<std::string> CheckedCopies::fault_in(const Scene& added, const std::string& object) const {
   if (!added.lights.empty())
     return "has light '" + added.lights.front().name + "', which is no face: only faces can be added, and they may emit";
   const bool emits =
       std::ranges::any_of(added.faces, [&](const Face& face) { return !added.materials[face.material].emission.is_zero(); });
   if (emits && added.quantity != scene_.quantity)
     return "emits in lumens, and the solve's scene in watts, or the other way round";
+  const std::size_t corners_before =
+      first_added_ < scene_.faces.size() ? scene_.faces[first_added_].first_corner : scene_.corners.size();
+  const std::size_t corners = scene_.corners.size() - corners_before + added.corners.size();
+  if (corners > corners_a_face * room_)
+    return "has too many corners: added objects would have " + std::to_string(corners) + ", at most " +
+           std::to_string(corners_a_face * room_) + " are allowed";
+  if (added_materials_ + added.materials.size() > most_materials)
+    return "has too many materials: added objects may have " + std::to_string(most_materials);
+  for (const Material& material : added.materials)
+    if (const std::string name = material_of_added(material.name, object); materials_.contains(name))
+      return "has a material whose name would be '" + name + "', as that of another one: give the object another name";
   return std::nullopt;
 }
 
@@ -129,7 +137,7 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
   if (is_of_scene) {
     const auto added = added_.find(copy.scene);
     if (added == added_.end()) return EditFault{0, field, source + "is no scene"};
-    if (const auto reason = fault_in(*added->second)) return EditFault{0, field, source + *reason};
+    if (const auto reason = fault_in(*added->second, copy.name)) return EditFault{0, field, source + *reason};
     faces = added->second->faces.size();
   } else {
     const auto of = names_.find(copy.of);
@@ -149,8 +157,12 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
 std::optional<EditFault> CheckedCopies::make(const ObjectCopy& copy) {
   if (auto fault = fault_in(copy)) return fault;
   const auto number = static_cast<std::uint32_t>(scene_.objects.size());
+  const std::size_t materials_before = scene_.materials.size();
   if (copy.scene.empty()) append_copy(scene_, copy.name, names_.at(copy.of));
   else append_scene(scene_, copy.name, copy.scene, *added_.at(copy.scene));
+  for (std::size_t n = materials_before; n < scene_.materials.size(); ++n) materials_.insert(scene_.materials[n].name);
+  added_materials_ += scene_.materials.size() - materials_before;
+  first_added_ = std::min(first_added_, scene_.objects.back().first_face);
   names_.emplace(copy.name, number);
   ++copies_, copied_faces_ += scene_.objects.back().face_count;
   return std::nullopt;

@@ -158,7 +158,8 @@ std::optional<std::string> object_too_far(const Scene& submitted, const Scene& e
   const BoundingBox most = about(ObjectBoxes(submitted).of_scene);
   const ObjectBoxes boxes(edited);
   for (std::size_t n = 0; n < edited.objects.size(); ++n)
-    if (const BoundingBox& box = boxes.of_object[n]; !box.is_empty() && !(most.holds(box.low) && most.holds(box.high)))
+    if (const BoundingBox& box = boxes.of_object[n];
+        !edited.objects[n].is_hidden && !box.is_empty() && !(most.holds(box.low) && most.holds(box.high)))
       return edited.objects[n].name;
   return std::nullopt;
 }

@@ -106,8 +106,10 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
                           !plan.emission_by_rows() && has_same_frame_and_neighbours(was, edited);
     if (!may_mend) return false;
     if (grown) *own_mesh_ = *grown, state.note_appended(roots_before);
+    const std::size_t leaves_before = state.leaf_count() - (edited.roots().size() - roots_before);
     BaseMesh before = std::exchange(*own_mesh_, edited);
     state.note_moved(std::move(before), plan, is_alike);
+    if (leaves_at_first_end > 0 && grows) leaves_at_first_end += state.leaf_count() - leaves_before;
   } else {
     *own_mesh_ = edited;
     factor = state.note_relit(plan, is_alike);

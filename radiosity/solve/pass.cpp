@@ -8,9 +8,6 @@ namespace alvor {
 
 namespace {
 
-// Share of the candidates' squared error that a pass refines (bulk marking). Chosen; half: error -16 %, rays +42 %, double: error
-// +7 %, rays -19 % (docs/design/constants.md).
-constexpr double marked_share = 0.9;
 // Parts in which the first pass traces the rows of a large scene, so that light shows soon. Chosen; half and double give the same
 // solutions (docs/design/constants.md).
 constexpr std::size_t parts_of_first_light = 16;
@@ -72,12 +69,12 @@ Exchange& Pass::prepare() {
   return begin_exchange();
 }
 
-bool Pass::refine(const std::function<bool()>& gives_up) {
+bool Pass::refine(const std::function<bool()>& gives_up, double share) {
   assert(stage_ == Stage::estimated);
   stage_ = Stage::refined;
   const Forests& forests = state_.forests;
   const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
-  const std::vector<Candidate> marked = mark(std::move(candidates_), marked_share);
+  const std::vector<Candidate> marked = mark(std::move(candidates_), share);
   guide_rows(marked, gives_up);
   if (state_.ranks.any_of(gives_up())) return false;
   const auto shot = exchange_->shot();

@@ -23,12 +23,30 @@ BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape) {
   return box;
 }
 
+/// Returns how far the corners of each leaf node, split or not, are from its centre at most, metres.
+std::vector<double> radii_of_leaves(const Forests& forests) {
+  const PatchForest& leaves = forests.leaves();
+  std::vector<double> radius(leaves.node_count());
+  tbb::parallel_for(NodeIndex{0}, static_cast<NodeIndex>(radius.size()), [&](NodeIndex node) {
+    const PatchShape shape = leaves.shape(node);
+    const auto corners = corners_of(forests.mesh(), shape);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(shape.corner_count); ++c)
+      radius[node] = std::max(radius[node], length(corners[c] - forests.leaf_centres()[node]));
+  });
+  return radius;
+}
+
 /// Mends one row. Where an origin is known to within a stratum only, as in rounds of rays after the first, the stratum's size is
 /// allowed for when looking for rays in the way of an object, and the ray sent is off by as much.
 class RowMender {
  public:
-  RowMender(const LocalScene& scene, const BaseMesh& before, const MovedRoots& moved, RayBudget& budget)
-      : scene_(scene), before_(before), moved_(moved), budget_(budget) {}
+  RowMender(const LocalScene& scene, const BaseMesh& before, const Forests& forests, const MovedRoots& moved, RayBudget& budget)
+      : scene_(scene),
+        before_(before),
+        forests_(forests),
+        moved_(moved),
+        budget_(budget),
+        leaf_radius_(radii_of_leaves(forests)) {}
 
   enum class Outcome { unchanged, mended, lost };
   /// Returns whether the hidden origins of a row are still hidden, as far as one ray from each of them tells. Inside a solid that
@@ -38,9 +56,10 @@ class RowMender {
     const std::uint16_t backs = meet_backs(scene_, shape.root, sample_points(scene_, shape, random), budget_);
     return (row.hidden_origins & ~backs) == 0;
   }
-  /// Sends stale rays again. The row is lost, and unchanged, if one of them meets no front now: which origins are hidden may be
-  /// otherwise. Requires: the row's hits have places, and it comes from rays through nothing that weakens them.
-  Outcome mend(const PatchShape& shape, PatchId patch, std::uint64_t seed, TransportRow& row) const {
+  /// Sends stale rays again, and begins the look-up of the leaves that they find at the roots. The row is lost, and unchanged, if
+  /// one of them meets no front now: which origins are hidden may be otherwise. Requires: the row's hits have places, and it
+  /// comes from rays through nothing that weakens them; `leaves` has the leaf node that each hit found, or nothing.
+  Outcome mend(const PatchShape& shape, PatchId patch, std::uint64_t seed, TransportRow& row, std::span<NodeIndex> leaves) const {
     RandomStream random(seed, patch);
     const PatchPoints points = sample_points(scene_, shape, random);
     const auto corners = corners_of(scene_.mesh(), shape);
@@ -51,10 +70,11 @@ class RowMender {
       if (row.origin_hits[k] == TransportRow::not_sampled) continue;
       const Vec3 from = point_of(points, k % origins_per_patch), from_metres = scene_.frame().to_metres(from);
       for (const std::size_t last = hit + row.origin_hits[k]; hit < last; ++hit) {
-        const bool was_moved = moved_.has(row.hits[hit].root_face());
+        const bool was_moved = moved_.has(row.hits[hit].root_face()), is_exact = k < origins_per_patch;
+        if (!was_moved && !leaves.empty() && passes_by(from_metres, is_exact ? 0 : stratum, leaves[hit])) continue;
         const BaseMesh& of_hit = was_moved ? before_ : scene_.mesh();
         const Vec3 end = centre_of(of_hit, shape_of(of_hit, row.hits[hit]));
-        if (!was_moved && !moved_.may_meet_now(from_metres, end, k < origins_per_patch ? 0 : stratum)) continue;
+        if (!was_moved && !moved_.may_meet_now(from_metres, end, is_exact ? 0 : stratum)) continue;
         stale.push_back(hit);
         rays.push_back({from, scene_.frame().to_local(end)});
       }
@@ -62,15 +82,25 @@ class RowMender {
     if (stale.empty()) return Outcome::unchanged;
     const auto ends = resend(scene_, rays, scene_.mesh().roots()[shape.root].normal, budget_);
     if (!std::ranges::all_of(ends, [](const auto& end) { return end.has_value(); })) return Outcome::lost;
-    for (std::size_t n = 0; n < stale.size(); ++n) row.hits[stale[n]] = *ends[n];
+    for (std::size_t n = 0; n < stale.size(); ++n) {
+      row.hits[stale[n]] = *ends[n];
+      if (!leaves.empty()) leaves[stale[n]] = ends[n]->root_face();  // the first nodes are the roots
+    }
     return Outcome::mended;
   }
 
  private:
+  /// Returns whether a ray to any point of a leaf passes by all places where moved roots are now, which is soon found: most do.
+  bool passes_by(Vec3 from, double radius, NodeIndex leaf) const {
+    return !moved_.may_meet_now(from, forests_.leaf_centres()[leaf], radius + leaf_radius_[leaf]);
+  }
+
   const LocalScene& scene_;
   const BaseMesh& before_;
+  const Forests& forests_;
   const MovedRoots& moved_;
   RayBudget& budget_;
+  std::vector<double> leaf_radius_;  // by leaf node
 };
 
 }  // namespace
@@ -78,7 +108,7 @@ class RowMender {
 std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const MovedRoots& moved) {
   const bool may_mend = plan_.needs(Feature::refinement) && !plan_.needs(Feature::panes) && !plan_.needs(Feature::medium) &&
                         !directions_.has_weights();
-  const RowMender mender(scene_, before, moved, budget_);
+  const RowMender mender(scene_, before, forests_, moved, budget_);
   const std::vector<NodeIndex> rows = forests_.rows().leaves();
   std::vector<RowMender::Outcome> outcomes(rows.size(), RowMender::Outcome::unchanged);
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
@@ -94,11 +124,11 @@ std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const Move
     if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && (!may_mend || has_unknown)) ||
         (may_hide_otherwise && !mender.is_hidden_as_before(shape, id, options_.seed, row)))
       outcomes[n] = RowMender::Outcome::lost;
-    else if (carry_light()) outcomes[n] = mender.mend(shape, id, options_.seed, row);
+    else if (carry_light()) outcomes[n] = mender.mend(shape, id, options_.seed, row, hit_leaves_[rows[n]]);
   });
   std::vector<NodeIndex> lost;
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    if (outcomes[n] == RowMender::Outcome::mended) hit_leaves_[rows[n]].clear(), found_among_[rows[n]] = 0;
+    if (outcomes[n] == RowMender::Outcome::mended) found_among_[rows[n]] = 0;
     if (outcomes[n] != RowMender::Outcome::lost) continue;
     forget(rows[n]);
     is_traced_[rows[n]] = false;

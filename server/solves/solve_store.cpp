@@ -222,7 +222,8 @@ std::uint64_t SolveStore::edit(const std::string& name, const EditRequest& reque
     solve = edited.solve;
     bytes = edited.scene.scene->facts.content_bytes;
   }
-  for (const auto& [other, use] : request.added) bytes += use.scene->facts.content_bytes;
+  for (const std::string& other : scenes_added_by(request.step))
+    if (const auto use = request.added.find(other); use != request.added.end()) bytes += use->second.scene->facts.content_bytes;
   const auto leave = [&] {
     Lock hold(lock_);
     --entry(name, tenant).editors;

@@ -6,6 +6,7 @@
 #include "server/solves/stored_solve.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -135,7 +136,9 @@ v1::Look StoredSolve::look() const {
   const std::vector<KeptEdit> newest = edits();
   const auto after = content_of(newest, {});
   const Scene& submitted = after->submitted ? after->submitted->scene : after->scene;
-  const Scene before = with_added_objects(submitted, newest, after->added);
+  std::optional<Scene> with_added;  // a copy of a large scene takes long
+  if (after->scene.objects.size() > submitted.objects.size()) with_added = with_added_objects(submitted, newest, after->added);
+  const Scene& before = with_added ? *with_added : submitted;
   v1::Look look;
   look.set_edits(newest_revision(newest));
   for (std::uint32_t n = 0; n < after->scene.materials.size(); ++n) {

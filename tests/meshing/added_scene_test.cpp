@@ -133,6 +133,52 @@ TEST(AddedScene, CanBeCopiedAndTakenBack) {
   EXPECT_FALSE(find_fault(edited));
 }
 
+TEST(AddedScene, ThatWasTakenBackHasNoPlaceAndLeavesItsNames) {
+  const Scene room = test::room_of_objects();
+  Scene elsewhere = box_and_sheet();  // its file has it beside the room
+  for (Vec3& vertex : elsewhere.vertices) vertex = vertex + Vec3{30, 0, 0};
+  const AddedScenes added = scenes(elsewhere);
+  const EditStep add{.edits = {thing("thing"), ObjectEdit{.name = "thing", .move = Vec3{-28, 0, 1}}}};
+  const EditStep undo{.kind = EditStep::Kind::undo, .edits = {}};
+  const auto after = [&](const std::vector<EditStep>& steps) { return edited_scene(room, *edits_that_hold(steps), added); };
+  const BaseMesh submitted(room);
+  for (const std::vector<EditStep>& steps : {std::vector{add}, std::vector{add, undo}, std::vector{add, undo, add}}) {
+    const Scene edited = after(steps);
+    EXPECT_FALSE(find_fault(edited));
+    EXPECT_FALSE(object_too_far(room, edited));
+    const BaseMesh mesh = submitted.edited_as(edited, meshes_of(added));
+    EXPECT_EQ(mesh.centre(), submitted.centre());
+    EXPECT_EQ(mesh.extent(), submitted.extent());
+  }
+  const Scene again = after({add, undo, add});
+  EXPECT_EQ(again.materials[room.materials.size()].name,
+            "wood of thing (taken back " + std::to_string(room.objects.size()) + ")");
+  EXPECT_EQ(again.materials[room.materials.size() + 3].name, "glow of thing");
+  EXPECT_EQ(again.faces[again.objects.back().first_face].material, room.materials.size() + 2);
+}
+
+TEST(AddedScene, BringsOnlyTheVerticesThatItsFacesUse) {
+  const Scene room = test::room_of_objects();
+  Scene sparse = box_and_sheet();
+  sparse.vertices.insert(sparse.vertices.begin(), 100'000, Vec3{7, 7, 7});
+  for (std::uint32_t& corner : sparse.corners) corner += 100'000;
+  const Scene edited = edited_scene(room, std::vector<SceneEdit>{thing("thing")}, scenes(sparse));
+  EXPECT_EQ(edited.vertices.size(), room.vertices.size() + box_and_sheet().vertices.size());
+}
+
+TEST(AddedScene, MayHaveATextureThatNoFaceShows) {
+  const auto image = std::make_shared<ColourImage>();
+  image->columns = image->rows = 1;
+  image->texels = {10, 20, 30};
+  Scene unused = box_and_sheet();
+  unused.materials.push_back(test::grey(0, 0.5));
+  unused.materials.back().texture = Texture{.image = image};
+  unused.texture_points.resize(unused.corners.size());
+  ASSERT_FALSE(find_fault(unused));
+  const Scene edited = edited_scene(test::room_of_objects(), std::vector<SceneEdit>{thing("thing")}, scenes(unused));
+  EXPECT_FALSE(find_fault(edited)) << find_fault(edited)->text();
+}
+
 TEST(AddedScene, FaultsNameTheirField) {
   const Scene room = test::room_of_objects();
   const auto fault = [&](const ObjectCopy& copy, Scene scene) {
@@ -155,6 +201,19 @@ TEST(AddedScene, FaultsNameTheirField) {
   Scene large = box_and_sheet();
   for (int n = 0; n < 100'000; ++n) test::add_polygon(large, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 0);
   EXPECT_NE(fault(thing("thing"), large).find("copy.scene: added objects"), std::string::npos);
+  Scene round = box_and_sheet();
+  round.add_face(std::vector<std::uint32_t>(900'000, 0), 0);
+  EXPECT_NE(fault(thing("thing"), round).find("has too many corners"), std::string::npos);
+  Scene motley = box_and_sheet();
+  motley.materials.resize(10'001, motley.materials[0]);
+  EXPECT_NE(fault(thing("thing"), motley).find("has too many materials"), std::string::npos);
+  Scene same = box_and_sheet();
+  same.materials[0].name = "x";
+  Scene named = room;
+  named.materials[0].name = "x of thing";
+  const auto taken = fault_in(std::vector<SceneEdit>{thing("thing")}, named, scenes(same));
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->field, "copy.scene");
 }
 
 TEST(AddedScene, MayNotLieFarFromTheOther) {

@@ -42,8 +42,8 @@ v1::EditStep step_of(const EditCommand& command) {
   for (const std::string& dim : command.dims) *step.add_edits() = edit_of_dim(dim);
   for (const std::string& web : command.webs) *step.add_edits() = edit_of_web(web);
   if (!command.absorption.empty()) *step.add_edits() = edit_of_absorption(command.absorption);
-  for (const std::string& copy : command.copies) *step.add_edits() = edit_of_copy(copy);
   for (const std::string& addition : command.additions) *step.add_edits() = edit_of_addition(addition);
+  for (const std::string& copy : command.copies) *step.add_edits() = edit_of_copy(copy);
   for (const std::string& move : command.moves) *step.add_edits() = edit_of_move(move);
   for (const std::string& turn : command.turns) *step.add_edits() = edit_of_turn(turn);
   for (const std::string& scale : command.scales) *step.add_edits() = edit_of_scale(scale);
@@ -69,11 +69,7 @@ v1::EditStep step_of(const EditCommand& command) {
 /// The scene files of a step's additions, submitted. Deletes these scenes again, unless keep() is called.
 class SubmittedAdditions {
  public:
-  SubmittedAdditions(Client& client, v1::EditStep& step) : client_(client) {
-    for (v1::Edit& edit : *step.mutable_edits())
-      if (const std::string& scene = edit.copy().scene(); !scene.empty() && !is_of_server(scene))
-        edit.mutable_copy()->set_scene(submitted(scene));
-  }
+  explicit SubmittedAdditions(Client& client) : client_(client) {}
   ~SubmittedAdditions() {
     for (const std::string& scene : scenes_) {
       try {
@@ -83,10 +79,16 @@ class SubmittedAdditions {
     }
   }
   SubmittedAdditions(const SubmittedAdditions&) = delete;
+  /// Puts names of scenes in the place of those of files. Throws RpcError, SceneFileError.
+  void submit_all(v1::EditStep& step) {
+    for (v1::Edit& edit : *step.mutable_edits())
+      if (const std::string& scene = edit.copy().scene(); !scene.empty() && !is_of_server(scene))
+        edit.mutable_copy()->set_scene(submitted(scene));
+  }
   void keep() { scenes_.clear(); }
 
  private:
-  static bool is_of_server(const std::string& scene) { return scene.starts_with("scenes/"); }
+  static bool is_of_server(const std::string& scene) { return scene.starts_with("scenes/") && !std::filesystem::exists(scene); }
   std::string submitted(const std::filesystem::path& file) {
     RawScene bytes = scene_bytes(file, "");
     SceneImport import;
@@ -109,7 +111,8 @@ void run_edit(const EditCommand& command) {
   Interrupt interrupt;
   Connection connection(command.server);
   Client& client = connection.client();
-  SubmittedAdditions additions(client, step);
+  SubmittedAdditions additions(client);
+  additions.submit_all(step);
   const v1::EditSolveResponse edited = client.edit_solve(command.solve, step, command.base_revision);
   additions.keep();
   notes() << "edits of revision " << edited.revision() << '\n';

@@ -24,7 +24,7 @@ export type Bands = [number, number, number];
 
 /** What of a scene can be edited, as it was submitted. */
 export interface Parts {
-  /** Of the box around all, metres from the middle of the mesh. */
+  /** Of the box around all that was submitted, metres from the middle of the mesh. */
   low: Bands;
   high: Bands;
   lights: { name: string; intensity: Bands; position?: Bands }[];

@@ -109,7 +109,7 @@ abstract class Shown {
   /** Edits have added objects. What is known of the light stays. */
   private setObjects(messages: ReadMeshResponse[]): void {
     const before = this.mirror;
-    this.mesh = new BaseMesh(messages);
+    this.mesh = new BaseMesh(messages, this.messages.length); // what was added may lie anywhere before it is moved
     this.beginMirror();
     this.mirror.takeAll(before);
     this.tellMesh();
@@ -156,18 +156,19 @@ abstract class Shown {
       const images = await this.readImages(added);
       if (this.imagesAsked !== added.join()) return; // others have been asked for since
       this.images = images;
-      await this.sendSheet(images);
+      await this.sendSheet(images, () => this.imagesAsked === added.join());
     } catch (error) {
       tell({ kind: "no images", reason: reasonOf(error) });
     }
   }
 
-  private async sendSheet(images: Image[]): Promise<void> {
+  private async sendSheet(images: Image[], isWanted: () => boolean): Promise<void> {
     const sheet = sheetFor(images, this.longestSide);
     if (!sheet) throw new Error("the graphics card does not hold so many texels");
     const table = tableOf(this.mesh.materials, images);
     tell({ kind: "sheet", sheet, table }, [table.buffer]);
     for (const piece of piecesOf(images, sheet)) {
+      if (!isWanted()) return; // another sheet has begun
       tell({ kind: "piece", piece }, [piece.texels.buffer]);
       await pause(0); // for frames that came meanwhile
     }
@@ -221,15 +222,24 @@ class Watch extends Shown {
     return images;
   }
 
-  private async readMesh(scene: string): Promise<ReadMeshResponse[]> {
+  private async readMesh(scene: string, onMessage = () => {}, signal?: AbortSignal): Promise<ReadMeshResponse[]> {
     const messages = [];
-    for await (const message of this.api.scenes.readMesh({ name: scene })) messages.push(message);
+    for await (const message of this.api.scenes.readMesh({ name: scene }, { signal })) {
+      messages.push(message);
+      onMessage();
+    }
     return messages;
   }
 
-  /** Reads the meshes of scenes that a look tells were added, where they are not known yet. */
-  private async readAdded(look: Look): Promise<void> {
-    for (const scene of addedScenes(look)) if (!this.scenes.has(scene)) this.scenes.set(scene, await this.readMesh(scene));
+  /** Reads the meshes of scenes that a look tells were added, where they are not known yet. Gives up after a long silence. */
+  private async readAdded(look: Look, givenUp: AbortController): Promise<void> {
+    for (const scene of addedScenes(look))
+      if (!this.scenes.has(scene)) this.scenes.set(scene, await this.readMesh(scene, () => this.limitSilence(givenUp), givenUp.signal));
+  }
+
+  private limitSilence(givenUp: AbortController): void {
+    clearTimeout(this.silence);
+    this.silence = setTimeout(() => givenUp.abort(), LONGEST_SILENCE_MS);
   }
 
   protected override forget(): void {
@@ -275,14 +285,13 @@ class Watch extends Shown {
     };
     let count = 0n;
     for await (const frame of this.api.solves.watchSolve(request, { signal: givenUp.signal })) {
-      clearTimeout(this.silence);
-      this.silence = setTimeout(() => givenUp.abort(), LONGEST_SILENCE_MS);
+      this.limitSilence(givenUp);
       if (++count === 1n) onFirst();
       if (frame.closing) {
         tell({ kind: "connection", state: "closing", reason: frame.closing.reason });
         return;
       }
-      if (frame.look) await this.readAdded(frame.look);
+      if (frame.look) await this.readAdded(frame.look, givenUp);
       this.take(frame);
       if (frame.ended && !this.hasEnded) {
         this.show();

@@ -57,7 +57,8 @@ export class BaseMesh {
   private readonly objectOfRoot: Int32Array;
   private readonly point = new Float64Array(3);
 
-  constructor(messages: ReadMeshResponse[]) {
+  /** `framed`: messages whose roots the centre and the extent are of; all if it is not given. */
+  constructor(messages: ReadMeshResponse[], framed = messages.length) {
     const counts = messages.flatMap((message) => message.cornerCounts);
     this.rootCount = counts.length;
     this.firstCorner = new Uint32Array(counts.length + 1);
@@ -71,7 +72,8 @@ export class BaseMesh {
     this.lights = messages.flatMap((message) => message.sceneLights);
     this.objects = messages.flatMap((message) => message.sceneObjects);
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
-    ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners));
+    const framedNumbers = messages.slice(0, framed).reduce((count, { cornerCoordinates }) => count + cornerCoordinates.length, 0);
+    ({ centre: this.centre, extent: this.extent } = moveToMiddle(this.corners, framedNumbers));
     this.submitted = { materials: this.materials, material: this.material.slice(), corners: this.corners.slice() };
     this.objectOfRoot = Int32Array.from(this.sceneFace, (face) => this.numberOfObject(face));
     this.hidden = Uint8Array.from(this.objectOfRoot, (object) => Number(this.objects[object]?.hidden ?? false));
@@ -378,10 +380,11 @@ const CREASES = 2 ** 46;
 const CORNERS = -(2 ** 50);
 const SMOOTH_CORNERS = -(2 ** 51);
 
-function moveToMiddle(corners: Float64Array): { centre: [number, number, number]; extent: number } {
+/** Moves corners from the middle of those that the first `framed` numbers are of. */
+function moveToMiddle(corners: Float64Array, framed: number): { centre: [number, number, number]; extent: number } {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
-  corners.forEach((x, n) => {
+  corners.subarray(0, framed).forEach((x, n) => {
     low[n % 3] = Math.min(low[n % 3], x);
     high[n % 3] = Math.max(high[n % 3], x);
   });

@@ -1,11 +1,13 @@
 // The lights, lamps and materials of a scene that a person can edit.
 
-import { Light_Kind, type Rgb } from "../gen/alvor/v1/scene_service_pb";
+import { Light_Kind, type Rgb, type SceneObject } from "../gen/alvor/v1/scene_service_pb";
 import type { Bands, Parts } from "../messages";
 import type { BaseMesh } from "./base_mesh";
 
 const NEAR = [Light_Kind.POINT, Light_Kind.SPOT, Light_Kind.LUMINAIRE];
 const bandsOf = (value: Rgb | undefined): Bands => [value?.r ?? 0, value?.g ?? 0, value?.b ?? 0];
+
+const isAdded = ({ copyOf, fromScene }: SceneObject) => copyOf !== undefined || fromScene !== "";
 
 interface Extent {
   low: number[];
@@ -13,7 +15,7 @@ interface Extent {
   shines: boolean;
 }
 
-/** Returns the box around all, and the objects that have faces, with those that hang from them. */
+/** Returns the box around all that was submitted, and the objects that have faces, with those that hang from them. */
 function extentsOf(mesh: BaseMesh): Pick<Parts, "low" | "high" | "objects"> {
   const shines = mesh.materials.map(({ emission }) => Math.max(...bandsOf(emission)) > 0);
   const nothing = (): Extent => ({ low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity], shines: false });
@@ -31,21 +33,21 @@ function extentsOf(mesh: BaseMesh): Pick<Parts, "low" | "high" | "objects"> {
       const place = [...mesh.corners.subarray(3 * corner, 3 * corner + 3)];
       add(of, { low: place, high: place, shines: false });
     }
-    add(all, of);
     const object = mesh.numberOfObject(mesh.sceneFace[root]);
+    if (object < 0 || !isAdded(mesh.objects[object])) add(all, of);
     if (object >= 0) add(extents[object], of);
   }
   [...mesh.objects].reverse().forEach(({ parent }, n) => {
     if (parent !== undefined) add(extents[parent], extents[extents.length - 1 - n]);
   });
   const sides = ({ low, high }: Extent) => low.map((x, k) => high[k] - x);
-  const objects = mesh.objects.flatMap(({ name, parent, copyOf, fromScene }, n) => {
+  const objects = mesh.objects.flatMap((object, n) => {
+    const { name, parent } = object;
     const own = sides(extents[n]);
     const isRoom = sides(all).filter((side, k) => own[k] >= 0.9 * side).length >= 2;
     const { low, high, shines } = extents[n];
     const above = parent === undefined ? undefined : mesh.objects[parent].name;
-    const isAdded = copyOf !== undefined || fromScene !== "";
-    return own[0] >= 0 ? [{ name, parent: above, isAdded, shines, isRoom, low: low as Bands, high: high as Bands }] : [];
+    return own[0] >= 0 ? [{ name, parent: above, isAdded: isAdded(object), shines, isRoom, low: low as Bands, high: high as Bands }] : [];
   });
   return { low: all.low as Bands, high: all.high as Bands, objects };
 }

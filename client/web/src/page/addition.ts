@@ -20,7 +20,10 @@ interface Box {
 export async function sendAddition(api: Api, files: File[], taken: Set<string>, stand: Stand): Promise<{ scene: string; name: string; edits: Edit[] }> {
   const scene = await sendSceneAlone(api, files);
   const name = freeNameFor(scene.displayName.replace(/\.[^.]*$/, "") || "object", taken);
-  const box = await boxOf(api, scene.name, stand.isZUp);
+  const box = await boxOf(api, scene.name, stand.isZUp).catch(async (error) => {
+    await api.scenes.deleteScene({ name: scene.name });
+    throw error;
+  });
   const [x, y, z] = moveToFloor(box, stand);
   const edits = [
     create(EditSchema, { part: { case: "copy", value: { name, scene: scene.name } } }),

@@ -48,6 +48,8 @@ const editing = new Editing(
   api,
   (step) => attempt(() => edit(step)),
   attempt,
+  say,
+  () => solve?.name,
   (place) => handle.setPlace(place),
 );
 const cameras = new Cameras(room.camera, byId<HTMLCanvasElement>("room"), viewChanged);

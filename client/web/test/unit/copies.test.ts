@@ -4,6 +4,7 @@ import { MaterialSchema, ReadMeshResponseSchema, UpAxis } from "../../src/gen/al
 import { LookOfObjectSchema } from "../../src/gen/alvor/v1/solve_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { addedScenes, withAdded } from "../../src/mirror/copies";
+import { partsOf } from "../../src/mirror/parts";
 import { Mirror } from "../../src/mirror/mirror";
 
 const across = (root: number, edge: number) => BigInt(1 + 8 * root + 2 * edge + 1);
@@ -92,6 +93,10 @@ describe("added objects", () => {
     expect(mesh.objectOfFace(5)?.name).toBe("second");
     expect(addedScenes({ objects: [object, copy(3, 0, 5, 3)] })).toEqual(["scenes/p"]);
     expect(textured.sceneMaterials[1].texture?.image).toBe(0); // it may be added again
+    const before = new BaseMesh(own);
+    const framed = new BaseMesh(all, own.length);
+    expect([framed.centre, framed.extent]).toEqual([before.centre, before.extent]); // wherever what was added lies
+    expect(partsOf(framed)).toMatchObject({ low: partsOf(before).low, high: partsOf(before).high });
   });
   it("leave what is known of the light", () => {
     const before = new Mirror(3);
