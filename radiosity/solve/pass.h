@@ -47,13 +47,13 @@ class Pass {
   ErrorEstimate estimate();
   /// Share of the candidates' squared error that a pass refines (bulk marking). Chosen; half: error -16 %, rays +42 %, double:
   /// error +7 %, rays -19 % (docs/design/constants.md).
-  static constexpr double usual_share = 0.9;
+  static constexpr double marked_share = 0.9;
   /// Splits patches and asks for rays where that removes most error per ray, up to a share of the candidates' squared error. This
   /// ends the pass. Returns false if nothing was done: the limits forbid every split, and noise of rows and shadow rays is not
   /// the largest error. If `gives_up` returns true on any rank, where it is asked between patches from any thread, it returns
   /// early, and the state must not be used.
   bool refine(
-      const std::function<bool()>& gives_up = [] { return false; }, double share = usual_share);
+      const std::function<bool()>& gives_up = [] { return false; }, double share = marked_share);
 
   /// Takes the first three steps at once, for callers who do not show what comes in between.
   Exchange& prepare();

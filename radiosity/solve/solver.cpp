@@ -156,9 +156,9 @@ class Run {
   /// Returns the share of the squared error that a pass refines. After an edit of a solve that had ended, most of the mesh is
   /// fine enough: then it is no more than it takes to be within the tolerance again.
   double share_to_refine() const {
-    if (live_.leaves_at_first_end == 0 || options_.is_by_place()) return Pass::usual_share;
+    if (live_.leaves_at_first_end == 0 || options_.is_by_place()) return Pass::marked_share;
     const double wanted = back_within * options_.tolerance / is_.error.total();
-    return std::clamp((1 - wanted * wanted) / removed_by_refining, least_share, Pass::usual_share);
+    return std::clamp((1 - wanted * wanted) / removed_by_refining, least_share, Pass::marked_share);
   }
 
   /// Makes a pass up to its estimate and publishes it. Returns false if it was stopped: then the last published step stands.

@@ -37,6 +37,22 @@ TEST(MovedObjects, FewRaysAreSentAgain) {
   EXPECT_LT(rays_of({.name = "cube", .dim = 1}), 0.3);
 }
 
+TEST(MovedObjects, OfALampThatIsSwitchedOffOnlyWhatIsNeededIsRefined) {
+  Scene submitted = test::room_of_objects();
+  submitted.objects.push_back(
+      {.name = "second lamp", .first_face = static_cast<std::uint32_t>(submitted.faces.size()), .face_count = 1});
+  test::add_polygon(submitted, {{0.2, 2.99, 3.8}, {1.2, 2.99, 3.8}, {1.2, 2.99, 4.8}, {0.2, 2.99, 4.8}}, 1);
+  const SolveOptions options{.tolerance = 0.02, .max_leaves = 200'000};
+  EditedSolve solve(submitted, options);
+  const Step before = solve.last();
+  solve.edit(
+      [&](Scene& scene) { scene = edited_scene(submitted, std::vector<SceneEdit>{ObjectEdit{.name = "lamp", .dim = 0}}); });
+  EXPECT_LE(solve.last().estimated_error, options.tolerance);
+  EXPECT_LT(static_cast<double>(solve.last().rays - before.rays), 0.45 * static_cast<double>(before.rays));
+  const EditedSolve anew(submitted, options, solve.scene());
+  EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
+}
+
 TEST(MovedObjects, WhatIsHiddenFromTheFirstCanBeShown) {
   const Scene submitted = test::room_of_objects();
   const Scene without = edited_scene(submitted, std::vector<SceneEdit>{ObjectEdit{.name = "box", .hidden = true}});
