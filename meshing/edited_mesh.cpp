@@ -111,7 +111,8 @@ void BaseMesh::separate_objects(bool are_to_move) {
   }
 }
 
-/// Returns whether a root has a place: not if it is of an object that was added and taken back.
+/// Returns whether a root has a place: not if it is of an object that was added and is hidden. One that was taken back is, and may
+/// lie anywhere.
 bool BaseMesh::counts_for_bounds(const RootPatch& root) const {
   if (!root.is_hidden) return true;
   const auto object = object_of_face(objects_, root.input.first);

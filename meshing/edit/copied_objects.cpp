@@ -11,8 +11,8 @@ namespace alvor {
 namespace {
 
 constexpr std::size_t longest_name = 1000, least_room = 100'000, most_copies = 1000;
-// Of added scenes: corners for each face that copies may have, and materials of a scene with them, beyond those that it has
-// without. Chosen: a scene of few faces must not take much memory.
+// Corners that copies may have for each face that they may have, and materials of all added scenes. Chosen: a scene of few faces
+// must not take much memory.
 constexpr std::size_t corners_a_face = 8, most_materials = 10'000;
 
 std::string material_of_added(const std::string& material, const std::string& object) { return material + " of " + object; }
@@ -99,10 +99,18 @@ CheckedCopies::CheckedCopies(Scene& scene, const AddedScenes& added) : scene_(sc
     if (!is_taken_back(object)) names_.emplace(object.name, n);
     if (object.is_added()) ++copies_, copied_faces_ += object.face_count;
     if (const auto from = added.find(object.from_scene); from != added.end()) added_materials_ += from->second->materials.size();
-    if (object.is_added()) first_added_ = std::min(first_added_, object.first_face);
+    if (object.is_added()) copied_corners_ += corners_of(object);
   }
   for (const Material& material : scene.materials) materials_.insert(material.name);
   room_ = std::max(least_room, scene.faces.size() - copied_faces_);
+}
+
+/// Returns the number of corners of an object's own faces.
+std::size_t CheckedCopies::corners_of(const SceneObject& object) const {
+  std::size_t corners = 0;
+  for (std::uint32_t face = object.first_face; face < object.first_face + object.face_count; ++face)
+    corners += scene_.faces[face].corner_count;
+  return corners;
 }
 
 /// Returns why a scene cannot be added as an object.
@@ -113,12 +121,6 @@ std::optional<std::string> CheckedCopies::fault_in(const Scene& added, const std
       std::ranges::any_of(added.faces, [&](const Face& face) { return !added.materials[face.material].emission.is_zero(); });
   if (emits && added.quantity != scene_.quantity)
     return "emits in lumens, and the solve's scene in watts, or the other way round";
-  const std::size_t corners_before =
-      first_added_ < scene_.faces.size() ? scene_.faces[first_added_].first_corner : scene_.corners.size();
-  const std::size_t corners = scene_.corners.size() - corners_before + added.corners.size();
-  if (corners > corners_a_face * room_)
-    return "has too many corners: added objects would have " + std::to_string(corners) + ", at most " +
-           std::to_string(corners_a_face * room_) + " are allowed";
   if (added_materials_ + added.materials.size() > most_materials)
     return "has too many materials: added objects may have " + std::to_string(most_materials);
   for (const Material& material : added.materials)
@@ -133,22 +135,26 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
   if (!copy.of.empty() && !copy.scene.empty()) return EditFault{0, "copy.scene", "is given, and so is copy.of"};
   const bool is_of_scene = !copy.scene.empty();
   const std::string field = is_of_scene ? "copy.scene" : "copy.of", source = "'" + (is_of_scene ? copy.scene : copy.of) + "' ";
-  std::size_t faces = 0;
+  std::size_t faces = 0, corners = 0;
   if (is_of_scene) {
     const auto added = added_.find(copy.scene);
     if (added == added_.end()) return EditFault{0, field, source + "is no scene"};
     if (const auto reason = fault_in(*added->second, copy.name)) return EditFault{0, field, source + *reason};
-    faces = added->second->faces.size();
+    faces = added->second->faces.size(), corners = added->second->corners.size();
   } else {
     const auto of = names_.find(copy.of);
     if (of == names_.end()) return EditFault{0, field, source + "is no object of the scene"};
-    faces = faces_with_hanging(scene_.objects, of->second).size();
+    for (const std::uint32_t face : faces_with_hanging(scene_.objects, of->second))
+      ++faces, corners += scene_.faces[face].corner_count;
   }
   if (faces == 0) return EditFault{0, field, source + "has no faces"};
   if (copied_faces_ + faces > room_)
     return EditFault{0, field,
                      "added objects, with those that were taken back, would have " + std::to_string(copied_faces_ + faces) +
                          " faces, at most " + std::to_string(room_) + " are allowed"};
+  if (copied_corners_ + corners > corners_a_face * room_)
+    return EditFault{0, field, source + "has too many corners: added objects would have " + std::to_string(copied_corners_ + corners) +
+                                   ", at most " + std::to_string(corners_a_face * room_) + " are allowed"};
   if (copies_ == most_copies)
     return EditFault{0, "copy.name", "there are 1000 added objects, with those that were taken back, as many as are kept"};
   return std::nullopt;
@@ -162,7 +168,7 @@ std::optional<EditFault> CheckedCopies::make(const ObjectCopy& copy) {
   else append_scene(scene_, copy.name, copy.scene, *added_.at(copy.scene));
   for (std::size_t n = materials_before; n < scene_.materials.size(); ++n) materials_.insert(scene_.materials[n].name);
   added_materials_ += scene_.materials.size() - materials_before;
-  first_added_ = std::min(first_added_, scene_.objects.back().first_face);
+  copied_corners_ += corners_of(scene_.objects.back());
   names_.emplace(copy.name, number);
   ++copies_, copied_faces_ += scene_.objects.back().face_count;
   return std::nullopt;

@@ -45,12 +45,13 @@ class CheckedCopies {
   std::optional<EditFault> fault_in(const ObjectCopy& copy) const;
   std::optional<std::string> fault_in(const Scene& added, const std::string& object) const;
 
+  std::size_t corners_of(const SceneObject& object) const;
+
   Scene& scene_;
   const AddedScenes& added_;
   std::unordered_map<std::string, std::uint32_t> names_;  // of objects that were not taken back
   std::size_t room_ = 0;                                  // faces that copies may have
-  std::size_t copied_faces_ = 0, copies_ = 0;
-  std::uint32_t first_added_ = ~0u;            // face: those of added objects come last
+  std::size_t copied_faces_ = 0, copied_corners_ = 0, copies_ = 0;
   std::unordered_set<std::string> materials_;  // names
   std::size_t added_materials_ = 0;            // of added scenes
 };

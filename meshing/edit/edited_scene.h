@@ -26,8 +26,9 @@ struct EditFault {
 
 /// Returns the first fault of the edits of a step. Looks at each edit by itself: names, ranges. `scene` has the copies of steps
 /// before; an edit may be of a copy that the step makes before it. Copies, with those that were taken back, may have as many
-/// faces in all as the scene has without them, or 100 000 if that is more; and there may be 1000. A scene of which `added` does
-/// not know is a fault, and so is one with more than 10 000 materials, with those of scenes that were added before.
+/// faces in all as the scene has without them, or 100 000 if that is more; there may be 1000, and 8 corners for each of these
+/// faces. A scene of which `added` does not know is a fault, and so is one with more than 10 000 materials, with those of scenes
+/// that were added before.
 std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene& scene, const AddedScenes& added = {});
 
 /// Returns the name of an object of an edited scene that lies beyond the box in which fault_in() lets it be moved, as objects may

@@ -87,7 +87,7 @@ bool LiveSolve::has_too_many_leaves() const {
   const bool is_full = state.leaf_count() + leaves_of_a_split > state.options.max_leaves;
   const bool was_full = leaves_at_first_end + leaves_of_a_split > state.options.max_leaves;
   if (is_full && (!was_full || progress.error.total() > much_worse * error_at_first_end)) return true;
-  return state.leaf_count() > most_growth * leaves_at_first_end;
+  return state.leaf_count() > most_growth * (leaves_at_first_end + added_leaves);
 }
 
 bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
@@ -109,7 +109,7 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
     const std::size_t leaves_before = state.leaf_count() - (edited.roots().size() - roots_before);
     BaseMesh before = std::exchange(*own_mesh_, edited);
     state.note_moved(std::move(before), plan, is_alike);
-    if (leaves_at_first_end > 0 && grows) leaves_at_first_end += state.leaf_count() - leaves_before;
+    if (leaves_at_first_end > 0 && grows) added_leaves += state.leaf_count() - leaves_before;
   } else {
     *own_mesh_ = edited;
     factor = state.note_relit(plan, is_alike);

@@ -60,6 +60,7 @@ class LiveSolve {
   double edited_at_s = 0;   ///< elapsed seconds when the last edit was taken
   /// When the solve first ended by its tolerance or a limit of the mesh: its leaves, 0 until then, and the estimated error.
   std::uint64_t leaves_at_first_end = 0;
+  std::uint64_t added_leaves = 0;  ///< the first leaves of objects that edits have added since then; not saved
   double error_at_first_end = 0;
   /// Until the first estimate after an edit: the estimated error of before.
   std::optional<double> error_before_edit;

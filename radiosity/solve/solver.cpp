@@ -54,11 +54,9 @@ constexpr std::uint64_t always_published = 12;
 // After an edit of a solve that had ended: share of the tolerance down to which a pass refines. Chosen: the tolerance is reached
 // in one pass more often than with 1.
 constexpr double back_within = 0.9;
-// Share of the squared error that a pass removes of what it refines. Measured on the furnished room: passes that refine 0.9 of it
-// remove 0.65 to 0.75 (docs/edits.md).
+// Share of the squared error that a pass removes of what it refines. Measured on the furnished room: a pass that refines 0.9 of it
+// removes 0.65 to 0.7 of it all.
 constexpr double removed_by_refining = 0.75;
-// Least share of the squared error that such a pass refines. Chosen.
-constexpr double least_share = 0.1;
 
 /// Publishes one step: every face, and no light on any.
 SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log, std::uint64_t edits) {
@@ -157,8 +155,11 @@ class Run {
   /// fine enough: then it is no more than it takes to be within the tolerance again.
   double share_to_refine() const {
     if (live_.leaves_at_first_end == 0 || options_.is_by_place()) return Pass::marked_share;
-    const double wanted = back_within * options_.tolerance / is_.error.total();
-    return std::clamp((1 - wanted * wanted) / removed_by_refining, least_share, Pass::marked_share);
+    const auto squared = [](double x) { return x * x; };
+    const ErrorEstimate& error = is_.error;
+    const double all = squared(error.total()), refinable = all - squared(error.unshot) - squared(error.balance);
+    const double excess = all - squared(back_within * options_.tolerance);
+    return refinable > 0 ? std::min(excess / (removed_by_refining * refinable), Pass::marked_share) : Pass::marked_share;
   }
 
   /// Makes a pass up to its estimate and publishes it. Returns false if it was stopped: then the last published step stands.

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace alvor {
@@ -60,6 +61,7 @@ class RowMender {
   /// one of them meets no front now: which origins are hidden may be otherwise. Requires: the row's hits have places, and it
   /// comes from rays through nothing that weakens them; `leaves` has the leaf node that each hit found, or nothing.
   Outcome mend(const PatchShape& shape, PatchId patch, std::uint64_t seed, TransportRow& row, std::span<NodeIndex> leaves) const {
+    assert(leaves.empty() || leaves.size() == row.hits.size());
     RandomStream random(seed, patch);
     const PatchPoints points = sample_points(scene_, shape, random);
     const auto corners = corners_of(scene_.mesh(), shape);
@@ -108,6 +110,11 @@ class RowMender {
 std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const MovedRoots& moved) {
   const bool may_mend = plan_.needs(Feature::refinement) && !plan_.needs(Feature::panes) && !plan_.needs(Feature::medium) &&
                         !directions_.has_weights();
+  // Rays that were added since hits were looked up last have no leaves yet.
+  const auto known_leaves = [this](NodeIndex row) {
+    auto& leaves = hit_leaves_[row];
+    return leaves.size() == rows_[row].hits.size() ? std::span(leaves) : std::span<NodeIndex>();
+  };
   const RowMender mender(scene_, before, forests_, moved, budget_);
   const std::vector<NodeIndex> rows = forests_.rows().leaves();
   std::vector<RowMender::Outcome> outcomes(rows.size(), RowMender::Outcome::unchanged);
@@ -124,7 +131,7 @@ std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const Move
     if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && (!may_mend || has_unknown)) ||
         (may_hide_otherwise && !mender.is_hidden_as_before(shape, id, options_.seed, row)))
       outcomes[n] = RowMender::Outcome::lost;
-    else if (carry_light()) outcomes[n] = mender.mend(shape, id, options_.seed, row, hit_leaves_[rows[n]]);
+    else if (carry_light()) outcomes[n] = mender.mend(shape, id, options_.seed, row, known_leaves(rows[n]));
   });
   std::vector<NodeIndex> lost;
   for (std::size_t n = 0; n < rows.size(); ++n) {

@@ -204,6 +204,12 @@ TEST(AddedScene, FaultsNameTheirField) {
   Scene round = box_and_sheet();
   round.add_face(std::vector<std::uint32_t>(900'000, 0), 0);
   EXPECT_NE(fault(thing("thing"), round).find("has too many corners"), std::string::npos);
+  round.corners.resize(round.corners.size() - 400'000);
+  round.faces.back().corner_count = 500'000;
+  const auto copied = fault_in(std::vector<SceneEdit>{thing("thing"), ObjectCopy{"again", "thing"}}, room, scenes(round));
+  ASSERT_TRUE(copied);
+  EXPECT_EQ(copied->edit, 1u);
+  EXPECT_NE(copied->reason.find("has too many corners"), std::string::npos);
   Scene motley = box_and_sheet();
   motley.materials.resize(10'001, motley.materials[0]);
   EXPECT_NE(fault(thing("thing"), motley).find("has too many materials"), std::string::npos);

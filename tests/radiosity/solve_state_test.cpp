@@ -1,3 +1,4 @@
+#include "meshing/edit/edited_scene.h"
 #include "radiosity/solve/pass.h"
 
 #include "radiosity/solve/solver.h"
@@ -46,6 +47,28 @@ TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
       expect_tiling(mesh, state.leaf_values());
     }
   }
+}
+
+// An edit may come when rays were added and nobody has looked yet which leaves they hit.
+TEST(SolveState, AnObjectMayMoveRightAfterRowsGotMoreRays) {
+  const Scene submitted = test::room_of_objects();
+  const BaseMesh before(submitted);
+  BaseMesh mesh = before;
+  RayBudget budget([] { return false; });
+  SolveState state(mesh, {.max_leaves = 20'000}, budget);
+  for (int n = 0; n < 6 && !state.rows.want_any(); ++n) run_pass(state);
+  ASSERT_TRUE(state.rows.want_any());
+  Pass(state).trace_rows();
+  ASSERT_FALSE(state.rows.want_any());
+  const std::vector<SceneEdit> edits{ObjectEdit{.name = "box", .move = Vec3{0.3, 0.2, 1}}};
+  mesh = before.edited_as(edited_scene(submitted, edits));
+  state.note_moved(before, Plan(mesh, state.options), true);
+  state.mend_moved();
+  run_pass(state);
+  expect_tiling(mesh, state.leaf_values());
+  for (const NodeIndex row : state.forests.rows().leaves())
+    for (std::size_t h = 0; h < state.rows.leaves_hit(row).size(); ++h)
+      EXPECT_EQ(state.forests.leaves().id(state.rows.leaves_hit(row)[h]).root_face(), state.rows[row].hits[h].root_face());
 }
 
 TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {

@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -88,7 +89,10 @@ class SubmittedAdditions {
   void keep() { scenes_.clear(); }
 
  private:
-  static bool is_of_server(const std::string& scene) { return scene.starts_with("scenes/") && !std::filesystem::exists(scene); }
+  static bool is_of_server(const std::string& scene) {
+    std::error_code ignored;
+    return scene.starts_with("scenes/") && !std::filesystem::is_regular_file(scene, ignored);
+  }
   std::string submitted(const std::filesystem::path& file) {
     RawScene bytes = scene_bytes(file, "");
     SceneImport import;

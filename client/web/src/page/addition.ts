@@ -21,7 +21,7 @@ export async function sendAddition(api: Api, files: File[], taken: Set<string>, 
   const scene = await sendSceneAlone(api, files);
   const name = freeNameFor(scene.displayName.replace(/\.[^.]*$/, "") || "object", taken);
   const box = await boxOf(api, scene.name, stand.isZUp).catch(async (error) => {
-    await api.scenes.deleteScene({ name: scene.name });
+    await api.scenes.deleteScene({ name: scene.name }).catch(() => undefined);
     throw error;
   });
   const [x, y, z] = moveToFloor(box, stand);

@@ -60,7 +60,7 @@ export class Editing {
     private readonly api: Api,
     private readonly send: Send,
     private readonly attempt: Attempt,
-    private readonly say: (text: string) => void,
+    private readonly note: (text: string) => void,
     private readonly nameOfSolve: () => string | undefined,
     private readonly showPlace: ShowPlace,
   ) {
@@ -330,11 +330,11 @@ export class Editing {
     if (files.length === 0) return;
     const stand = { low: this.parts.low, high: this.parts.high, centre: this.centre, isZUp: this.up.z > 0.5 };
     const solve = this.nameOfSolve();
-    this.say(`Sending ${files.map(({ name }) => name).join(", ")}`);
+    this.note(`Sending ${files.map(({ name }) => name).join(", ")}`);
     const { scene, name, edits } = await sendAddition(this.api, files, this.takenNames, stand);
     const isSameSolve = this.nameOfSolve() === solve;
     const isTaken = isSameSolve && (await this.sendAdded(name, edits));
-    if (isTaken) return this.say(`${name} was added`);
+    if (isTaken) return this.note(`${name} was added`);
     await this.api.scenes.deleteScene({ name: scene }).catch(() => undefined); // why it was refused has been said
     if (!isSameSolve) throw new Error(`${name} was not added: another solve was opened meanwhile`);
   }

@@ -48,7 +48,7 @@ const editing = new Editing(
   api,
   (step) => attempt(() => edit(step)),
   attempt,
-  say,
+  note,
   () => solve?.name,
   (place) => handle.setPlace(place),
 );
