@@ -17,33 +17,50 @@ constexpr std::size_t corners_a_face = 8, most_materials = 10'000;
 
 std::string material_of_added(const std::string& material, const std::string& object) { return material + " of " + object; }
 
+/// Appends faces to a scene, with vertices of their own. They may be faces of the same scene.
+class FaceCopier {
+ public:
+  FaceCopier(Scene& scene, const Scene& from, const Placement& turn = {}) : scene_(scene), from_(from), turn_(turn) {}
+  /// `first_material`: the number that material 0 of the other scene has in this one.
+  void append(Face face, std::uint32_t first_material = 0) {
+    std::vector<std::uint32_t> ring;
+    for (std::uint32_t k = 0; k < face.corner_count; ++k) {
+      const std::uint32_t vertex = from_.corners[face.first_corner + k];
+      const auto [own, is_new] = own_.try_emplace(vertex, static_cast<std::uint32_t>(scene_.vertices.size()));
+      if (is_new) scene_.vertices.push_back(turn_.point(from_.vertices[vertex]));
+      ring.push_back(own->second);
+    }
+    const auto points = from_.texture_points_of(face);
+    const auto colours = from_.colours_of(face);
+    scene_.add_face(ring, first_material + face.material, std::vector(points.begin(), points.end()),
+                    std::vector(colours.begin(), colours.end()));
+  }
+
+ private:
+  Scene& scene_;
+  const Scene& from_;
+  const Placement turn_;
+  std::unordered_map<std::uint32_t, std::uint32_t> own_;  // by vertex of the other scene
+};
+
+/// Appends an object of all faces from `first_face` on, and returns it.
+SceneObject& append_object(Scene& scene, std::string name, const Placement& placement, std::size_t first_face) {
+  SceneObject object{.name = std::move(name), .placement = placement, .first_face = static_cast<std::uint32_t>(first_face)};
+  object.face_count = static_cast<std::uint32_t>(scene.faces.size() - first_face);
+  return scene.objects.emplace_back(std::move(object));
+}
+
 }  // namespace
 
 void append_copy(Scene& scene, std::string name, std::uint32_t of) {
-  const std::vector<std::uint32_t> sources = faces_with_hanging(scene.objects, of);
-  std::unordered_map<std::uint32_t, std::uint32_t> copied;  // vertices
-  const auto first_face = static_cast<std::uint32_t>(scene.faces.size());
-  for (const std::uint32_t source : sources) {
-    const Face face = scene.faces[source];
-    std::vector<std::uint32_t> ring;
-    for (std::uint32_t k = 0; k < face.corner_count; ++k) {
-      const std::uint32_t vertex = scene.corners[face.first_corner + k];
-      const auto [own, is_new] = copied.try_emplace(vertex, static_cast<std::uint32_t>(scene.vertices.size()));
-      if (is_new) scene.vertices.push_back(Vec3(scene.vertices[vertex]));
-      ring.push_back(own->second);
-    }
-    const auto points = scene.texture_points_of(face);
-    const auto colours = scene.colours_of(face);
-    scene.add_face(ring, face.material, std::vector(points.begin(), points.end()), std::vector(colours.begin(), colours.end()));
-  }
-  SceneObject copy{.name = std::move(name), .placement = scene.objects[of].placement, .first_face = first_face};
-  copy.face_count = static_cast<std::uint32_t>(sources.size());
-  copy.copy_of = of;
-  scene.objects.push_back(std::move(copy));
+  const std::size_t first_face = scene.faces.size();
+  FaceCopier copier(scene, scene);
+  for (const std::uint32_t source : faces_with_hanging(scene.objects, of)) copier.append(scene.faces[source]);
+  append_object(scene, std::move(name), Placement(scene.objects[of].placement), first_face).copy_of = of;
 }
 
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added) {
-  const auto first_face = static_cast<std::uint32_t>(scene.faces.size());
+  const std::size_t first_face = scene.faces.size();
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
   for (const Material& material : added.materials) {
     if (material.texture) scene.texture_points.resize(scene.corners.size());
@@ -51,20 +68,9 @@ void append_scene(Scene& scene, std::string name, const std::string& resource_na
     scene.materials.back().name = material_of_added(material.name, name);
   }
   const Placement turn = turn_upright(added.up, scene.up);
-  std::unordered_map<std::uint32_t, std::uint32_t> own;  // vertices that faces use
-  for (const Face& face : added.faces) {
-    std::vector<std::uint32_t> ring;
-    for (const std::uint32_t vertex : added.corners_of(face)) {
-      const auto [found, is_new] = own.try_emplace(vertex, static_cast<std::uint32_t>(scene.vertices.size()));
-      if (is_new) scene.vertices.push_back(turn.point(added.vertices[vertex]));
-      ring.push_back(found->second);
-    }
-    scene.add_face(ring, first_material + face.material, added.texture_points_of(face), added.colours_of(face));
-  }
-  SceneObject object{.name = std::move(name), .placement = turn, .first_face = first_face};
-  object.face_count = static_cast<std::uint32_t>(added.faces.size());
-  object.from_scene = resource_name;
-  scene.objects.push_back(std::move(object));
+  FaceCopier copier(scene, added, turn);
+  for (const Face& face : added.faces) copier.append(face, first_material);
+  append_object(scene, std::move(name), turn, first_face).from_scene = resource_name;
 }
 
 void append_copies(Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
@@ -95,22 +101,19 @@ bool has_copies(std::span<const SceneEdit> edits) {
 
 CheckedCopies::CheckedCopies(Scene& scene, const AddedScenes& added) : scene_(scene), added_(added) {
   for (std::uint32_t n = 0; n < scene.objects.size(); ++n) {
-    const SceneObject& object = scene.objects[n];
-    if (!is_taken_back(object)) names_.emplace(object.name, n);
-    if (object.is_added()) ++copies_, copied_faces_ += object.face_count;
-    if (const auto from = added.find(object.from_scene); from != added.end()) added_materials_ += from->second->materials.size();
-    if (object.is_added()) copied_corners_ += corners_of(object);
+    if (!is_taken_back(scene.objects[n])) names_.emplace(scene.objects[n].name, n);
+    if (scene.objects[n].is_added()) count(scene.objects[n]);
   }
   for (const Material& material : scene.materials) materials_.insert(material.name);
   room_ = std::max(least_room, scene.faces.size() - copied_faces_);
 }
 
-/// Returns the number of corners of an object's own faces.
-std::size_t CheckedCopies::corners_of(const SceneObject& object) const {
-  std::size_t corners = 0;
+/// Counts an added object.
+void CheckedCopies::count(const SceneObject& object) {
+  ++copies_, copied_faces_ += object.face_count;
   for (std::uint32_t face = object.first_face; face < object.first_face + object.face_count; ++face)
-    corners += scene_.faces[face].corner_count;
-  return corners;
+    copied_corners_ += scene_.faces[face].corner_count;
+  if (const auto from = added_.find(object.from_scene); from != added_.end()) added_materials_ += from->second->materials.size();
 }
 
 /// Returns why a scene cannot be added as an object.
@@ -153,8 +156,9 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
                      "added objects, with those that were taken back, would have " + std::to_string(copied_faces_ + faces) +
                          " faces, at most " + std::to_string(room_) + " are allowed"};
   if (copied_corners_ + corners > corners_a_face * room_)
-    return EditFault{0, field, source + "has too many corners: added objects would have " + std::to_string(copied_corners_ + corners) +
-                                   ", at most " + std::to_string(corners_a_face * room_) + " are allowed"};
+    return EditFault{0, field,
+                     source + "has too many corners: added objects would have " + std::to_string(copied_corners_ + corners) +
+                         ", at most " + std::to_string(corners_a_face * room_) + " are allowed"};
   if (copies_ == most_copies)
     return EditFault{0, "copy.name", "there are 1000 added objects, with those that were taken back, as many as are kept"};
   return std::nullopt;
@@ -167,10 +171,8 @@ std::optional<EditFault> CheckedCopies::make(const ObjectCopy& copy) {
   if (copy.scene.empty()) append_copy(scene_, copy.name, names_.at(copy.of));
   else append_scene(scene_, copy.name, copy.scene, *added_.at(copy.scene));
   for (std::size_t n = materials_before; n < scene_.materials.size(); ++n) materials_.insert(scene_.materials[n].name);
-  added_materials_ += scene_.materials.size() - materials_before;
-  copied_corners_ += corners_of(scene_.objects.back());
   names_.emplace(copy.name, number);
-  ++copies_, copied_faces_ += scene_.objects.back().face_count;
+  count(scene_.objects.back());
   return std::nullopt;
 }
 

@@ -45,7 +45,7 @@ class CheckedCopies {
   std::optional<EditFault> fault_in(const ObjectCopy& copy) const;
   std::optional<std::string> fault_in(const Scene& added, const std::string& object) const;
 
-  std::size_t corners_of(const SceneObject& object) const;
+  void count(const SceneObject& object);
 
   Scene& scene_;
   const AddedScenes& added_;

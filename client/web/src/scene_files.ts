@@ -27,6 +27,9 @@ const extensionOf = (file: File) => /\.([^.]+)$/.exec(file.name)?.[1].toLowerCas
 /** The file's path within the dropped folder, or its name alone. */
 const pathOf = (file: File): string => file.webkitRelativePath || file.name;
 
+const noSceneAmong = (files: File[]) =>
+  new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}`);
+
 /** Returns the one scene among the files, or nothing if there are only parts of one. Throws SceneFileError. */
 function sceneAmong(files: File[]): File | undefined {
   const known = files.filter((file) => SCENES.includes(extensionOf(file)));
@@ -122,14 +125,14 @@ export async function sendSceneFiles(api: Api, files: File[]): Promise<Scene> {
   const scene = sceneAmong(files);
   if (scene) waiting = new SceneUpload(files, scene);
   else if (waiting) waiting.add(files);
-  else throw new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}`);
+  else throw noSceneAmong(files);
   return sendWaiting(api);
 }
 
 /** Sends a scene with its parts, all of which are among the files. Throws as sendSceneFiles() does. */
 export async function sendSceneAlone(api: Api, files: File[]): Promise<Scene> {
   const scene = sceneAmong(files);
-  if (!scene) throw new SceneFileError(`No scene among these files: ${listOf(files.map(({ name }) => name).slice(0, 5))}`);
+  if (!scene) throw noSceneAmong(files);
   return new SceneUpload(files, scene).send(api);
 }
 

@@ -7,6 +7,7 @@ import { EditSchema, type Edit } from "../gen/alvor/v1/solve_service_pb";
 import type { Bands, Parts } from "../messages";
 import { turnedUpright } from "../mirror/copies";
 import { sendSceneAlone } from "../scene_files";
+import { firstFree } from "./edits";
 
 /** Where a scene stands: `low` and `high` of the box around it, metres from `centre`, in its own coordinates. */
 export type Stand = Pick<Parts, "low" | "high"> & { centre: Bands; isZUp: boolean };
@@ -19,7 +20,7 @@ interface Box {
 /** Sends the files as a scene of their own. Returns its name, and the edits that add it as an object in the middle of the floor. */
 export async function sendAddition(api: Api, files: File[], taken: Set<string>, stand: Stand): Promise<{ scene: string; name: string; edits: Edit[] }> {
   const scene = await sendSceneAlone(api, files);
-  const name = freeNameFor(scene.displayName.replace(/\.[^.]*$/, "") || "object", taken);
+  const name = firstFree(scene.displayName.replace(/\.[^.]*$/, "") || "object", taken);
   const box = await boxOf(api, scene.name, stand.isZUp).catch(async (error) => {
     await api.scenes.deleteScene({ name: scene.name }).catch(() => undefined);
     throw error;
@@ -30,14 +31,6 @@ export async function sendAddition(api: Api, files: File[], taken: Set<string>, 
     create(EditSchema, { part: { case: "object", value: { name, move: { x, y, z } } } }),
   ];
   return { scene: scene.name, name, edits };
-}
-
-/** "plant", "plant 2". */
-export function freeNameFor(stem: string, taken: Set<string>): string {
-  for (let n = 1; ; ++n) {
-    const name = n === 1 ? stem : `${stem} ${n}`;
-    if (!taken.has(name)) return name;
-  }
 }
 
 /** Returns how far a thing is moved that is put on the middle of the floor. */

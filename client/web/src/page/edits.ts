@@ -41,7 +41,11 @@ export function areAlike(a: Edit, b: Edit): boolean {
 
 /** Returns a name for a copy: "chair.003 copy", "chair.003 copy 2". */
 export function freeName(of: string, taken: Set<string>): string {
-  const stem = `${of.replace(/ copy( \d+)?$/, "")} copy`;
+  return firstFree(`${of.replace(/ copy( \d+)?$/, "")} copy`, taken);
+}
+
+/** Returns a name that is free: "plant", "plant 2". */
+export function firstFree(stem: string, taken: Set<string>): string {
   for (let n = 1; ; ++n) {
     const name = n === 1 ? stem : `${stem} ${n}`;
     if (!taken.has(name)) return name;
