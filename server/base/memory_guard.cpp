@@ -90,8 +90,9 @@ std::uint64_t allowed_memory() {
 
 struct MemoryGuard::Relief {
   using Clock = std::chrono::steady_clock;
-  // Least time between two reliefs: trimming a heap of gigabytes takes a tenth of a second.
-  static constexpr std::chrono::seconds pause{1};
+  // After a relief none is made for this many times the time that it took: trimming a heap of gigabytes takes a tenth of a second.
+  // A longer pause would refuse work for which what was freed meanwhile has room.
+  static constexpr int pause = 4;
 
   std::shared_ptr<void> add(std::function<void()> way) {
     Lock hold(lock);
@@ -105,16 +106,18 @@ struct MemoryGuard::Relief {
   void give_back() {
     if (!lock.try_lock()) return;  // not held if another thread is doing it
     const Lock hold(lock, std::adopt_lock);
-    if (Clock::now() < last + pause) return;
+    const auto start = Clock::now();
+    if (start < next_time) return;
     for (const auto& [number, way] : ways) way();
     malloc_trim(0);  // memory limits count what the allocator keeps
-    last = Clock::now();
+    const auto end = Clock::now();
+    next_time = end + pause * (end - start);
   }
 
   Mutex lock;
   std::map<std::uint64_t, std::function<void()>> ways ALVOR_GUARDED_BY(lock);
   std::uint64_t next ALVOR_GUARDED_BY(lock) = 0;
-  Clock::time_point last ALVOR_GUARDED_BY(lock);
+  Clock::time_point next_time ALVOR_GUARDED_BY(lock);
 };
 
 MemoryGuard::MemoryGuard(std::uint64_t limit, std::uint64_t (*used)())
