@@ -84,19 +84,20 @@ Rgb PathTracer::irradiance(const SurfacePoint& point, std::uint32_t paths, PathR
 bool PathTracer::is_enclosed(const SurfacePoint& point, std::uint32_t rays, PathRandom random) const {
   const Bend start = start_at(point);
   const EvenPairs directions(random);
-  const auto meets_black_back = [&](UnitPair at) {
-    const Vec3 direction = cosine_direction(start.normal, at);
-    const Met met = behind_panes(start, direction);
-    return !met.surface && !met.is_outside;
-  };
+  std::uint32_t backs = 0, ends = 0;
+  for (std::uint32_t n = 0; n < rays; ++n)
+    backs += behind_panes(start, cosine_direction(start.normal, directions[n])).is_black_back();
+  if (2 * backs <= rays) return false;
   constexpr double grazing = 2e-4;  // sine of the angle between ray and surface
-  const auto are_mostly_backs = [&](auto at) {
-    std::uint32_t backs = 0;
-    for (std::uint32_t n = 0; n < rays; ++n) backs += meets_black_back(at(directions[n]));
-    return 2 * backs > rays;
-  };
-  return are_mostly_backs([](UnitPair at) { return at; }) &&
-         are_mostly_backs([](UnitPair at) { return UnitPair{at.u, 1 - grazing * grazing}; });
+  constexpr int most_bends = 16;
+  constexpr double nearly_all = 0.9;
+  for (std::uint32_t n = 0; n < rays; ++n) {
+    Met met = behind_panes(start, cosine_direction(start.normal, {directions[n].u, 1 - grazing * grazing}));
+    for (int bend = 0; met.surface && bend < most_bends; ++bend)
+      met = behind_panes(met.bend, cosine_direction(met.bend.normal, random.pair()));
+    ends += met.is_black_back();
+  }
+  return ends > nearly_all * rays;
 }
 
 PathTracer::Bend PathTracer::start_at(const SurfacePoint& point) const {

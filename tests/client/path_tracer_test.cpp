@@ -42,6 +42,19 @@ TEST(PathTracer, AGapIsNotEnclosedHoweverNarrow) {
   EXPECT_TRUE(PathTracer(scene).is_enclosed({{1.5, 0, 1.5}, {0, 1, 0}}, 64, PathRandom(1, 2, 3)));
 }
 
+TEST(PathTracer, UnderASeatWhoseEndsAreTheFrontsOfItsArmsIsEnclosed) {
+  for (const double gap : {0.0, 1e-3}) {
+    Scene scene = test::furnace(1, 0.5);
+    for (const double z : {0.5, 2.0}) test::add_box(scene, {1, 0, z}, {2, 0.6, z + 0.2}, false);
+    test::add_box(scene, {1.8, 0, 0.7}, {2, 0.9, 2}, false);
+    test::add_polygon(scene, {{1, 0.4, 0.7}, {1, 0.4, 2}, {1.8, 0.4, 2}, {1.8, 0.4, 0.7}}, 0);
+    test::add_polygon(scene, {{1, gap, 0.7}, {1, gap, 2}, {1, 0.4, 2}, {1, 0.4, 0.7}}, 0);
+    const PathTracer tracer(scene);
+    for (const double x : {1.01, 1.4, 1.7})
+      EXPECT_EQ(tracer.is_enclosed({{x, 0, 1.3}, {0, 1, 0}}, 256, PathRandom(1, 2, 3)), gap == 0) << x << ' ' << gap;
+  }
+}
+
 TEST(PathTracer, FacesBackToBackInOnePlaceAreBothSeen) {
   // A closed furnace cut in two by a partition of two faces in one place: irradiance must be the same as without it.
   Scene scene = test::furnace(0.5, 0.5);
