@@ -85,6 +85,16 @@ double radius_of(const Light& light) {
   return length({opening.across, opening.along, opening.height}) / 2;
 }
 
+Light moved(Light light, const Placement& motion) {
+  if (motion == Placement{}) return light;
+  light.position = motion.point(light.position);
+  light.direction = normalized(motion.direction(light.direction));
+  light.across = normalized(motion.direction(light.across));
+  const double size = length(motion.x);
+  for (double* each : {&light.radius, &light.opening.across, &light.opening.along, &light.opening.height}) *each *= size;
+  return light;
+}
+
 Rgb radiated_power(const Light& light) {
   switch (light.kind) {
     case LightKind::spot: return SpotCone(light).solid_angle() * light.intensity;

@@ -3,6 +3,7 @@
 
 #include "meshing/environment_map.h"
 #include "meshing/photometric_web.h"
+#include "meshing/placement.h"
 #include "meshing/sky_distribution.h"
 #include "meshing/vec3.h"
 #include "solution/rgb.h"
@@ -113,6 +114,10 @@ class HungWeb {
 
 /// Returns the radius about its position, metres, within which all of a light lies that is not distant.
 double radius_of(const Light& light);
+
+/// Returns a light that is not distant where a motion takes it, which turns, shifts and changes all sizes by one factor. Its
+/// intensity stays. The identity changes no bit.
+Light moved(Light light, const Placement& motion);
 
 /// Returns the power of a light that is not distant, W per band: the integral of its intensity over all directions.
 Rgb radiated_power(const Light& light);

@@ -10,12 +10,13 @@ namespace alvor {
 
 namespace {
 
-constexpr std::size_t longest_name = 1000, least_room = 100'000, most_copies = 1000;
+constexpr std::size_t longest_name = 1000, least_room = 100'000, most_copies = 1000, most_lights = 1000;
 // Corners that copies may have for each face that they may have, and materials of all added scenes. Chosen: a scene of few faces
 // must not take much memory.
 constexpr std::size_t corners_a_face = 8, most_materials = 10'000;
 
-std::string material_of_added(const std::string& material, const std::string& object) { return material + " of " + object; }
+/// Returns the name of a material or a light that comes with an added object.
+std::string name_of_added(const std::string& part, const std::string& object) { return part + " of " + object; }
 
 /// Appends faces to a scene, with vertices of their own. They may be faces of the same scene.
 class FaceCopier {
@@ -50,13 +51,35 @@ SceneObject& append_object(Scene& scene, std::string name, const Placement& plac
   return scene.objects.emplace_back(std::move(object));
 }
 
+/// Appends lights that come with an object.
+void append_lights(Scene& scene, SceneObject& object, std::vector<Light> lights, const Placement& turn = {}) {
+  for (Light& light : lights) {
+    light.name = name_of_added(light.name, object.name);
+    object.lights.push_back(light.name);
+    scene.lights.push_back(moved(std::move(light), turn));
+  }
+}
+
+/// Returns the names of the lights that came with an object or with one that hangs from it.
+std::vector<std::string> names_of_lights(const Scene& scene, std::uint32_t object) {
+  std::vector<std::string> names;
+  for (const std::uint32_t each : objects_with_hanging(scene.objects, object))
+    names.insert(names.end(), scene.objects[each].lights.begin(), scene.objects[each].lights.end());
+  return names;
+}
+
 }  // namespace
 
 void append_copy(Scene& scene, std::string name, std::uint32_t of) {
   const std::size_t first_face = scene.faces.size();
   FaceCopier copier(scene, scene);
   for (const std::uint32_t source : faces_with_hanging(scene.objects, of)) copier.append(scene.faces[source]);
-  append_object(scene, std::move(name), Placement(scene.objects[of].placement), first_face).copy_of = of;
+  std::vector<Light> lights;
+  for (const std::string& each : names_of_lights(scene, of))
+    lights.push_back(*std::ranges::find(scene.lights, each, &Light::name));
+  SceneObject& copy = append_object(scene, std::move(name), Placement(scene.objects[of].placement), first_face);
+  copy.copy_of = of;
+  append_lights(scene, copy, std::move(lights));
 }
 
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added) {
@@ -65,12 +88,14 @@ void append_scene(Scene& scene, std::string name, const std::string& resource_na
   for (const Material& material : added.materials) {
     if (material.texture) scene.texture_points.resize(scene.corners.size());
     scene.materials.push_back(material);
-    scene.materials.back().name = material_of_added(material.name, name);
+    scene.materials.back().name = name_of_added(material.name, name);
   }
   const Placement turn = turn_upright(added.up, scene.up);
   FaceCopier copier(scene, added, turn);
   for (const Face& face : added.faces) copier.append(face, first_material);
-  append_object(scene, std::move(name), turn, first_face).from_scene = resource_name;
+  SceneObject& object = append_object(scene, std::move(name), turn, first_face);
+  object.from_scene = resource_name;
+  append_lights(scene, object, added.lights, turn);
 }
 
 void append_copies(Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
@@ -105,12 +130,13 @@ CheckedCopies::CheckedCopies(Scene& scene, const AddedScenes& added) : scene_(sc
     if (scene.objects[n].is_added()) count(scene.objects[n]);
   }
   for (const Material& material : scene.materials) materials_.insert(material.name);
+  for (const Light& light : scene.lights) lights_.insert(light.name);
   room_ = std::max(least_room, scene.faces.size() - copied_faces_);
 }
 
 /// Counts an added object.
 void CheckedCopies::count(const SceneObject& object) {
-  ++copies_, copied_faces_ += object.face_count;
+  ++copies_, copied_faces_ += object.face_count, copied_lights_ += object.lights.size();
   for (std::uint32_t face = object.first_face; face < object.first_face + object.face_count; ++face)
     copied_corners_ += scene_.faces[face].corner_count;
   if (const auto from = added_.find(object.from_scene); from != added_.end()) added_materials_ += from->second->materials.size();
@@ -118,17 +144,32 @@ void CheckedCopies::count(const SceneObject& object) {
 
 /// Returns why a scene cannot be added as an object.
 std::optional<std::string> CheckedCopies::fault_in(const Scene& added, const std::string& object) const {
-  if (!added.lights.empty())
-    return "has light '" + added.lights.front().name + "', which is no face: only faces can be added, and they may emit";
-  const bool emits =
-      std::ranges::any_of(added.faces, [&](const Face& face) { return !added.materials[face.material].emission.is_zero(); });
+  const auto distant = std::ranges::find_if(added.lights, &Light::is_distant);
+  if (distant != added.lights.end())
+    return "has light '" + distant->name + "', which shines from infinitely far away: only lamps can be added";
+  const bool emits = !added.lights.empty() || std::ranges::any_of(added.faces, [&](const Face& face) {
+    return !added.materials[face.material].emission.is_zero();
+  });
   if (emits && added.quantity != scene_.quantity)
     return "emits in lumens, and the solve's scene in watts, or the other way round";
   if (added_materials_ + added.materials.size() > most_materials)
     return "has too many materials: added objects may have " + std::to_string(most_materials);
   for (const Material& material : added.materials)
-    if (const std::string name = material_of_added(material.name, object); materials_.contains(name))
+    if (const std::string name = name_of_added(material.name, object); materials_.contains(name))
       return "has a material whose name would be '" + name + "', as that of another one: give the object another name";
+  std::vector<std::string> lights;
+  for (const Light& light : added.lights) lights.push_back(light.name);
+  return fault_in_lights(lights, object);
+}
+
+/// Returns why lights of these names cannot be added with an object.
+std::optional<std::string> CheckedCopies::fault_in_lights(std::span<const std::string> names, const std::string& object) const {
+  if (copied_lights_ + names.size() > most_lights)
+    return "has too many lights: added objects may have " + std::to_string(most_lights);
+  std::unordered_set<std::string> own;
+  for (const std::string& light : names)
+    if (const std::string name = name_of_added(light, object); lights_.contains(name) || !own.insert(name).second)
+      return "has a light whose name would be '" + name + "', as that of another one: give the object another name";
   return std::nullopt;
 }
 
@@ -147,6 +188,8 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
   } else {
     const auto of = names_.find(copy.of);
     if (of == names_.end()) return EditFault{0, field, source + "is no object of the scene"};
+    if (const auto reason = fault_in_lights(names_of_lights(scene_, of->second), copy.name))
+      return EditFault{0, field, source + *reason};
     for (const std::uint32_t face : faces_with_hanging(scene_.objects, of->second))
       ++faces, corners += scene_.faces[face].corner_count;
   }
@@ -167,10 +210,11 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
 std::optional<EditFault> CheckedCopies::make(const ObjectCopy& copy) {
   if (auto fault = fault_in(copy)) return fault;
   const auto number = static_cast<std::uint32_t>(scene_.objects.size());
-  const std::size_t materials_before = scene_.materials.size();
+  const std::size_t materials_before = scene_.materials.size(), lights_before = scene_.lights.size();
   if (copy.scene.empty()) append_copy(scene_, copy.name, names_.at(copy.of));
   else append_scene(scene_, copy.name, copy.scene, *added_.at(copy.scene));
   for (std::size_t n = materials_before; n < scene_.materials.size(); ++n) materials_.insert(scene_.materials[n].name);
+  for (std::size_t n = lights_before; n < scene_.lights.size(); ++n) lights_.insert(scene_.lights[n].name);
   names_.emplace(copy.name, number);
   count(scene_.objects.back());
   return std::nullopt;

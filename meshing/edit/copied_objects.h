@@ -15,12 +15,12 @@
 
 namespace alvor {
 
-/// Appends a copy of an object and of those that hang from it, as one object. Its faces, vertices and corners come after all
-/// others. Requires: `of` is the number of an object.
+/// Appends a copy of an object and of those that hang from it, as one object. Its faces, vertices, corners and lights come after
+/// all others; lights are named "LIGHT of NAME". Requires: `of` is the number of an object.
 void append_copy(Scene& scene, std::string name, std::uint32_t of);
 
-/// Appends all faces of another scene as one object, turned where that has another up axis. They and its materials come after all
-/// others; these are named "MATERIAL of NAME".
+/// Appends all faces and lights of another scene as one object, turned where that has another up axis. They and its materials
+/// come after all others; these, and the lights, are named "MATERIAL of NAME". Requires: no light is distant.
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added);
 
 /// Appends the copies among `edits`, in their order. Those that were taken back are hidden, and have other names: "NAME (taken
@@ -44,6 +44,7 @@ class CheckedCopies {
  private:
   std::optional<EditFault> fault_in(const ObjectCopy& copy) const;
   std::optional<std::string> fault_in(const Scene& added, const std::string& object) const;
+  std::optional<std::string> fault_in_lights(std::span<const std::string> names, const std::string& object) const;
 
   void count(const SceneObject& object);
 
@@ -51,9 +52,9 @@ class CheckedCopies {
   const AddedScenes& added_;
   std::unordered_map<std::string, std::uint32_t> names_;  // of objects that were not taken back
   std::size_t room_ = 0;                                  // faces that copies may have
-  std::size_t copied_faces_ = 0, copied_corners_ = 0, copies_ = 0;
-  std::unordered_set<std::string> materials_;  // names
-  std::size_t added_materials_ = 0;            // of added scenes
+  std::size_t copied_faces_ = 0, copied_corners_ = 0, copied_lights_ = 0, copies_ = 0;
+  std::unordered_set<std::string> materials_, lights_;  // names
+  std::size_t added_materials_ = 0;                     // of added scenes
 };
 
 }  // namespace alvor

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -58,7 +59,7 @@ class Editor {
     Light* const light = lights_.find(edit.name);
     if (!light) return;  // daylight has replaced it
     if (edit.intensity) light->intensity = *edit.intensity;
-    if (edit.position) light->position = *edit.position;
+    if (edit.position) light->position = *edit.position, placed_.insert(edit.name);
     if (edit.direction) aim(*light, normalized(*edit.direction));
     if (edit.cone) light->inner_cone = edit.cone->inner, light->outer_cone = edit.cone->outer;
     if (edit.web) light->web = std::make_shared<const PhotometricWeb>(*edit.web);
@@ -129,10 +130,24 @@ class Editor {
         if (moves(*own)) object.motion = object.motion * motion_of(own->second, boxes->of_object[n], scene_.up);
         object.is_hidden = object.is_hidden || own->second.hidden.value_or(false);
       }
-      if (const double shown = object.is_hidden ? 0 : dim[n]; shown != 1) dim_faces(object, shown);
+      if (const double shown = object.is_hidden ? 0 : dim[n]; shown != 1) {
+        dim_faces(object, shown);
+        for (const std::string& name : object.lights) lights_.find(name)->intensity *= shown;
+      }
       if (object.motion == Placement{}) continue;
       object.placement = object.motion * object.placement;
       move_faces(object);
+      move_lights(object);
+    }
+  }
+  /// Moves the lights that came with an object, but for what an edit has said of them.
+  void move_lights(const SceneObject& object) {
+    for (const std::string& name : object.lights) {
+      Light& light = *lights_.find(name);
+      const Light was = light;
+      light = moved(was, object.motion);
+      if (placed_.contains(name)) light.position = was.position;
+      if (submitted_aims_.contains(name)) light.direction = was.direction, light.across = was.across;
     }
   }
   void move_faces(const SceneObject& object) {
@@ -166,6 +181,7 @@ class Editor {
   NamedParts<Light> lights_{scene_.lights};
   NamedParts<SceneObject> objects_{scene_.objects};
   std::map<std::string, double> light_dim_;                      // by name
+  std::set<std::string> placed_;                                 // names of lights whose positions an edit has set
   std::map<std::string, std::pair<Vec3, Vec3>> submitted_aims_;  // Light::direction and across, of lights that were aimed
   std::map<std::size_t, ObjectEdit> object_edits_;               // by number of the object
 };

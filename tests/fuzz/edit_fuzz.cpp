@@ -26,7 +26,7 @@ std::shared_ptr<const SceneContent> room() {
   return std::make_shared<const SceneContent>(SceneContent{std::move(scene), std::move(mesh)});
 }
 
-/// Returns scenes that can be added: one of the other up axis, and one with a lamp that is no face, which cannot.
+/// Returns scenes that can be added: both of the other up axis, one with a lamp that is no face.
 AddedContents others() {
   AddedContents others;
   for (const bool has_lamp : {false, true}) {

@@ -191,8 +191,19 @@ TEST(AddedScene, FaultsNameTheirField) {
             "copy.scene: is given, and so is copy.of");
   EXPECT_EQ(fault(thing("box"), box_and_sheet()), "copy.name: there is an object 'box'");
   Scene lit = box_and_sheet();
-  lit.lights = {Light{"bulb", LightKind::point, {1, 1, 1}, {0, 1, 0}}};
-  EXPECT_NE(fault(thing("thing"), lit).find("copy.scene: 'scenes/thing' has light 'bulb'"), std::string::npos);
+  lit.lights = {Light{"sun", LightKind::directional, {1, 1, 1}}};
+  EXPECT_NE(fault(thing("thing"), lit).find("copy.scene: 'scenes/thing' has light 'sun'"), std::string::npos);
+  lit.lights = {Light{"bulb", LightKind::point, {1, 1, 1}}, Light{"bulb", LightKind::point, {1, 1, 1}}};
+  EXPECT_NE(fault(thing("thing"), lit).find("a light whose name would be 'bulb of thing'"), std::string::npos);
+  lit.lights.clear();
+  for (int n = 0; n < 1001; ++n) lit.lights.push_back({std::to_string(n), LightKind::point, {1, 1, 1}});
+  EXPECT_NE(fault(thing("thing"), lit).find("too many lights"), std::string::npos);
+  lit.lights.resize(501);
+  EXPECT_EQ(fault(thing("thing"), lit), "");
+  const auto twice = fault_in(std::vector<SceneEdit>{thing("thing"), ObjectCopy{"again", "thing"}}, room, scenes(lit));
+  ASSERT_TRUE(twice);
+  EXPECT_EQ(twice->edit, 1u);
+  EXPECT_NE(twice->reason.find("too many lights"), std::string::npos);
   Scene photometric = box_and_sheet();
   photometric.quantity = Quantity::photometric;
   EXPECT_NE(fault(thing("thing"), photometric).find("copy.scene: 'scenes/thing' emits in lumens"), std::string::npos);
@@ -220,6 +231,86 @@ TEST(AddedScene, FaultsNameTheirField) {
   const auto taken = fault_in(std::vector<SceneEdit>{thing("thing")}, named, scenes(same));
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->field, "copy.scene");
+}
+
+/// A box with a spot above it that shines down, in a scene where z points up.
+Scene box_with_spot() {
+  Scene scene;
+  scene.up = UpAxis::z;
+  scene.materials = {test::grey(0, 0.5)};
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, false);
+  Light spot{"spot", LightKind::spot, {2, 3, 4}, {0.25, 0.5, 3}};
+  spot.direction = {0, 0, -1};
+  spot.radius = 0.1;
+  scene.lights = {spot};
+  return scene;
+}
+
+void expect_near(Vec3 a, Vec3 b) { EXPECT_LT(length(a - b), 1e-12) << a.x << ' ' << a.y << ' ' << a.z; }
+
+TEST(AddedScene, BringsItsLampsWhichGoWithTheObject) {
+  Scene room = test::room_of_objects();  // y points up
+  room.lights = {Light{"bulb", LightKind::point, {1, 1, 1}, {1, 2, 1}}};
+  const AddedScenes added = scenes(box_with_spot());
+  const auto light_after = [&](std::vector<SceneEdit> edits) {
+    edits.insert(edits.begin(), thing("thing"));
+    EXPECT_FALSE(fault_in(edits, room, added));
+    const Scene edited = edited_scene(room, edits, added);
+    EXPECT_FALSE(find_fault(edited));
+    EXPECT_EQ(edited.lights.size(), 2u);
+    EXPECT_EQ(edited.lights[0], room.lights[0]);
+    EXPECT_EQ(edited.lights[1].name, "spot of thing");
+    return edited.lights[1];
+  };
+  const Light upright = light_after({});
+  expect_near(upright.position, {0.25, 3, -0.5});
+  expect_near(upright.direction, {0, -1, 0});
+  EXPECT_EQ(upright.intensity, (Rgb{2, 3, 4}));
+
+  expect_near(light_after({ObjectEdit{.name = "thing", .move = Vec3{1, 0, 2}}}).position, {1.25, 3, 1.5});
+  // A quarter turn about the box's middle, (0.5, 0.5, -0.5), and about x: what was up is at the front.
+  const Light turned = light_after({ObjectEdit{.name = "thing", .turn = 90, .turn_axis = Vec3{1, 0, 0}}});
+  expect_near(turned.position, {0.25, 0.5, 2});
+  expect_near(turned.direction, {0, 0, -1});
+  const Light small = light_after({ObjectEdit{.name = "thing", .scale = 0.5}});
+  expect_near(small.position, {0.375, 1.75, -0.5});
+  EXPECT_EQ(small.radius, 0.05);
+  EXPECT_EQ(small.intensity, upright.intensity);
+  EXPECT_EQ(light_after({ObjectEdit{.name = "thing", .dim = 0.5}}).intensity, (Rgb{1, 1.5, 2}));
+  EXPECT_TRUE(light_after({ObjectEdit{.name = "thing", .hidden = true}}).intensity.is_zero());
+
+  const Light placed = light_after({ObjectEdit{.name = "thing", .move = Vec3{1, 0, 2}},
+                                    LightEdit{.name = "spot of thing", .dim = 2, .position = Vec3{1, 1, 1}}});
+  expect_near(placed.position, {1, 1, 1});
+  EXPECT_EQ(placed.intensity, (Rgb{4, 6, 8}));
+  const Light aimed = light_after({LightEdit{.name = "spot of thing", .direction = Vec3{1, 0, 0}},
+                                   ObjectEdit{.name = "thing", .move = Vec3{1, 0, 2}, .turn = 90}});
+  expect_near(aimed.direction, {1, 0, 0});
+  expect_near(light_after({DaylightEdit{Daylight{}}}).position, upright.position);
+}
+
+TEST(AddedScene, LampsAreCopiedAndTakenBackWithTheirObject) {
+  const Scene room = test::room_of_objects();
+  const AddedScenes added = scenes(box_with_spot());
+  const EditStep first{.edits = {thing("thing")}};
+  const EditStep second{.edits = {ObjectCopy{"another", "thing"}, ObjectEdit{.name = "another", .move = Vec3{1, 0, 0}}}};
+  const EditStep undo{.kind = EditStep::Kind::undo, .edits = {}};
+  const auto after = [&](const std::vector<EditStep>& steps) {
+    return edited_scene(room, *edits_that_hold(steps), added).lights;
+  };
+  const auto both = after({first, second});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[1].name, "spot of thing of another");
+  expect_near(both[1].position, both[0].position + Vec3{1, 0, 0});
+  EXPECT_EQ(both[1].intensity, both[0].intensity);
+  const auto one = after({first, second, undo});
+  ASSERT_EQ(one.size(), 2u) << "numbers of lights stay";
+  EXPECT_FALSE(one[0].intensity.is_zero());
+  EXPECT_TRUE(one[1].intensity.is_zero());
+  const auto again = after({first, undo, first});
+  ASSERT_EQ(again.size(), 2u);
+  EXPECT_TRUE(again[0].intensity.is_zero());
+  EXPECT_EQ(again[1].name, "spot of thing");
 }
 
 TEST(AddedScene, MayNotLieFarFromTheOther) {

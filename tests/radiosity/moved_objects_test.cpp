@@ -114,6 +114,11 @@ struct Addition {
 std::vector<Addition> additions() {
   const auto table = std::make_shared<const Scene>(table_with_lamp());
   const auto mesh = std::make_shared<const BaseMesh>(*table);
+  Scene lamp = *table;
+  lamp.faces.pop_back();
+  lamp.lights = {Light{"spot", LightKind::spot, {2, 2, 2}, {0.4, 1.2, 0.3}}};
+  lamp.lights[0].direction = {0, -1, 0};
+  const auto lit = std::make_shared<const Scene>(std::move(lamp));
   return {{"second box", ObjectCopy{"second box", "box"}, {0.8, 0.3, 1}, {}, {}, false},
           {"second lamp", ObjectCopy{"second lamp", "lamp"}, {1.2, -0.3, 1}, {}, {}, true},
           {"table",
@@ -121,6 +126,12 @@ std::vector<Addition> additions() {
            {1.2, 0, 1},
            {{"scenes/table", table}},
            {{"scenes/table", mesh}},
+           true},
+          {"lit table",
+           ObjectCopy{.name = "lit table", .of = "", .scene = "scenes/lit"},
+           {1.2, 0, 1},
+           {{"scenes/lit", lit}},
+           {{"scenes/lit", std::make_shared<const BaseMesh>(*lit)}},
            true}};
 }
 

@@ -154,7 +154,7 @@ void add_edit_command(CLI::App& app) {
                  "NEW=NAME: add an object, a copy of another one as the scene was submitted with it");
   add_repeatable(
       "--add", options->additions, "ADDITION",
-      "NEW=FILE: add an object, all faces of a scene file, where the file has them; the file is submitted as a scene of "
+      "NEW=FILE: add an object, all faces and lamps of a scene file, where the file has them; the file is submitted as a scene of "
       "its own, which stays. Or NEW=scenes/SCENE: a scene of the server");
   add_repeatable("--move", options->moves, "MOVE",
                  "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it");

@@ -27,10 +27,11 @@ export interface Parts {
   /** Of the box around all that was submitted, metres from the middle of the mesh. */
   low: Bands;
   high: Bands;
-  lights: { name: string; intensity: Bands; position?: Bands }[];
+  /** `position`: where a person can place it. `addedWith`: the added object that it came with. */
+  lights: { name: string; intensity: Bands; isFar: boolean; position?: Bands; addedWith?: string }[];
   /**
    * Objects with faces, their own or of objects that hang from them. `parent`: what it hangs from. `isAdded`: by an edit, which may have been
-   * taken back. `shines`: faces of it emit. `isRoom`: it is as long and wide as the scene. `low`, `high`: of the box around it, metres from
+   * taken back. `shines`: faces of it emit, or lights came with it. `isRoom`: it is as long and wide as the scene. `low`, `high`: of the box around it, metres from
    * the middle of the mesh.
    */
   objects: { name: string; parent?: string; isAdded: boolean; shines: boolean; isRoom: boolean; low: Bands; high: Bands }[];

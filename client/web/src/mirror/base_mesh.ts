@@ -3,6 +3,7 @@
 import { Quantity, UpAxis, type Light, type Material, type ReadMeshResponse, type Rgb, type SceneObject } from "../gen/alvor/v1/scene_service_pb";
 import type { Look, LookOfObject } from "../gen/alvor/v1/solve_service_pb";
 import { type Blend, blendOnQuad } from "./blend";
+import { isAddition } from "./copies";
 import { GRID } from "./mirror";
 
 /** Corners are numbered through all roots: corner c of root r is firstCorner[r] + c, and so is the edge that begins there. */
@@ -26,6 +27,8 @@ export class BaseMesh {
   /** Lights of the scene that are not faces, and its objects, in the order of their faces. */
   readonly lights: Light[];
   readonly objects: SceneObject[];
+  /** Lights that came with objects that edits have added, by the name of the object. */
+  readonly lightsOfAdded: ReadonlyMap<string, Light[]>;
   /** Some material has a texture, and so corners have texture coordinates. */
   readonly hasTextures: boolean;
   /** Some face has colours at its corners; corners of the other faces are white then. They multiply the reflectance. */
@@ -69,7 +72,8 @@ export class BaseMesh {
     this.isZUp = messages[0]?.upAxis === UpAxis.Z;
     this.isPhotometric = messages[0]?.quantity === Quantity.PHOTOMETRIC;
     this.materials = messages.flatMap((message) => message.sceneMaterials);
-    this.lights = messages.flatMap((message) => message.sceneLights);
+    this.lights = messages.flatMap((message) => (isAddition(message) ? [] : message.sceneLights));
+    this.lightsOfAdded = new Map(messages.filter(isAddition).map(({ sceneObjects: [{ name }], sceneLights }) => [name, sceneLights]));
     this.objects = messages.flatMap((message) => message.sceneObjects);
     this.corners = Float64Array.from(messages.flatMap((message) => message.cornerCoordinates));
     const framedNumbers = messages.slice(0, framed).reduce((count, { cornerCoordinates }) => count + cornerCoordinates.length, 0);

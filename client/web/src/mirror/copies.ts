@@ -2,10 +2,12 @@
 
 import { clone, create } from "@bufbuild/protobuf";
 import {
+  LightSchema,
   MaterialSchema,
   ReadMeshResponseSchema,
   SceneObjectSchema,
   UpAxis,
+  type Light,
   type ReadMeshResponse,
   type SceneObject,
 } from "../gen/alvor/v1/scene_service_pb";
@@ -60,8 +62,19 @@ function withCopy(messages: ReadMeshResponse[], copy: LookOfObject): ReadMeshRes
   }
   const { name, firstFace, faceCount } = copy;
   added.sceneObjects.push(create(SceneObjectSchema, { name, firstFace, faceCount, copyOf: copy.copyOf }));
+  const source = objects[copy.copyOf!].name;
+  const lights = messages.find((message) => isAddition(message) && message.sceneObjects[0].name === source)?.sceneLights ?? [];
+  added.sceneLights.push(...lightsOf(lights, name));
   return [...messages, added];
 }
+
+/** Whether a message has an object that an edit added, and the lights that came with it. */
+export const isAddition = ({ sceneObjects: [object] }: ReadMeshResponse) =>
+  object !== undefined && (object.copyOf !== undefined || object.fromScene !== "");
+
+/** Lights that come with an object. */
+const lightsOf = (lights: Light[], object: string) =>
+  lights.map((light) => Object.assign(clone(LightSchema, light), { name: `${light.name} of ${object}` }));
 
 const countOf = <T>(messages: ReadMeshResponse[], list: (message: ReadMeshResponse) => T[]) =>
   messages.reduce((count, message) => count + list(message).length, 0);
@@ -106,6 +119,7 @@ function withScene(messages: ReadMeshResponse[], object: LookOfObject, added: Re
   const { name, firstFace, faceCount, fromScene } = object;
   const holder = create(ReadMeshResponseSchema, {
     sceneObjects: [create(SceneObjectSchema, { name, firstFace, faceCount, fromScene })],
+    sceneLights: added.flatMap(({ sceneLights }) => lightsOf(sceneLights, name)),
   });
   return alike([...messages, ...parts, holder]);
 }

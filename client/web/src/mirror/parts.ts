@@ -19,7 +19,7 @@ interface Extent {
 function extentsOf(mesh: BaseMesh): Pick<Parts, "low" | "high" | "objects"> {
   const shines = mesh.materials.map(({ emission }) => Math.max(...bandsOf(emission)) > 0);
   const nothing = (): Extent => ({ low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity], shines: false });
-  const extents = mesh.objects.map(nothing);
+  const extents = mesh.objects.map(({ name }) => ({ ...nothing(), shines: (mesh.lightsOfAdded.get(name)?.length ?? 0) > 0 }));
   const all = nothing();
   const add = (to: Extent, of: Extent) => {
     to.low = to.low.map((x, k) => Math.min(x, of.low[k]));
@@ -55,11 +55,17 @@ function extentsOf(mesh: BaseMesh): Pick<Parts, "low" | "high" | "objects"> {
 /** Requires: no edit was applied yet. */
 export function partsOf(mesh: BaseMesh): Parts {
   return {
-    lights: mesh.lights.map(({ name, kind, intensity, position }) => ({
-      name,
-      intensity: bandsOf(intensity),
-      position: NEAR.includes(kind) ? [position?.x ?? 0, position?.y ?? 0, position?.z ?? 0] : undefined,
-    })),
+    lights: [
+      ...mesh.lights.map(({ name, kind, intensity, position }) => ({
+        name,
+        intensity: bandsOf(intensity),
+        isFar: !NEAR.includes(kind),
+        position: NEAR.includes(kind) ? ([position?.x ?? 0, position?.y ?? 0, position?.z ?? 0] as Bands) : undefined,
+      })),
+      ...[...mesh.lightsOfAdded].flatMap(([addedWith, lights]) =>
+        lights.map(({ name, intensity }) => ({ name, intensity: bandsOf(intensity), isFar: false, addedWith })),
+      ),
+    ],
     ...extentsOf(mesh),
     materials: mesh.materials.map(({ name, emission, reflectance, texture }) => ({
       name,

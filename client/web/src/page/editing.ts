@@ -97,9 +97,10 @@ export class Editing {
       return names.length > 0 ? [options] : [];
     };
     const there = parts.objects.filter(({ name, isAdded }) => !isAdded || copies.has(name));
+    const lights = parts.lights.filter(({ addedWith }) => addedWith === undefined || copies.has(addedWith));
     const named = (counts: (object: Parts["objects"][0]) => boolean) => there.filter(counts).map(({ name }) => name);
     select("edit-part").replaceChildren(
-      ...group("Lights", "light", parts.lights.map(({ name }) => name)),
+      ...group("Lights", "light", lights.map(({ name }) => name)),
       ...group("Lamps", "object", named(({ shines }) => shines)),
       ...group("Objects", "object", named(({ shines }) => !shines)),
       ...group("Materials", "material", parts.materials.map(({ name }) => name)),
@@ -189,7 +190,7 @@ export class Editing {
     let emission = material?.emission;
     const bands = (value: { r: number; g: number; b: number }): Bands => [value.r, value.g, value.b];
     for (const { part } of edits) {
-      if (part.case === "daylight" && light && !light.position) [dim, intensity] = [1, light.intensity]; // it takes the place of far lights
+      if (part.case === "daylight" && light?.isFar) [dim, intensity] = [1, light.intensity]; // it takes the place of far lights
       if (part.case !== "light" && part.case !== "object" && part.case !== "material") continue;
       if (part.case !== kind || part.value.name !== name) continue;
       if (part.case !== "material") dim = part.value.dim ?? dim;

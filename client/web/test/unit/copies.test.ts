@@ -1,6 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { MaterialSchema, ReadMeshResponseSchema, UpAxis } from "../../src/gen/alvor/v1/scene_service_pb";
+import { LightSchema, Light_Kind, MaterialSchema, ReadMeshResponseSchema, UpAxis } from "../../src/gen/alvor/v1/scene_service_pb";
 import { LookOfObjectSchema } from "../../src/gen/alvor/v1/solve_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { addedScenes, withAdded } from "../../src/mirror/copies";
@@ -97,6 +97,29 @@ describe("added objects", () => {
     const framed = new BaseMesh(all, own.length);
     expect([framed.centre, framed.extent]).toEqual([before.centre, before.extent]); // wherever what was added lies
     expect(partsOf(framed)).toMatchObject({ low: partsOf(before).low, high: partsOf(before).high });
+  });
+  it("bring the lights of their scene, also to copies of them", () => {
+    const lamp = create(ReadMeshResponseSchema, {
+      cornerCounts: [3],
+      materials: [0],
+      sceneFaces: [0],
+      secondSceneFaces: [0],
+      cornerCoordinates: [0, 0, 0, 1, 0, 0, 0, 2, 3],
+      neighbours: [0n, 0n, 0n],
+      sceneMaterials: [{ name: "wood" }],
+      sceneLights: [{ name: "bulb", kind: Light_Kind.POINT, intensity: { r: 1, g: 2, b: 3 } }],
+    });
+    const own = [{ ...messages[0], sceneLights: [create(LightSchema, { name: "sun", kind: Light_Kind.DIRECTIONAL })] }, messages[1]];
+    const object = create(LookOfObjectSchema, { number: 2, name: "lamp", firstFace: 4, faceCount: 1, fromScene: "scenes/l", firstMaterial: 0 });
+    const mesh = new BaseMesh(withAdded(own, { objects: [object, copy(3, 2, 5, 1)] }, new Map([["scenes/l", [lamp]]])), own.length);
+    const intensity = [1, 2, 3];
+    expect(partsOf(mesh).lights).toEqual([
+      { name: "sun", intensity: [0, 0, 0], isFar: true, position: undefined },
+      { name: "bulb of lamp", intensity, isFar: false, addedWith: "lamp" },
+      { name: "bulb of lamp of copy 3", intensity, isFar: false, addedWith: "copy 3" },
+    ]);
+    expect(partsOf(mesh).objects.map(({ name, shines }) => [name, shines])).toEqual([["thing", false], ["part", false], ["lamp", true], ["copy 3", true]]);
+    expect(lamp.sceneLights[0].name).toBe("bulb"); // it may be added again
   });
   it("leave what is known of the light", () => {
     const before = new Mirror(3);

@@ -114,7 +114,7 @@ describe("a mesh with a look", () => {
 
   it("has lights, lamps and materials to edit", () => {
     const parts = partsOf(mesh());
-    expect(parts.lights).toEqual([{ name: "bulb", intensity: [3, 3, 3], position: [1, 2, 3] }]);
+    expect(parts.lights).toEqual([{ name: "bulb", intensity: [3, 3, 3], isFar: false, position: [1, 2, 3] }]);
     expect(parts.objects).toMatchObject(["left", "right"].map((name) => ({ name, shines: true, isRoom: true })));
     expect(parts.objects.map(({ low, high }) => [low, high])).toEqual([0, 1].map((z) => [[-0.5, -0.5, z], [0.5, 0.5, z]])); // from the middle
     expect(parts.materials.map(({ name }) => name)).toEqual(["wall", "lamp"]);
