@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -86,7 +87,7 @@ class Triangulation {
   DisplayMesh build() {
     out_.up = mesh_.up();
     out_.quantity = mesh_.quantity();
-    out_.lights.assign(mesh_.lights().begin(), mesh_.lights().end());
+    std::ranges::remove_copy_if(mesh_.lights(), std::back_inserter(out_.lights), &Light::is_hidden);
     out_.materials.assign(mesh_.materials().begin(), mesh_.materials().end());
     out_.objects.assign(mesh_.objects().begin(), mesh_.objects().end());
     for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);

@@ -27,18 +27,18 @@ void append_run(std::vector<FaceTriangles>& runs, const FaceTriangles& run);
 /// counter-clockwise, so the side opposite its first vertex lies on the leaf's outline. Triangles share a vertex only where the
 /// surface is smooth and has one material, texture point and colour.
 struct DisplayMesh {
-  std::vector<Vec3> positions;               ///< metres
-  std::vector<Vec3> normals;                 ///< unit; point to the front
-  std::vector<RgbF> irradiance;              ///< H, W/m2
-  std::vector<RgbF> radiosity;               ///< B = E + rho H + transmitted, W/m2; rho: the material's mean, times the colour
-  std::vector<RgbF> transmitted;             ///< tau H of the other side, W/m2; none if no material is translucent
+  std::vector<Vec3> positions;    ///< metres
+  std::vector<Vec3> normals;      ///< unit; point to the front
+  std::vector<RgbF> irradiance;   ///< H, W/m2
+  std::vector<RgbF> radiosity;    ///< B = E + rho H + transmitted, W/m2; rho: the material's mean, times the colour
+  std::vector<RgbF> transmitted;  ///< tau H of the other side, W/m2; none if no material is translucent
   std::vector<float> errors;  ///< told error of H: one standard deviation of the mean of the bands, W/m2; none if none were told
   std::vector<TexturePoint> texture_points;  ///< of the vertices; none if no material has a texture
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<FaceTriangles> faces;  ///< whence the triangles come, in their order; none if that is not known
   UpAxis up = UpAxis::y;
   Quantity quantity = Quantity::radiometric;  ///< photometric: lx instead of W/m2
-  std::vector<Light> lights;                  ///< of the scene, those that are not faces
+  std::vector<Light> lights;                  ///< of the scene, those that are not faces; none that is hidden
   std::vector<Material> materials;            ///< of the scene, as all below
   std::vector<SceneObject> objects;
 };

@@ -62,7 +62,7 @@ bool operator==(const Light& a, const Light& b) {
   return is_same_web && is_same_map && a.name == b.name && a.kind == b.kind && a.intensity == b.intensity &&
          a.position == b.position && a.direction == b.direction && a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone &&
          a.radius == b.radius && a.angular_diameter == b.angular_diameter && a.across == b.across && a.opening == b.opening &&
-         a.electrical_watts == b.electrical_watts && a.sky == b.sky;
+         a.is_hidden == b.is_hidden && a.electrical_watts == b.electrical_watts && a.sky == b.sky;
 }
 
 SpotCone::SpotCone(const Light& spot)
@@ -88,9 +88,11 @@ double radius_of(const Light& light) {
 Light moved(Light light, const Placement& motion) {
   if (motion == Placement{}) return light;
   light.position = motion.point(light.position);
-  light.direction = normalized(motion.direction(light.direction));
-  light.across = normalized(motion.direction(light.across));
+  if (light.has_direction()) light.direction = normalized(motion.direction(light.direction));
+  if (light.kind == LightKind::luminaire) light.across = normalized(motion.direction(light.across));
+  constexpr double rounding = 1e-9;
   const double size = length(motion.x);
+  if (std::abs(size - 1) < rounding) return light;
   for (double* each : {&light.radius, &light.opening.across, &light.opening.along, &light.opening.height}) *each *= size;
   return light;
 }

@@ -66,11 +66,14 @@ struct Light {
   /// Luminaire: the web's plane 0 or axis; environment: to the middle of its map. Unit, perpendicular to `direction`.
   Vec3 across{1, 0, 0};
   LuminousOpening opening;                            ///< luminaire
+  bool is_hidden = false;                             ///< an edit took away the object that it came with; it is black
   double electrical_watts = 0;                        ///< luminaire: power that it draws, W, for reports; 0: not known
   SkyDistribution sky;                                ///< sky
   std::shared_ptr<const EnvironmentMap> environment;  ///< environment: not null; lights may share it
 
   friend bool operator==(const Light& a, const Light& b);
+  /// Returns whether it shines otherwise into other directions, and may be aimed.
+  bool has_direction() const { return kind == LightKind::spot || kind == LightKind::directional || kind == LightKind::luminaire; }
   bool is_distant() const { return kind == LightKind::directional || kind == LightKind::sky || kind == LightKind::environment; }
 };
 

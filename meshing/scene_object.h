@@ -31,9 +31,9 @@ struct SceneObject {
   std::optional<std::uint32_t> copy_of;
   /// The resource name of the scene whose faces, all of them, in their order, an edit added as this object; else empty.
   std::string from_scene;
-  /// Names of the lights, no faces, that an edit added with the object. They move with it, and are dimmed and hidden as its faces
-  /// are.
-  std::vector<std::string> lights;
+  /// The lights, no faces, that an edit added with the object: the numbers [first_added_light, first_added_light + added_lights)
+  /// of all lights that edits have added with objects. They move with it, and are dimmed and hidden as its faces are.
+  std::uint32_t first_added_light = 0, added_lights = 0;
 
   /// Returns whether an edit added the object.
   bool is_added() const { return copy_of || !from_scene.empty(); }

@@ -97,6 +97,7 @@ Light decode_light(const v1::Light& message) {
   if (message.has_across()) light.across = decode_vector(message.across());
   if (message.has_opening()) light.opening = decode_opening(message.opening());
   light.electrical_watts = message.electrical_watts();
+  light.is_hidden = message.hidden();
   if (message.has_sky()) light.sky = decode_sky(message.sky());
   return light;
 }
@@ -164,6 +165,7 @@ v1::Light encode(const Light& light) {
     *message.mutable_across() = encode_vector(light.across);
   if (light.kind == LightKind::luminaire) *message.mutable_opening() = encode_opening(light.opening);
   message.set_electrical_watts(light.electrical_watts);
+  message.set_hidden(light.is_hidden);
   if (light.kind == LightKind::sky) *message.mutable_sky() = encode_sky(light.sky);
   return message;
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace alvor {
 
@@ -68,7 +69,7 @@ class Writer {
   void add_surroundings() {
     Scene scene;
     scene.absorption = mesh_.absorption();
-    scene.lights.assign(mesh_.lights().begin(), mesh_.lights().end());
+    std::ranges::remove_copy_if(mesh_.lights(), std::back_inserter(scene.lights), &Light::is_hidden);
     scene.objects.assign(mesh_.objects().begin(), mesh_.objects().end());
     SceneSlicer slicer(scene);
     for (v1::GeometryChunk chunk; slicer.next(chunk);) {

@@ -89,7 +89,7 @@ bool PathTracer::is_enclosed(const SurfacePoint& point, std::uint32_t rays, Path
     backs += behind_panes(start, cosine_direction(start.normal, directions[n])).is_black_back();
   if (2 * backs <= rays) return false;
   constexpr double grazing = 2e-4;  // sine of the angle between ray and surface
-  constexpr int most_bends = 16;
+  constexpr int most_bends = 6;     // more lead from a gap into the room, where some black back is met
   constexpr double nearly_all = 0.9;
   for (std::uint32_t n = 0; n < rays; ++n) {
     Met met = behind_panes(start, cosine_direction(start.normal, {directions[n].u, 1 - grazing * grazing}));

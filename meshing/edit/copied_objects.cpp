@@ -1,5 +1,7 @@
 #include "meshing/edit/copied_objects.h"
 
+#include "meshing/daylight.h"
+
 #include <algorithm>
 #include <unordered_set>
 #include <utility>
@@ -51,21 +53,38 @@ SceneObject& append_object(Scene& scene, std::string name, const Placement& plac
   return scene.objects.emplace_back(std::move(object));
 }
 
-/// Appends lights that come with an object.
-void append_lights(Scene& scene, SceneObject& object, std::vector<Light> lights, const Placement& turn = {}) {
-  for (Light& light : lights) {
-    light.name = name_of_added(light.name, object.name);
-    object.lights.push_back(light.name);
-    scene.lights.push_back(moved(std::move(light), turn));
-  }
+/// Returns by what light in the quantity of one scene is multiplied in another one.
+double light_of(Quantity added, Quantity scene) {
+  if (added == scene) return 1;
+  return added == Quantity::photometric ? 1 / usual_lumens_per_watt : usual_lumens_per_watt;
 }
 
-/// Returns the names of the lights that came with an object or with one that hangs from it.
-std::vector<std::string> names_of_lights(const Scene& scene, std::uint32_t object) {
-  std::vector<std::string> names;
-  for (const std::uint32_t each : objects_with_hanging(scene.objects, object))
-    names.insert(names.end(), scene.objects[each].lights.begin(), scene.objects[each].lights.end());
-  return names;
+/// Returns the lights that edits have added with objects. Requires: the scene has no other edits.
+std::span<const Light> added_lights(const Scene& scene) {
+  std::size_t count = 0;
+  for (const SceneObject& object : scene.objects) count += object.added_lights;
+  return std::span(scene.lights).last(count);
+}
+
+/// Returns the lights that came with an object, by the names that they had before.
+std::vector<Light> lights_of(const Scene& scene, const SceneObject& object) {
+  const auto own = added_lights(scene).subspan(object.first_added_light, object.added_lights);
+  std::vector<Light> lights(own.begin(), own.end());
+  for (Light& light : lights) light.name.resize(light.name.size() - name_of_added("", object.name).size());
+  return lights;
+}
+
+/// Appends lights that come with the newest object.
+void append_lights(Scene& scene, std::span<const Light> lights, const Placement& turn = {}, double factor = 1) {
+  SceneObject& object = scene.objects.back();
+  object.first_added_light = static_cast<std::uint32_t>(added_lights(scene).size());
+  object.added_lights = static_cast<std::uint32_t>(lights.size());
+  for (const Light& light : lights) {
+    Light& own = scene.lights.emplace_back(moved(light, turn));
+    own.name = name_of_added(light.name, object.name);
+    own.intensity *= factor;
+    own.is_hidden = false;
+  }
 }
 
 }  // namespace
@@ -74,28 +93,26 @@ void append_copy(Scene& scene, std::string name, std::uint32_t of) {
   const std::size_t first_face = scene.faces.size();
   FaceCopier copier(scene, scene);
   for (const std::uint32_t source : faces_with_hanging(scene.objects, of)) copier.append(scene.faces[source]);
-  std::vector<Light> lights;
-  for (const std::string& each : names_of_lights(scene, of))
-    lights.push_back(*std::ranges::find(scene.lights, each, &Light::name));
-  SceneObject& copy = append_object(scene, std::move(name), Placement(scene.objects[of].placement), first_face);
-  copy.copy_of = of;
-  append_lights(scene, copy, std::move(lights));
+  const std::vector<Light> lights = lights_of(scene, scene.objects[of]);
+  append_object(scene, std::move(name), Placement(scene.objects[of].placement), first_face).copy_of = of;
+  append_lights(scene, lights);
 }
 
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added) {
   const std::size_t first_face = scene.faces.size();
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
+  const double factor = light_of(added.quantity, scene.quantity);
   for (const Material& material : added.materials) {
     if (material.texture) scene.texture_points.resize(scene.corners.size());
     scene.materials.push_back(material);
     scene.materials.back().name = name_of_added(material.name, name);
+    scene.materials.back().emission *= factor;
   }
   const Placement turn = turn_upright(added.up, scene.up);
   FaceCopier copier(scene, added, turn);
   for (const Face& face : added.faces) copier.append(face, first_material);
-  SceneObject& object = append_object(scene, std::move(name), turn, first_face);
-  object.from_scene = resource_name;
-  append_lights(scene, object, added.lights, turn);
+  append_object(scene, std::move(name), turn, first_face).from_scene = resource_name;
+  append_lights(scene, added.lights, turn, factor);
 }
 
 void append_copies(Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
@@ -115,7 +132,9 @@ void append_copies(Scene& scene, std::span<const SceneEdit> edits, const AddedSc
     while (copy->is_taken_back && !names.insert(name).second) name += "'";
     if (copy->scene.empty()) append_copy(scene, std::move(name), newest.at(copy->of));
     else append_scene(scene, std::move(name), copy->scene, *added.at(copy->scene));
-    scene.objects.back().is_hidden = copy->is_taken_back;
+    SceneObject& object = scene.objects.back();
+    object.is_hidden = copy->is_taken_back;
+    for (Light& light : std::span(scene.lights).last(object.added_lights)) light.is_hidden = object.is_hidden;
     newest[copy->name] = number;
   }
 }
@@ -136,7 +155,7 @@ CheckedCopies::CheckedCopies(Scene& scene, const AddedScenes& added) : scene_(sc
 
 /// Counts an added object.
 void CheckedCopies::count(const SceneObject& object) {
-  ++copies_, copied_faces_ += object.face_count, copied_lights_ += object.lights.size();
+  ++copies_, copied_faces_ += object.face_count, copied_lights_ += object.added_lights;
   for (std::uint32_t face = object.first_face; face < object.first_face + object.face_count; ++face)
     copied_corners_ += scene_.faces[face].corner_count;
   if (const auto from = added_.find(object.from_scene); from != added_.end()) added_materials_ += from->second->materials.size();
@@ -147,29 +166,26 @@ std::optional<std::string> CheckedCopies::fault_in(const Scene& added, const std
   const auto distant = std::ranges::find_if(added.lights, &Light::is_distant);
   if (distant != added.lights.end())
     return "has light '" + distant->name + "', which shines from infinitely far away: only lamps can be added";
-  const bool emits = !added.lights.empty() || std::ranges::any_of(added.faces, [&](const Face& face) {
-    return !added.materials[face.material].emission.is_zero();
-  });
-  if (emits && added.quantity != scene_.quantity)
-    return "emits in lumens, and the solve's scene in watts, or the other way round";
   if (added_materials_ + added.materials.size() > most_materials)
     return "has too many materials: added objects may have " + std::to_string(most_materials);
   for (const Material& material : added.materials)
     if (const std::string name = name_of_added(material.name, object); materials_.contains(name))
       return "has a material whose name would be '" + name + "', as that of another one: give the object another name";
-  std::vector<std::string> lights;
-  for (const Light& light : added.lights) lights.push_back(light.name);
-  return fault_in_lights(lights, object);
+  return fault_in_lights(added.lights, object);
 }
 
-/// Returns why lights of these names cannot be added with an object.
-std::optional<std::string> CheckedCopies::fault_in_lights(std::span<const std::string> names, const std::string& object) const {
-  if (copied_lights_ + names.size() > most_lights)
+/// Returns why lights cannot be added with an object.
+std::optional<std::string> CheckedCopies::fault_in_lights(std::span<const Light> lights, const std::string& object) const {
+  if (copied_lights_ + lights.size() > most_lights)
     return "has too many lights: added objects may have " + std::to_string(most_lights);
   std::unordered_set<std::string> own;
-  for (const std::string& light : names)
-    if (const std::string name = name_of_added(light, object); lights_.contains(name) || !own.insert(name).second)
+  for (const Light& light : lights) {
+    const std::string name = name_of_added(light.name, object);
+    if (name.size() > longest_name)
+      return "has a light whose name would be longer than 1000 bytes: give the object a shorter name";
+    if (lights_.contains(name) || !own.insert(name).second)
       return "has a light whose name would be '" + name + "', as that of another one: give the object another name";
+  }
   return std::nullopt;
 }
 
@@ -188,7 +204,7 @@ std::optional<EditFault> CheckedCopies::fault_in(const ObjectCopy& copy) const {
   } else {
     const auto of = names_.find(copy.of);
     if (of == names_.end()) return EditFault{0, field, source + "is no object of the scene"};
-    if (const auto reason = fault_in_lights(names_of_lights(scene_, of->second), copy.name))
+    if (const auto reason = fault_in_lights(lights_of(scene_, scene_.objects[of->second]), copy.name))
       return EditFault{0, field, source + *reason};
     for (const std::uint32_t face : faces_with_hanging(scene_.objects, of->second))
       ++faces, corners += scene_.faces[face].corner_count;

@@ -16,11 +16,12 @@
 namespace alvor {
 
 /// Appends a copy of an object and of those that hang from it, as one object. Its faces, vertices, corners and lights come after
-/// all others; lights are named "LIGHT of NAME". Requires: `of` is the number of an object.
+/// all others; lights that came with it are named "LIGHT of NAME". Requires: `of` is the number of an object.
 void append_copy(Scene& scene, std::string name, std::uint32_t of);
 
 /// Appends all faces and lights of another scene as one object, turned where that has another up axis. They and its materials
-/// come after all others; these, and the lights, are named "MATERIAL of NAME". Requires: no light is distant.
+/// come after all others; these, and the lights, are named "MATERIAL of NAME". Where one scene is radiometric and the other
+/// photometric, what they emit is converted by usual_lumens_per_watt. Requires: no light is distant.
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added);
 
 /// Appends the copies among `edits`, in their order. Those that were taken back are hidden, and have other names: "NAME (taken
@@ -44,7 +45,7 @@ class CheckedCopies {
  private:
   std::optional<EditFault> fault_in(const ObjectCopy& copy) const;
   std::optional<std::string> fault_in(const Scene& added, const std::string& object) const;
-  std::optional<std::string> fault_in_lights(std::span<const std::string> names, const std::string& object) const;
+  std::optional<std::string> fault_in_lights(std::span<const Light> lights, const std::string& object) const;
 
   void count(const SceneObject& object);
 

@@ -44,7 +44,7 @@ class Check {
 
   std::optional<EditFault> operator()(const LightEdit& edit) {
     const Light* light = lights_.find(edit.name);
-    if (!light) return unknown("light", edit.name);
+    if (!light || light->is_hidden) return unknown("light", edit.name);
     if (!edit.dim && !edit.intensity && !edit.position && !edit.direction && !edit.cone && !edit.web)
       return EditFault{0, "light", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "light.dim", "must be in [0, 1e6]"};
@@ -55,7 +55,7 @@ class Check {
     const auto is_near = [](double x) { return std::abs(x) <= farthest; };
     if (edit.position && !(is_near(edit.position->x) && is_near(edit.position->y) && is_near(edit.position->z)))
       return EditFault{0, "light.position", "must lie within 1e9 m"};
-    if (edit.direction && !has_direction(light->kind))
+    if (edit.direction && !light->has_direction())
       return EditFault{0, "light.direction", "'" + edit.name + "' is no spot, no luminaire and no directional light"};
     if (edit.direction && !(length(*edit.direction) > 1e-9 && length(*edit.direction) < 1e9))
       return EditFault{0, "light.direction", "must not be zero"};
@@ -90,9 +90,6 @@ class Check {
   }
 
  private:
-  static bool has_direction(LightKind kind) {
-    return kind == LightKind::spot || kind == LightKind::directional || kind == LightKind::luminaire;
-  }
   static std::optional<EditFault> fault_of_distribution(const LightEdit& edit, const Light& light) {
     if (edit.cone && light.kind != LightKind::spot) return EditFault{0, "light.cone", "'" + edit.name + "' is no spot"};
     if (edit.cone && !(edit.cone->inner >= 0 && edit.cone->inner <= edit.cone->outer && edit.cone->outer > 0 &&

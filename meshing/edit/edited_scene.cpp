@@ -12,6 +12,7 @@
 #include <memory>
 #include <numbers>
 #include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -46,7 +47,8 @@ Placement motion_of(const ObjectEdit& edit, const BoundingBox& box, UpAxis up) {
 /// matter.
 class Editor {
  public:
-  explicit Editor(Scene scene) : scene_(std::move(scene)) {}
+  /// `added_lights_from`: the number of lights before those that came with added objects.
+  Editor(Scene scene, std::size_t added_lights_from) : scene_(std::move(scene)), added_lights_from_(added_lights_from) {}
   Editor(const Editor&) = delete;  // its parts refer to each other
 
   void operator()(const MaterialEdit& edit) {
@@ -83,6 +85,8 @@ class Editor {
     std::vector<Light>& lights = scene_.lights;
     for (const Light& light : lights)
       if (light.is_distant() && lights_.find(light.name) == &light) light_dim_.erase(light.name);
+    const auto before_added = std::span(lights).first(added_lights_from_);
+    added_lights_from_ -= static_cast<std::size_t>(std::ranges::count_if(before_added, &Light::is_distant));
     std::erase_if(lights, [](const Light& light) { return light.is_distant(); });
     std::ranges::move(lights_of(daylight, scene_.quantity, scene_.up, usual_lumens_per_watt), std::back_inserter(lights));
     lights_ = NamedParts<Light>(lights);
@@ -132,7 +136,7 @@ class Editor {
       }
       if (const double shown = object.is_hidden ? 0 : dim[n]; shown != 1) {
         dim_faces(object, shown);
-        for (const std::string& name : object.lights) lights_.find(name)->intensity *= shown;
+        for (Light& light : lights_with(object)) light.intensity *= shown, light.is_hidden = object.is_hidden;
       }
       if (object.motion == Placement{}) continue;
       object.placement = object.motion * object.placement;
@@ -142,13 +146,15 @@ class Editor {
   }
   /// Moves the lights that came with an object, but for what an edit has said of them.
   void move_lights(const SceneObject& object) {
-    for (const std::string& name : object.lights) {
-      Light& light = *lights_.find(name);
+    for (Light& light : lights_with(object)) {
       const Light was = light;
       light = moved(was, object.motion);
-      if (placed_.contains(name)) light.position = was.position;
-      if (submitted_aims_.contains(name)) light.direction = was.direction, light.across = was.across;
+      if (placed_.contains(light.name)) light.position = was.position;
+      if (submitted_aims_.contains(light.name)) light.direction = was.direction, light.across = was.across;
     }
+  }
+  std::span<Light> lights_with(const SceneObject& object) {
+    return std::span(scene_.lights).subspan(added_lights_from_ + object.first_added_light, object.added_lights);
   }
   void move_faces(const SceneObject& object) {
     std::unordered_map<std::uint32_t, std::uint32_t> moved;  // by vertex
@@ -177,6 +183,7 @@ class Editor {
   }
 
   Scene scene_;
+  std::size_t added_lights_from_;
   NamedParts<Material> materials_{scene_.materials};
   NamedParts<Light> lights_{scene_.lights};
   NamedParts<SceneObject> objects_{scene_.objects};
@@ -191,7 +198,7 @@ class Editor {
 Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added) {
   Scene edited = scene;
   append_copies(edited, edits, added);
-  Editor editor(std::move(edited));
+  Editor editor(std::move(edited), scene.lights.size());
   for (const SceneEdit& edit : edits) std::visit(editor, edit);
   return editor.take();
 }

@@ -45,7 +45,7 @@ struct LightEdit {
 /// Sets what is given of an object and of those that hang from it.
 struct ObjectEdit {
   std::string name;
-  std::optional<double> dim;      ///< multiplies what its faces emit, in [0, 1e6]; 0 is off
+  std::optional<double> dim;      ///< multiplies what its faces and the lights that came with it emit, in [0, 1e6]; 0 is off
   std::optional<Vec3> move;       ///< metres, from where the scene as submitted has it
   std::optional<double> turn;     ///< degrees counter-clockwise seen from above, about the middle of its box, before `move`
   std::optional<Vec3> turn_axis;  ///< of `turn`, in place of the vertical: it points to who sees the turn counter-clockwise
@@ -55,7 +55,7 @@ struct ObjectEdit {
 };
 
 /// Adds an object: a copy of another one and of those that hang from it, without the motions and dimming of edits; or of all
-/// faces of another scene.
+/// faces and lamps of another scene. Lamps that came with the other object are copied, too.
 struct ObjectCopy {
   std::string name;            ///< not empty, and of no other object
   std::string of;              ///< the name of the other one; empty where `scene` is not

@@ -20,6 +20,9 @@ namespace {
 /// colour.
 using KnownLights = std::map<std::pair<bool, std::size_t>, std::pair<LightForm, RelativeLight>>;
 
+/// Takes from a light how bright it is, and that it is hidden.
+void darken(Light& light) { light.intensity = {}, light.is_hidden = false; }
+
 /// Returns the factor, per band, by which all lights have changed; nothing if there is none.
 std::optional<Rgb> common_factor(const KnownLights& before, const KnownLights& now) {
   constexpr double same = 1e-12;
@@ -56,7 +59,7 @@ std::vector<LightForm> DirectField::forms_of_lights() const {
       form.roots = lamps[lamp_of_root.at(light->number())];
     } else if (number - root_count < others.size()) {
       form.light = others[number - root_count];
-      form.light->intensity = {};
+      darken(*form.light);
     }
   }
   return forms;
@@ -65,7 +68,7 @@ std::vector<LightForm> DirectField::forms_of_lights() const {
 /// Returns the lights of the scene that are no faces, but how bright they are.
 std::vector<Light> DirectField::forms_of_scene() const {
   std::vector<Light> forms(forests_.mesh().lights().begin(), forests_.mesh().lights().end());
-  for (Light& form : forms) form.intensity = {};
+  for (Light& form : forms) darken(form);
   return forms;
 }
 

@@ -56,8 +56,8 @@ constexpr double well_within = 0.9;
 // Share of the squared error that a pass removes of what it refines. Measured on the furnished room: a pass that refines 0.9 of
 // it removes 0.65 to 0.7 of it all.
 constexpr double removed_by_refining = 0.75;
-// How many times as much a pass of a new solve refines. Measured (docs/error-vs-time.md): with 1 the estimates of slats_and_boxes
-// are a tenth too small, and close to a tight tolerance passes hardly bring the error down.
+// How many times as much a pass of a new solve refines. Measured (docs/error-vs-time/tried.md): with 1 the estimates of
+// slats_and_boxes are 9 to 15 % too small, and close to a tight tolerance passes hardly bring the error down.
 constexpr double spare_of_new_solve = 1.5;
 
 /// Publishes one step: every face, and no light on any.
@@ -154,7 +154,7 @@ class Run {
   }
 
   /// Returns the share of the squared error that a pass refines: no more than it takes to be within the tolerance. After an edit
-  /// of a solve that had ended, most of the mesh is fine enough, and little is left to be found.
+  /// of a solve that had reached its tolerance or a limit, most of the mesh is fine enough, and little is left to be found.
   double share_to_refine() const {
     if (options_.is_by_place()) return Pass::marked_share;
     const auto squared = [](double x) { return x * x; };

@@ -90,9 +90,11 @@ std::uint64_t allowed_memory() {
 
 struct MemoryGuard::Relief {
   using Clock = std::chrono::steady_clock;
-  // After a relief none is made for this many times the time that it took: trimming a heap of gigabytes takes a tenth of a second.
-  // A longer pause would refuse work for which what was freed meanwhile has room.
+  // After a relief none is made for this many times the time that it took: trimming a heap of gigabytes takes a tenth of a
+  // second. A longer pause would refuse work for which what was freed meanwhile has room.
   static constexpr int pause = 4;
+  // Least time after a relief until one is made that no work waits for.
+  static constexpr std::chrono::seconds pause_without_work{1};
 
   std::shared_ptr<void> add(std::function<void()> way) {
     Lock hold(lock);
@@ -103,21 +105,21 @@ struct MemoryGuard::Relief {
               ways.erase(number);
             }};
   }
-  void give_back() {
+  void give_back(bool work_waits) {
     if (!lock.try_lock()) return;  // not held if another thread is doing it
     const Lock hold(lock, std::adopt_lock);
     const auto start = Clock::now();
-    if (start < next_time) return;
+    if (start < (work_waits ? next_time : end + pause_without_work)) return;
     for (const auto& [number, way] : ways) way();
     malloc_trim(0);  // memory limits count what the allocator keeps
-    const auto end = Clock::now();
+    end = Clock::now();
     next_time = end + pause * (end - start);
   }
 
   Mutex lock;
   std::map<std::uint64_t, std::function<void()>> ways ALVOR_GUARDED_BY(lock);
   std::uint64_t next ALVOR_GUARDED_BY(lock) = 0;
-  Clock::time_point next_time ALVOR_GUARDED_BY(lock);
+  Clock::time_point end ALVOR_GUARDED_BY(lock), next_time ALVOR_GUARDED_BY(lock);  // of the last relief; of the next one
 };
 
 MemoryGuard::MemoryGuard(std::uint64_t limit, std::uint64_t (*used)())
@@ -141,7 +143,11 @@ void MemoryGuard::refuse_without_room(const std::string& what, std::uint64_t byt
 }
 
 void MemoryGuard::make_room(std::uint64_t bytes) const {
-  if (!has_room(bytes)) relief_->give_back();
+  if (!has_room(bytes)) relief_->give_back(true);
+}
+
+void MemoryGuard::keep_room() const {
+  if (!has_room(0)) relief_->give_back(false);
 }
 
 std::shared_ptr<void> MemoryGuard::relieve_by(std::function<void()> give_back) const {

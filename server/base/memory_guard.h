@@ -37,6 +37,8 @@ class MemoryGuard {
   void admit(const std::string& what, std::uint64_t bytes) const;
   /// Runs the registered reliefs if `bytes` more would not fit. The caller must not hold a lock that one of them takes.
   void make_room(std::uint64_t bytes) const;
+  /// Does the same, at most once a second, where less than a quarter of the limit is free. For those who look again and again.
+  void keep_room() const;
   /// Throws RESOURCE_EXHAUSTED, naming `what`, if more than three quarters of the limit would be in use with `bytes` more.
   void refuse_without_room(const std::string& what, std::uint64_t bytes) const;
   bool has_room(std::uint64_t bytes) const;

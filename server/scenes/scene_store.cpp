@@ -27,13 +27,16 @@ std::vector<std::string> warnings_about(const BaseMesh& mesh) {
 }
 
 /// Forgets the motions of objects, and of which they are copies, as a scene has that was read from an edited solve: it counts as
-/// submitted as it is now. Throws StatusError where an object is hidden.
+/// submitted as it is now. Throws StatusError where an object or a light is hidden.
 void forget_edits(Scene& scene) {
+  for (const Light& light : scene.lights)
+    if (light.is_hidden) throw invalid_argument("light '" + light.name + "': is hidden; leave it out instead");
   for (SceneObject& object : scene.objects) {
     if (object.is_hidden) throw invalid_argument("object '" + object.name + "': is hidden; leave its faces out instead");
     object.motion = {};
     object.copy_of.reset();
     object.from_scene.clear();
+    object.first_added_light = object.added_lights = 0;
   }
 }
 

@@ -63,7 +63,7 @@ SolveStore::Entry* SolveStore::next_waiting() {
 
 void SolveStore::watch_memory() {
   drop_old_live();
-  options_.memory.make_room(0);
+  options_.memory.keep_room();
   if (options_.memory.is_short()) relieve_memory();
   watching_memory_->post_at(TaskQueue::Clock::now() + MemoryGuard::between_looks, [this] { watch_memory(); });
 }

@@ -8,10 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <vector>
 
 namespace alvor {
 namespace {
@@ -53,6 +55,22 @@ TEST(PathTracer, UnderASeatWhoseEndsAreTheFrontsOfItsArmsIsEnclosed) {
     for (const double x : {1.01, 1.4, 1.7})
       EXPECT_EQ(tracer.is_enclosed({{x, 0, 1.3}, {0, 1, 0}}, 256, PathRandom(1, 2, 3)), gap == 0) << x << ' ' << gap;
   }
+}
+
+TEST(PathTracer, AGapUnderAHollowBoxIsNotEnclosedWhereSomeWallsAreBacks) {
+  Scene scene = test::furnace(1, 0.5);
+  const Face wall = scene.faces[0];
+  const auto corners = scene.corners.begin() + wall.first_corner;
+  std::reverse(corners, corners + wall.corner_count);
+  Scene box;
+  constexpr double gap = 1e-3;
+  test::add_box(box, {1, gap, 1}, {2, 1, 2}, false);
+  for (const Face& face : box.faces) {
+    std::vector<Vec3> ring;
+    for (const std::uint32_t vertex : box.corners_of(face)) ring.push_back(box.vertices[vertex]);
+    if (std::ranges::any_of(ring, [](Vec3 corner) { return corner.y > gap; })) scene.add_polygon(ring, 0);
+  }
+  EXPECT_FALSE(PathTracer(scene).is_enclosed({{1.5, 0, 1.5}, {0, 1, 0}}, 256, PathRandom(1, 2, 3)));
 }
 
 TEST(PathTracer, FacesBackToBackInOnePlaceAreBothSeen) {

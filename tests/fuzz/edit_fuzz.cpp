@@ -78,6 +78,7 @@ void run(fuzz::Input input) {
       edits = std::move(edited.edits);
       expect(!find_fault(edited.content->scene));
       check(submitted->mesh, edited.content->mesh);
+      for (const Light& light : edited.content->scene.lights) expect(!light.is_hidden || light.intensity.is_zero());
       const auto replayed = edited_content(submitted, edits, added);
       for (std::uint32_t r = 0; r < replayed->mesh.roots().size(); ++r)
         expect(replayed->mesh.roots()[r].corners == edited.content->mesh.roots()[r].corners);

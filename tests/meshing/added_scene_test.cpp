@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace alvor {
 namespace {
@@ -204,11 +207,8 @@ TEST(AddedScene, FaultsNameTheirField) {
   ASSERT_TRUE(twice);
   EXPECT_EQ(twice->edit, 1u);
   EXPECT_NE(twice->reason.find("too many lights"), std::string::npos);
-  Scene photometric = box_and_sheet();
-  photometric.quantity = Quantity::photometric;
-  EXPECT_NE(fault(thing("thing"), photometric).find("copy.scene: 'scenes/thing' emits in lumens"), std::string::npos);
-  photometric.materials[1].emission = {};
-  EXPECT_EQ(fault(thing("thing"), photometric), "") << "it emits nothing";
+  lit.lights = {Light{std::string(600, 'n'), LightKind::point, {1, 1, 1}}};
+  EXPECT_NE(fault(thing(std::string(600, 'o')), lit).find("longer than 1000 bytes"), std::string::npos);
   Scene large = box_and_sheet();
   for (int n = 0; n < 100'000; ++n) test::add_polygon(large, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, 0);
   EXPECT_NE(fault(thing("thing"), large).find("copy.scene: added objects"), std::string::npos);
@@ -289,6 +289,39 @@ TEST(AddedScene, BringsItsLampsWhichGoWithTheObject) {
   expect_near(light_after({DaylightEdit{Daylight{}}}).position, upright.position);
 }
 
+// Names that are the same as that of a lamp which was taken back must not make another one dark.
+TEST(AddedScene, LampsThatWereTakenBackAreDarkWhateverOthersAreCalled) {
+  Scene room = test::room_of_objects();
+  Light sun{"sun", LightKind::directional, {1, 1, 1}};
+  const std::string name = "spot of thing (taken back " + std::to_string(room.objects.size()) + ")";
+  room.lights = {sun, Light{name, LightKind::point, {5, 5, 5}, {1, 1, 1}}};
+  const EditStep add{.edits = {thing("thing")}}, undo{.kind = EditStep::Kind::undo, .edits = {}};
+  const EditStep daylight{.edits = {DaylightEdit{Daylight{.sun = SunPosition{.azimuth = 10, .elevation = 30}}}}};
+  for (const bool has_daylight : {false, true}) {
+    std::vector<EditStep> steps{add, undo, add};
+    if (has_daylight) steps.insert(steps.end(), {daylight, daylight});
+    const Scene edited = edited_scene(room, *edits_that_hold(steps), scenes(box_with_spot()));
+    std::vector<std::pair<std::string, bool>> lights;
+    for (const Light& light : edited.lights)
+      if (!light.is_distant()) lights.emplace_back(light.name, light.intensity.is_zero());
+    EXPECT_EQ(lights, (std::vector<std::pair<std::string, bool>>{{name, false}, {name, true}, {"spot of thing", false}}));
+  }
+}
+
+TEST(AddedScene, EmitsInTheQuantityOfTheOther) {
+  for (const Quantity of_room : {Quantity::radiometric, Quantity::photometric})
+    for (const Quantity of_thing : {Quantity::radiometric, Quantity::photometric}) {
+      Scene room = test::room_of_objects(), other = box_and_sheet();
+      room.quantity = of_room, other.quantity = of_thing;
+      other.lights = {Light{"bulb", LightKind::point, {1, 2, 3}}};
+      const Scene edited = edited_scene(room, std::vector<SceneEdit>{thing("thing")}, scenes(other));
+      EXPECT_EQ(edited.quantity, of_room);
+      const double factor = of_room == of_thing ? 1 : of_room == Quantity::photometric ? 179 : 1 / 179.0;
+      EXPECT_EQ(edited.materials.back().emission, factor * other.materials.back().emission);
+      EXPECT_EQ(edited.lights.back().intensity, factor * other.lights.back().intensity);
+    }
+}
+
 TEST(AddedScene, LampsAreCopiedAndTakenBackWithTheirObject) {
   const Scene room = test::room_of_objects();
   const AddedScenes added = scenes(box_with_spot());
@@ -300,13 +333,19 @@ TEST(AddedScene, LampsAreCopiedAndTakenBackWithTheirObject) {
   };
   const auto both = after({first, second});
   ASSERT_EQ(both.size(), 2u);
-  EXPECT_EQ(both[1].name, "spot of thing of another");
+  EXPECT_EQ(both[1].name, "spot of another");
   expect_near(both[1].position, both[0].position + Vec3{1, 0, 0});
   EXPECT_EQ(both[1].intensity, both[0].intensity);
   const auto one = after({first, second, undo});
   ASSERT_EQ(one.size(), 2u) << "numbers of lights stay";
   EXPECT_FALSE(one[0].intensity.is_zero());
   EXPECT_TRUE(one[1].intensity.is_zero());
+  EXPECT_TRUE(one[1].is_hidden);
+  EXPECT_FALSE(one[0].is_hidden);
+  const EditStep dim{.edits = {LightEdit{.name = one[1].name, .dim = 2}}};
+  Scene taken_back = room;
+  append_copies(taken_back, *edits_that_hold(std::vector{first, second, undo}), added);
+  EXPECT_TRUE(fault_in(dim.edits, taken_back, added)) << "it is not there";
   const auto again = after({first, undo, first});
   ASSERT_EQ(again.size(), 2u);
   EXPECT_TRUE(again[0].intensity.is_zero());

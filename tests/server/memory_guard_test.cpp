@@ -120,6 +120,21 @@ TEST(MemoryGuard, WhatNobodyNeedsIsGivenBackBeforeAnythingIsRefused) {
   used = 0;
 }
 
+TEST(MemoryGuard, WorkDoesNotWaitForThePauseOfThoseWhoLookAgainAndAgain) {
+  const MemoryGuard guard(800 * mebibyte, used_memory);
+  static std::atomic<int> reliefs;
+  reliefs = 0;
+  const auto handle = guard.relieve_by([] { ++reliefs; });
+  used = 650 * mebibyte;
+  for (int n = 0; n < 3; ++n) guard.keep_room();
+  EXPECT_EQ(reliefs, 1);
+  while (reliefs < 2) guard.make_room(0);  // a moment later
+  used = 0;
+  guard.keep_room();
+  guard.make_room(100 * mebibyte);
+  EXPECT_EQ(reliefs, 2) << "there is room";
+}
+
 TEST(MemoryGuard, SomethingElseEndsBeforeASolve) {
   used = 0;
   SceneStore scenes;

@@ -4,11 +4,14 @@ import { clone, create } from "@bufbuild/protobuf";
 import {
   LightSchema,
   MaterialSchema,
+  Quantity,
   ReadMeshResponseSchema,
+  RgbSchema,
   SceneObjectSchema,
   UpAxis,
   type Light,
   type ReadMeshResponse,
+  type Rgb,
   type SceneObject,
 } from "../gen/alvor/v1/scene_service_pb";
 import type { Look, LookOfObject } from "../gen/alvor/v1/solve_service_pb";
@@ -64,7 +67,8 @@ function withCopy(messages: ReadMeshResponse[], copy: LookOfObject): ReadMeshRes
   added.sceneObjects.push(create(SceneObjectSchema, { name, firstFace, faceCount, copyOf: copy.copyOf }));
   const source = objects[copy.copyOf!].name;
   const lights = messages.find((message) => isAddition(message) && message.sceneObjects[0].name === source)?.sceneLights ?? [];
-  added.sceneLights.push(...lightsOf(lights, name));
+  const named = lights.map((light) => ({ ...light, name: light.name.slice(0, -` of ${source}`.length) }));
+  added.sceneLights.push(...lightsOf(named, name));
   return [...messages, added];
 }
 
@@ -72,9 +76,23 @@ function withCopy(messages: ReadMeshResponse[], copy: LookOfObject): ReadMeshRes
 export const isAddition = ({ sceneObjects: [object] }: ReadMeshResponse) =>
   object !== undefined && (object.copyOf !== undefined || object.fromScene !== "");
 
+const LUMENS_PER_WATT = 179; // as the server converts
+
+/** By what light of an added mesh is multiplied in another one. */
+function factorOf([added]: ReadMeshResponse[], [mesh]: ReadMeshResponse[]): number {
+  const isPhotometric = (message?: ReadMeshResponse) => message?.quantity === Quantity.PHOTOMETRIC;
+  if (isPhotometric(added) === isPhotometric(mesh)) return 1;
+  return isPhotometric(added) ? 1 / LUMENS_PER_WATT : LUMENS_PER_WATT;
+}
+
+const times = (factor: number, light?: Rgb) =>
+  light && create(RgbSchema, { r: factor * light.r, g: factor * light.g, b: factor * light.b });
+
 /** Lights that come with an object. */
-const lightsOf = (lights: Light[], object: string) =>
-  lights.map((light) => Object.assign(clone(LightSchema, light), { name: `${light.name} of ${object}` }));
+const lightsOf = (lights: Light[], object: string, factor = 1) =>
+  lights.map((light) =>
+    Object.assign(clone(LightSchema, light), { name: `${light.name} of ${object}`, intensity: times(factor, light.intensity) }),
+  );
 
 const countOf = <T>(messages: ReadMeshResponse[], list: (message: ReadMeshResponse) => T[]) =>
   messages.reduce((count, message) => count + list(message).length, 0);
@@ -95,6 +113,7 @@ function withScene(messages: ReadMeshResponse[], object: LookOfObject, added: Re
   const isZUp = ([first]: ReadMeshResponse[]) => first?.upAxis === UpAxis.Z;
   const firstRoot = countOf(messages, ({ cornerCounts }) => cornerCounts);
   const firstImage = imagesOf(messages);
+  const factor = factorOf(added, messages);
   const parts = added.map((message) =>
     create(ReadMeshResponseSchema, {
       cornerCounts: message.cornerCounts,
@@ -111,6 +130,7 @@ function withScene(messages: ReadMeshResponse[], object: LookOfObject, added: Re
       sceneMaterials: message.sceneMaterials.map((material) => {
         const own = clone(MaterialSchema, material);
         own.name += ` of ${object.name}`;
+        own.emission = times(factor, own.emission);
         if (own.texture) own.texture.image += firstImage;
         return own;
       }),
@@ -119,7 +139,7 @@ function withScene(messages: ReadMeshResponse[], object: LookOfObject, added: Re
   const { name, firstFace, faceCount, fromScene } = object;
   const holder = create(ReadMeshResponseSchema, {
     sceneObjects: [create(SceneObjectSchema, { name, firstFace, faceCount, fromScene })],
-    sceneLights: added.flatMap(({ sceneLights }) => lightsOf(sceneLights, name)),
+    sceneLights: added.flatMap(({ sceneLights }) => lightsOf(sceneLights, name, factor)),
   });
   return alike([...messages, ...parts, holder]);
 }

@@ -1,6 +1,6 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { LightSchema, Light_Kind, MaterialSchema, ReadMeshResponseSchema, UpAxis } from "../../src/gen/alvor/v1/scene_service_pb";
+import { LightSchema, Light_Kind, MaterialSchema, Quantity, ReadMeshResponseSchema, UpAxis } from "../../src/gen/alvor/v1/scene_service_pb";
 import { LookOfObjectSchema } from "../../src/gen/alvor/v1/solve_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { addedScenes, withAdded } from "../../src/mirror/copies";
@@ -116,10 +116,13 @@ describe("added objects", () => {
     expect(partsOf(mesh).lights).toEqual([
       { name: "sun", intensity: [0, 0, 0], isFar: true, position: undefined },
       { name: "bulb of lamp", intensity, isFar: false, addedWith: "lamp" },
-      { name: "bulb of lamp of copy 3", intensity, isFar: false, addedWith: "copy 3" },
+      { name: "bulb of copy 3", intensity, isFar: false, addedWith: "copy 3" },
     ]);
     expect(partsOf(mesh).objects.map(({ name, shines }) => [name, shines])).toEqual([["thing", false], ["part", false], ["lamp", true], ["copy 3", true]]);
     expect(lamp.sceneLights[0].name).toBe("bulb"); // it may be added again
+    const inLumens = [{ ...own[0], quantity: Quantity.PHOTOMETRIC }, own[1]];
+    const converted = new BaseMesh(withAdded(inLumens, { objects: [object] }, new Map([["scenes/l", [lamp]]])));
+    expect(partsOf(converted).lights.at(-1)?.intensity).toEqual([179, 358, 537]);
   });
   it("leave what is known of the light", () => {
     const before = new Mirror(3);
