@@ -36,12 +36,12 @@ std::optional<EditFault> fault_in(std::span<const SceneEdit> edits, const Scene&
 std::optional<std::string> object_too_far(const Scene& submitted, const Scene& edited);
 
 /// Returns the scene with these edits. Copies of objects come after all objects, faces and vertices of the scene, as
-/// append_copies() says, and so do materials and lights of added scenes; lights move with their object, where no edit has placed
-/// or aimed them. Objects whose faces are dimmed get materials of their own, named "MATERIAL of OBJECT", after all others; those
-/// that are hidden are dimmed to nothing. Faces of objects that moved get vertices of their own, at the end. The numbers of
-/// faces, objects and materials stay, and those of lights unless there is other daylight. An edit of a light that daylight has
-/// replaced changes nothing. Requires: !fault_in(edits, scene, added), !find_fault(scene), and that no object is hidden or moved.
-/// The result may have a fault: a material that reflects and lets through more than all light.
+/// append_copies() says, and so do materials and lights of added scenes; lights come before those of daylight and move with their
+/// object, where no edit has placed or aimed them. Objects whose faces are dimmed get materials of their own, named "MATERIAL of
+/// OBJECT", after all others; those that are hidden are dimmed to nothing. Faces of objects that moved get vertices of their own,
+/// at the end. The numbers of faces, objects and materials stay, and those of lights unless there is other daylight. An edit of a
+/// light that daylight has replaced changes nothing. Requires: !fault_in(edits, scene, added), !find_fault(scene), and that no
+/// object is hidden or moved. The result may have a fault: a material that reflects and lets through more than all light.
 Scene edited_scene(const Scene& scene, std::span<const SceneEdit> edits, const AddedScenes& added = {});
 
 }  // namespace alvor

@@ -27,7 +27,8 @@ class Zones {
     for (std::uint32_t root = 0; root < zone_.size(); ++root) zone_[root] = place(mesh.roots()[root]);
     for (std::uint32_t root = 0; root < zone_.size(); ++root)
       if (!mesh.material_of(root).emission.is_zero()) is_lit_[joined_.find(zone_[root])] = true;
-    for (const Light& light : mesh.lights()) light_zones_of(light);
+    for (const Light& light : mesh.lights())
+      if (!light.is_hidden) light_zones_of(light);
   }
 
   bool may_be_lit(std::uint32_t root) { return rooms_.empty() || is_lit_[joined_.find(zone_[root])]; }

@@ -41,14 +41,15 @@ std::string faces(std::size_t count) { return counted(count, "face", "faces"); }
 std::string materials(std::size_t count) { return counted(count, "material", "materials"); }
 std::string bands(const Rgb& value) { return sentence(value.r, ' ', value.g, ' ', value.b); }
 
-/// Returns the corners of all faces but those left out, and of boxes about the lamps, relative to the mesh's centre.
+/// Returns the corners of all faces but those left out, and of boxes about the lamps that are not hidden, relative to the mesh's
+/// centre.
 std::vector<Vec3> corners_about_centre(const BaseMesh& mesh, const std::vector<bool>& left_out) {
   std::vector<Vec3> corners;
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root)
     for (int c = 0; c < mesh.roots()[root].corner_count && !left_out[root]; ++c)
       corners.push_back(mesh.roots()[root].corners[c] - mesh.centre());
   for (const Light& light : mesh.lights()) {
-    if (light.is_distant()) continue;
+    if (light.is_distant() || light.is_hidden) continue;
     const double r = radius_of(light);
     for (const Vec3 side : {Vec3{r, r, r}, Vec3{r, r, -r}, Vec3{r, -r, r}, Vec3{r, -r, -r}, Vec3{-r, r, r}, Vec3{-r, r, -r},
                             Vec3{-r, -r, r}, Vec3{-r, -r, -r}})

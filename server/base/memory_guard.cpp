@@ -109,13 +109,15 @@ struct MemoryGuard::Relief {
     if (!lock.try_lock()) return;  // not held if another thread is doing it
     const Lock hold(lock, std::adopt_lock);
     const auto start = Clock::now();
-    if (start < (work_waits ? next_time : end + pause_without_work)) return;
+    const auto pause_ends = work_waits ? next_time : std::max(next_time, end + pause_without_work);
+    if (!is_gain_expected.exchange(false) && start < pause_ends) return;
     for (const auto& [number, way] : ways) way();
     malloc_trim(0);  // memory limits count what the allocator keeps
     end = Clock::now();
     next_time = end + pause * (end - start);
   }
 
+  std::atomic<bool> is_gain_expected = false;
   Mutex lock;
   std::map<std::uint64_t, std::function<void()>> ways ALVOR_GUARDED_BY(lock);
   std::uint64_t next ALVOR_GUARDED_BY(lock) = 0;
@@ -146,13 +148,18 @@ void MemoryGuard::make_room(std::uint64_t bytes) const {
   if (!has_room(bytes)) relief_->give_back(true);
 }
 
-void MemoryGuard::keep_room() const {
+bool MemoryGuard::runs_short() const {
   if (!has_room(0)) relief_->give_back(false);
+  if (!is_short()) return false;
+  relief_->give_back(true);
+  return is_short();
 }
 
 std::shared_ptr<void> MemoryGuard::relieve_by(std::function<void()> give_back) const {
   return relief_->add(std::move(give_back));
 }
+
+void MemoryGuard::expect_gain() const { relief_->is_gain_expected = true; }
 
 bool MemoryGuard::is_short() const { return limit_ > 0 && used_() > limit_ / 8 * 7; }
 

@@ -37,13 +37,16 @@ class MemoryGuard {
   void admit(const std::string& what, std::uint64_t bytes) const;
   /// Runs the registered reliefs if `bytes` more would not fit. The caller must not hold a lock that one of them takes.
   void make_room(std::uint64_t bytes) const;
-  /// Does the same, at most once a second, where less than a quarter of the limit is free. For those who look again and again.
-  void keep_room() const;
   /// Throws RESOURCE_EXHAUSTED, naming `what`, if more than three quarters of the limit would be in use with `bytes` more.
   void refuse_without_room(const std::string& what, std::uint64_t bytes) const;
   bool has_room(std::uint64_t bytes) const;
   /// Returns whether more than seven eighths of the limit are in use, so that work must be ended.
   bool is_short() const;
+  /// Returns whether it is so even after a relief. For those who look again and again: where it is not, reliefs are run at most
+  /// once a second while less than a quarter of the limit is free.
+  bool runs_short() const;
+  /// To be called when much is not needed any more: the next relief is run without a pause. Waits for nothing.
+  void expect_gain() const;
 
   std::uint64_t limit() const { return limit_; }
   /// Time between looks at the memory of a process that solves. It grows by less than 1 MB in a millisecond.

@@ -63,8 +63,7 @@ SolveStore::Entry* SolveStore::next_waiting() {
 
 void SolveStore::watch_memory() {
   drop_old_live();
-  options_.memory.keep_room();
-  if (options_.memory.is_short()) relieve_memory();
+  if (options_.memory.runs_short()) relieve_memory();
   watching_memory_->post_at(TaskQueue::Clock::now() + MemoryGuard::between_looks, [this] { watch_memory(); });
 }
 
@@ -144,14 +143,17 @@ void SolveStore::run(Entry& entry, Solver solver) {
   solve->drop_log();
   trim_heap_soon();
   report_end(*options_.logger, solve->describe());
-  Lock hold(lock_);
-  settle(entry);
-  note_live(solve);
-  entry.is_running = false;
-  --running_;
-  finished_.push_back(std::this_thread::get_id());
-  start_waiting();
-  changed_.notify_all();
+  {
+    Lock hold(lock_);
+    settle(entry);
+    note_live(solve);
+    entry.is_running = false;
+    --running_;
+    finished_.push_back(std::this_thread::get_id());
+    start_waiting();
+    changed_.notify_all();
+  }
+  options_.memory.expect_gain();
 }
 
 /// What it shall do may have been said otherwise while it was about to pause.

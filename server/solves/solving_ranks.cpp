@@ -164,8 +164,7 @@ void SolvingRanks::take_part(Ranks& gang) {
   const std::jthread watching([&](const std::stop_token& ended) {
     for (; !ended.stop_requested() && !short_of_memory.stop_requested();
          std::this_thread::sleep_for(MemoryGuard::between_looks)) {
-      options_.memory.keep_room();
-      if (options_.memory.is_short()) short_of_memory.request_stop();
+      if (options_.memory.runs_short()) short_of_memory.request_stop();
     }
   });
   SolveOrder order = read_order(bytes);

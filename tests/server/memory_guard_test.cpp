@@ -126,13 +126,19 @@ TEST(MemoryGuard, WorkDoesNotWaitForThePauseOfThoseWhoLookAgainAndAgain) {
   reliefs = 0;
   const auto handle = guard.relieve_by([] { ++reliefs; });
   used = 650 * mebibyte;
-  for (int n = 0; n < 3; ++n) guard.keep_room();
+  for (int n = 0; n < 3; ++n) EXPECT_FALSE(guard.runs_short());
   EXPECT_EQ(reliefs, 1);
   while (reliefs < 2) guard.make_room(0);  // a moment later
+  used = 790 * mebibyte;
+  while (reliefs < 3) EXPECT_TRUE(guard.runs_short());  // nor does who would end work
+  used = 650 * mebibyte;
+  guard.expect_gain();
+  EXPECT_FALSE(guard.runs_short());
+  EXPECT_EQ(reliefs, 4);
   used = 0;
-  guard.keep_room();
+  EXPECT_FALSE(guard.runs_short());
   guard.make_room(100 * mebibyte);
-  EXPECT_EQ(reliefs, 2) << "there is room";
+  EXPECT_EQ(reliefs, 4) << "there is room";
 }
 
 TEST(MemoryGuard, SomethingElseEndsBeforeASolve) {
