@@ -54,7 +54,7 @@ SceneObject& append_object(Scene& scene, std::string name, const Placement& plac
 }
 
 /// Returns by what light in the quantity of one scene is multiplied in another one.
-double light_of(Quantity added, Quantity scene) {
+double factor_between(Quantity added, Quantity scene) {
   if (added == scene) return 1;
   return added == Quantity::photometric ? 1 / usual_lumens_per_watt : usual_lumens_per_watt;
 }
@@ -101,7 +101,7 @@ void append_copy(Scene& scene, std::string name, std::uint32_t of) {
 void append_scene(Scene& scene, std::string name, const std::string& resource_name, const Scene& added) {
   const std::size_t first_face = scene.faces.size();
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
-  const double factor = light_of(added.quantity, scene.quantity);
+  const double factor = factor_between(added.quantity, scene.quantity);
   for (const Material& material : added.materials) {
     if (material.texture) scene.texture_points.resize(scene.corners.size());
     scene.materials.push_back(material);

@@ -72,9 +72,11 @@ function withCopy(messages: ReadMeshResponse[], copy: LookOfObject): ReadMeshRes
   return [...messages, added];
 }
 
+/** Whether an edit has added an object. */
+export const isAdded = ({ copyOf, fromScene }: SceneObject | LookOfObject) => copyOf !== undefined || fromScene !== "";
+
 /** Whether a message has an object that an edit added, and the lights that came with it. */
-export const isAddition = ({ sceneObjects: [object] }: ReadMeshResponse) =>
-  object !== undefined && (object.copyOf !== undefined || object.fromScene !== "");
+export const isAddition = ({ sceneObjects: [object] }: ReadMeshResponse) => object !== undefined && isAdded(object);
 
 const LUMENS_PER_WATT = 179; // as the server converts
 
@@ -159,8 +161,7 @@ function alike(messages: ReadMeshResponse[]): ReadMeshResponse[] {
 }
 
 /** Objects that edits have added, in the order of their numbers. */
-export const addedObjects = ({ objects }: Pick<Look, "objects">) =>
-  objects.filter(({ copyOf, fromScene }) => copyOf !== undefined || fromScene !== "");
+export const addedObjects = ({ objects }: Pick<Look, "objects">) => objects.filter(isAdded);
 
 /** The scenes whose faces a look tells were added, one after the other: their images come in this order. */
 export const addedScenes = (look: Pick<Look, "objects">) => addedObjects(look).flatMap(({ fromScene }) => (fromScene ? [fromScene] : []));

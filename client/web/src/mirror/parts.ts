@@ -1,13 +1,12 @@
 // The lights, lamps and materials of a scene that a person can edit.
 
-import { Light_Kind, type Rgb, type SceneObject } from "../gen/alvor/v1/scene_service_pb";
+import { Light_Kind, type Rgb } from "../gen/alvor/v1/scene_service_pb";
 import type { Bands, Parts } from "../messages";
 import type { BaseMesh } from "./base_mesh";
+import { isAdded } from "./copies";
 
 const NEAR = [Light_Kind.POINT, Light_Kind.SPOT, Light_Kind.LUMINAIRE];
 const bandsOf = (value: Rgb | undefined): Bands => [value?.r ?? 0, value?.g ?? 0, value?.b ?? 0];
-
-const isAdded = ({ copyOf, fromScene }: SceneObject) => copyOf !== undefined || fromScene !== "";
 
 interface Extent {
   low: number[];
