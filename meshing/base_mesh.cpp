@@ -4,6 +4,7 @@
 #include "meshing/polygon.h"
 #include "meshing/weld.h"
 #include "meshing/welded_faces.h"
+#include "solution/patch_id.h"
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 
@@ -142,6 +143,11 @@ class NeighbourFinder {
 
 }  // namespace
 
+TooManyRoots::TooManyRoots(std::size_t roots)
+    : std::runtime_error("the faces are cut into " + std::to_string(roots) +
+                         " triangles and quads, both sides counted: at most " + std::to_string(PatchId::most_roots) +
+                         " are allowed") {}
+
 Vec3 RootPatch::at(double u, double v) const {
   if (corner_count == 3) return corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]);
   return lerp(lerp(corners[0], corners[1], u), lerp(corners[3], corners[2], u), v);
@@ -181,6 +187,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   refuse_stopped(options.stop);
   find_neighbours(options.stop);
   add_backs();
+  if (roots_.size() > PatchId::most_roots) throw TooManyRoots(roots_.size());
   separate_objects(false);
 }
 

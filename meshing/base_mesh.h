@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -69,6 +70,11 @@ struct BuildStopped : std::exception {
   const char* what() const noexcept override { return "building the mesh was given up"; }
 };
 
+/// Thrown for more roots than patch ids can number (PatchId::most_roots).
+struct TooManyRoots : std::runtime_error {
+  explicit TooManyRoots(std::size_t roots);
+};
+
 struct BaseMeshOptions {
   /// Joins two triangles that an exporter cut from one quad. Applies only to scenes made of triangles alone.
   bool join_triangles = true;
@@ -89,13 +95,14 @@ class BaseMesh {
   /// Builds the mesh. Requires: !find_fault(scene). Vertices closer than 1e-9 of the extent of all faces are welded. Roots keep
   /// the order of the scene's faces; a quad joined from two triangles takes the place of the first. A two-sided face gives two
   /// roots: its back comes after all fronts. If all faces are degenerate, there are no roots.
+  /// Throws TooManyRoots.
   explicit BaseMesh(const Scene& scene, const BaseMeshOptions& options = {});
   /// Returns this mesh with the materials, lights and medium of `scene`, and its objects where their `motion` puts them. Roots
   /// keep their numbers; those of objects that edits added (SceneObject::is_added()) come after them, object by object, in the
   /// order of the roots that they are copies of, of this mesh or of one of `added`; those of objects that do not move together
   /// are no neighbours, and no twins. Faces that come to lie in one place are not joined. Requires: !find_fault(scene); no edit
   /// has changed this mesh's scene; `scene` differs from it only in what edits change (edited_scene()); `added` has the meshes of
-  /// all scenes that it was made with.
+  /// all scenes that it was made with. Throws TooManyRoots.
   BaseMesh edited_as(const Scene& scene, const AddedMeshes& added = {}) const;
   /// Returns this mesh with the further roots of `other`, which come after all, hidden. Requires: `other` follows from the same
   /// scene by edits (edited_as()), and has at least as many roots.

@@ -3,6 +3,7 @@
 #include "meshing/base_mesh.h"
 #include "meshing/bounding_box.h"
 #include "meshing/face_object.h"
+#include "solution/patch_id.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,6 +69,7 @@ void separate_vertices(std::span<RootPatch> roots, std::span<const std::uint32_t
 BaseMesh BaseMesh::edited_as(const Scene& scene, const AddedMeshes& added) const {
   BaseMesh edited = *this;
   edited.append_objects(scene.objects, added);
+  if (edited.roots_.size() > PatchId::most_roots) throw TooManyRoots(edited.roots_.size());
   edited.materials_ = scene.materials;
   edited.lights_ = scene.lights;
   edited.absorption_ = scene.absorption;
@@ -111,8 +113,8 @@ void BaseMesh::separate_objects(bool are_to_move) {
   }
 }
 
-/// Returns whether a root has a place: not if it is of an object that was added and is hidden. One that was taken back is, and may
-/// lie anywhere.
+/// Returns whether a root has a place: not if it is of an object that was added and is hidden. One that was taken back is, and
+/// may lie anywhere.
 bool BaseMesh::counts_for_bounds(const RootPatch& root) const {
   if (!root.is_hidden) return true;
   const auto object = object_of_face(objects_, root.input.first);

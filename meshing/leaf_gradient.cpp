@@ -67,7 +67,8 @@ SmoothNeighbours::SmoothNeighbours(const PatchForest& forest, NodeIndex leaf) {
         continue;
       }
     }
-    const NodeIndex near = forest.leaf_across(shape, e, 0.25), far = forest.leaf_across(shape, e, 0.75);
+    // On either side of the middle, and within the inner two of four slabs.
+    const NodeIndex near = forest.leaf_across(shape, e, 0.375), far = forest.leaf_across(shape, e, 0.625);
     add(near);
     if (far != near) add(far);
   }

@@ -2,8 +2,22 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 
 namespace alvor {
+
+namespace {
+
+/// Returns the bits of x at even positions, next to each other.
+constexpr std::uint32_t gathered_bits(std::uint32_t x) {
+  x &= 0x55555555u;
+  x = (x | (x >> 1)) & 0x33333333u;
+  x = (x | (x >> 2)) & 0x0f0f0f0fu;
+  x = (x | (x >> 4)) & 0x00ff00ffu;
+  return (x | (x >> 8)) & 0x0000ffffu;
+}
+
+}  // namespace
 
 PatchForest::PatchForest(const BaseMesh& mesh) : mesh_(&mesh), leaf_count_(mesh.roots().size()) {
   ids_.reserve(mesh.roots().size());
@@ -28,38 +42,90 @@ NodeIndex PatchForest::leaf_across(const PatchShape& shape, int edge, double fra
   return place ? leaf_at(*place) : no_node;
 }
 
-bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits) const {
-  const std::uint64_t more = mesh_->is_translucent(id(leaf).root_face()) ? 6 : 3;
-  if (id(leaf).level() >= limits.max_level || leaf_count_ + more > limits.max_leaves) return false;
+/// Walks down by the digits of a place that has slabs itself, and by the coordinates of one that has none.
+NodeIndex PatchForest::leaf_in_slabs(PatchId place, NodeIndex from) const {
+  if (place.has_slabs()) {
+    for (int level = id(from).level() + 1; first_child_[from] != 0; ++level) from = child(from, place.child_index(level));
+    return from;
+  }
+  // Bits of u and v that are not used yet, the next one at bit max_level - 1.
+  const auto path = static_cast<std::uint32_t>(place.bits()) >> 1;
+  std::uint32_t u = gathered_bits(path) << id(from).halvings_of_u(), v = gathered_bits(path >> 1) << id(from).halvings_of_v();
+  const auto next = [](std::uint32_t& coordinate, int bits) {
+    const std::uint32_t taken = coordinate >> (PatchId::max_level - bits) & ((1u << bits) - 1);
+    coordinate <<= bits;
+    return static_cast<int>(taken);
+  };
+  while (first_child_[from] != 0) {
+    switch (split_of(from)) {
+      case Split::slabs_along_u: from = child(from, next(u, 2)); break;
+      case Split::slabs_along_v: from = child(from, next(v, 2)); break;
+      default: {
+        const int half_u = next(u, 1), half_v = next(v, 1);
+        from = child(from, half_u | half_v << 1);
+      }
+    }
+  }
+  return from;
+}
+
+NodeIndex PatchForest::node_in_place_of(PatchId patch) const {
+  NodeIndex node = patch.root_face();
+  for (int level = 1; level <= patch.level() && !is_leaf(node); ++level) node = child(node, patch.child_index(level));
+  return node;
+}
+
+bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits, Split how) const {
+  const PatchId patch_id = id(leaf);
+  const std::uint64_t more = mesh_->is_translucent(patch_id.root_face()) ? 6 : 3;
+  if (patch_id.level() >= limits.max_level || leaf_count_ + more > limits.max_leaves || !patch_id.may_split(how)) return false;
+  const bool is_slab = how != Split::quarters;
+  if (is_slab && mesh_->roots()[patch_id.root_face()].corner_count != 4) return false;
   if (limits.min_edge <= 0) return true;
   const PatchShape patch = shape(leaf);
   const auto corners = corners_of(*mesh_, patch);
-  for (int e = 0; e < patch.corner_count; ++e)
-    if (length(corners[(e + 1) % patch.corner_count] - corners[e]) < 2 * limits.min_edge) return false;
-  return true;
-}
-
-bool PatchForest::split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits,
-                                           std::vector<NodeIndex>& split_patches) {
-  const PatchShape patch = shape(leaf);
   for (int e = 0; e < patch.corner_count; ++e) {
-    const NodeIndex other = leaf_across(patch, e, 0.5);
-    if (other == no_node || id(other).level() >= id(leaf).level()) continue;
-    if (!split(other, limits, split_patches)) return false;
+    const int parts = !is_slab ? 2 : (e % 2 == 0) == (how == Split::slabs_along_u) ? 4 : 1;
+    if (length(corners[(e + 1) % patch.corner_count] - corners[e]) < parts * limits.min_edge) return false;
   }
   return true;
 }
 
-bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches) {
+// Ends: each leaf that is to be split first has a longer edge than the one before it.
+bool PatchForest::split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches,
+                                           const PatchForest* finer) {
+  const PatchShape patch = shape(leaf);
+  const std::int32_t longest = std::max(std::abs(patch.size_u), std::abs(patch.size_v));
+  for (int e = 0; e < patch.corner_count; ++e) {
+    const auto root_edge = root_edge_of(patch, e);
+    const auto across = root_edge ? mesh_->across(patch.root, *root_edge) : std::nullopt;
+    const int edge_there = across ? across->edge : e;  // within a root the edges of quads are parallel
+    for (;;) {
+      const NodeIndex other = leaf_across(patch, e, 0.5);
+      if (other == no_node || shape(other).size_along(edge_there) <= longest) break;
+      if (finer && finer->is_leaf(finer->node_in_place_of(id(other)))) break;
+      if (!split(other, limits, split_patches, Split::quarters, finer)) return false;
+    }
+  }
+  return true;
+}
+
+bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches, Split how,
+                        const PatchForest* finer) {
   assert(is_leaf(leaf));
-  if (!may_split(leaf, limits)) return false;
+  if (finer) {
+    const NodeIndex there = finer->node_in_place_of(id(leaf));
+    if (finer->is_leaf(there)) return false;
+    how = finer->split_of(there);
+  }
+  if (!may_split(leaf, limits, how)) return false;
   const NodeIndex behind = leaf_behind(leaf);
-  if (!split_coarser_neighbours(leaf, limits, split_patches)) return false;
-  if (behind != no_node && !split_coarser_neighbours(behind, limits, split_patches)) return false;
-  if (!may_split(leaf, limits)) return false;
+  if (!split_coarser_neighbours(leaf, limits, split_patches, finer)) return false;
+  if (behind != no_node && !split_coarser_neighbours(behind, limits, split_patches, finer)) return false;
+  if (!may_split(leaf, limits, how)) return false;
   for (const NodeIndex side : {leaf, behind}) {
     if (side == no_node) continue;
-    split_one(side);
+    split_one(side, side == leaf ? how : mirrored(how));
     split_patches.push_back(side);
   }
   return true;
@@ -68,30 +134,30 @@ bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vec
 void PatchForest::split_down_to(std::span<const LeafValue> patches) {
   for (const LeafValue& value : patches) {
     assert(value.patch.is_valid() && value.patch.root_face() < mesh_->roots().size());
-    NodeIndex node = leaf_at(value.patch);
-    while (id(node).level() < value.patch.level()) {
-      split_one(node);
-      node = child(node, value.patch.child_index(id(node).level() + 1));
+    NodeIndex node = value.patch.root_face();
+    for (int level = 1; level <= value.patch.level(); ++level) {
+      if (is_leaf(node)) split_one(node, value.patch.split_above(level));
+      node = child(node, value.patch.child_index(level));
     }
   }
 }
 
 void PatchForest::append(const AppendedRoots& roots) {
   for (NodeIndex& child : first_child_)
-    if (child != 0) child = roots.moved(child);
+    if (child != 0) child = roots.moved(child & ~split_mask) | (child & split_mask);
   roots.make_room(first_child_);
   roots.make_room(ids_);
   for (NodeIndex root = roots.first; root < roots.first + roots.count; ++root) ids_[root] = PatchId::root(root);
   leaf_count_ += roots.count;
 }
 
-void PatchForest::split_one(NodeIndex leaf) {
-  assert(is_leaf(leaf));
+void PatchForest::split_one(NodeIndex leaf, Split how) {
+  assert(is_leaf(leaf) && ids_.size() < (1u << split_shift));
   const auto first = static_cast<NodeIndex>(ids_.size());
   const PatchId parent = ids_[leaf];
-  for (int k = 0; k < 4; ++k) ids_.push_back(parent.child(k));
+  for (int k = 0; k < 4; ++k) ids_.push_back(parent.child(k, how));
   first_child_.resize(ids_.size());
-  first_child_[leaf] = first;
+  first_child_[leaf] = first | static_cast<std::uint32_t>(how) << split_shift;
   leaf_count_ += 3;
 }
 

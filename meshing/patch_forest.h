@@ -33,8 +33,9 @@ struct RefinementLimits {
   double min_edge = 0;  ///< metres; no split makes an edge shorter than this
 };
 
-/// Keeps neighbouring leaves balanced: the levels of leaves that share an edge differ by at most one, also across roots. The two
-/// sides of a translucent face are split alike. Borrows the mesh.
+/// Keeps neighbouring leaves balanced, also across roots: before a leaf is split, neighbours are, until none has an edge on it
+/// that is longer on the grid than its longest. So levels of squares that share an edge differ by one at most. The two sides of a
+/// translucent face are split alike. Has less than 2^30 nodes. Borrows the mesh.
 class PatchForest {
  public:
   explicit PatchForest(const BaseMesh& mesh);
@@ -45,23 +46,26 @@ class PatchForest {
   bool is_leaf(NodeIndex node) const { return first_child_[node] == 0; }
   PatchId id(NodeIndex node) const { return ids_[node]; }
   /// Requires: !is_leaf(node), 0 <= k < 4.
-  NodeIndex child(NodeIndex node, int k) const { return first_child_[node] + k; }
+  NodeIndex child(NodeIndex node, int k) const { return (first_child_[node] & ~split_mask) + k; }
+  /// Returns how a node is split. Requires: !is_leaf(node).
+  Split split_of(NodeIndex node) const { return static_cast<Split>(first_child_[node] >> split_shift); }
   PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, ids_[node]); }
   /// Returns all leaves in the order of their ids.
   std::vector<NodeIndex> leaves() const;
   /// Appends the leaves below `node` in the order of their ids, or `node` itself if it is a leaf.
   void append_leaves_of(NodeIndex node, std::vector<NodeIndex>& leaves) const;
 
-  /// Returns the leaf that contains `place`. If `place` is split further, returns the leaf at its first corner. O(levels).
-  NodeIndex leaf_at(PatchId place) const {
-    NodeIndex node = place.root_face();
-    for (int level = 1; first_child_[node] != 0; ++level) node = first_child_[node] + place.child_index(level);
-    return node;
-  }
+  /// Returns the leaf that contains `place`: a patch that has slabs as the forest has, or a point (PatchId::finest). If `place`
+  /// is split further, returns one of the leaves in it. O(levels).
+  NodeIndex leaf_at(PatchId place) const { return leaf_at(place, place.root_face()); }
   /// Returns the leaf that contains `place`, starting at the node `from`. Requires: `from` contains `place`.
   NodeIndex leaf_at(PatchId place, NodeIndex from) const {
     if (first_child_[from] == 0) return from;
-    for (int level = id(from).level() + 1; first_child_[from] != 0; ++level) from = first_child_[from] + place.child_index(level);
+    if (place.has_slabs() || id(from).has_slabs()) return leaf_in_slabs(place, from);
+    for (int level = id(from).level() + 1; first_child_[from] != 0; ++level) {
+      if (first_child_[from] & split_mask) return leaf_in_slabs(place, from);
+      from = first_child_[from] + place.child_index(level);
+    }
     return from;
   }
   /// Returns the leaf across `edge` at `fraction` along it, or `no_node` where the surface ends.
@@ -72,23 +76,34 @@ class PatchForest {
     return mesh_->is_translucent(id(leaf).root_face()) ? leaf_at(twin_of(*mesh_, id(leaf))) : no_node;
   }
 
-  bool may_split(NodeIndex leaf, const RefinementLimits& limits) const;
-  /// Splits `leaf`, and the leaf behind it, after splitting coarser neighbours as the balance demands. Appends every patch that
-  /// was split to `split`. Returns false if a limit forbids the split of the leaf or of such a neighbour; neighbours split before
-  /// that stay split. Requires: is_leaf(leaf).
-  bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
+  /// Returns the node with this id, or the leaf that contains it. Requires: `patch` has slabs as the forest has.
+  NodeIndex node_in_place_of(PatchId patch) const;
+
+  bool may_split(NodeIndex leaf, const RefinementLimits& limits, Split how = Split::quarters) const;
+  /// Splits `leaf` as told, and the leaf behind it alike, after splitting coarser neighbours into quarters as the balance
+  /// demands. Appends every patch that was split to `split`. Returns false if a limit forbids the split of the leaf or of such a
+  /// neighbour; neighbours split before that stay split. With `finer`, a forest of the same mesh, every patch is split as it is
+  /// split there, whatever `how` says, and none that is not. Requires: is_leaf(leaf).
+  bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split, Split how = Split::quarters,
+             const PatchForest* finer = nullptr);
   /// Splits until every patch of `patches` is a node, without balancing, each side by itself. Requires: valid ids of this mesh.
   void split_down_to(std::span<const LeafValue> patches);
   /// Takes roots that the mesh has got, as leaves. Requires: `first` is the number of roots before.
   void append(const AppendedRoots& roots);
 
  private:
-  bool split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
-  void split_one(NodeIndex leaf);
+  static constexpr int split_shift = 30;
+  static constexpr std::uint32_t split_mask = 3u << split_shift;
+
+  NodeIndex leaf_in_slabs(PatchId place, NodeIndex from) const;
+  bool split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split,
+                                const PatchForest* finer);
+  void split_one(NodeIndex leaf, Split how);
 
   const BaseMesh* mesh_;
   std::vector<PatchId> ids_;
-  std::vector<NodeIndex> first_child_;  // 0: a leaf. Apart from the ids, so that walks down the tree touch little memory.
+  // 0: a leaf. The highest two bits tell the Split. Apart from the ids, so that walks down the tree touch little memory.
+  std::vector<NodeIndex> first_child_;
   std::size_t leaf_count_ = 0;
 };
 

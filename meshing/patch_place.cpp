@@ -1,6 +1,7 @@
 #include "meshing/patch_place.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace alvor {
 
@@ -87,53 +88,69 @@ double along_root_edge(int corner_count, int edge, Uv p) {
 
 std::array<GridPoint, 4> PatchShape::corners() const {
   const auto [i, j] = first;
-  if (corner_count == 4) return {{{i, j}, {i + size, j}, {i + size, j + size}, {i, j + size}}};
-  return {{{i, j}, {i + size, j}, {i, j + size}, {}}};
+  if (corner_count == 4) return {{{i, j}, {i + size_u, j}, {i + size_u, j + size_v}, {i, j + size_v}}};
+  return {{{i, j}, {i + size_u, j}, {i, j + size_v}, {}}};
 }
 
 Uv PatchShape::centre() const {
-  const double offset = size / (corner_count == 4 ? 2.0 : 3.0);
-  return {(first.i + offset) / grid_size, (first.j + offset) / grid_size};
+  if (corner_count == 4) return inside({0.5, 0.5});
+  return {(first.i + size_u / 3.0) / grid_size, (first.j + size_v / 3.0) / grid_size};
 }
 
 Uv PatchShape::stratum_centre(int o) const {
   const int k = o >> 2, within = o & 3;
-  if (corner_count == 3 || strata_along_u == 4) return child(k).child(within).centre();
+  if (corner_count == 3) return child(k).child(within).centre();
+  if (strata_along_u == 4)
+    return inside({(2 * (k & 1) + (within & 1) + 0.5) / 4, (2 * (k >> 1) + (within >> 1) + 0.5) / 4});
   const bool is_row = strata_along_u == 16 || strata_along_u == 1;
-  const Uv along = is_row ? Uv{(o + 0.5) / 16, 0.5} : Uv{(2 * k + (within & 1) + 0.5) / 8, ((within >> 1) + 0.5) / 2};
-  return inside(along);
+  return long_way(is_row ? Uv{(o + 0.5) / 16, 0.5} : Uv{(2 * k + (within & 1) + 0.5) / 8, ((within >> 1) + 0.5) / 2});
 }
 
 Uv PatchShape::quarter_centre(int k) const {
-  if (corner_count == 3 || strata_along_u == 4) return child(k).centre();
-  return inside({(k + 0.5) / 4, 0.5});
+  if (corner_count == 3) return child(k).centre();
+  if (strata_along_u == 4) return inside({((k & 1) + 0.5) / 2, ((k >> 1) + 0.5) / 2});
+  return long_way({(k + 0.5) / 4, 0.5});
 }
 
-/// Returns the place in the root of a point of the unit square that is given along the long side and across it.
-Uv PatchShape::inside(Uv along) const {
-  const double step = double(size) / grid_size, u = double(first.i) / grid_size, v = double(first.j) / grid_size;
-  return strata_along_u > 4 ? Uv{u + step * along.u, v + step * along.v} : Uv{u + step * along.v, v + step * along.u};
-}
+/// Returns the place in the root of a point of the unit square.
+Uv PatchShape::inside(Uv at) const { return {(first.i + size_u * at.u) / grid_size, (first.j + size_v * at.v) / grid_size}; }
 
-PatchShape PatchShape::child(int k) const {
-  const std::int32_t h = size / 2;
+/// Returns the place in the root of a point of the unit square that is given along the side with more strata and across it.
+Uv PatchShape::long_way(Uv along) const { return inside(strata_along_u > 4 ? along : Uv{along.v, along.u}); }
+
+PatchShape PatchShape::child(int k, Split how) const {
   PatchShape c = *this;
-  c.size = h;
+  if (how == Split::slabs_along_u) {
+    c.size_u = size_u / 4;
+    c.first.i += k * c.size_u;
+    if (strata_along_u > 4) c.strata_along_u /= 2;
+    return c;
+  }
+  if (how == Split::slabs_along_v) {
+    c.size_v = size_v / 4;
+    c.first.j += k * c.size_v;
+    if (strata_along_u < 4) c.strata_along_u *= 2;
+    return c;
+  }
+  const std::int32_t h = size_u / 2, w = size_v / 2;
+  c.size_u = h, c.size_v = w;
   if (corner_count == 4) {
-    c.first = {first.i + (k & 1) * h, first.j + (k >> 1) * h};
+    c.first = {first.i + (k & 1) * h, first.j + (k >> 1) * w};
   } else if (k == 3) {
     c.first = {first.i + h, first.j + h};
-    c.size = -h;
+    c.size_u = c.size_v = -h;
   } else {
     c.first = {first.i + (k == 1 ? h : 0), first.j + (k == 2 ? h : 0)};
   }
   return c;
 }
 
+std::int32_t PatchShape::size_along(int edge) const { return std::abs(corner_count == 3 || edge % 2 == 0 ? size_u : size_v); }
+
 PatchShape shape_of(const BaseMesh& mesh, PatchId patch) {
   const RootPatch& root = mesh.roots()[patch.root_face()];
-  PatchShape shape{patch.root_face(), root.corner_count, {0, 0}, grid_size, root.strata_along_u};
-  for (int level = 1; level <= patch.level(); ++level) shape = shape.child(patch.child_index(level));
+  PatchShape shape = PatchShape::whole(patch.root_face(), root.corner_count, root.strata_along_u);
+  for (int level = 1; level <= patch.level(); ++level) shape = shape.child(patch.child_index(level), patch.split_above(level));
   return shape;
 }
 
@@ -191,6 +208,11 @@ std::optional<PatchId> place_across(const BaseMesh& mesh, const PatchShape& shap
     const double along = along_root_edge(shape.corner_count, *root_edge, {i / grid_size, j / grid_size});
     const int there = mesh.roots()[neighbour->root].corner_count;
     return finest_patch(mesh, neighbour->root, on_root_edge(there, neighbour->edge, 1 - along, just));
+  }
+  if (shape.corner_count == 4) {
+    constexpr std::array<Uv, 4> outwards{{{0, -just}, {just, 0}, {0, just}, {-just, 0}}};
+    const auto out = outwards[static_cast<std::size_t>(edge)];
+    return finest_patch(mesh, shape.root, {(i + out.u) / grid_size, (j + out.v) / grid_size});
   }
   const Uv c = shape.centre();
   const double di = i - c.u * grid_size, dj = j - c.v * grid_size;

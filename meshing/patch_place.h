@@ -24,15 +24,16 @@ struct Uv {
 /// Returns a uniform point of a face with so many corners for a uniform point of the unit square.
 inline Uv on_face(int corner_count, Uv at) { return corner_count == 3 && at.u + at.v > 1 ? Uv{1 - at.u, 1 - at.v} : at; }
 
-/// The place of a patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1. Triangles
-/// split at their edge midpoints: children 0..2 keep corners 0..2, child 3 is the inner one, turned by 180 degrees (size < 0).
+/// The place of a patch on its root's grid. Quads split at their centre: child k lies at u half k & 1, v half k >> 1; or into
+/// slabs: child k is the k-th along the axis. Triangles split at their edge midpoints: children 0..2 keep corners 0..2, child 3
+/// is the inner one, turned by 180 degrees (sizes < 0).
 struct PatchShape {
   std::uint32_t root = 0;
   int corner_count = 3;
-  GridPoint first;        ///< the patch's corner 0
-  std::int32_t size = 0;  ///< length of an edge in grid steps; negative for a turned triangle
-  /// Number of strata of a quad along u: 1, 2, 4, 8 or 16. Long quads have more along their long side, so that a leaf 4 mm wide
-  /// and 28 cm long is looked at every 2 cm.
+  GridPoint first;                      ///< the patch's corner 0
+  std::int32_t size_u = 0, size_v = 0;  ///< lengths of its edges in grid steps; equal, and negative if turned, for a triangle
+  /// Number of strata of a quad along u: 1, 2, 4, 8 or 16. Quads of long roots have more along their long side, so that a leaf
+  /// 4 mm wide and 28 cm long is looked at every 2 cm. Slabs have as many along them as across.
   std::int32_t strata_along_u = 4;
 
   std::array<GridPoint, 4> corners() const;
@@ -42,10 +43,17 @@ struct PatchShape {
   Uv stratum_centre(int o) const;
   /// Returns the middle of quarter `k`: the mean of its strata's middles.
   Uv quarter_centre(int k) const;
-  PatchShape child(int k) const;
+  PatchShape child(int k, Split how = Split::quarters) const;
+  /// Returns the length of an edge in grid steps.
+  std::int32_t size_along(int edge) const;
+  /// Returns the shape of a whole root with so many corners.
+  static PatchShape whole(std::uint32_t root, int corner_count, std::int32_t strata_along_u = 4) {
+    return {root, corner_count, {0, 0}, grid_size, grid_size, strata_along_u};
+  }
 
  private:
-  Uv inside(Uv along) const;
+  Uv inside(Uv at) const;
+  Uv long_way(Uv along) const;
 };
 
 PatchShape shape_of(const BaseMesh& mesh, PatchId patch);

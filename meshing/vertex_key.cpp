@@ -16,7 +16,7 @@ VertexKey inner_key(std::uint32_t root, GridPoint p) {
 }
 
 std::optional<int> corner_at(int corner_count, GridPoint p) {
-  const PatchShape whole{0, corner_count, {0, 0}, grid_size};
+  const PatchShape whole = PatchShape::whole(0, corner_count);
   const auto corners = whole.corners();
   for (int c = 0; c < corner_count; ++c)
     if (corners[c] == p) return c;

@@ -16,7 +16,8 @@ namespace {
 
 constexpr int compression_level = 1;
 constexpr int escape = 7;               // code of a level that follows as a byte
-constexpr std::size_t longest_id = 11;  // bytes of a number and a level
+constexpr int tells_slabs = 0x80;       // added to such a level byte: two bytes with the slab code follow
+constexpr std::size_t longest_id = 13;  // bytes of a number, a level and a slab code
 constexpr std::size_t exact_words = 3;
 
 std::size_t words_of(Detail detail) { return detail == Detail::display ? 1 : exact_words; }
@@ -32,15 +33,26 @@ std::uint64_t rounded_up(std::uint64_t at, std::uint64_t size) { return (at + si
 int zigzag(int x) { return x >= 0 ? 2 * x : -2 * x - 1; }
 int unzigzag(int x) { return x & 1 ? -(x + 1) / 2 : x / 2; }
 
+/// Returns a slab code for `patch` that agrees with that of the patch before it: ancestors of both are split as they were, others
+/// into quarters.
+int guessed_slab_code(PatchId patch, PatchId before) {
+  if (!before.is_valid() || before.root_face() != patch.root_face()) return 0;
+  return before.ancestor(before.common_level(patch) + 1).slab_code();
+}
+
 /// Writes ids as differences: how many patches of its size lie between each patch and the one before, and how its level differs.
 class IdWriter {
  public:
   explicit IdWriter(std::string& out) : out_(out) {}
   void write(PatchId patch) {
-    const int level = patch.level(), code = std::min(zigzag(level - level_), escape);
+    const int level = patch.level();
     const std::uint64_t size = size_of(level), first = first_of(patch);
+    const bool is_guessed = patch.slab_code() == guessed_slab_code(patch, before_);
+    const int code = is_guessed ? std::min(zigzag(level - level_), escape) : escape;
     write_number((first - rounded_up(end_, size)) / size << 3 | static_cast<std::uint64_t>(code));
-    if (code == escape) out_.push_back(static_cast<char>(level));
+    if (code == escape) out_.push_back(static_cast<char>(is_guessed ? level : level | tells_slabs));
+    if (!is_guessed) out_.append({static_cast<char>(patch.slab_code() & 255), static_cast<char>(patch.slab_code() >> 8)});
+    before_ = patch;
     level_ = level;
     end_ = first + size;
   }
@@ -51,6 +63,7 @@ class IdWriter {
     out_.push_back(static_cast<char>(x));
   }
   std::string& out_;
+  PatchId before_;
   int level_ = 0;
   std::uint64_t end_ = 0;
 };
@@ -62,21 +75,30 @@ class IdReader {
   bool read(PatchId& patch) {
     std::uint64_t number = 0;
     if (!read_number(number)) return false;
-    int level = static_cast<int>(number & 7);
+    int level = static_cast<int>(number & 7), slab_code = -1;
     if (level == escape) {
       if (at_ == bytes_.size()) return false;
       level = bytes_[at_++];
+      if (level & tells_slabs) {
+        if (bytes_.size() - at_ < 2 || bytes_[at_ + 1] > 3) return false;
+        level -= tells_slabs;
+        slab_code = bytes_[at_] | bytes_[at_ + 1] << 8;
+        at_ += 2;
+      }
     } else {
       level = level_ + unzigzag(level);
     }
     if (level < 0 || level > PatchId::max_level) return false;
     const std::uint64_t size = size_of(level), start = rounded_up(end_, size), steps = number >> 3;
-    constexpr std::uint64_t end_of_curve = std::uint64_t{1} << (32 + finest_bits);
+    constexpr std::uint64_t end_of_curve = std::uint64_t{PatchId::most_roots} << finest_bits;
     if (start >= end_of_curve || steps >= (end_of_curve - start) / size) return false;
     const std::uint64_t first = start + steps * size;
     patch =
         PatchId::finest(static_cast<std::uint32_t>(first >> finest_bits), static_cast<std::uint32_t>(first & (size_of(0) - 1)))
             .ancestor(level);
+    patch = patch.with_slab_code(slab_code >= 0 ? slab_code : guessed_slab_code(patch, before_));
+    if (!patch.is_valid() || (before_.is_valid() && !before_.agrees_on_splits(patch))) return false;
+    before_ = patch;
     level_ = level;
     end_ = first + size;
     return true;
@@ -94,6 +116,7 @@ class IdReader {
   }
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0;
+  PatchId before_;
   int level_ = 0;
   std::uint64_t end_ = 0;
 };

@@ -24,7 +24,7 @@ Detail decode(v1::Detail detail);
 /// Returns a number of leaves whose encoding stays below most_frame_bytes, whatever their ids.
 std::size_t leaves_per_frame(Detail detail);
 
-/// Returns the encoded values. Requires: `values` ascend and are disjoint, with root faces below 2^31, at most
+/// Returns the encoded values. Requires: `values` ascend and are disjoint, at most
 /// leaves_per_frame(detail). For the display detail, `coding` must hold each value exactly.
 v1::LeafValues encode_leaves(std::span<const LeafValue> values, Detail detail, SharedExponent coding);
 /// Sets `values` to the decoded leaves: ids ascend, are valid and disjoint; values are finite and not negative. Returns a fault

@@ -1,6 +1,6 @@
 // Saves a solution log as bytes and restores it. The bytes begin with a mark and a version. Version 3 does not tell errors of
-// leaves nor Step::area_within, version 4 not Step::edits. Logs that were saved before there were versions begin with the number
-// of their steps, which is never as large as the mark.
+// leaves nor Step::area_within, version 4 not Step::edits, version 5 has no slabs. Logs that were saved before there were
+// versions begin with the number of their steps, which is never as large as the mark.
 
 #include "solution/solution_log.h"
 
@@ -12,7 +12,7 @@ namespace alvor {
 namespace {
 
 constexpr std::uint64_t mark = 0x676f'6c72'6f76'6c61;  // "alvorlog"
-constexpr std::uint32_t newest_version = 5;
+constexpr std::uint32_t newest_version = 6;
 constexpr std::uint32_t oldest_marked = 3;
 // Version 2 was written before marks were. Version 1, older still, does not have Step::unlit_fraction.
 constexpr std::uint32_t unmarked_versions[] = {2, 1};
@@ -22,6 +22,7 @@ void check_tiling(std::span<const PatchId> patches) {
   for (std::size_t n = 0; n < patches.size(); ++n) {
     if (!patches[n].is_valid()) throw BadBytes("patch " + std::to_string(n) + ": is not one");
     if (n > 0 && patches[n].range_min() <= patches[n - 1].range_max()) throw BadBytes("patches: overlap");
+    if (n > 0 && !patches[n - 1].agrees_on_splits(patches[n])) throw BadBytes("patches: do not agree on how patches are split");
   }
 }
 

@@ -34,7 +34,8 @@ void SolutionLog::publish(std::span<const LeafValue> changed, Step step, std::sp
     std::vector<std::size_t> places;
     if (!find_places(leaves_.patch, changed, places)) {
       retile_for(changed);
-      find_places(leaves_.patch, changed, places);
+      [[maybe_unused]] const bool has_all = find_places(leaves_.patch, changed, places);
+      assert(has_all);
     }
     const double mean = leaves_.patch.empty() ? 0 : sum_ / static_cast<double>(leaves_.patch.size());
     const bool is_checked = step.displayed_error >= checked_error_ && mean >= checked_mean_;
@@ -71,7 +72,9 @@ void SolutionLog::retile_for(std::span<const LeafValue> changed) {
   const auto set = [&](std::size_t from, std::size_t j) {
     append(changed[j].patch, from, from == no_leaf || leaves_.patch[from] != changed[j].patch);
   };
-  const auto inherit = [&](std::size_t from, PatchId patch) { append(patch, from, from == no_leaf); };
+  const auto inherit = [&](std::size_t from, PatchId patch, bool is_of_many) {
+    append(patch, from, from == no_leaf || is_of_many);
+  };
   LeafMerge(std::span<const PatchId>(leaves_.patch), changed, keep, set, inherit).run();
   leaves_ = std::move(next);
   sum_up();

@@ -15,6 +15,8 @@ std::optional<std::string> fault_in_patches(std::span<const LeafValue> values) {
     if (!patch.is_valid()) return "patch id " + std::to_string(patch.bits()) + " is not one";
     if (n > 0 && patch.range_min() <= values[n - 1].patch.range_max())
       return "patch " + std::to_string(patch.bits()) + " overlaps the one before it";
+    if (n > 0 && !values[n - 1].patch.agrees_on_splits(patch))
+      return "patch " + std::to_string(patch.bits()) + " says of a common ancestor that it is split in another way";
   }
   return std::nullopt;
 }
@@ -76,7 +78,7 @@ void SolutionMirror::retile_for(const std::vector<LeafValue>& values) {
   LeafMerge(
       std::span<const PatchId>(patches_), std::span(values), [&](std::size_t i) { append(patches_[i], i); },
       [&](std::size_t from, std::size_t j) { append(values[j].patch, from); },
-      [&](std::size_t from, PatchId patch) { append(patch, from); })
+      [&](std::size_t from, PatchId patch, bool) { append(patch, from); })
       .run();
   patches_ = std::move(patches);
   irradiance_ = std::move(irradiance);

@@ -16,7 +16,7 @@ namespace alvor {
 
 namespace {
 
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t without_slabs = 1, newest_version = 2;
 // A file holds at most this many leaves, so that a small one cannot ask for much memory.
 constexpr std::uint64_t leaves_at_least = 1 << 20, leaves_per_byte = 8;
 
@@ -41,7 +41,8 @@ class Writer {
  private:
   void add_header(bool has_errors) {
     v1::SolutionPart part;
-    part.mutable_header()->set_version(version);
+    const bool has_slabs = std::ranges::any_of(leaves_, [](const LeafValue& leaf) { return leaf.patch.has_slabs(); });
+    part.mutable_header()->set_version(has_slabs ? newest_version : without_slabs);
     part.mutable_header()->set_root_count(mesh_.roots().size());
     part.mutable_header()->set_leaf_count(leaves_.size());
     part.mutable_header()->set_has_errors(has_errors);
@@ -149,7 +150,7 @@ class Reader {
     const auto part = parts_.next();
     if (!part || !part->has_header()) parts_.fail("the header is missing");
     header_ = part->header();
-    if (header_.version() != version)
+    if (header_.version() < without_slabs || header_.version() > newest_version)
       parts_.fail("version " + std::to_string(header_.version()) + " is not known: a newer program wrote the file");
     if (header_.leaf_count() > most_leaves_) parts_.fail("more leaves than a file of this size can hold");
   }
@@ -253,7 +254,8 @@ class Reader {
     if (const auto fault = decode_leaves(message, values)) parts_.fail(fault->text());
     if (values.empty()) return;
     if (leaves_.size() + values.size() > header_.leaf_count()) parts_.fail("more leaves than the header says");
-    if (!leaves_.empty() && !(leaves_.back().patch.range_max() < values.front().patch.range_min()))
+    if (!leaves_.empty() && !(leaves_.back().patch.range_max() < values.front().patch.range_min() &&
+                              leaves_.back().patch.agrees_on_splits(values.front().patch)))
       parts_.fail("its leaves do not follow those before");
     leaves_.insert(leaves_.end(), values.begin(), values.end());
   }
@@ -287,6 +289,8 @@ class Reader {
     for (const LeafValue& leaf : leaves_) {
       if (leaf.patch.root_face() >= covered.size())
         throw SolutionFileError("leaves: there is no root patch " + std::to_string(leaf.patch.root_face()));
+      if (leaf.patch.has_slabs() && mesh.roots()[leaf.patch.root_face()].corner_count != 4)
+        throw SolutionFileError("leaves: root patch " + std::to_string(leaf.patch.root_face()) + " is a triangle and has slabs");
       covered[leaf.patch.root_face()] += whole >> (2 * leaf.patch.level());
     }
     for (std::size_t root = 0; root < covered.size(); ++root)

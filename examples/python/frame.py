@@ -5,6 +5,8 @@ import struct
 import zstandard
 
 FINEST = 15
+FACES = 2**22
+QUARTERS, SLABS_ALONG_U, SLABS_ALONG_V = range(3)  # how a patch is split into four
 DISPLAY, EXACT = 1, 2  # alvor.v1.Detail
 
 
@@ -17,15 +19,58 @@ def level_of(patch):
   return FINEST - ((low & -low).bit_length() - 1) // 2
 
 
-def child_of(patch, k):
+def face_of(patch):
+  return patch >> 32 & FACES - 1
+
+
+def place_of(patch):
+  """The id without the slab code in its upper ten bits. Leaves are sorted by it."""
+  return patch & (1 << 54) - 1
+
+
+def slab_splits(patch):
+  """Of each ancestor that was split into slabs: its level, how, and the bits of the slab code that say so."""
+  for shift in (54, 59):
+    code = patch >> shift & 31
+    if code:
+      yield (code - 1) // 2, SLABS_ALONG_U + (code - 1) % 2, code << shift
+
+
+def split_above(patch, level):
+  """How the ancestor at `level` - 1 is split."""
+  return next((how for above, how, _ in slab_splits(patch) if above == level - 1), QUARTERS)
+
+
+def ancestor_of(patch, level):
+  bit = 1 << 2 * (FINEST - level)
+  return place_of(patch) & ~(2 * bit - 1) | bit | sum(code for above, _, code in slab_splits(patch) if above < level)
+
+
+def sibling_of(patch, k):
+  """Child `k` of the patch's parent."""
   bit = patch & -patch
-  return patch - bit + (2 * k + 1) * (bit >> 2)
+  return patch & ~(6 * bit) | 2 * k * bit
+
+
+def child_of(patch, k, how):
+  bit = patch & -patch
+  code = 0 if how == QUARTERS else 2 * level_of(patch) + how
+  return patch - bit + (2 * k + 1) * (bit >> 2) | code << (59 if patch >> 54 else 54)
 
 
 def patch_at(position, level):
-  """The patch of `level` that begins at `position` on the curve of finest patches."""
+  """The patch of `level` that begins at `position` on the curve of finest patches, without slabs."""
   face, path = divmod(position, 4**FINEST)
   return face << 32 | path << 1 | 1 << 2 * (FINEST - level)
+
+
+def guessed_slabs(patch, before):
+  """The slab code that the leaf before tells: of common ancestors; others are split into quarters."""
+  if before is None or face_of(before) != face_of(patch):
+    return 0
+  begins = [x - (x & -x) & 0xFFFFFFFF for x in (patch, before)]
+  common = (31 - (begins[0] ^ begins[1]).bit_length()) // 2
+  return ancestor_of(before, common + 1) >> 54
 
 
 def read_ids(raw, count):
@@ -40,15 +85,21 @@ def read_ids(raw, count):
       shift += 7
       if byte < 0x80:
         break
-    code = number & 7
+    code, slabs = number & 7, None
     if code == 7:
-      level = raw[at]
+      level = raw[at] & 0x7F
       at += 1
+      if raw[at - 1] & 0x80:
+        slabs = raw[at] | raw[at + 1] << 8
+        at += 2
     else:
       level += -(code + 1) // 2 if code & 1 else code // 2
     size = 4 ** (FINEST - level)
     first = -(-end // size) * size + (number >> 3) * size
-    ids.append(patch_at(first, level))
+    patch = patch_at(first, level)
+    if slabs is None:
+      slabs = guessed_slabs(patch, ids[-1] if ids else None)
+    ids.append(patch | slabs << 54)
     end = first + size
   return ids, at
 
@@ -123,7 +174,7 @@ class Mirror:
   """The leaves of a solve: a dictionary from patch id to irradiance (r, g, b) in W/m2."""
 
   def __init__(self):
-    self.leaves, self.inner, self.revision, self.epoch = {}, set(), 0, ""
+    self.leaves, self.inner, self.revision, self.epoch = {}, {}, 0, ""  # inner: how patches are split
 
   def apply(self, frame):
     if frame.reset:
@@ -140,28 +191,24 @@ class Mirror:
       raise FrameError("the mirror is not what the server has")
 
   def _merge_within(self, patch):
+    """Makes a patch one leaf, which inherits from the first in it."""
     if patch not in self.inner:
       return
-    self.inner.remove(patch)
-    for k in range(4):
-      self._merge_within(child_of(patch, k))
-      self.leaves.pop(child_of(patch, k), None)
+    how = self.inner.pop(patch)
+    children = [child_of(patch, k, how) for k in range(4)]
+    for child in children:
+      self._merge_within(child)
+    self.leaves[patch] = [self.leaves.pop(child) for child in children][0]
 
   def _split_down_to(self, patch):
-    if patch in self.leaves or patch in self.inner:
-      return
-    path = patch & 0xFFFFFFFF
-    ancestors = []
-    for level in range(level_of(patch)):
-      bit = 1 << 2 * (FINEST - level)
-      ancestors.append(patch & ~0xFFFFFFFF | path & ~(2 * bit - 1) | bit)
-    inherited = (0.0, 0.0, 0.0)
-    for above, below in zip(ancestors, ancestors[1:] + [patch]):
-      inherited = self.leaves.pop(above, inherited)
-      if above in self.inner:
-        inherited = self.leaves.get(below, inherited)
-        continue
-      self.inner.add(above)
-      for k in range(4):
-        if child_of(above, k) != below:
-          self.leaves[child_of(above, k)] = inherited
+    ancestors = [ancestor_of(patch, level) for level in range(level_of(patch) + 1)]
+    if ancestors[0] not in self.inner:
+      self.leaves.setdefault(ancestors[0], (0.0, 0.0, 0.0))
+    for level, (above, below) in enumerate(zip(ancestors, ancestors[1:]), 1):
+      how = split_above(patch, level)
+      if self.inner.get(above, how) != how:  # as after a solve has begun anew
+        self._merge_within(above)
+      if above not in self.inner:
+        self.inner[above] = how
+        inherited = self.leaves.pop(above)
+        self.leaves.update((sibling_of(below, k), inherited) for k in range(4))

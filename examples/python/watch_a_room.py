@@ -82,15 +82,18 @@ class Server:
 
 def middle_of(patch):
   """Of a leaf of a quad, and the normal there."""
-  corners = QUADS[patch >> 32][1]
+  corners = QUADS[frame.face_of(patch)][1]
   u = v = 0.0
-  width = 1.0
-  for level in range(frame.level_of(patch)):
-    k = patch >> 2 * (frame.FINEST - 1 - level) + 1 & 3
-    width /= 2
-    u += width * (k & 1)
-    v += width * (k >> 1)
-  u, v = u + width / 2, v + width / 2
+  width = height = 1.0
+  for level in range(1, frame.level_of(patch) + 1):
+    k = patch >> 2 * (frame.FINEST - level) + 1 & 3
+    how = frame.split_above(patch, level)
+    columns, rows = {frame.QUARTERS: (2, 2), frame.SLABS_ALONG_U: (4, 1), frame.SLABS_ALONG_V: (1, 4)}[how]
+    width /= columns
+    height /= rows
+    u += width * (k % columns)
+    v += height * (k // columns)
+  u, v = u + width / 2, v + height / 2
   weights = ((1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v)
   point = [sum(w * c[axis] for w, c in zip(weights, corners)) for axis in range(3)]
   a, b = ([corners[n][axis] - corners[0][axis] for axis in range(3)] for n in (1, 3))
@@ -113,8 +116,9 @@ def main():
     if message.steps:
       step = message.steps[-1]
       print(f"revision {step.revision}: {step.leaves} leaves, estimated error {100 * step.estimated_error:.1f} %")
+  leaves = sorted(mirror.leaves.items(), key=lambda leaf: frame.place_of(leaf[0]))
   with open(options.out, "w", newline="") as out:
-    csv.writer(out).writerows(middle_of(patch) + list(irradiance) for patch, irradiance in sorted(mirror.leaves.items()))
+    csv.writer(out).writerows(middle_of(patch) + list(irradiance) for patch, irradiance in leaves)
   print(solve.name)
 
 

@@ -15,6 +15,7 @@ struct Candidate {
   NodeIndex patch = 0;
   double squared_error = 0;  ///< squared error, integrated over the patch, most of which the refinement would remove
   double rays = 1;           ///< rays that the refinement costs
+  Split split = Split::quarters;  ///< how it splits the patch, if it does and limits allow it
 
   bool refines_leaf() const { return kind == Kind::split_leaf || kind == Kind::add_shadow_rays; }
   bool splits() const { return kind == Kind::split_leaf || kind == Kind::split_row; }

@@ -36,10 +36,7 @@ CoarseUnits grouped(const CoarseUnits& units, std::span<const std::uint32_t> gro
 
 CoarseUnits ancestors_at(std::span<const PatchId> patches, int level) {
   std::vector<std::uint64_t> names;
-  for (PatchId patch : patches) {
-    while (patch.level() > level) patch = patch.parent();
-    names.push_back(patch.bits());
-  }
+  for (const PatchId patch : patches) names.push_back((patch.level() > level ? patch.ancestor(level) : patch).bits());
   return numbered(names);
 }
 

@@ -116,7 +116,7 @@ class Fitter {
     std::array<Vec3, 4> quarter_at;
     Sample whole;
     Vec3 normal;
-    double edge = 0;
+    std::array<Vec3, 3> axes;  ///< two along its edges and its normal, each divided by the patch's length along it
     double noise = -1;  ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
     bool is_dark = true;
   };
@@ -128,7 +128,7 @@ class Fitter {
   void learn(const PatchShape& shape, const RowSamples& samples, Known& known) const {
     const RootPatch& root = forest_.mesh().roots()[shape.root];
     known.normal = root.normal;
-    known.edge = std::sqrt(area_of(forest_.mesh(), shape));
+    known.axes = axes_of(shape);
     RelativeLight sum;
     for (int k = 0; k < 4; ++k) {
       const Uv c = shape.quarter_centre(k);
@@ -144,6 +144,24 @@ class Fitter {
     if (std::ranges::all_of(samples, [](const QuarterSample& q) { return q.rays > 0; }))
       known.noise = squared_bend(samples, shape.corner_count == 4) * known.whole.rays / 4;
   }
+  /// Distances are counted in edges of the patch; those of slabs in lengths and widths, because light changes across them.
+  std::array<Vec3, 3> axes_of(const PatchShape& shape) const {
+    const Vec3 normal = forest_.mesh().roots()[shape.root].normal;
+    const double area = area_of(forest_.mesh(), shape), edge = std::sqrt(area);
+    if (shape.size_u == shape.size_v) {
+      const TangentFrame plane(normal);
+      return {plane.s / edge, plane.t / edge, normal / edge};
+    }
+    const auto corners = corners_of(forest_.mesh(), shape);
+    const Vec3 along = (corners[1] + corners[2] - corners[0] - corners[3]) / 2;
+    const double squared_length = dot(along, along);
+    return {along / squared_length, cross(normal, along) / area, normal / edge};
+  }
+  static double squared_distance(const Vec3& away, const std::array<Vec3, 3>& axes) {
+    double sum = 0;
+    for (const Vec3& axis : axes) sum += dot(away, axis) * dot(away, axis);
+    return sum;
+  }
   static double squared_bend(const RowSamples& q, bool is_quad) {
     const RelativeLight ends = q[0].irradiance + q[3].irradiance, others = q[1].irradiance + q[2].irradiance;
     const double bend = is_quad ? (ends - others).mean() / 2 : (4 * q[3].irradiance - ends - others).mean() / std::sqrt(12);
@@ -151,11 +169,10 @@ class Fitter {
   }
 
   FieldFit frame_of(std::size_t n) const {
-    const TangentFrame plane(known_[n].normal);
     FieldFit field;
     field.centre = centre_[rows_[n]];
-    field.s = plane.s / known_[n].edge;
-    field.t = plane.t / known_[n].edge;
+    field.s = known_[n].axes[0];
+    field.t = known_[n].axes[1];
     return field;
   }
 
@@ -163,20 +180,19 @@ class Fitter {
   /// `field`.
   void look_around(std::size_t n, FieldFit& field, Window& window) const {
     const Known& own = known_[n];
-    const double squared_reach = wide_window * wide_window * own.edge * own.edge;
     RowSet rows;
     rows.add(static_cast<std::uint32_t>(n));
     field.low = field.high = own.whole.irradiance;
     double noise = 0, noisy = 0;
     for (std::size_t next = 0; next < rows.size(); ++next) {
       const Known& row = known_[rows[next]];
-      const Vec3 d = row.whole.at - field.centre;
-      add_samples(rows[next], dot(d, d) < near_rows * near_rows * own.edge * own.edge, field, window);
+      const bool is_near = squared_distance(row.whole.at - field.centre, own.axes) < near_rows * near_rows;
+      add_samples(rows[next], is_near, field, window);
       if (row.noise >= 0) noise += row.noise, noisy += 1;
       for (const NodeIndex other : neighbours_[rows[next]]) {
         const Known& candidate = known_[place_[other]];
-        const Vec3 away = centre_[other] - field.centre;
-        if (dot(away, away) < squared_reach && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface)
+        const bool is_within = squared_distance(centre_[other] - field.centre, own.axes) < wide_window * wide_window;
+        if (is_within && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface)
           rows.add(place_[other]);
       }
     }

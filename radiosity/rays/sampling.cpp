@@ -96,7 +96,7 @@ DirectionSets::DirectionSets(std::uint64_t seed, RayPlacing placing) : placing_(
 }
 
 Strata::Strata(int corner_count, int along_u) {
-  const PatchShape whole{0, corner_count, {0, 0}, grid_size, along_u};
+  const PatchShape whole = PatchShape::whole(0, corner_count, along_u);
   for (int o = 0; o < origins_per_patch; ++o) {
     const Uv middle = whole.stratum_centre(o);
     u[o] = static_cast<float>(middle.u);
@@ -120,14 +120,14 @@ OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
   const Strata& strata = Strata::of(patch);
   // Share of the jitter that keeps a point in its stratum. In a triangle 2/3 + room <= 1 must hold for u + v, so room <= 1/3.
   const double room = patch.corner_count == 3 ? 0.3 : 1;
-  const auto size = static_cast<float>(double(patch.size) / grid_size);
+  const auto size_u = static_cast<float>(double(patch.size_u) / grid_size), size_v = static_cast<float>(double(patch.size_v) / grid_size);
   const auto first_u = static_cast<float>(double(patch.first.i) / grid_size);
   const auto first_v = static_cast<float>(double(patch.first.j) / grid_size);
   const auto move_u = static_cast<float>(room * jitter.u), move_v = static_cast<float>(room * jitter.v);
   OriginPlaces places;
   for (int o = 0; o < origins_per_patch; ++o) {
-    places.u[o] = first_u + size * (strata.u[o] + move_u * strata.sway_u[o]);
-    places.v[o] = first_v + size * (strata.v[o] + move_v * strata.sway_v[o]);
+    places.u[o] = first_u + size_u * (strata.u[o] + move_u * strata.sway_u[o]);
+    places.v[o] = first_v + size_v * (strata.v[o] + move_v * strata.sway_v[o]);
   }
   return places;
 }

@@ -21,6 +21,10 @@ constexpr double start_area = 1e-3;
 // because light from one place would seem to come from another. Chosen.
 constexpr double start_textured_edge = 1.0 / 32, start_contrast = 0.05;
 
+// Share of the scene's extent: longest edge of a patch that is split into slabs. Slabs cannot be undone, and in a large patch
+// there is more than one line to follow. Measured: docs/error-vs-time/tried.md.
+constexpr double longest_slab = 1.0 / 24;
+
 double longest_edge(const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
   double longest = 0;
@@ -38,9 +42,16 @@ void save_leaves(const PatchForest& forest, PlainWriter& out) {
 /// Splits `forest` until its leaves are those that were saved. Throws BadBytes if they are not leaves of this scene.
 void load_leaves(PatchForest& forest, PlainReader& in) {
   const auto ids = in.get_all<PatchId>();
+  const auto roots = forest.mesh().roots();
   std::vector<LeafValue> patches;
   for (const PatchId id : ids) {
-    if (!id.is_valid() || id.root_face() >= forest.mesh().roots().size()) throw BadBytes("leaves: not of this scene");
+    if (!id.is_valid() || id.root_face() >= roots.size()) throw BadBytes("leaves: not of this scene");
+    if (id.has_slabs() && roots[id.root_face()].corner_count != 4) throw BadBytes("leaves: slabs of a triangle");
+    if (!patches.empty()) {
+      const PatchId before = patches.back().patch;
+      if (id.range_min() <= before.range_max()) throw BadBytes("leaves: overlap");
+      if (!before.agrees_on_splits(id)) throw BadBytes("leaves: do not agree on how patches are split");
+    }
     patches.push_back({id, {}});
   }
   forest.split_down_to(patches);
@@ -85,7 +96,7 @@ void Forests::split_to_start(const Plan& plan) {
     if (!rows_.is_leaf(node) || !is_coarse(node)) continue;
     const NodeIndex leaf = leaf_node_of(node);
     if (leaves_.is_leaf(leaf) && !leaves_.split(leaf, limits_, split)) continue;  // after an edit at the limit of leaves
-    rows_.split(node, limits_, split);  // neighbours that this splits have leaves as fine, as leaves are balanced, too
+    rows_.split(node, limits_, split, Split::quarters, &leaves_);
   }
 }
 
@@ -121,33 +132,36 @@ void Forests::fit_to_nodes() {
   }
 }
 
-NodeIndex Forests::leaf_node_of(NodeIndex row) const {
-  const PatchId id = rows_.id(row);
-  NodeIndex node = id.root_face();
-  for (int level = 1; level <= id.level(); ++level) {
-    if (leaves_.is_leaf(node)) return node;
-    node = leaves_.child(node, id.child_index(level));
-  }
-  return node;
-}
+NodeIndex Forests::leaf_node_of(NodeIndex row) const { return leaves_.node_in_place_of(rows_.id(row)); }
 
 void Forests::append_leaves_of_row(NodeIndex row, std::vector<NodeIndex>& leaves) const {
   leaves_.append_leaves_of(leaf_node_of(row), leaves);
 }
 
-bool Forests::may_split_row(NodeIndex row) const {
-  const NodeIndex leaf = leaf_node_of(row);
-  return rows_.may_split(row, limits_) && (!leaves_.is_leaf(leaf) || leaves_.may_split(leaf, limits_));
+Split Forests::allowed(NodeIndex leaf, Split wanted) const {
+  if (wanted == Split::quarters || longest_edge(mesh_, leaves_.shape(leaf)) > longest_slab * mesh_.extent())
+    return Split::quarters;
+  return leaves_.may_split(leaf, limits_, wanted) ? wanted : Split::quarters;
 }
 
-bool Forests::split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split) {
-  const bool is_done = leaves_.split(leaf, limits_, split);
+bool Forests::may_split_leaf(NodeIndex leaf, Split wanted) const {
+  return leaves_.may_split(leaf, limits_, allowed(leaf, wanted));
+}
+
+bool Forests::may_split_row(NodeIndex row, Split wanted) const {
+  const NodeIndex leaf = leaf_node_of(row);
+  if (!leaves_.is_leaf(leaf)) return rows_.may_split(row, limits_, leaves_.split_of(leaf));
+  return may_split_leaf(leaf, wanted) && rows_.may_split(row, limits_, allowed(leaf, wanted));
+}
+
+bool Forests::split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split, Split wanted) {
+  const bool is_done = leaves_.split(leaf, limits_, split, allowed(leaf, wanted));
   fit_to_nodes();
   return is_done;
 }
 
 bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
-  const bool is_done = rows_.split(row, limits_, split);
+  const bool is_done = rows_.split(row, limits_, split, Split::quarters, &leaves_);
   fit_to_nodes();
   return is_done;
 }

@@ -50,12 +50,13 @@ class Forests {
   std::vector<SmoothNeighbours> row_neighbours(std::span<const NodeIndex> rows) { return row_neighbours_.of(rows); }
   std::vector<SmoothNeighbours> leaf_neighbours(std::span<const NodeIndex> leaves) { return leaf_neighbours_.of(leaves); }
 
-  bool may_split_leaf(NodeIndex leaf) const { return leaves_.may_split(leaf, limits_); }
-  bool may_split_row(NodeIndex row) const;
-  /// Splits a leaf of the leaf forest, after the neighbours that must go first. Appends every node that was split to `split`.
-  /// Returns false if the limits forbid the split.
-  bool split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split);
-  /// Splits a leaf of the row forest, as split_leaf() does in the leaf forest.
+  /// Returns whether a leaf, or a row, may be split as `wanted`, or into quarters instead (split_leaf(), split_row()).
+  bool may_split_leaf(NodeIndex leaf, Split wanted = Split::quarters) const;
+  bool may_split_row(NodeIndex row, Split wanted = Split::quarters) const;
+  /// Splits a leaf of the leaf forest as `wanted`, or into quarters if it is too large for slabs or they are not allowed, after
+  /// the neighbours that must go first. Appends every node that was split to `split`. Returns false if the limits forbid it.
+  bool split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split, Split wanted = Split::quarters);
+  /// Splits a leaf of the row forest as the leaf forest is split there. Returns false if that is not split, or as split_leaf().
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
 
   /// Takes roots that the mesh has got. To be followed by note_relit().
@@ -73,6 +74,7 @@ class Forests {
   void load(PlainReader& in);
 
  private:
+  Split allowed(NodeIndex leaf, Split wanted) const;
   void split_to_start(const Plan& plan);
   void split_to_show_textures(const Plan& plan);
   void fit_to_nodes();

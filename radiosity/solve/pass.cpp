@@ -85,8 +85,8 @@ bool Pass::refine(const std::function<bool()>& gives_up, double share) {
   bool wants_shadow_rays = false;
   for (const Candidate& candidate : marked) {
     if (candidate.kind == Candidate::Kind::add_rays) wanting.push_back(candidate.patch);
-    if (candidate.kind == Candidate::Kind::split_row) state_.split_row(candidate.patch);
-    if (candidate.kind == Candidate::Kind::split_leaf) state_.split_leaf(candidate.patch);
+    if (candidate.kind == Candidate::Kind::split_row) state_.split_row(candidate.patch, candidate.split);
+    if (candidate.kind == Candidate::Kind::split_leaf) state_.split_leaf(candidate.patch, candidate.split);
     // A leaf may have been split since, for its row or to keep its neighbours balanced.
     if (candidate.kind == Candidate::Kind::add_shadow_rays && forests.leaves().is_leaf(candidate.patch)) {
       state_.direct.add_rays(candidate.patch);

@@ -107,19 +107,30 @@ class Pass {
   RelativeLight irradiance_at(std::size_t place) const;
   double told_error(std::size_t place, const RelativeLight& irradiance, const ErrorEstimate& error) const;
   std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
+  void split_rows_as_leaves(std::span<const Split> splits);
   void tell_leaves(double share_of_interpolation);
   void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
   void guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up);
-  double heed_noise(std::size_t place, double missed, double noise);
+  double heed_noise(std::size_t place, Split how, double missed, double noise);
   double rays_of_split(Candidate::Kind kind, NodeIndex patch) const;
-  void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors);
+  void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
+                      std::span<const Split> splits);
   void drop_rays_that_do_not_help(double lasting_error);
-  bool may_split(Candidate::Kind kind, NodeIndex patch) const;
-  double squared_contrast(std::size_t place, const RelativeSlope& slope) const;
+  bool may_split(Candidate::Kind kind, NodeIndex patch, Split how) const;
+  /// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations
+  /// above the mean of sixteen squared normal deviations.
+  static constexpr double noise_of_origins = 1.7;
+  /// A contrast that is seen within a patch, and the split that follows it best.
+  struct Contrast {
+    double square = 0;
+    Split split = Split::quarters;
+  };
+  Contrast squared_contrast(std::size_t place, const RelativeSlope& slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
   struct OriginMisfit {
     double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
     double noise = 0;   ///< variance of a stratum's value, mean over them
+    Split split = Split::quarters;  ///< the split that follows the difference best
   };
   OriginMisfit misfit_at_origins(NodeIndex row, const LightByLeaf& radiosity) const;
   std::array<Vec3, origins_per_patch> places_of_origins(NodeIndex row, bool has_more_rounds) const;

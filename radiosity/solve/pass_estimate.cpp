@@ -7,7 +7,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <functional>
@@ -34,9 +33,6 @@ constexpr double noise_in_display = 0.16;
 // Share of the variance of a leaf's direct light that noise adds to its squared interpolation error. Independent noise on a
 // regular grid adds 0.14 inside a surface and 0.30 at a crease (computed from interpolation_error); 0.25 lies between.
 constexpr double noise_in_differences = 0.25;
-// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations above
-// the mean of sixteen squared normal deviations.
-constexpr double noise_of_origins = 1.7;
 // Share of a window's squared misfit that its fit has at the centre: a guess. Chosen; half: error same, rays +1 %, double: error
 // -5 %, rays +10 % (docs/design/constants.md).
 constexpr double misfit_at_centre = 0.25;
@@ -46,8 +42,6 @@ constexpr double misfit_at_centre = 0.25;
 constexpr double chance_of_origins = 0.35;
 // Multiple of the noise of origins that a misfit must exceed to be part of the told error: two standard deviations of that mean.
 constexpr double sure_of_origins = 0.7;
-// Share of the mean square of values that rounding may leave of their variance.
-constexpr double rounding = 1e-12;
 // Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
@@ -119,8 +113,9 @@ void Pass::show_smoothly() {
   fit_field(state_.forests.rows(), rows, neighbours, samples, state_.forests.row_centres(), take, state_.ranks);
 }
 
-bool Pass::may_split(Candidate::Kind kind, NodeIndex patch) const {
-  return kind == Candidate::Kind::split_leaf ? state_.forests.may_split_leaf(patch) : state_.forests.may_split_row(patch);
+bool Pass::may_split(Candidate::Kind kind, NodeIndex patch, Split how) const {
+  const Forests& forests = state_.forests;
+  return kind == Candidate::Kind::split_leaf ? forests.may_split_leaf(patch, how) : forests.may_split_row(patch, how);
 }
 
 /// Returns the rays that splitting a leaf or a row costs.
@@ -128,11 +123,13 @@ double Pass::rays_of_split(Candidate::Kind kind, NodeIndex patch) const {
   return kind == Candidate::Kind::split_leaf ? rays_per_leaf_split * state_.direct.ray_share(patch) : rays_per_row_split;
 }
 
-void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors) {
+void Pass::add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
+                          std::span<const Split> splits) {
   if (!state_.plan.needs(Feature::refinement)) return;
   for (std::size_t n = 0; n < patches.size(); ++n) {
     if (errors[n] <= 0) continue;
-    if (may_split(kind, patches[n])) candidates_.push_back({kind, patches[n], errors[n], rays_of_split(kind, patches[n])});
+    if (may_split(kind, patches[n], splits[n]))
+      candidates_.push_back({kind, patches[n], errors[n], rays_of_split(kind, patches[n]), splits[n]});
     else lasting_error_ += errors[n];
   }
 }
@@ -211,7 +208,9 @@ void Pass::estimate_rows(ErrorEstimate& error) {
   const double share = share_of(error.misfit, told_misfit);
   for (std::size_t p = 0; p < patches.size(); ++p)
     row_squares_[p] = share * row_squares_[p] + state_.field.fit(system_->rows()[p]).variance;
-  add_candidates(Candidate::Kind::split_row, system_->rows(), errors);
+  std::vector<Split> splits;
+  for (const OriginMisfit& misfit : at_origins) splits.push_back(misfit.split);
+  add_candidates(Candidate::Kind::split_row, system_->rows(), errors, splits);
 }
 
 /// Returns the irradiance of the leaf at a place in the system's list, in emission units.
@@ -220,41 +219,14 @@ RelativeLight Pass::irradiance_at(std::size_t place) const {
   return state_.direct[leaf].irradiance + state_.indirect(leaf, system_->row_of(place));
 }
 
-/// Returns the mean square deviation of the irradiance at a leaf's visible origins from a plane with the leaf's slope through
-/// their mean, less the noise of shadow rays, at least 0; in emission units squared.
-double Pass::squared_contrast(std::size_t place_of_leaf, const RelativeSlope& slope) const {
-  const Forests& forests = state_.forests;
-  const NodeIndex leaf = system_->leaves()[place_of_leaf], row = system_->row_of(place_of_leaf);
-  const DirectLight& direct = state_.direct[leaf];
-  const std::uint16_t hidden = state_.hidden_origins(leaf, row);
-  const PatchShape shape = forests.leaves().shape(leaf);
-  const auto place = [&](Uv at) { return state_.mesh.roots()[shape.root].at(at.u, at.v); };
-  const Vec3 steepest = (slope.r + slope.g + slope.b) / 3;
-  double sum = 0, squares = 0;
-  for (int k = 0; k < 4; ++k) {
-    if ((hidden >> 4 * k & 0xf) == 0xf) continue;
-    const double by_rows = state_.field.at(row, place(shape.quarter_centre(k))).mean();
-    for (int o = 0; o < 4; ++o) {
-      if (hidden >> (4 * k + o) & 1) continue;
-      const Vec3 offset = place(shape.stratum_centre(4 * k + o)) - forests.leaf_centres()[leaf];
-      const double above_plane = direct.at_origin[4 * k + o] + by_rows - dot(steepest, offset);
-      sum += above_plane, squares += squared(above_plane);
-    }
-  }
-  const int visible = origins_per_patch - std::popcount(hidden);
-  if (visible == 0) return 0;
-  const double square = squares / visible, contrast = square - squared(sum / visible) - noise_of_origins * direct.origin_variance;
-  return contrast > rounding * square ? contrast : 0;
-}
-
 /// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove. Both parts of the error,
 /// what interpolation misses and the noise of shadow rays, go where the edge of a shadow leaves the smaller leaves. Where noise
 /// is the larger part, there is no edge to find, and smaller leaves are as noisy: then this adds a candidate that gives the leaf
 /// more shadow rays instead. So it does where a leaf cannot be split, and noise of its origins may be part of what is taken for
 /// missed.
-double Pass::heed_noise(std::size_t place, double missed, double noise) {
+double Pass::heed_noise(std::size_t place, Split how, double missed, double noise) {
   const NodeIndex leaf = system_->leaves()[place];
-  const bool may_split = state_.forests.may_split_leaf(leaf);
+  const bool may_split = state_.forests.may_split_leaf(leaf, how);
   const double doubtful = may_split ? 0 : system_->visible_area(place) * noise_of_origins * state_.direct[leaf].origin_variance;
   if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
     const double in_doubt = std::min(missed, doubtful) / 2, removed = removed_by_rays * noise + in_doubt;
@@ -281,26 +253,34 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
   std::vector<RelativeSlope> slope(forests.leaves().node_count());
   find_slopes(field, slope, state_.ranks);
-  std::vector<double> errors(leaves.size());
-  share_work(state_.ranks, std::span(errors), [&](std::size_t n) {
+  struct LeafError {
+    double square = 0;
+    Split split = Split::quarters;
+  };
+  std::vector<LeafError> found(leaves.size());
+  share_work(state_.ranks, std::span(found), [&](std::size_t n) {
     const NodeIndex leaf = leaves[n];
     const double miss = interpolation_error(leaf, neighbours[n], field.centre, field.value, slope);
     const double smooth = squared(miss) - noise_in_differences * state_.direct[leaf].variance;
-    const double contrast = squared_contrast(n, slope[leaf]);
-    errors[n] = system_->visible_area(n) * (contrast > 0 ? std::max(smooth, contrast) : smooth);
+    const auto [contrast, split] = squared_contrast(n, slope[leaf]);
+    found[n] = {system_->visible_area(n) * (contrast > 0 ? std::max(smooth, contrast) : smooth), split};
   });
+  std::vector<double> errors(leaves.size());
+  std::vector<Split> splits(leaves.size());
   leaf_squares_.resize(leaves.size());
   double told_interpolation = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     const double noise = noise_in_display * system_->visible_area(n) * state_.direct[leaves[n]].variance;
+    errors[n] = found[n].square, splits[n] = found[n].split;
     error.interpolation += unseen_detail * errors[n];
     error.sampling += noise;
     leaf_squares_[n] = unseen_detail * std::max(0.0, errors[n]);
     told_interpolation += leaf_squares_[n];
-    errors[n] = heed_noise(n, std::max(0.0, errors[n]), noise);
+    errors[n] = heed_noise(n, splits[n], std::max(0.0, errors[n]), noise);
   }
   tell_leaves(share_of(error.interpolation, told_interpolation));
-  add_candidates(Candidate::Kind::split_leaf, leaves, errors);
+  split_rows_as_leaves(splits);
+  add_candidates(Candidate::Kind::split_leaf, leaves, errors, splits);
   return power;
 }
 

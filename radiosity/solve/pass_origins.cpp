@@ -1,5 +1,6 @@
 // Compares the field of indirect light that is shown with what single origins of rows see.
 
+#include "radiosity/estimate/axis_contrast.h"
 #include "radiosity/solve/pass.h"
 
 #include <algorithm>
@@ -8,6 +9,10 @@
 namespace alvor {
 
 namespace {
+
+// Multiple of the noise of origins that counts where they are to tell of slabs: so many rows are looked at that chance would
+// often choose the axis of a row for good. Chosen.
+constexpr double noise_of_slabs = 3;
 
 double squared(double x) { return x * x; }
 
@@ -40,17 +45,22 @@ Pass::OriginMisfit Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& ra
   }
   const auto places = places_of_origins(node, row.origin_hits.size() > origins_per_patch);
   OriginMisfit misfit;
+  AxisContrast by_axis(state_.forests.rows().shape(node));
   double count = 0;
   for (std::size_t k = 0; k < strata.size(); ++k) {
     const Stratum& of = strata[k];
     if (of.rounds == 0) continue;
     const double mean = of.sum / of.rounds;
     const double noise = of.rounds > 1 ? std::max(0.0, of.squares / of.rounds - mean * mean) / (of.rounds - 1) : of.noise_of_rays;
-    misfit.square += squared(mean - state_.field.at(node, places[k]).mean()) - noise;
+    const double difference = mean - state_.field.at(node, places[k]).mean();
+    by_axis.add(static_cast<int>(k), difference);
+    misfit.square += squared(difference) - noise;
     misfit.noise += noise;
     count += 1;
   }
   if (count > 0) misfit.square /= count, misfit.noise /= count;
+  misfit.split = row.crosses_contact() ? AxisContrast::along_outline(state_.forests.rows().shape(node), row.hidden_origins)
+                                       : by_axis.best_split(noise_of_slabs * misfit.noise);
   return misfit;
 }
 

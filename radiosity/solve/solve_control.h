@@ -16,9 +16,9 @@ namespace alvor {
 /// Versions of checkpoints, which each checkpoint begins with. Version 1 does not say which leaves have light; since version 3
 /// rows say whether they are closed (TransportRow::is_closed); since version 4 there are guides of rays;
 /// since version 5 they say which edits of the scene they heed; since version 6 leaves have levels of shadow rays, and they say
-/// with how many leaves and what error the solve first ended; since version 7 they say what arrives of lamps. A solve goes on
-/// from the oldest and later ones, and writes the newest.
-inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 7;
+/// with how many leaves and what error the solve first ended; since version 7 they say what arrives of lamps; since version 8
+/// leaves may be slabs. A solve goes on from the oldest and later ones, and writes the newest.
+inline constexpr std::uint32_t oldest_checkpoint = 2, newest_checkpoint = 8;
 
 /// Returns the SolveControl::edits of the mesh that a checkpoint is of. Throws BadBytes.
 std::uint64_t edits_of_checkpoint(std::span<const std::byte> checkpoint);

@@ -81,10 +81,10 @@ class SolveState {
 
   /// Splits a leaf of the leaf forest. Also splits the row of the same place, if there is one and it is not traced or a solid's
   /// outline crosses it. Returns true if the leaf is split now, false if the limits forbid it.
-  bool split_leaf(NodeIndex leaf);
+  bool split_leaf(NodeIndex leaf, Split how = Split::quarters);
   /// Splits a row, and the leaf of its place if that is not split. Returns true if the row is split now, false if the limits
   /// forbid it.
-  bool split_row(NodeIndex row);
+  bool split_row(NodeIndex row, Split how = Split::quarters);
   /// Uses the hidden origins that tracing found for a row; to be called when it was traced. Direct light of the row's leaves is
   /// found again without hidden points. A row that a solid's outline crosses is split as its leaves are, because only rows know
   /// which points are hidden.

@@ -82,10 +82,12 @@ void keep_first(std::vector<std::string>& warnings) {
   warnings.push_back("and " + std::to_string(others) + " further warnings");
 }
 
-/// Builds the mesh. Throws StatusError if `stop` ended it.
+/// Builds the mesh. Throws StatusError if `stop` ended it, or if patch ids cannot number its roots.
 BaseMesh build(const Scene& scene, const CallStop& stop) {
   try {
     return BaseMesh(scene, {.stop = stop.token()});
+  } catch (const TooManyRoots& fault) {
+    throw invalid_argument(fault.what());
   } catch (const BuildStopped&) {
     stop.refuse_stopped();
     throw;

@@ -89,8 +89,12 @@ std::shared_ptr<const SceneContent> relit(std::shared_ptr<const SceneContent> su
                                           const AddedContents& added) {
   AddedMeshes meshes;
   for (const auto& [name, content] : added) meshes[name] = {content, &content->mesh};
-  BaseMesh mesh = submitted->mesh.edited_as(edited, meshes);
-  return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh), std::move(submitted), added});
+  try {
+    BaseMesh mesh = submitted->mesh.edited_as(edited, meshes);
+    return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh), std::move(submitted), added});
+  } catch (const TooManyRoots& fault) {
+    throw invalid_argument(fault.what());
+  }
 }
 
 }  // namespace

@@ -6,16 +6,19 @@
 #include "client/export/solution_file.h"
 #include "client/export/vtu_file.h"
 #include "proto/codec.h"
+#include "proto/leaf_codec.h"
 #include "solution/shared_exponent.h"
 #include "tests/scenes.h"
 #include "tests/textures.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <random>
+#include <span>
 
 namespace alvor {
 namespace {
@@ -47,13 +50,16 @@ Scene varied_scene(bool all_triangles) {
   return scene;
 }
 
-/// Returns leaves of different sizes with random light.
-std::vector<LeafValue> random_leaves(const BaseMesh& mesh, int seed) {
+/// Returns leaves of different sizes with random light, some of them slabs unless none are wanted.
+std::vector<LeafValue> random_leaves(const BaseMesh& mesh, int seed, bool has_slabs = true) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
   std::vector<LeafValue> leaves;
   const std::function<void(PatchId)> add = [&](PatchId patch) {
     if (patch.level() < 4 && random() % 3 != 0) {
-      for (int k = 0; k < 4; ++k) add(patch.child(k));
+      const bool may_be_slabs = has_slabs && mesh.roots()[patch.root_face()].corner_count == 4;
+      Split how = may_be_slabs ? static_cast<Split>(random() % 3) : Split::quarters;
+      if (!patch.may_split(how)) how = Split::quarters;
+      for (int k = 0; k < 4; ++k) add(patch.child(k, how));
       return;
     }
     const auto light = [&] { return static_cast<float>(random() % 1000) / 7; };
@@ -127,6 +133,15 @@ TEST(CompactFile, WithoutErrorsTellsNone) {
   EXPECT_TRUE(decode_compact(encode_compact(mesh, random_leaves(mesh, 2))).errors.empty());
 }
 
+TEST(CompactFile, IsOfVersionOneUnlessItHasSlabs) {
+  const BaseMesh mesh(varied_scene(false));
+  for (const bool has_slabs : {false, true}) {
+    const std::string bytes = encode_compact(mesh, random_leaves(mesh, 1, has_slabs));
+    PartReader reader(bytes);
+    EXPECT_EQ(reader.next()->header().version(), has_slabs ? 2u : 1u);
+  }
+}
+
 class HostileCompactFile : public testing::Test {
  protected:
   HostileCompactFile() : mesh_(varied_scene(false)), leaves_(random_leaves(mesh_, 3)) {
@@ -165,8 +180,8 @@ TEST_F(HostileCompactFile, OfAllLengthsIsRefused) {
 }
 
 TEST_F(HostileCompactFile, OfAnotherVersionIsRefused) {
-  parts_[0].mutable_header()->set_version(2);
-  expect_refused("version 2 is not known");
+  parts_[0].mutable_header()->set_version(3);
+  expect_refused("version 3 is not known");
 }
 
 TEST_F(HostileCompactFile, WithCountsThatAreWrongIsRefused) {
@@ -191,6 +206,49 @@ TEST_F(HostileCompactFile, WithLeavesThatDoNotCoverTheMeshIsRefused) {
   parts_.insert(parts_.end() - 1, leaves);  // twice
   parts_[0].mutable_header()->set_leaf_count(2 * leaves_.size());
   expect_refused("do not follow those before");
+}
+
+TEST_F(HostileCompactFile, WithLeavesThatContradictEachOtherIsRefused) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5)};
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const BaseMesh quad(scene);
+  const auto with = [&](Split of_first, Split of_last) {
+    const PatchId root = PatchId::root(0);
+    std::vector<LeafValue> leaves;
+    for (int k = 0; k < 4; ++k) leaves.push_back({root.child(k, k < 2 ? of_first : of_last), {1, 1, 1}});
+    parts_.clear();
+    const std::string bytes = encode_compact(quad, leaves);
+    PartReader reader(bytes);
+    while (auto part = reader.next()) {
+      if (part->part_case() != v1::SolutionPart::kLeaves) {
+        parts_.push_back(*std::move(part));
+        continue;
+      }
+      for (const auto half : {std::span(leaves).first(2), std::span(leaves).last(2)})
+        *parts_.emplace_back().mutable_leaves() = encode_leaves(half, Detail::exact, SharedExponent(0));
+    }
+  };
+  with(Split::slabs_along_u, Split::slabs_along_u);
+  EXPECT_NO_THROW((void)decode_solution(written(), ".alvor", "room.alvor"));
+  with(Split::slabs_along_u, Split::slabs_along_v);
+  expect_refused("do not follow those before");
+}
+
+TEST_F(HostileCompactFile, WithSlabsOfATriangleIsRefused) {
+  std::vector<LeafValue> leaves = leaves_;
+  const auto triangle = std::ranges::find_if(leaves, [&](const LeafValue& leaf) {
+    return mesh_.roots()[leaf.patch.root_face()].corner_count == 3 && leaf.patch.level() > 0;
+  });
+  ASSERT_NE(triangle, leaves.end());
+  const std::uint32_t root = triangle->patch.root_face();
+  const int along_u_at_level_0 = 1;
+  for (LeafValue& leaf : leaves)
+    if (leaf.patch.root_face() == root) leaf.patch = leaf.patch.with_slab_code(along_u_at_level_0);
+  std::erase_if(parts_, [](const v1::SolutionPart& part) { return part.part_case() == v1::SolutionPart::kErrors; });
+  parts_[0].mutable_header()->set_has_errors(false);
+  *part_with(v1::SolutionPart::kLeaves).mutable_leaves() = encode_leaves(leaves, Detail::exact, SharedExponent(0));
+  expect_refused("is a triangle and has slabs");
 }
 
 TEST_F(HostileCompactFile, WithoutAPartIsRefused) {

@@ -18,7 +18,8 @@ namespace {
 std::vector<LeafValue> refined_leaves(const BaseMesh& mesh, const std::function<RgbF(Vec3)>& field) {
   PatchForest forest(mesh);
   std::vector<NodeIndex> split;
-  for (std::size_t n = 0; n < 80; ++n) forest.split(forest.leaves()[n * 5 % forest.leaf_count()], {}, split);
+  for (std::size_t n = 0; n < 80; ++n)
+    forest.split(forest.leaves()[n * 5 % forest.leaf_count()], {}, split, static_cast<Split>(n % 4 == 3 ? 0 : n % 4));
   std::vector<LeafValue> values;
   for (const NodeIndex leaf : forest.leaves()) {
     const Uv c = forest.shape(leaf).centre();

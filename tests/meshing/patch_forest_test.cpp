@@ -9,12 +9,15 @@
 namespace alvor {
 namespace {
 
-void split_at_random(PatchForest& forest, const RefinementLimits& limits, int times) {
+enum class Kinds { quarters, all };
+
+void split_at_random(PatchForest& forest, const RefinementLimits& limits, int times, Kinds kinds = Kinds::quarters) {
   std::mt19937 random(3);
   std::vector<NodeIndex> split;
   for (int n = 0; n < times; ++n) {
     const auto leaves = forest.leaves();
-    forest.split(leaves[random() % leaves.size()], limits, split);
+    const auto leaf = leaves[random() % leaves.size()];
+    forest.split(leaf, limits, split, kinds == Kinds::all ? static_cast<Split>(random() % 3) : Split::quarters);
   }
 }
 
@@ -40,10 +43,31 @@ TEST(PatchForest, LevelsAcrossEdgesDifferByAtMostOne) {
   }
 }
 
+TEST(PatchForest, NoEdgeIsMoreThanFourTimesAsLongAsTheLongestOfTheLeafAcross) {
+  const BaseMesh mesh(mixed_room());
+  PatchForest forest(mesh);
+  split_at_random(forest, {}, 2000, Kinds::all);
+  std::size_t slabs = 0, too_long = 0, edges = 0;
+  for (const NodeIndex leaf : forest.leaves()) {
+    const PatchShape shape = forest.shape(leaf);
+    slabs += forest.id(leaf).has_slabs();
+    for (int e = 0; e < shape.corner_count; ++e) {
+      const NodeIndex other = forest.leaf_across(shape, e, 0.4);
+      if (other == PatchForest::no_node) continue;
+      const PatchShape there = forest.shape(other);
+      ++edges;
+      too_long += shape.size_along(e) > 4 * std::max(std::abs(there.size_u), std::abs(there.size_v));
+    }
+  }
+  EXPECT_GT(slabs, 1000u);
+  EXPECT_GT(edges, 1000u);
+  EXPECT_EQ(too_long, 0u);
+}
+
 TEST(PatchForest, LeavesCoverEveryRootOnce) {
   const BaseMesh mesh(mixed_room());
   PatchForest forest(mesh);
-  split_at_random(forest, {}, 200);
+  split_at_random(forest, {}, 400, Kinds::all);
   std::vector<double> area(mesh.roots().size());
   for (const NodeIndex leaf : forest.leaves()) area[forest.id(leaf).root_face()] += area_of(mesh, forest.shape(leaf));
   for (std::size_t root = 0; root < area.size(); ++root) EXPECT_NEAR(area[root], mesh.roots()[root].area, 1e-9);
@@ -62,6 +86,49 @@ TEST(PatchForest, LimitsAreKept) {
     const auto corners = corners_of(mesh, small.shape(leaf));
     EXPECT_GE(length(corners[1] - corners[0]), 0.3);
   }
+}
+
+TEST(PatchForest, LeafAtFindsTheLeafOfAPointAmongSlabs) {
+  const BaseMesh mesh(mixed_room());
+  PatchForest forest(mesh);
+  split_at_random(forest, {}, 400, Kinds::all);
+  for (const NodeIndex leaf : forest.leaves()) {
+    const PatchId id = forest.id(leaf);
+    EXPECT_EQ(forest.leaf_at(id), leaf);
+    const PatchShape shape = forest.shape(leaf);
+    for (int o = 0; o < strata_per_patch && std::min(std::abs(shape.size_u), std::abs(shape.size_v)) >= 8; ++o) {
+      const PatchId place = finest_patch(mesh, id.root_face(), shape.stratum_centre(o));
+      EXPECT_EQ(forest.leaf_at(place), leaf);
+      for (PatchId above = id; !above.is_root(); above = above.parent())
+        EXPECT_EQ(forest.leaf_at(place, forest.node_in_place_of(above)), leaf);
+    }
+  }
+}
+
+TEST(PatchForest, TheCoarserOfTwoForestsIsSplitAsTheFinerIs) {
+  const BaseMesh mesh(mixed_room());
+  PatchForest fine(mesh), coarse(mesh);
+  split_at_random(fine, {}, 300, Kinds::all);
+  std::mt19937 random(4);
+  std::vector<NodeIndex> split;
+  for (int n = 0; n < 300; ++n) {
+    const auto leaves = coarse.leaves();
+    coarse.split(leaves[random() % leaves.size()], {}, split, Split::slabs_along_u, &fine);
+  }
+  EXPECT_GT(coarse.leaf_count(), 200u);
+  for (const NodeIndex leaf : coarse.leaves()) EXPECT_EQ(fine.id(fine.node_in_place_of(coarse.id(leaf))), coarse.id(leaf));
+}
+
+TEST(PatchForest, SplitsDownToTheLeavesOfAnother) {
+  const BaseMesh mesh(mixed_room());
+  PatchForest forest(mesh), same(mesh);
+  split_at_random(forest, {}, 300, Kinds::all);
+  std::vector<LeafValue> leaves;
+  for (const NodeIndex leaf : forest.leaves()) leaves.push_back({forest.id(leaf), {}});
+  same.split_down_to(leaves);
+  ASSERT_EQ(same.leaf_count(), leaves.size());
+  const auto nodes = same.leaves();
+  for (std::size_t n = 0; n < nodes.size(); ++n) EXPECT_EQ(same.id(nodes[n]), leaves[n].patch);
 }
 
 TEST(PatchForest, LeafAtFindsTheLeafOfAPlace) {

@@ -40,6 +40,26 @@ TEST(PatchPlace, ChildrenTileTheirParent) {
   }
 }
 
+TEST(PatchPlace, SlabsTileTheirParentSideBySide) {
+  const BaseMesh mesh(quad_and_triangle());
+  for (const Split how : {Split::slabs_along_u, Split::slabs_along_v})
+    for (const PatchId patch : {PatchId::root(0), PatchId::root(0).child(2), PatchId::root(0).child(3, Split::slabs_along_u)}) {
+      const PatchShape parent = shape_of(mesh, patch);
+      double area = 0;
+      for (int k = 0; k < 4; ++k) {
+        const PatchShape slab = shape_of(mesh, patch.child(k, how));
+        area += area_of(mesh, slab);
+        EXPECT_TRUE(contains(mesh, patch, centre_of(mesh, slab)));
+        const bool is_along_u = how == Split::slabs_along_u;
+        EXPECT_EQ(slab.size_u, is_along_u ? parent.size_u / 4 : parent.size_u);
+        EXPECT_EQ(slab.size_v, is_along_u ? parent.size_v : parent.size_v / 4);
+        EXPECT_EQ(slab.first.i, parent.first.i + (is_along_u ? k * slab.size_u : 0));
+        EXPECT_EQ(slab.first.j, parent.first.j + (is_along_u ? 0 : k * slab.size_v));
+      }
+      EXPECT_NEAR(area, area_of(mesh, parent), 1e-12);
+    }
+}
+
 TEST(PatchPlace, StrataOfALongQuadLieAlongIt) {
   Scene scene;
   scene.materials.emplace_back().two_sided = true;

@@ -118,7 +118,7 @@ TEST(Cutouts, OfHalfTheAreaCastHalfTheLight) {
   const BaseMesh& mesh = solved.mesh();
   for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 0.05})) {
     const PatchShape shape = shape_of(mesh, leaf.patch);
-    if (shape.root != 0 || shape.size < 0) continue;
+    if (shape.root != 0 || shape.size_u < 0) continue;
     const Vec3 middle = centre_of(mesh, shape);
     const double off_x = std::remainder(middle.x, 0.5), off_z = std::remainder(middle.z, 0.5);
     if (std::min(std::abs(off_x), std::abs(off_z)) < 0.15) continue;  // near the edge of a shadow

@@ -22,10 +22,13 @@ struct Rows {
   std::vector<SmoothNeighbours> neighbours;
   std::vector<Vec3> centre_of_node;
 
-  Rows(const Scene& scene, int level) : mesh(scene) {
+  Rows(const Scene& scene, int level, bool has_slabs = false) : mesh(scene) {
     std::vector<NodeIndex> split;
     for (int n = 0; n < level; ++n)
       for (const NodeIndex leaf : forest.leaves()) forest.split(leaf, {}, split);
+    if (has_slabs)
+      for (const NodeIndex leaf : forest.leaves())
+        if (forest.id(leaf).child_index(1) != 0) forest.split(leaf, {}, split, Split::slabs_along_v);
     nodes = forest.leaves();
     for (const NodeIndex node : nodes) neighbours.emplace_back(forest, node);
     for (NodeIndex node = 0; node < forest.node_count(); ++node) centre_of_node.push_back(centre_of(mesh, forest.shape(node)));
@@ -51,11 +54,11 @@ struct Rows {
   }
 };
 
-Rows floor_rows() {
+Rows floor_rows(int level = 4, bool has_slabs = false) {
   Scene scene;
   scene.materials = {test::grey(0, 0.5)};
   test::add_polygon(scene, {{0, 0, 0}, {0, 0, size}, {size, 0, size}, {size, 0, 0}});
-  return {scene, 4};
+  return {scene, level, has_slabs};
 }
 
 /// Returns whether no wide window about the point reaches the floor's edge.
@@ -95,6 +98,13 @@ TEST(IrradianceField, ConstantAndLinearIrradianceIsReproducedUpToTheEdges) {
   const auto linear = [](Vec3 p) { return 7 + p.x + 2 * p.z; };
   EXPECT_LT(worst_error_at_centres(rows, rows.fit(rows.samples(constant)), constant), 1e-11);
   EXPECT_LT(worst_error_at_quarters(rows, rows.fit(rows.samples(constant)), constant), 1e-11);
+  EXPECT_LT(worst_error_at_centres(rows, rows.fit(rows.samples(linear)), linear), 1e-11);
+  EXPECT_LT(worst_error_at_quarters(rows, rows.fit(rows.samples(linear)), linear), 1e-11);
+}
+
+TEST(IrradianceField, LinearIrradianceIsReproducedOnSlabsAndBesideThem) {
+  const Rows rows = floor_rows(3, true);
+  const auto linear = [](Vec3 p) { return 7 + p.x + 2 * p.z; };
   EXPECT_LT(worst_error_at_centres(rows, rows.fit(rows.samples(linear)), linear), 1e-11);
   EXPECT_LT(worst_error_at_quarters(rows, rows.fit(rows.samples(linear)), linear), 1e-11);
 }

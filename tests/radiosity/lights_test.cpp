@@ -63,13 +63,26 @@ double mean_irradiance(const BaseMesh& mesh, const std::vector<LeafValue>& leave
   return sum / all;
 }
 
-/// Compares the irradiance of each leaf of a fine mesh with what `expected` says for the leaf's centre; NaN: not compared.
+/// Returns the mean of a function over 8 x 8 points of a quad.
+template <class Function>
+double mean_over(const BaseMesh& mesh, const PatchShape& shape, Function&& function) {
+  constexpr int points = 8;
+  double sum = 0;
+  for (int k = 0; k < points * points; ++k) {
+    const double along_u = (k % points + 0.5) / points, along_v = (k / points + 0.5) / points;
+    sum += function(mesh.roots()[shape.root].at((shape.first.i + shape.size_u * along_u) / grid_size,
+                                                (shape.first.j + shape.size_v * along_v) / grid_size));
+  }
+  return sum / (points * points);
+}
+
+/// Compares the irradiance of each leaf of a fine mesh with the mean of what `expected` says for its points; NaN: not compared.
 template <class Expected>
 void expect_on_leaves(const Scene& scene, int depth, double tolerance, Expected&& expected) {
   const BaseMesh mesh(scene);
   std::size_t compared = 0;
   for (const LeafValue& leaf : test::solved(mesh, {.tolerance = 1e-5, .max_depth = depth})) {
-    const double there = expected(centre_of(mesh, shape_of(mesh, leaf.patch)));
+    const double there = mean_over(mesh, shape_of(mesh, leaf.patch), expected);
     if (std::isnan(there)) continue;
     EXPECT_NEAR(leaf.irradiance.g, there, tolerance);
     ++compared;

@@ -48,8 +48,8 @@ TEST(MovedObjects, OfALampThatIsSwitchedOffOnlyWhatIsNeededIsRefined) {
   solve.edit(
       [&](Scene& scene) { scene = edited_scene(submitted, std::vector<SceneEdit>{ObjectEdit{.name = "lamp", .dim = 0}}); });
   EXPECT_LE(solve.last().estimated_error, options.tolerance);
-  EXPECT_LT(static_cast<double>(solve.last().rays - before.rays), 0.45 * static_cast<double>(before.rays));
   const EditedSolve anew(submitted, options, solve.scene());
+  EXPECT_LT(static_cast<double>(solve.last().rays - before.rays), 0.45 * static_cast<double>(anew.last().rays));
   EXPECT_LT(difference_of_roots(solve, anew), solve.last().estimated_error + anew.last().estimated_error);
 }
 
@@ -175,7 +175,8 @@ TEST(MovedObjects, AmongManyLampsWhatDoesNotSeeThemIsNotLitAnew) {
   const auto roots_of_other_room = static_cast<std::uint32_t>(submitted.faces.size()) / 2;
   submitted.objects = {{.name = "box", .first_face = static_cast<std::uint32_t>(submitted.faces.size()), .face_count = 6}};
   test::add_box(submitted, {1, 0.5, 1}, {1.5, 1, 1.5}, false);
-  const SolveOptions options{.tolerance = 0.03, .max_leaves = 20'000};
+  // After the edit the error is below the tolerance again without refining, which would change the other room, too.
+  const SolveOptions options{.tolerance = 0.04, .max_leaves = 20'000};
   EditedSolve solve(submitted, options);
   const auto of_other_room = [&] {
     std::vector<LeafValue> leaves = solve.leaves();

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 namespace alvor {
 namespace {
@@ -47,6 +48,71 @@ TEST(SolveState, RefiningTilesTheRootsWhereSolidsStandOnAFloor) {
       expect_tiling(mesh, state.leaf_values());
     }
   }
+}
+
+void expect_rows_to_be_nodes_of_leaves(const Forests& forests) {
+  for (const NodeIndex row : forests.rows().leaves())
+    EXPECT_EQ(forests.leaves().id(forests.leaf_node_of(row)), forests.rows().id(row));
+}
+
+std::vector<PatchId> ids_of(const PatchForest& forest) {
+  std::vector<PatchId> ids;
+  for (const NodeIndex leaf : forest.leaves()) ids.push_back(forest.id(leaf));
+  return ids;
+}
+
+TEST(SolveState, RowsAreSplitAsLeavesAreAlsoWhereAnEditLightsMore) {
+  Scene dark = test::room_with_contacts();
+  for (Material& material : dark.materials) material.emission = {};
+  const BaseMesh mesh(test::room_with_contacts()), dark_mesh(dark);
+  RayBudget budget([] { return false; });
+  const SolveOptions options{.max_leaves = 50'000};
+  SolveState state(dark_mesh, options, budget);
+  std::mt19937 random(5);
+  for (int n = 0; n < 3000; ++n) {
+    const auto how = static_cast<Split>(random() % 3);
+    const auto rows = state.forests.rows().leaves(), nodes = state.forests.leaves().leaves();
+    if (n % 3 == 0) state.split_row(rows[random() % rows.size()], how);
+    else state.split_leaf(nodes[random() % nodes.size()], how);
+  }
+  const auto has_slabs = [&](NodeIndex leaf) { return state.forests.leaves().id(leaf).has_slabs(); };
+  EXPECT_GT(std::ranges::count_if(state.forests.leaves().leaves(), has_slabs), 1000);
+  expect_rows_to_be_nodes_of_leaves(state.forests);
+  state.forests.split_as_at_start(Plan(mesh, options));
+  expect_rows_to_be_nodes_of_leaves(state.forests);
+  std::vector<LeafValue> leaves;
+  for (const PatchId id : ids_of(state.forests.leaves())) leaves.push_back({id, {}});
+  expect_tiling(mesh, leaves);
+
+  const auto bytes = plain_bytes([&](PlainWriter& out) { state.forests.save(out); });
+  Forests again(dark_mesh, state.plan, {.max_leaves = 50'000});
+  PlainReader in(bytes);
+  again.load(in);
+  EXPECT_EQ(ids_of(again.leaves()), ids_of(state.forests.leaves()));
+  EXPECT_EQ(ids_of(again.rows()), ids_of(state.forests.rows()));
+}
+
+TEST(SolveState, LeavesOfACheckpointThatContradictEachOtherAreRefused) {
+  Scene scene;
+  scene.materials = {test::grey(1, 0.5)};
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{2, 0, 0}, {3, 0, 0}, {2, 1, 0}});
+  const BaseMesh mesh(scene);
+  Forests forests(mesh, Plan(mesh, {}), {});
+  const PatchId quad = PatchId::root(0), triangle = PatchId::root(1);
+  const auto load = [&](Split of_quad, Split of_its_last, Split of_triangle) {
+    std::vector<PatchId> ids;
+    for (int k = 0; k < 4; ++k) ids.push_back(quad.child(k, k == 3 ? of_its_last : of_quad));
+    for (int k = 0; k < 4; ++k) ids.push_back(triangle.child(k, of_triangle));
+    const auto bytes = plain_bytes([&](PlainWriter& out) { out.put_all(ids), out.put_all(ids); });
+    PlainReader in(bytes);
+    forests.load(in);
+  };
+  constexpr Split quarters = Split::quarters, u = Split::slabs_along_u, v = Split::slabs_along_v;
+  EXPECT_NO_THROW(load(u, u, quarters));
+  EXPECT_THROW(load(u, v, quarters), BadBytes);
+  EXPECT_THROW(load(u, quarters, quarters), BadBytes);
+  EXPECT_THROW(load(u, u, v), BadBytes);
 }
 
 // An edit may come when rays were added and nobody has looked yet which leaves they hit.

@@ -5,7 +5,8 @@
 
 namespace alvor {
 
-GrowingLeaves::GrowingLeaves(std::uint32_t roots, unsigned seed, bool merges) : random_(seed), merges_(merges) {
+GrowingLeaves::GrowingLeaves(std::uint32_t roots, unsigned seed, bool merges, bool slabs)
+    : random_(seed), merges_(merges), slabs_(slabs) {
   for (std::uint32_t root = 0; root < roots; ++root) leaves_.insert(PatchId::root(root));
 }
 
@@ -19,11 +20,13 @@ std::vector<LeafValue> GrowingLeaves::next() {
   const std::vector<PatchId> before(leaves_.begin(), leaves_.end());
   for (const PatchId leaf : before) {
     const unsigned dice = random_() % 32;
-    if (begun_ && dice == 0 && leaf.level() < PatchId::max_level) {
+    if (begun_ && dice == 0 && leaf.may_split(Split::quarters)) {
+      Split how = slabs_ ? static_cast<Split>(random_() % 3) : Split::quarters;
+      if (!leaf.may_split(how)) how = Split::quarters;
       leaves_.erase(leaf);
       for (int k = 0; k < 4; ++k) {
-        leaves_.insert(leaf.child(k));
-        changed.push_back(value_of(leaf.child(k)));
+        leaves_.insert(leaf.child(k, how));
+        changed.push_back(value_of(leaf.child(k, how)));
       }
     } else if (!begun_ || dice < 8) {
       changed.push_back(value_of(leaf));

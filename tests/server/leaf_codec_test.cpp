@@ -16,15 +16,22 @@ std::vector<LeafValue> scattered(unsigned seed, std::size_t most) {
   std::mt19937_64 random(seed);
   std::vector<LeafValue> leaves;
   for (std::size_t n = 0; n < most; ++n) {
-    PatchId patch = PatchId::root(static_cast<std::uint32_t>(random() >> (33 + random() % 31)));
-    for (unsigned level = random() % 16; level > 0; --level) patch = patch.child(static_cast<int>(random() % 4));
+    PatchId patch = PatchId::root(static_cast<std::uint32_t>(random() >> (42 + random() % 22)));
+    for (unsigned level = random() % 16; level > 0; --level) {
+      const Split how = static_cast<Split>(random() % 8);
+      patch = patch.child(static_cast<int>(random() % 4),
+                          how <= Split::slabs_along_v && patch.may_split(how) ? how : Split::quarters);
+      if (!patch.may_split(Split::quarters)) break;
+    }
     const auto band = [&] { return std::ldexp(static_cast<float>(random() % 1000), static_cast<int>(random() % 40) - 20); };
     leaves.push_back({patch, {band(), band(), band()}});
   }
   std::ranges::sort(leaves, {}, &LeafValue::patch);
   std::vector<LeafValue> disjoint;
   for (const LeafValue& leaf : leaves)
-    if (disjoint.empty() || disjoint.back().patch.range_max() < leaf.patch.range_min()) disjoint.push_back(leaf);
+    if (disjoint.empty() ||
+        (disjoint.back().patch.range_max() < leaf.patch.range_min() && disjoint.back().patch.agrees_on_splits(leaf.patch)))
+      disjoint.push_back(leaf);
   return disjoint;
 }
 
@@ -49,6 +56,15 @@ TEST(LeafCodec, FullFramesStayBelowTheLimit) {
     const auto coding = SharedExponent::for_values_up_to(1000 << 20);
     EXPECT_LE(encode_leaves(leaves, detail, coding).raw_size(), most_frame_bytes);
   }
+}
+
+TEST(LeafCodec, LeavesThatContradictEachOtherAreRefused) {
+  std::vector<LeafValue> values;
+  const PatchId root = PatchId::root(3);
+  const std::vector<LeafValue> agree{{root.child(0, Split::slabs_along_u), {}}, {root.child(2, Split::slabs_along_u), {}}};
+  EXPECT_FALSE(decode_leaves(encode_leaves(agree, Detail::exact, SharedExponent(0)), values));
+  const std::vector<LeafValue> differ{{root.child(0, Split::slabs_along_u), {}}, {root.child(2, Split::slabs_along_v), {}}};
+  EXPECT_TRUE(decode_leaves(encode_leaves(differ, Detail::exact, SharedExponent(0)), values));
 }
 
 TEST(LeafCodec, LeavesNextToEachOtherTakeFiveBytesBeforeCompression) {
@@ -78,6 +94,7 @@ TEST(LeafCodec, AnyBytesAreDecodedOrRefused) {
     for (std::size_t k = 0; k < values.size(); ++k) {
       ASSERT_TRUE(values[k].patch.is_valid() && values[k].irradiance.is_finite());
       ASSERT_TRUE(k == 0 || values[k - 1].patch.range_max() < values[k].patch.range_min());
+      ASSERT_TRUE(k == 0 || values[k - 1].patch.agrees_on_splits(values[k].patch));
     }
   }
 }

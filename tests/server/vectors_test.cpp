@@ -23,7 +23,8 @@ TEST_P(Vectors, LeadToTheSameLeavesInEveryMirror) {
   EXPECT_EQ(vectors::bytes_of(mirror.errors()), vectors::read(path + ".errors")) << "none, if there is no such file";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Vectors, testing::Values("display", "exact", "deep", "one_page", "uneven", "errors", "merges"),
+INSTANTIATE_TEST_SUITE_P(All, Vectors,
+                         testing::Values("display", "exact", "deep", "one_page", "uneven", "errors", "merges", "slabs"),
                          [](const auto& vector) { return std::string(vector.param); });
 
 }  // namespace

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace alvor {
@@ -101,14 +103,14 @@ struct SavedLogTest : testing::Test {
 TEST_F(SavedLogTest, IsAMarkAVersionAndNumbersOneAfterTheOther) {
   Layout expected;
   for (const char letter : {'a', 'l', 'v', 'o', 'r', 'l', 'o', 'g'}) expected << letter;
-  expected << u32{5};
-  put_steps(expected, 5);
-  put_leaves(expected, log, 5);
+  expected << u32{6};
+  put_steps(expected, 6);
+  put_leaves(expected, log, 6);
   EXPECT_EQ(plain_bytes([&](PlainWriter& out) { log.save(out); }), expected.bytes);
 }
 
 TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
-  for (const int version : {1, 2, 3, 4}) {
+  for (const int version : {1, 2, 3, 4, 5}) {
     const auto again = loaded(as_version(version, log));
     EXPECT_EQ(again->has_errors_after({.are_wanted = true}), version >= 4) << version;
     EXPECT_EQ(again->leaves(Detail::exact), log.leaves(Detail::exact)) << version;
@@ -117,8 +119,7 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
     auto expected = log.steps();
     for (Step& step : expected) {
       if (version < 4) step.area_within = 0;
-      step.edits = 0;
-      step.is_provisional = false;
+      if (version < 5) step.edits = 0, step.is_provisional = false;
       if (version == 1) step.unlit_fraction = 0;
     }
     EXPECT_EQ(again->steps(), expected) << version;
@@ -126,7 +127,7 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsAreRead) {
 }
 
 TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
-  for (const int version : {1, 2, 3, 4}) {
+  for (const int version : {1, 2, 3, 4, 5}) {
     const Bytes whole = as_version(version, log);
     for (std::size_t size = 0; size < whole.size(); ++size)
       EXPECT_THROW(loaded(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), BadBytes) << size;
@@ -135,12 +136,31 @@ TEST_F(SavedLogTest, LogsOfOlderVersionsThatAreCutOffAreRefused) {
 
 TEST_F(SavedLogTest, NewerVersionIsRefusedByItsNumber) {
   Bytes bytes = plain_bytes([&](PlainWriter& out) { log.save(out); });
-  bytes[8] = std::byte{6};
+  bytes[8] = std::byte{7};
   try {
     loaded(bytes);
     FAIL() << "it was read";
   } catch (const BadBytes& fault) {
-    EXPECT_STREQ(fault.what(), "is of version 6, and this program reads versions up to 5");
+    EXPECT_STREQ(fault.what(), "is of version 7, and this program reads versions up to 6");
+  }
+}
+
+TEST_F(SavedLogTest, LeavesThatContradictEachOtherAreRefused) {
+  for (const Split other : {Split::slabs_along_u, Split::slabs_along_v}) {
+    SolutionLog like;
+    like.publish(std::vector<LeafValue>{{PatchId::root(0), {1, 1, 1}}, {PatchId::root(1), {1, 1, 1}}}, {});
+    const PatchId root = PatchId::root(0);
+    Bytes bytes = plain_bytes([&](PlainWriter& out) { like.save(out); });
+    const auto replace = [&](PatchId from, PatchId to) {
+      const std::uint64_t was = from.bits(), is = to.bits();
+      const auto found = std::ranges::search(bytes, std::as_bytes(std::span(&was, 1)));
+      ASSERT_FALSE(found.empty());
+      std::ranges::copy(std::as_bytes(std::span(&is, 1)), found.begin());
+    };
+    replace(root, root.child(0, Split::slabs_along_u));
+    replace(PatchId::root(1), root.child(1, other));
+    if (other == Split::slabs_along_u) EXPECT_NO_THROW(loaded(bytes));
+    else EXPECT_THROW(loaded(bytes), BadBytes);
   }
 }
 

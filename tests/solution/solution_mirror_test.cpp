@@ -38,6 +38,21 @@ TEST(SolutionMirror, ACoarserValueMakesTheLeavesWithinOne) {
   EXPECT_EQ(mirror.leaves(), (std::vector<LeafValue>{{root, {7, 7, 7}}}));
 }
 
+TEST(SolutionMirror, APatchThatIsSplitInAnotherWayIsOneLeafBefore) {
+  SolutionMirror mirror;
+  EXPECT_FALSE(mirror.apply(delta(0, 1, {{root.child(0), {1, 1, 1}}, {root.child(3), {4, 4, 4}}})));
+  EXPECT_FALSE(mirror.apply(delta(1, 2, {{root.child(1, Split::slabs_along_v), {9, 9, 9}}})));
+  std::vector<LeafValue> leaves;
+  for (int k = 0; k < 4; ++k) leaves.push_back({root.child(k, Split::slabs_along_v), k == 1 ? RgbF{9, 9, 9} : RgbF{1, 1, 1}});
+  EXPECT_EQ(mirror.leaves(), leaves);
+}
+
+TEST(SolutionMirror, RefusesLeavesThatContradictEachOther) {
+  SolutionMirror mirror;
+  EXPECT_TRUE(mirror.apply(delta(0, 1, {{root.child(0), {1, 1, 1}}, {root.child(3, Split::slabs_along_u), {4, 4, 4}}})));
+  EXPECT_TRUE(mirror.leaves().empty());
+}
+
 TEST(SolutionMirror, RefusesAGapAndStaysAsItWas) {
   SolutionMirror mirror;
   ASSERT_FALSE(mirror.apply(delta(0, 3, {{root, {1, 2, 3}}})));
@@ -81,10 +96,12 @@ class RandomWriter {
   void split(std::vector<LeafValue>& changed) {
     const std::size_t n = random_() % leaves_.size();
     const PatchId parent = leaves_[n];
-    if (parent.level() == PatchId::max_level) return;
+    Split how = static_cast<Split>(random_() % 3);
+    if (!parent.may_split(how)) how = Split::quarters;
+    if (!parent.may_split(how)) return;
     leaves_.erase(leaves_.begin() + static_cast<std::ptrdiff_t>(n));
-    for (int k = 0; k < 4; ++k) changed.push_back(fresh(parent.child(k)));
-    for (int k = 0; k < 4; ++k) leaves_.push_back(parent.child(k));
+    for (int k = 0; k < 4; ++k) leaves_.push_back(parent.child(k, how));
+    for (int k = 0; k < 4; ++k) changed.push_back(fresh(parent.child(k, how)));
   }
   void merge(std::vector<LeafValue>& changed) {
     const PatchId leaf = leaves_[random_() % leaves_.size()];
@@ -92,8 +109,17 @@ class RandomWriter {
     for (int levels = 1 + static_cast<int>(random_() % 2); levels > 0 && whole.level() > 0; --levels) whole = whole.parent();
     if (whole == leaf) return;
     std::erase_if(leaves_, [&](PatchId patch) { return whole.contains(patch); });
-    leaves_.push_back(whole);
-    changed.push_back(fresh(whole));
+    const Split how = static_cast<Split>(random_() % 3);
+    if (random_() % 2 == 0 || !whole.may_split(how)) {
+      leaves_.push_back(whole);
+      changed.push_back(fresh(whole));
+      return;
+    }
+    // At once split anew, often in another way; of its children one alone may be told.
+    for (int k = 0; k < 4; ++k) leaves_.push_back(whole.child(k, how));
+    const bool tells_all = random_() % 2 == 0;
+    for (int k = 0; k < 4; ++k)
+      if (tells_all || k == 2) changed.push_back(fresh(whole.child(k, how)));
   }
   LeafValue fresh(PatchId patch) { return {patch, {float(random_()), float(random_()), float(random_())}}; }
   std::mt19937 random_;

@@ -22,6 +22,7 @@ struct Case {
   bool is_uneven = false;  ///< some bands are zero, and neighbours differ a billionfold
   bool has_errors = false;
   bool merges = false;
+  bool slabs = false;
 };
 
 void make_uneven(std::vector<LeafValue>& leaves) {
@@ -43,7 +44,7 @@ std::vector<float> errors_of(std::span<const LeafValue> leaves) {
 void write(const Case& how, const std::filesystem::path& directory) {
   SolutionLog log;
   SolutionMirror mirror;
-  GrowingLeaves leaves(how.roots, 7, how.merges);
+  GrowingLeaves leaves(how.roots, 7, how.merges, how.slabs);
   std::vector<v1::WatchSolveResponse> frames;
   Cursor cursor{.errors = {.are_wanted = how.has_errors}};
   for (int left = how.revisions;;) {
@@ -79,8 +80,8 @@ int main(int argc, char** argv) {
   for (const alvor::Case& how :
        {alvor::Case{"display", Detail::display, 30, 50, 20}, alvor::Case{"exact", Detail::exact, 30, 50, 20},
         alvor::Case{"deep", Detail::display, 1, 1000, 60}, alvor::Case{"one_page", Detail::exact, 2000, 5000, 2},
-        alvor::Case{"uneven", Detail::display, 200, 300, 6, true},
-        alvor::Case{"errors", Detail::display, 30, 8, 10, false, true},
-        alvor::Case{"merges", Detail::display, 6, 40, 40, false, false, true}})
+        alvor::Case{"uneven", Detail::display, 200, 300, 6, true}, alvor::Case{"errors", Detail::display, 30, 8, 10, false, true},
+        alvor::Case{"merges", Detail::display, 6, 40, 40, false, false, true},
+        alvor::Case{"slabs", Detail::display, 6, 40, 60, false, false, true, true}})
     alvor::write(how, argv[1]);
 }

@@ -8,7 +8,7 @@ import { BadFrame, unpack } from "./mirror/leaves";
 import { ImageCollector, type Image } from "./textures/image";
 
 const MAGIC = [0x89, 0x41, 0x4c, 0x56, 0x4f, 0x52, 0x0d, 0x0a];
-const VERSION = 1;
+const NEWEST_VERSION = 2;
 const MOST_RAW_BYTES = 16 << 20;
 
 export interface SolutionFile {
@@ -28,7 +28,7 @@ export function readSolution(bytes: Uint8Array): SolutionFile {
   for (const { part } of partsOf(bytes)) {
     if (isFirst !== (part.case === "header")) throw new BadFrame("the header of the file is missing");
     isFirst = false;
-    if (part.case === "header" && part.value.version !== VERSION) throw new BadFrame("a newer program wrote the file");
+    if (part.case === "header" && !(part.value.version >= 1 && part.value.version <= NEWEST_VERSION)) throw new BadFrame("a newer program wrote the file");
     if (part.case === "mesh") file.mesh.push(unpacked(ReadMeshResponseSchema, part.value));
     if (part.case === "images") images.take(unpacked(ReadImagesResponseSchema, part.value));
     if (part.case === "leaves") file.leaves.push(part.value);

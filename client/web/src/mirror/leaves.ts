@@ -2,26 +2,23 @@
 
 import { decompress } from "fzstd";
 import { Detail, type LeafValues } from "../gen/alvor/v1/solve_service_pb";
+import { areValidSlabs, commonLevel, FACE_BITS, MAX_LEVEL, slabsOfAncestor } from "./patch_id";
 
-export const MAX_LEVEL = 15;
 const MOST_LEAVES = 52_428;
 const MOST_BYTES = 262_144;
 
-/** Leaves in the order of their ids, disjoint. An id is `face * 2^32 + path`. */
+/** Leaves in the order of their faces and paths, disjoint. An id is `slabs * 2^54 + face * 2^32 + path`. */
 export interface Leaves {
   count: number;
   face: Uint32Array;
   path: Uint32Array;
+  /** Slab codes. */
+  slabs: Uint16Array;
   /** Irradiance, W/m2: r, g, b of each. */
   rgb: Float32Array;
 }
 
 export class BadFrame extends Error {}
-
-/** Of a path: 15 is the finest. */
-export function levelOf(path: number): number {
-  return MAX_LEVEL - (31 - Math.clz32(path & -path)) / 2;
-}
 
 export function decodeLeaves(values: LeafValues): Leaves {
   const { count, rawSize } = values;
@@ -30,6 +27,7 @@ export function decodeLeaves(values: LeafValues): Leaves {
     count,
     face: new Uint32Array(count),
     path: new Uint32Array(count),
+    slabs: new Uint16Array(count),
     rgb: new Float32Array(3 * count),
   };
   if (count === 0) return leaves;
@@ -55,9 +53,11 @@ export function unpack(zstd: Uint8Array, size: number): Uint8Array {
 }
 
 const LEVEL_CHANGES = [0, -1, 1, -2, 2, -3, 3];
+const ESCAPE = 7; // code of a level that follows as a byte
+const TELLS_SLABS = 0x80; // added to such a byte: two bytes with the slab code follow
 const FINEST_OF_FACE = 4 ** MAX_LEVEL;
 
-// Finest patches of all faces are counted through: below 2^62, so in a face and a rest of 30 bits, for a double holds 53 bits.
+// Finest patches of all faces are counted through, in a face and a rest of 30 bits, for a double holds 53 bits and a bad gap can be longer.
 function decodeIds(bytes: Uint8Array, leaves: Leaves): void {
   let at = 0;
   let level = 0;
@@ -76,21 +76,41 @@ function decodeIds(bytes: Uint8Array, leaves: Leaves): void {
       byte = next();
       gap += (byte & 0x7f) * scale;
     }
-    level = code === 7 ? next() : level + LEVEL_CHANGES[code];
+    level = code === ESCAPE ? next() : level + LEVEL_CHANGES[code];
+    let slabs = -1;
+    if (level & TELLS_SLABS && code === ESCAPE) {
+      level -= TELLS_SLABS;
+      slabs = next() | (next() << 8);
+    }
     if (level < 0 || level > MAX_LEVEL) throw new BadFrame("a level is not one");
     const size = 4 ** (MAX_LEVEL - level);
     const perFace = FINEST_OF_FACE / size;
     const beginRest = Math.ceil(endRest / size) + (gap % perFace);
     const face = endFace + Math.floor(gap / perFace) + Math.floor(beginRest / perFace);
     const rest = (beginRest % perFace) * size;
-    if (face > 0xffffffff) throw new BadFrame("an id is beyond all faces");
+    if (face >= 2 ** FACE_BITS) throw new BadFrame("an id is beyond all faces");
     leaves.face[n] = face;
     // The path's bits, then a single 1, then zeros: the middle of the patch in halves of a finest one.
     leaves.path[n] = rest * 2 + size;
+    leaves.slabs[n] = checkedSlabs(leaves, n, level, slabs);
     endFace = face;
     endRest = rest + size;
   }
   if (at !== bytes.length) throw new BadFrame("a frame has bytes after its ids");
+}
+
+/**
+ * Returns the slab code of a leaf: the told one, or if it is -1, the one of ancestors that are split as they were for the leaf before, and
+ * into quarters where that has none of them. Throws BadFrame if no patch of this level has it, or the leaf before contradicts it.
+ */
+function checkedSlabs({ face, path, slabs }: Leaves, n: number, level: number, told: number): number {
+  let common = 0; // level of the finest ancestor whose code the leaf before tells
+  if (n > 0 && face[n] === face[n - 1]) common = commonLevel(path[n - 1], path[n]) + 1;
+  const ofCommon = common > 0 ? slabsOfAncestor(slabs[n - 1], common) : 0;
+  const code = told < 0 ? ofCommon : told;
+  if (code > 1023 || !areValidSlabs(code, level)) throw new BadFrame("a slab code is not one");
+  if (slabsOfAncestor(code, common) !== ofCommon) throw new BadFrame("a patch is split in two ways");
+  return code;
 }
 
 function decodeShared(bytes: Uint8Array, scale: number, leaves: Leaves): void {

@@ -1,7 +1,19 @@
 // The other end of the stream: a quadtree of leaves for each root patch, built from frames. The same as SolutionMirror of C++.
 
 import type { ErrorPage } from "./errors";
-import { BadFrame, levelOf, MAX_LEVEL, type Leaves } from "./leaves";
+import { BadFrame, type Leaves } from "./leaves";
+import {
+  childIndex,
+  FACE_BITS,
+  levelOf,
+  MAX_LEVEL,
+  mirrored,
+  mirroredSplit,
+  QUARTERS,
+  SLABS_ALONG_U,
+  slabsOfChildren,
+  splitAbove,
+} from "./patch_id";
 import { StateHash } from "./state_hash";
 
 /** Side of a root patch on the finest grid. */
@@ -9,10 +21,18 @@ export const GRID = 1 << MAX_LEVEL;
 
 const UNUSED = -1;
 
+/** A leaf that something was said about. */
+export interface ToldLeaf {
+  face: number;
+  path: number;
+  slabs: number;
+  rgb: [number, number, number];
+}
+
 /** Told of what changes, in order. */
 export interface MirrorListener {
-  /** A leaf became four; `first` is the first of them. */
-  onSplit(node: number, first: number): void;
+  /** A leaf became four; `first` is the first of them, and `how` is QUARTERS, SLABS_ALONG_U or SLABS_ALONG_V. */
+  onSplit(node: number, first: number, how: number): void;
   /** `leaves`, all under a node, become one, the node; then the nodes under it are used for others. */
   onMerge(node: number, leaves: number[]): void;
   onValue(node: number): void;
@@ -33,6 +53,9 @@ export class Mirror {
   nodeCount: number;
   leafCount = 0;
   private path: Uint32Array;
+  private slabs: Uint16Array;
+  /** Of each node that is no leaf: how it is split. */
+  private howSplit: Uint8Array;
   private known: Uint8Array;
   private hash = new StateHash();
   /** The first of each four nodes that are not used. */
@@ -46,6 +69,8 @@ export class Mirror {
     this.firstChild = new Int32Array(room);
     this.root = new Uint32Array(room);
     this.path = new Uint32Array(room);
+    this.slabs = new Uint16Array(room);
+    this.howSplit = new Uint8Array(room);
     this.rgb = new Float32Array(3 * room);
     this.errors = new Float32Array(room);
     this.known = new Uint8Array(rootCount);
@@ -75,7 +100,7 @@ export class Mirror {
   apply(leaves: Leaves): void {
     for (let n = 0; n < leaves.count; ++n)
       if (leaves.face[n] >= this.rootCount) throw new BadFrame(`root patch ${leaves.face[n]} is not in the mesh`);
-    for (let n = 0; n < leaves.count; ++n) this.setLeaf(leaves.face[n], leaves.path[n], leaves.rgb, 3 * n);
+    for (let n = 0; n < leaves.count; ++n) this.setLeaf(leaves.face[n], leaves.path[n], leaves.slabs[n], leaves.rgb, 3 * n);
   }
 
   /** Takes the leaves and errors of a mirror that has fewer roots. Requires: newly made. */
@@ -86,30 +111,38 @@ export class Mirror {
 
   private copy(other: Mirror, root: number): void {
     for (const leaf of other.leavesUnder(root)) {
-      const node = this.setLeaf(root, other.path[leaf], other.rgb, 3 * leaf);
+      const node = this.setLeaf(root, other.path[leaf], other.slabs[leaf], other.rgb, 3 * leaf);
       this.errors[node] = other.errors[leaf];
       this.listener?.onError?.(node);
     }
   }
 
   /** Gives the leaf of this id the irradiance rgb[at], rgb[at + 1], rgb[at + 2], and returns it. */
-  private setLeaf(face: number, path: number, rgb: Float32Array, at: number): number {
-    const node = this.grow(face, path);
-    this.hash.remove(face, path, this.rgb, 3 * node);
+  private setLeaf(face: number, path: number, slabs: number, rgb: Float32Array, at: number): number {
+    const node = this.grow(face, path, slabs);
+    this.removeFromHash(node);
     for (let band = 0; band < 3; ++band) this.rgb[3 * node + band] = rgb[at + band];
-    this.hash.add(face, path, this.rgb, 3 * node);
+    this.addToHash(node);
     this.listener?.onValue(node);
     return node;
   }
 
+  private addToHash(node: number): void {
+    this.hash.add((this.slabs[node] << FACE_BITS) | this.root[node], this.path[node], this.rgb, 3 * node);
+  }
+
+  private removeFromHash(node: number): void {
+    this.hash.remove((this.slabs[node] << FACE_BITS) | this.root[node], this.path[node], this.rgb, 3 * node);
+  }
+
   /** Requires: the mirror is a state of the solve. Throws BadFrame if there are no such leaves. */
-  takeErrors({ face, path, errors }: ErrorPage): void {
+  takeErrors({ face, path, slabs, errors }: ErrorPage): void {
     this.hasErrors = true;
     let at = -1; // before the first of them
     for (let root = face; root < this.rootCount && at < errors.length; ++root) {
       if (!this.known[root]) continue;
       for (const node of this.leavesUnder(root)) {
-        if (at < 0 && root === face && this.path[node] === path) at = 0;
+        if (at < 0 && root === face && this.path[node] === path && this.slabs[node] === slabs) at = 0;
         if (at < 0) continue;
         if (at === errors.length) return;
         this.errors[node] = errors[at++];
@@ -123,17 +156,32 @@ export class Mirror {
   /** The leaf that contains a place of a root: coordinates of the finest patches of its quadtree path. */
   leafAt(root: number, path: number): number {
     let node = root;
-    for (let level = 1; this.firstChild[node] !== 0; ++level) node = this.firstChild[node] + childIndex(path, level);
+    // Levels of the path whose half of u, and of v, was taken.
+    let levelU = 0;
+    let levelV = 0;
+    const halfOfU = () => childIndex(path, ++levelU) & 1;
+    const halfOfV = () => childIndex(path, ++levelV) >> 1;
+    while (this.firstChild[node] !== 0) {
+      const how = this.howSplit[node];
+      const k = how === QUARTERS ? halfOfU() + 2 * halfOfV() : how === SLABS_ALONG_U ? 2 * halfOfU() + halfOfU() : 2 * halfOfV() + halfOfV();
+      node = this.firstChild[node] + k;
+    }
     return node;
   }
 
-  /** The node of the same size that lies behind a node, on a root whose (u, v) is its root's (v, u); if there is none, the leaf around it. */
+  /**
+   * The node in the same place behind a node, on a root whose (u, v) is its root's (v, u); if there is none, the leaf around it, or the node
+   * around it that is split in another way, as it can be until all frames of a step have come.
+   */
   nodeBehind(node: number, root: number): number {
-    const path = mirrored(this.path[node]);
+    const slabs = this.slabs[node];
+    const path = mirrored(this.path[node], slabs);
     let behind = root;
     const end = levelOf(path);
-    for (let level = 1; level <= end && this.firstChild[behind] !== 0; ++level)
+    for (let level = 1; level <= end && this.firstChild[behind] !== 0; ++level) {
+      if (this.howSplit[behind] !== mirroredSplit(splitAbove(slabs, level))) break;
       behind = this.firstChild[behind] + childIndex(path, level);
+    }
     return behind;
   }
 
@@ -155,32 +203,38 @@ export class Mirror {
     return mean;
   }
 
-  /** All leaves that something was said about, in the order of their ids. */
-  *leaves(): Generator<{ face: number; path: number; rgb: [number, number, number] }> {
+  /** All leaves that something was said about, in the order of their faces and paths. */
+  *leaves(): Generator<ToldLeaf> {
     for (let root = 0; root < this.rootCount; ++root) if (this.known[root]) yield* this.leavesOf(root);
   }
 
-  private *leavesOf(node: number): Generator<{ face: number; path: number; rgb: [number, number, number] }> {
+  private *leavesOf(node: number): Generator<ToldLeaf> {
     const first = this.firstChild[node];
     if (first === 0) {
       const at = 3 * node;
-      yield { face: this.root[node], path: this.path[node], rgb: [this.rgb[at], this.rgb[at + 1], this.rgb[at + 2]] };
+      const rgb: [number, number, number] = [this.rgb[at], this.rgb[at + 1], this.rgb[at + 2]];
+      yield { face: this.root[node], path: this.path[node], slabs: this.slabs[node], rgb };
     } else {
       for (let k = 0; k < 4; ++k) yield* this.leavesOf(first + k);
     }
   }
 
-  /** The leaf of this id, splitting down to it, siblings inherit, or making those within it one. */
-  private grow(face: number, path: number): number {
+  /**
+   * The leaf of this id, splitting down to it, siblings inherit, or making those within it one. A node that is split in another way than
+   * the id says, as after a solve began anew, becomes one leaf first.
+   */
+  private grow(face: number, path: number, slabs: number): number {
     const level = levelOf(path);
     if (!this.known[face]) {
       this.known[face] = 1;
       this.leafCount += 1;
-      this.hash.add(face, this.path[face], this.rgb, 3 * face);
+      this.addToHash(face);
     }
     let node = face;
     for (let l = 1; l <= level; ++l) {
-      if (this.firstChild[node] === 0) this.split(node, l);
+      const how = splitAbove(slabs, l);
+      if (this.firstChild[node] !== 0 && this.howSplit[node] !== how) this.merge(node);
+      if (this.firstChild[node] === 0) this.split(node, l, how);
       node = this.firstChild[node] + childIndex(path, l);
     }
     if (this.firstChild[node] !== 0) this.merge(node);
@@ -189,10 +243,10 @@ export class Mirror {
 
   private merge(node: number): void {
     const leaves = [...this.leavesUnder(node)];
-    for (const leaf of leaves) this.hash.remove(this.root[leaf], this.path[leaf], this.rgb, 3 * leaf);
+    for (const leaf of leaves) this.removeFromHash(leaf);
     this.rgb.copyWithin(3 * node, 3 * leaves[0], 3 * leaves[0] + 3);
     this.errors[node] = this.errors[leaves[0]];
-    this.hash.add(this.root[node], this.path[node], this.rgb, 3 * node);
+    this.addToHash(node);
     this.leafCount -= leaves.length - 1;
     this.listener?.onMerge(node, leaves);
     this.release(node);
@@ -210,22 +264,25 @@ export class Mirror {
     this.firstChild[node] = 0;
   }
 
-  private split(node: number, childLevel: number): void {
+  private split(node: number, childLevel: number, how: number): void {
     const first = this.unused.pop() ?? this.newNodes();
     this.leafCount += 3;
     this.firstChild[node] = first;
+    this.howSplit[node] = how;
     const half = 4 ** (MAX_LEVEL - childLevel);
-    this.hash.remove(this.root[node], this.path[node], this.rgb, 3 * node);
+    const slabs = slabsOfChildren(this.slabs[node], childLevel - 1, how);
+    this.removeFromHash(node);
     for (let k = 0; k < 4; ++k) {
       const child = first + k;
       this.firstChild[child] = 0;
       this.root[child] = this.root[node];
       this.path[child] = this.path[node] - 4 * half + (2 * k + 1) * half;
+      this.slabs[child] = slabs;
       this.rgb.copyWithin(3 * child, 3 * node, 3 * node + 3);
       this.errors[child] = this.errors[node];
-      this.hash.add(this.root[child], this.path[child], this.rgb, 3 * child);
+      this.addToHash(child);
     }
-    this.listener?.onSplit(node, first);
+    this.listener?.onSplit(node, first, how);
   }
 
   /** The first of four. */
@@ -241,24 +298,14 @@ export class Mirror {
     this.firstChild = grown(this.firstChild, Int32Array, room);
     this.root = grown(this.root, Uint32Array, room);
     this.path = grown(this.path, Uint32Array, room);
+    this.slabs = grown(this.slabs, Uint16Array, room);
+    this.howSplit = grown(this.howSplit, Uint8Array, room);
     this.rgb = grown(this.rgb, Float32Array, 3 * room);
     this.errors = grown(this.errors, Float32Array, room);
   }
 }
 
-/** Which child of its ancestor at `level` - 1 contains the patch of this path. */
-export function childIndex(path: number, level: number): number {
-  return (path >>> (2 * (MAX_LEVEL - level) + 1)) & 3;
-}
-
-/** Returns the path of the patch in the same place of a root whose (u, v) is this one's (v, u): children 1 and 2 change places. */
-export function mirrored(path: number): number {
-  const end = path & -path;
-  const children = (path - end) >>> 1;
-  return 2 * (((children & 0x15555555) << 1) | ((children >>> 1) & 0x15555555)) + end;
-}
-
-export function grown<T extends Int32Array | Uint32Array | Float32Array | Uint8Array>(
+export function grown<T extends Int32Array | Uint32Array | Float32Array | Uint8Array | Uint16Array>(
   old: T,
   Kind: new (length: number) => T,
   room: number,

@@ -4,7 +4,8 @@ import type { Reading, Vector } from "../messages";
 import { opacityAt, reflectanceAt, type Image } from "../textures/image";
 import type { BaseMesh } from "./base_mesh";
 import type { Blend } from "./blend";
-import { type Mirror, GRID, mirrored } from "./mirror";
+import { type Mirror, GRID } from "./mirror";
+import { mirrored } from "./patch_id";
 
 const LEAST_OPACITY = 1 / 32; // the picture draws no dot of what is less: `thresholds` of view/shaders.ts
 

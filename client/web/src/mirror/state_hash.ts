@@ -10,15 +10,16 @@ export class StateHash {
     return (BigInt(this.upper >>> 0) << 32n) | BigInt(this.lower >>> 0);
   }
 
-  add(face: number, path: number, rgb: Float32Array, at: number): void {
-    this.change(face, path, rgb, at, 1);
+  /** `upper` and `path` are the halves of the leaf's id. */
+  add(upper: number, path: number, rgb: Float32Array, at: number): void {
+    this.change(upper, path, rgb, at, 1);
   }
 
-  remove(face: number, path: number, rgb: Float32Array, at: number): void {
-    this.change(face, path, rgb, at, -1);
+  remove(upper: number, path: number, rgb: Float32Array, at: number): void {
+    this.change(upper, path, rgb, at, -1);
   }
 
-  private change(face: number, path: number, rgb: Float32Array, at: number, sign: number): void {
+  private change(upper: number, path: number, rgb: Float32Array, at: number, sign: number): void {
     let a = 0x9e3779b9;
     let b = 0x85ebca6b;
     const mix = (word: number) => {
@@ -27,7 +28,7 @@ export class StateHash {
       b = Math.imul(b ^ word, 0x85ebca77);
       b ^= b >>> 13;
     };
-    mix(face);
+    mix(upper);
     mix(path);
     for (let band = 0; band < 3; ++band) {
       this.floats[band] = rgb[at + band];

@@ -1,11 +1,12 @@
 // What is drawn of a mirror: for each leaf a slot of nine vertices, its centre, four corners and four middles of edges, and of eight
-// triangles around the centre. Middles are drawn where a neighbour has a corner, so that no crack opens; triangles that a slot does not need
-// have no area. Only slots that changed are written again.
+// triangles around the centre. Middles are drawn where a neighbour has a corner, so that no crack opens. Where slabs end at an edge, further
+// corners lie on it: there shading may break, and a crack of less than a pixel may open. Triangles that a slot does not need have no area. Only slots that changed are written again.
 
 import type { BaseMesh } from "./base_mesh";
 import type { Blend } from "./blend";
 import { collect, type Change } from "./change";
 import { type Mirror, type MirrorListener, GRID, grown } from "./mirror";
+import { QUARTERS, SLABS_ALONG_U } from "./patch_id";
 import { DirtySet, POINTS, PointTable } from "./points";
 
 export const SLOT_VERTICES = 9;
@@ -47,10 +48,11 @@ export class Surface implements MirrorListener {
   private nodeOfSlot = new Int32Array(1024); // -1 where a slot is not used
   private readonly unusedSlots: number[] = [];
   private slotOfNode = new Int32Array(1024).fill(-1);
-  // Of each node: corner 0 on the root's grid, and its side; negative for a triangle that is turned by half a circle.
+  // Of each node: corner 0 on the root's grid, and its sides along u and v; negative for a triangle that is turned by half a circle.
   private nodeI = new Int32Array(1024);
   private nodeJ = new Int32Array(1024);
-  private nodeSize = new Int32Array(1024);
+  private nodeSizeU = new Int32Array(1024);
+  private nodeSizeV = new Int32Array(1024);
   private readonly places = new PointTable();
   private readonly smooth = new PointTable();
   private cornersHere = new Int32Array(1024); // by place: how many leaves have a corner there
@@ -68,7 +70,7 @@ export class Surface implements MirrorListener {
     this.mirror = mirror;
     for (let root = 0; root < mirror.rootCount; ++root) {
       this.reserveNodes(root + 1);
-      this.nodeSize[root] = GRID;
+      this.nodeSizeU[root] = this.nodeSizeV[root] = GRID;
       this.newSlot(root);
     }
   }
@@ -82,9 +84,9 @@ export class Surface implements MirrorListener {
     this.dirtySlots.add(this.slotOfNode[node], ERRORS);
   }
 
-  onSplit(node: number, first: number): void {
+  onSplit(node: number, first: number, how: number): void {
     this.reserveNodes(first + 4);
-    for (let k = 0; k < 4; ++k) this.placeChild(node, first + k, k);
+    for (let k = 0; k < 4; ++k) this.placeChild(node, first + k, k, how);
     const slot = this.slotOfNode[node];
     for (let k = 1; k < 4; ++k) this.newSlot(first + k);
     this.unlink(slot);
@@ -177,14 +179,28 @@ export class Surface implements MirrorListener {
     return this.mesh.cornersOf(this.mirror.root[node]) === 4;
   }
 
-  private placeChild(parent: number, child: number, k: number): void {
-    const half = this.nodeSize[parent] / 2;
-    const inner = k === 3 && !this.isQuad(parent);
-    const column = this.isQuad(parent) ? k & 1 : Number(k === 1 || inner);
-    const row = this.isQuad(parent) ? k >> 1 : Number(k === 2 || inner);
-    this.nodeI[child] = this.nodeI[parent] + column * half;
-    this.nodeJ[child] = this.nodeJ[parent] + row * half;
-    this.nodeSize[child] = inner ? -half : half;
+  private placeChild(parent: number, child: number, k: number, how: number): void {
+    if (how === QUARTERS) {
+      const inner = k === 3 && !this.isQuad(parent);
+      const column = this.isQuad(parent) ? k & 1 : Number(k === 1 || inner);
+      const row = this.isQuad(parent) ? k >> 1 : Number(k === 2 || inner);
+      this.placeIn(parent, child, column, row, 2, 2);
+      if (!inner) return;
+      this.nodeSizeU[child] *= -1;
+      this.nodeSizeV[child] *= -1;
+    } else if (how === SLABS_ALONG_U) {
+      this.placeIn(parent, child, k, 0, 4, 1);
+    } else {
+      this.placeIn(parent, child, 0, k, 1, 4);
+    }
+  }
+
+  /** Gives a node its place in the column and row of its parent, which has so many of them. */
+  private placeIn(parent: number, child: number, column: number, row: number, columns: number, rows: number): void {
+    this.nodeSizeU[child] = this.nodeSizeU[parent] / columns;
+    this.nodeSizeV[child] = this.nodeSizeV[parent] / rows;
+    this.nodeI[child] = this.nodeI[parent] + column * this.nodeSizeU[child];
+    this.nodeJ[child] = this.nodeJ[parent] + row * this.nodeSizeV[child];
   }
 
   private newSlot(node: number): void {
@@ -202,20 +218,20 @@ export class Surface implements MirrorListener {
 
   /** Sets pointI and pointJ. Corners 0 to 3, then the middles of the edges that begin at them. */
   private findPoint(node: number, k: number): void {
-    const size = this.nodeSize[node];
     const last = this.isQuad(node) ? 4 : 3;
     const columns = last === 4 ? QUAD_COLUMNS : TRIANGLE_COLUMNS;
     const rows = last === 4 ? QUAD_ROWS : TRIANGLE_ROWS;
     const a = (k & 3) % last;
     const b = k < 4 ? a : (a + 1) % last;
-    this.pointI = this.nodeI[node] + ((columns[a] + columns[b]) * size) / 2;
-    this.pointJ = this.nodeJ[node] + ((rows[a] + rows[b]) * size) / 2;
+    this.pointI = this.nodeI[node] + ((columns[a] + columns[b]) * this.nodeSizeU[node]) / 2;
+    this.pointJ = this.nodeJ[node] + ((rows[a] + rows[b]) * this.nodeSizeV[node]) / 2;
   }
 
-  /** A triangle's last corner and edge are none, and edges of the finest grid have no middle. */
+  /** A triangle's last corner and edge are none, and edges as short as the finest grid's have no middle. */
   private hasPoint(node: number, k: number): boolean {
     if ((k === 3 || k === 7) && !this.isQuad(node)) return false;
-    return k < 4 || Math.abs(this.nodeSize[node]) > 1;
+    // Edges 0 and 2 of a quad lie along u; the sizes of a triangle are alike.
+    return k < 4 || Math.abs(k % 2 === 0 ? this.nodeSizeU[node] : this.nodeSizeV[node]) > 1;
   }
 
   private link(slot: number, k: number): void {
@@ -276,8 +292,8 @@ export class Surface implements MirrorListener {
       const node = this.nodeOfSlot[link >> 3];
       const at = 3 * node;
       if (rgb[at] === 0 && rgb[at + 1] === 0 && rgb[at + 2] === 0) continue;
-      const side = this.nodeSize[node];
-      const weight = (isMiddle ? 2 : 1) / (side * side * this.mesh.area[root[node]]);
+      const share = this.nodeSizeU[node] * this.nodeSizeV[node];
+      const weight = (isMiddle ? 2 : 1) / (share * this.mesh.area[root[node]]);
       r += weight * rgb[at];
       g += weight * rgb[at + 1];
       b += weight * rgb[at + 2];
@@ -295,8 +311,9 @@ export class Surface implements MirrorListener {
     if (!this.isUsed(slot)) return;
     const node = this.nodeOfSlot[slot];
     const root = this.mirror.root[node];
-    const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
-    this.mesh.position(root, this.nodeI[node] + middle, this.nodeJ[node] + middle, out, at);
+    const parts = this.isQuad(node) ? 2 : 3;
+    const [i, j] = [this.nodeI[node] + this.nodeSizeU[node] / parts, this.nodeJ[node] + this.nodeSizeV[node] / parts];
+    this.mesh.position(root, i, j, out, at);
     for (let k = 0; k < POINTS; ++k) {
       this.findPoint(node, k);
       this.mesh.position(root, this.pointI, this.pointJ, out, at + 3 * (k + 1));
@@ -309,8 +326,9 @@ export class Surface implements MirrorListener {
       if (!this.isUsed(slot)) return;
       const node = this.nodeOfSlot[slot];
       const root = this.mirror.root[node];
-      const middle = this.nodeSize[node] / (this.isQuad(node) ? 2 : 3);
-      write(root, this.mesh.blendAt(root, this.nodeI[node] + middle, this.nodeJ[node] + middle), out, at);
+      const parts = this.isQuad(node) ? 2 : 3;
+      const [i, j] = [this.nodeI[node] + this.nodeSizeU[node] / parts, this.nodeJ[node] + this.nodeSizeV[node] / parts];
+      write(root, this.mesh.blendAt(root, i, j), out, at);
       for (let k = 0; k < POINTS; ++k) {
         this.findPoint(node, k);
         write(root, this.mesh.blendAt(root, this.pointI, this.pointJ), out, at + count * (k + 1));
@@ -399,7 +417,8 @@ export class Surface implements MirrorListener {
     this.slotOfNode = grown(this.slotOfNode, Int32Array, room).fill(-1, before);
     this.nodeI = grown(this.nodeI, Int32Array, room);
     this.nodeJ = grown(this.nodeJ, Int32Array, room);
-    this.nodeSize = grown(this.nodeSize, Int32Array, room);
+    this.nodeSizeU = grown(this.nodeSizeU, Int32Array, room);
+    this.nodeSizeV = grown(this.nodeSizeV, Int32Array, room);
   }
 
   private reservePoints(): void {

@@ -126,7 +126,7 @@ describe("added objects", () => {
   });
   it("leave what is known of the light", () => {
     const before = new Mirror(3);
-    before.apply({ count: 1, face: Uint32Array.of(1), path: Uint32Array.of(2 ** 28), rgb: Float32Array.of(1, 2, 3) });
+    before.apply({ count: 1, face: Uint32Array.of(1), path: Uint32Array.of(2 ** 28), slabs: new Uint16Array(1), rgb: Float32Array.of(1, 2, 3) });
     const after = new Mirror(5);
     after.takeAll(before);
     expect(after.stateHash).toBe(before.stateHash);

@@ -56,6 +56,7 @@ function mirrorOf(base: BaseMesh): Mirror {
     count: 8,
     face: Uint32Array.from([0, 0, 0, 0, 1, 1, 1, 1]),
     path: Uint32Array.from([0, 1, 2, 3, 0, 1, 2, 3].map(child)),
+    slabs: new Uint16Array(8),
     rgb: Float32Array.from([0, 1, 2, 3, 0, 1, 2, 3].flatMap((x) => [x, x, x])),
   });
   return mirror;

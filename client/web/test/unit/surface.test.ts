@@ -2,8 +2,9 @@ import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
-import { levelOf, type Leaves } from "../../src/mirror/leaves";
-import { childIndex, Mirror } from "../../src/mirror/mirror";
+import type { Leaves } from "../../src/mirror/leaves";
+import { Mirror } from "../../src/mirror/mirror";
+import { childIndex, levelOf, QUARTERS, slabsOfAncestor, slabsOfChildren } from "../../src/mirror/patch_id";
 import { SLOT_INDICES, SLOT_VERTICES, Surface, type SurfaceChange } from "../../src/mirror/surface";
 
 const across = (root: number, edge: number, smooth: boolean) => BigInt(1 + 8 * root + 2 * edge + Number(smooth));
@@ -35,11 +36,12 @@ function mesh(): BaseMesh {
 const path = (children: number[]) =>
   children.reduce((bits, child, n) => bits + child * 4 ** (15 - n - 1) * 2, 0) + 4 ** (15 - children.length);
 
-function leaves(list: [number, number[], number][]): Leaves {
+function leaves(list: [root: number, children: number[], irradiance: number, slabs?: number][]): Leaves {
   return {
     count: list.length,
     face: Uint32Array.from(list.map((leaf) => leaf[0])),
     path: Uint32Array.from(list.map((leaf) => path(leaf[1]))),
+    slabs: Uint16Array.from(list.map((leaf) => leaf[3] ?? 0)),
     rgb: Float32Array.from(list.flatMap((leaf) => [leaf[2], leaf[2], leaf[2]])),
   };
 }
@@ -142,6 +144,15 @@ describe("the surface", () => {
     expect(picture.at(0, 0, 0, base.centre)).toEqual(new Set([1, 9]));
   });
 
+  it("weights slabs by their areas", () => {
+    const base = mesh();
+    const { surface, mirror, picture } = drawn(base);
+    const slabs = [0, 1, 2, 3].map((k): [number, number[], number, number] => [0, [k], 4, 1]);
+    mirror.apply(leaves([...slabs, [1, [], 1], [2, [], 3], [3, [], 9]]));
+    picture.take(surface.flush());
+    expect([...picture.at(1, 0, 0, base.centre)]).toEqual([expect.closeTo((4 * 4 + 1) / 5, 5)]);
+  });
+
   it("writes again only what changed", () => {
     const { surface, mirror, picture } = drawn(mesh());
     const deep = [0, 1, 2, 3].flatMap((a) => [0, 1, 2, 3].map((b) => [0, [a, b], 1] as [number, number[], number]));
@@ -167,12 +178,15 @@ describe("the surface", () => {
     mirror.apply(leaves([0, 1, 2, 3].map((root) => [root, [], 1 + root])));
     for (let round = 0; round < 200; ++round) {
       const there = [...mirror.leaves()];
-      const { face, path: whole } = there[dice(there.length)];
+      const { face, path: whole, slabs } = there[dice(there.length)];
       const level = levelOf(whole);
       const children = Array.from({ length: level }, (_, n) => childIndex(whole, n + 1));
       const deeper = [...children, dice(4)];
       const place = round % 6 === 0 ? children.slice(0, Math.max(0, level - 1 - dice(2))) : deeper.slice(0, 5);
-      mirror.apply(leaves([[face, place, 1 + dice(100)]]));
+      const how = face !== 2 && slabs >> 5 === 0 ? dice(3) : QUARTERS; // face 2 is a triangle
+      const code = place.length <= level ? slabsOfAncestor(slabs, place.length) : slabsOfChildren(slabs, level, how);
+      mirror.apply(leaves([[face, place, 1 + dice(100), code]]));
+      if (round % 60 === 50) mirror.apply(leaves([[round % 2, [dice(4)], 1 + dice(100), dice(3)]])); // perhaps another split
       if (dice(3) === 0) picture.take(surface.flush());
     }
     picture.take(surface.flush());
@@ -182,10 +196,12 @@ describe("the surface", () => {
       count: left.length,
       face: Uint32Array.from(left, ({ face }) => face),
       path: Uint32Array.from(left, ({ path }) => path),
+      slabs: Uint16Array.from(left, ({ slabs }) => slabs),
       rgb: Float32Array.from(left.flatMap(({ rgb }) => rgb)),
     });
     fresh.picture.take(fresh.surface.flush());
     expect(left.length).toBeGreaterThan(20);
+    expect(new Set(left.map(({ slabs }) => slabs)).size).toBeGreaterThan(5);
     expect(mirror.leafCount).toBe(left.length);
     expect(mirror.stateHash).toBe(fresh.mirror.stateHash);
     expect(picture.seen()).toEqual(fresh.picture.seen());

@@ -83,7 +83,7 @@ describe("the surface of a mesh with textures", () => {
     const surface = new Surface(mesh);
     const mirror = new Mirror(1, surface);
     surface.attach(mirror);
-    mirror.apply({ count: 1, face: Uint32Array.of(0), path: Uint32Array.of(4 ** 14), rgb: Float32Array.of(1, 1, 1) }); // in four
+    mirror.apply({ count: 1, face: Uint32Array.of(0), path: Uint32Array.of(4 ** 14), slabs: new Uint16Array(1), rgb: Float32Array.of(1, 1, 1) }); // in four
     return surface.flush();
   }
 

@@ -5,15 +5,15 @@ import { describe, expect, it } from "vitest";
 import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
 import { BaseMesh } from "../../src/mirror/base_mesh";
 import { brightnessOf } from "../../src/mirror/brightness";
-import { levelOf } from "../../src/mirror/leaves";
-import { GRID, Mirror, mirrored } from "../../src/mirror/mirror";
+import { GRID, Mirror } from "../../src/mirror/mirror";
+import { levelOf, mirrored } from "../../src/mirror/patch_id";
 import { probe } from "../../src/mirror/probe";
 import { SLOT_VERTICES, Surface, type SurfaceChange } from "../../src/mirror/surface";
 import { FRAGMENT, VERTEX } from "../../src/view/shaders";
 import { Slots } from "../../src/view/slots";
 
 type Triple = [number, number, number];
-type Leaf = [root: number, children: number[], irradiance: Triple];
+type Leaf = [root: number, children: number[], irradiance: Triple, slabs?: number];
 
 const TAU: Triple = [0.5, 0.25, 0.125];
 const REFLECTANCE: Triple = [0.25, 0.25, 0.5];
@@ -53,6 +53,7 @@ const leavesOf = (list: Leaf[]) => ({
   count: list.length,
   face: Uint32Array.from(list, ([root]) => root),
   path: Uint32Array.from(list, ([, children]) => path(children)),
+  slabs: Uint16Array.from(list, ([, , , slabs = 0]) => slabs),
   rgb: Float32Array.from(list.flatMap(([, , irradiance]) => irradiance)),
 });
 
@@ -90,6 +91,16 @@ class Shown {
 
   rootOf(slot: number): number {
     return this.mirror.root[(this.surface as unknown as { nodeOfSlot: Int32Array }).nodeOfSlot[slot]];
+  }
+
+  transmittedByPlace = (root: number) => this.byPlace(root, "transmitted");
+  irradianceByPlace = (root: number) => this.byPlace(root, "value");
+
+  /** Returns an attribute by place, of the vertices of a root that are drawn. */
+  private byPlace(root: number, attribute: string): Map<string, Triple> {
+    const drawn = this.slots.geometry.index!.array.slice(0, this.slots.geometry.drawRange.count);
+    const ofRoot = [...drawn].filter((v) => this.rootOf(Math.floor(v / SLOT_VERTICES)) === root);
+    return new Map(ofRoot.map((v) => [`${this.get("position", v)}`, this.get(attribute, v)]));
   }
 
   /** Returns light that comes through, by root and place, of the vertices that are drawn. */
@@ -135,6 +146,11 @@ describe("a mirrored path", () => {
     expect(mirrored(path([1, 0, 3, 2, 2]))).toBe(path([2, 0, 3, 1, 1]));
     const finest = Array.from({ length: 15 }, (_, n) => (7 * n + 3) % 4);
     expect(mirrored(path(finest))).toBe(path(finest.map((k) => [0, 2, 1, 3][k])));
+  });
+
+  it("keeps the children of slabs", () => {
+    const slabs = 1 | (6 << 5); // the root along u, and an ancestor at level 2 along v
+    expect(mirrored(path([1, 1, 2, 2]), slabs)).toBe(path([1, 2, 2, 1]));
   });
 
   it("has the same level, and mirrored again is as before", () => {
@@ -190,6 +206,20 @@ describe("transmitted light", () => {
     for (const [place, light] of transmitted) times(TAU, irradiance.get(place)!).forEach((x, band) => expect(light[band]).toBeCloseTo(x, 5));
   });
 
+  it("of each vertex of slabs is tau times what the slabs behind show there", () => {
+    const shown = new Shown(sheets());
+    // Slabs along u, the third of them in slabs along v; on the back slabs along v, the third of them in slabs along u.
+    const slabs = (root: number, light: number, outer: number, inner: number): Leaf[] => [
+      ...[0, 1, 3].map((k): Leaf => [root, [k], grey(light + k), outer]),
+      ...[0, 1, 2, 3].map((k): Leaf => [root, [2, k], grey(light + 10 * k), outer | (inner << 5)]),
+    ];
+    shown.apply(...slabs(QUAD, 1, 1, 4), ...slabs(QUAD_BACK, 50, 2, 3));
+    expect(shown.transmittedByPlace(QUAD).size).toBe(10 + 6 + 7); // corners of the outer and the inner slabs, and centres
+    for (const [front, behind] of [[QUAD, QUAD_BACK], [QUAD_BACK, QUAD]])
+      for (const [place, light] of shown.transmittedByPlace(front))
+        times(TAU, shown.irradianceByPlace(behind).get(place)!).forEach((x, band) => expect(light[band]).toBeCloseTo(x, 5));
+  });
+
   it("changes when only the light of the back does, and only that is written again", () => {
     const shown = new Shown(sheets());
     shown.apply(...four(QUAD, [1, 2, 3, 4]), ...four(QUAD_BACK, [5, 6, 7, 8]), [BOARD, [], grey(3)]);
@@ -212,6 +242,14 @@ describe("transmitted light", () => {
     expect(corner[1]).toEqual(times(TAU, [2, 4, 8])); // of child 1
     shown.apply([QUAD, [0], grey(5)]);
     expect(shown.centreAt(QUAD_BACK, 2, 1)).toEqual(times(TAU, [3.5, (5 + 4 + 6 + 8) / 4, (5 + 8 + 12 + 16) / 4]));
+  });
+
+  it("is that of the mean of the node around it where the other side is split into quarters and this one into slabs", () => {
+    const shown = new Shown(sheets());
+    shown.apply(...four(QUAD_BACK, [1, 2, 3, 10]), [QUAD, [2], grey(1), 1]);
+    expect(shown.centreAt(QUAD, 2.5, 1)).toEqual(times(TAU, [4, 8, 16]));
+    shown.apply([QUAD_BACK, [2], grey(8), 2]);
+    expect(shown.centreAt(QUAD, 2.5, 1)).toEqual(times(TAU, grey(8)));
   });
 
   it("is the same however the leaves came", () => {
@@ -245,6 +283,15 @@ describe("transmitted light", () => {
 describe("a reading of a translucent surface", () => {
   const ahead = (shown: Shown, x: number, y: number) => ({ x: x - shown.mesh.centre[0], y: y - shown.mesh.centre[1], z: 5 });
   const down = { x: 0, y: 0, z: -1 };
+
+  it("has in its radiosity the light that comes through from the slab behind", () => {
+    const shown = new Shown(sheets());
+    const slabs = (root: number, light: number, code: number) => [0, 1, 2, 3].map((k): Leaf => [root, [k], grey(light + k), code]);
+    shown.apply(...slabs(QUAD, 1, 1), ...slabs(QUAD_BACK, 5, 2)); // four beside each other in x
+    const { radiosity, irradiance } = probe(shown.mesh, shown.mirror, ahead(shown, 2.5, 1.9), down)!;
+    expect(irradiance).toEqual(grey(3));
+    expect(radiosity).toEqual([1 + 0.25 * 3 + 0.5 * 7, 1 + 0.25 * 3 + 0.25 * 7, 1 + 0.5 * 3 + 0.125 * 7]);
+  });
 
   it("has in its radiosity the light that comes through from the leaf behind", () => {
     const shown = new Shown(sheets());

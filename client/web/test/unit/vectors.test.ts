@@ -24,7 +24,7 @@ function bytesOf(mirror: Mirror): Buffer {
   for (const leaf of mirror.leaves()) {
     const part = Buffer.alloc(20);
     part.writeUInt32LE(leaf.path, 0);
-    part.writeUInt32LE(leaf.face, 4);
+    part.writeUInt32LE(leaf.slabs * 2 ** 22 + leaf.face, 4);
     leaf.rgb.forEach((x, band) => part.writeFloatLE(x, 8 + 4 * band));
     parts.push(part);
   }
@@ -32,7 +32,7 @@ function bytesOf(mirror: Mirror): Buffer {
 }
 
 describe("the mirror", () => {
-  it.each(["display", "exact", "deep", "one_page", "uneven", "errors", "merges"])("holds what the C++ mirror holds after the frames of %s", (name) => {
+  it.each(["display", "exact", "deep", "one_page", "uneven", "errors", "merges", "slabs"])("holds what the C++ mirror holds after the frames of %s", (name) => {
     const mirror = new Mirror(2000);
     const frames = framesOf(name);
     expect(frames.length).toBeGreaterThan(0);

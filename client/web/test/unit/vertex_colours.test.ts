@@ -51,6 +51,7 @@ function flushed(mesh: BaseMesh, irradiance: Triple = [1, 1, 1]) {
     count: 4,
     face: Uint32Array.of(0, 0, 0, 0),
     path: Uint32Array.from([0, 1, 2, 3].map(child)),
+    slabs: new Uint16Array(4),
     rgb: Float32Array.from([irradiance, irradiance, irradiance, irradiance].flat()),
   });
   return { mirror, change: surface.flush() };
