@@ -75,12 +75,21 @@ NodeIndex PatchForest::node_in_place_of(PatchId patch) const {
   return node;
 }
 
+std::optional<Split> PatchForest::split_in_place_of(PatchId patch) const {
+  const NodeIndex node = node_in_place_of(patch);
+  return is_leaf(node) ? std::nullopt : std::optional(split_of(node));
+}
+
 bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits, Split how) const {
-  const PatchId patch_id = id(leaf);
-  const std::uint64_t more = mesh_->is_translucent(patch_id.root_face()) ? 6 : 3;
-  if (patch_id.level() >= limits.max_level || leaf_count_ + more > limits.max_leaves || !patch_id.may_split(how)) return false;
+  const std::uint64_t more = mesh_->is_translucent(id(leaf).root_face()) ? 6 : 3;
+  return leaf_count_ + more <= limits.max_leaves && is_large_enough(leaf, limits, how);
+}
+
+/// Returns whether all limits but that of the number of leaves allow a split.
+bool PatchForest::is_large_enough(NodeIndex leaf, const RefinementLimits& limits, Split how) const {
+  if (id(leaf).level() >= limits.max_level || !id(leaf).may_split(how)) return false;
   const bool is_slab = how != Split::quarters;
-  if (is_slab && mesh_->roots()[patch_id.root_face()].corner_count != 4) return false;
+  if (is_slab && mesh_->roots()[id(leaf).root_face()].corner_count != 4) return false;
   if (limits.min_edge <= 0) return true;
   const PatchShape patch = shape(leaf);
   const auto corners = corners_of(*mesh_, patch);
@@ -91,7 +100,7 @@ bool PatchForest::may_split(NodeIndex leaf, const RefinementLimits& limits, Spli
   return true;
 }
 
-// Ends: each leaf that is to be split first has a longer edge than the one before it.
+// Terminates: a leaf that must be split first has a longer longest edge than the leaf for which it is split.
 bool PatchForest::split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches,
                                            const PatchForest* finer) {
   const PatchShape patch = shape(leaf);
@@ -103,21 +112,27 @@ bool PatchForest::split_coarser_neighbours(NodeIndex leaf, const RefinementLimit
     for (;;) {
       const NodeIndex other = leaf_across(patch, e, 0.5);
       if (other == no_node || shape(other).size_along(edge_there) <= longest) break;
-      if (finer && finer->is_leaf(finer->node_in_place_of(id(other)))) break;
-      if (!split(other, limits, split_patches, Split::quarters, finer)) return false;
+      const auto how = finer ? finer->split_in_place_of(id(other)) : Split::quarters;
+      if (!how || !is_large_enough(other, limits, *how)) break;
+      if (!split(other, limits, split_patches, *how, finer)) return false;
     }
   }
   return true;
 }
 
+bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches, Split how) {
+  return split(leaf, limits, split_patches, how, nullptr);
+}
+
+bool PatchForest::split_as(const PatchForest& finer, NodeIndex leaf, const RefinementLimits& limits,
+                           std::vector<NodeIndex>& split_patches) {
+  const auto how = finer.split_in_place_of(id(leaf));
+  return how && split(leaf, limits, split_patches, *how, &finer);
+}
+
 bool PatchForest::split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split_patches, Split how,
                         const PatchForest* finer) {
   assert(is_leaf(leaf));
-  if (finer) {
-    const NodeIndex there = finer->node_in_place_of(id(leaf));
-    if (finer->is_leaf(there)) return false;
-    how = finer->split_of(there);
-  }
   if (!may_split(leaf, limits, how)) return false;
   const NodeIndex behind = leaf_behind(leaf);
   if (!split_coarser_neighbours(leaf, limits, split_patches, finer)) return false;

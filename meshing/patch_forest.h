@@ -6,6 +6,7 @@
 #include "solution/leaf_value.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,9 +34,10 @@ struct RefinementLimits {
   double min_edge = 0;  ///< metres; no split makes an edge shorter than this
 };
 
-/// Keeps neighbouring leaves balanced, also across roots: before a leaf is split, neighbours are, until none has an edge on it
-/// that is longer on the grid than its longest. So levels of squares that share an edge differ by one at most. The two sides of a
-/// translucent face are split alike. Has less than 2^30 nodes. Borrows the mesh.
+/// Keeps neighbouring leaves balanced, also across roots: before a leaf is split, neighbours are, until none that may be split
+/// has an edge on it that is longer on the grid than its longest. So no edge is more than four times as long as the longest of
+/// the leaf across; without slabs, levels of leaves that share an edge differ by one at most. The two sides of a translucent face
+/// are split alike. Has fewer than 2^30 nodes. Borrows the mesh.
 class PatchForest {
  public:
   explicit PatchForest(const BaseMesh& mesh);
@@ -78,14 +80,17 @@ class PatchForest {
 
   /// Returns the node with this id, or the leaf that contains it. Requires: `patch` has slabs as the forest has.
   NodeIndex node_in_place_of(PatchId patch) const;
+  /// Returns how the node with this id is split; nothing if there is none, or it is a leaf.
+  std::optional<Split> split_in_place_of(PatchId patch) const;
 
   bool may_split(NodeIndex leaf, const RefinementLimits& limits, Split how = Split::quarters) const;
   /// Splits `leaf` as told, and the leaf behind it alike, after splitting coarser neighbours into quarters as the balance
-  /// demands. Appends every patch that was split to `split`. Returns false if a limit forbids the split of the leaf or of such a
-  /// neighbour; neighbours split before that stay split. With `finer`, a forest of the same mesh, every patch is split as it is
-  /// split there, whatever `how` says, and none that is not. Requires: is_leaf(leaf).
-  bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split, Split how = Split::quarters,
-             const PatchForest* finer = nullptr);
+  /// demands. Appends every patch that was split to `split`. Returns false if a limit forbids the split, or too many leaves that
+  /// of a neighbour; neighbours split before that stay split. Requires: is_leaf(leaf).
+  bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split, Split how = Split::quarters);
+  /// Splits `leaf`, and neighbours before it, as they are split in `finer`, a forest of the same mesh. Neighbours that are not
+  /// split there stay. Returns false if `leaf` is not, or as split(). Requires: is_leaf(leaf).
+  bool split_as(const PatchForest& finer, NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split);
   /// Splits until every patch of `patches` is a node, without balancing, each side by itself. Requires: valid ids of this mesh.
   void split_down_to(std::span<const LeafValue> patches);
   /// Takes roots that the mesh has got, as leaves. Requires: `first` is the number of roots before.
@@ -96,6 +101,8 @@ class PatchForest {
   static constexpr std::uint32_t split_mask = 3u << split_shift;
 
   NodeIndex leaf_in_slabs(PatchId place, NodeIndex from) const;
+  bool is_large_enough(NodeIndex leaf, const RefinementLimits& limits, Split how) const;
+  bool split(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split, Split how, const PatchForest* finer);
   bool split_coarser_neighbours(NodeIndex leaf, const RefinementLimits& limits, std::vector<NodeIndex>& split,
                                 const PatchForest* finer);
   void split_one(NodeIndex leaf, Split how);

@@ -100,8 +100,7 @@ Uv PatchShape::centre() const {
 Uv PatchShape::stratum_centre(int o) const {
   const int k = o >> 2, within = o & 3;
   if (corner_count == 3) return child(k).child(within).centre();
-  if (strata_along_u == 4)
-    return inside({(2 * (k & 1) + (within & 1) + 0.5) / 4, (2 * (k >> 1) + (within >> 1) + 0.5) / 4});
+  if (strata_along_u == 4) return inside({(2 * (k & 1) + (within & 1) + 0.5) / 4, (2 * (k >> 1) + (within >> 1) + 0.5) / 4});
   const bool is_row = strata_along_u == 16 || strata_along_u == 1;
   return long_way(is_row ? Uv{(o + 0.5) / 16, 0.5} : Uv{(2 * k + (within & 1) + 0.5) / 8, ((within >> 1) + 0.5) / 2});
 }

@@ -33,7 +33,8 @@ struct PatchShape {
   GridPoint first;                      ///< the patch's corner 0
   std::int32_t size_u = 0, size_v = 0;  ///< lengths of its edges in grid steps; equal, and negative if turned, for a triangle
   /// Number of strata of a quad along u: 1, 2, 4, 8 or 16. Quads of long roots have more along their long side, so that a leaf
-  /// 4 mm wide and 28 cm long is looked at every 2 cm. Slabs have as many along them as across.
+  /// 4 mm wide and 28 cm long is looked at every 2 cm. A slab of a quad with 4 x 4 strata has
+  /// 4 x 4; cut across its long side, slabs of a longer quad have half as many along it.
   std::int32_t strata_along_u = 4;
 
   std::array<GridPoint, 4> corners() const;

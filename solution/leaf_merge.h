@@ -72,7 +72,8 @@ class LeafMerge {
                                         [](PatchId held, PatchId first) { return held.range_max() < first; });
     if (found == held_.end() || found->root_face() != changed.root_face()) return PatchId::root(changed.root_face());
     const int common = std::min(found->level(), changed.level());
-    for (int level = 1; found->slab_code() != changed.slab_code() && level <= common; ++level)
+    if (found->slab_code() == changed.slab_code()) return changed.ancestor(common);
+    for (int level = 1; level <= common; ++level)
       if (found->split_above(level) != changed.split_above(level)) return changed.ancestor(level - 1);
     return changed.ancestor(common);
   }

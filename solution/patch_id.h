@@ -1,6 +1,6 @@
 #pragma once
-// The id of a quadtree patch, after the cell ids of google/s2geometry: the bits of the id are the path from the root to the
-// patch.
+// The id of a quadtree patch, after the cell ids of google/s2geometry: its bits are the path from the root to the patch, and how
+// the patches on it are split.
 
 #include <algorithm>
 #include <bit>
@@ -69,12 +69,11 @@ class PatchId {
   constexpr bool has_slabs() const { return slab_code() != 0; }
   /// Returns how its ancestor at `level` - 1 is split. Requires: 1 <= level <= this->level().
   constexpr Split split_above(int level) const {
-    if (!has_slabs()) return Split::quarters;
     for (const int slabs : {first_slabs(), second_slabs()})
-      if (slabs != 0 && level_of(slabs) == level - 1) return split_of(slabs);
+      if (level_of(slabs) == level - 1) return split_of(slabs);
     return Split::quarters;
   }
-  /// Returns how often its root's u and v were halved to make the patch. Halving stops at `max_level`.
+  /// Returns how often its root's u and v were halved to make the patch. Neither is more than `max_level`.
   constexpr int halvings_of_u() const {
     int halvings = level();
     for (const int slabs : {first_slabs(), second_slabs()})
@@ -146,8 +145,7 @@ class PatchId {
 
   constexpr PatchId range_min() const { return PatchId(place_bits() - (lsb_() - 1)); }
   constexpr PatchId range_max() const { return PatchId(place_bits() + (lsb_() - 1)); }
-  /// Returns whether the path of this patch begins that of `other`. So it contains it, unless one of their common ancestors is
-  /// split in different ways, which patches of one forest's ids never are.
+  /// Returns whether the path of this patch is a prefix of that of `other`. In one forest that means that it contains it.
   constexpr bool contains(PatchId other) const {
     return range_min().bits_ <= other.place_bits() && other.place_bits() <= range_max().bits_;
   }
@@ -171,17 +169,16 @@ class PatchId {
 
   constexpr int first_slabs() const { return slab_code() & 31; }
   constexpr int second_slabs() const { return slab_code() >> 5; }
-  static constexpr int level_of(int slabs) { return (slabs - 1) / 2; }
+  static constexpr int level_of(int slabs) { return (slabs + 1) / 2 - 1; }  // -1: none
   static constexpr Split split_of(int slabs) { return (slabs - 1) % 2 == 0 ? Split::slabs_along_u : Split::slabs_along_v; }
   constexpr bool has_valid_slabs() const {
-    const int first = first_slabs(), second = second_slabs();
-    if (first == 0 || level_of(std::max(first, second)) >= level()) return false;
-    if (second != 0 && level_of(second) <= level_of(first)) return false;
+    const int first = level_of(first_slabs()), second = level_of(second_slabs());
+    if (first < 0 || std::max(first, second) >= level() || (second >= 0 && second <= first)) return false;
     return std::max(halvings_of_u(), halvings_of_v()) <= max_level;
   }
   constexpr int slab_code_at(int level) const {
-    if (!has_slabs() || level_of(first_slabs()) >= level) return 0;
-    return second_slabs() == 0 || level_of(second_slabs()) >= level ? first_slabs() : slab_code();
+    if (level_of(first_slabs()) >= level) return 0;
+    return level_of(second_slabs()) >= level ? first_slabs() : slab_code();
   }
 
   std::uint64_t bits_ = 0;

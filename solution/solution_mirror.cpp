@@ -3,6 +3,7 @@
 #include "solution/leaf_merge.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace alvor {
@@ -28,7 +29,8 @@ std::optional<std::string> SolutionMirror::apply(const Delta& delta) {
   std::vector<std::size_t> places;
   if (!find_places(patches_, delta.values, places)) {
     retile_for(delta.values);
-    find_places(patches_, delta.values, places);
+    [[maybe_unused]] const bool has_all = find_places(patches_, delta.values, places);
+    assert(has_all);
   }
   for (std::size_t n = 0; n < places.size(); ++n) {
     RgbF& held = irradiance_[places[n]];

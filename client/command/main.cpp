@@ -7,6 +7,7 @@
 #include "client/export/solution_file.h"
 #include "client/rpc/in_process.h"
 #include "import/apart/scene_file.h"
+#include "meshing/base_mesh.h"
 
 #include <google/protobuf/stubs/common.h>
 
@@ -83,6 +84,8 @@ ExitStatus run(int argc, char** argv) {
   } catch (const RpcError& error) {
     return say(failure_of(error).status, failure_of(error).what());
   } catch (const SceneFileError& error) {
+    return say(ExitStatus::bad_scene, error.what());
+  } catch (const TooManyRoots& error) {
     return say(ExitStatus::bad_scene, error.what());
   } catch (const std::exception& error) {
     return say(ExitStatus::failed, error.what());

@@ -152,6 +152,7 @@ class Reader {
     header_ = part->header();
     if (header_.version() < without_slabs || header_.version() > newest_version)
       parts_.fail("version " + std::to_string(header_.version()) + " is not known: a newer program wrote the file");
+    if (header_.root_count() > PatchId::most_roots) parts_.fail("more root patches than there can be");
     if (header_.leaf_count() > most_leaves_) parts_.fail("more leaves than a file of this size can hold");
   }
 

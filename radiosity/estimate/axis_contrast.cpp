@@ -9,8 +9,8 @@ namespace {
 
 // See best_split().
 constexpr double worth_slabs = 4;
-// Multiple of the noise of means that a variance must exceed: two standard deviations above the mean of four squared normal
-// deviations, 1 + 2 sqrt(2 / 4), rounded up. Of patches of noise alone 3 % are then split into slabs.
+// Multiple of the noise of means that a variance must exceed: of patches of noise alone, 3 % are then split into slabs (measured,
+// AxisContrast.NoiseSeldomAsksForSlabs).
 constexpr double sure = 2.6;
 
 }  // namespace

@@ -13,8 +13,8 @@ struct Candidate {
   enum class Kind { split_leaf, add_shadow_rays, split_row, add_rays };
   Kind kind = Kind::split_leaf;
   NodeIndex patch = 0;
-  double squared_error = 0;  ///< squared error, integrated over the patch, most of which the refinement would remove
-  double rays = 1;           ///< rays that the refinement costs
+  double squared_error = 0;       ///< squared error, integrated over the patch, most of which the refinement would remove
+  double rays = 1;                ///< rays that the refinement costs
   Split split = Split::quarters;  ///< how it splits the patch, if it does and limits allow it
 
   bool refines_leaf() const { return kind == Kind::split_leaf || kind == Kind::add_shadow_rays; }

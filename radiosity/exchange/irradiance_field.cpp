@@ -117,7 +117,7 @@ class Fitter {
     Sample whole;
     Vec3 normal;
     std::array<Vec3, 3> axes;  ///< two along its edges and its normal, each divided by the patch's length along it
-    double noise = -1;  ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
+    double noise = -1;         ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
     bool is_dark = true;
   };
 
@@ -144,7 +144,8 @@ class Fitter {
     if (std::ranges::all_of(samples, [](const QuarterSample& q) { return q.rays > 0; }))
       known.noise = squared_bend(samples, shape.corner_count == 4) * known.whole.rays / 4;
   }
-  /// Distances are counted in edges of the patch; those of slabs in lengths and widths, because light changes across them.
+  /// Returns axes whose dot product with a distance counts patches: slabs by their length and width, because light changes across
+  /// them, others by the root of their area.
   std::array<Vec3, 3> axes_of(const PatchShape& shape) const {
     const Vec3 normal = forest_.mesh().roots()[shape.root].normal;
     const double area = area_of(forest_.mesh(), shape), edge = std::sqrt(area);
@@ -192,8 +193,7 @@ class Fitter {
       for (const NodeIndex other : neighbours_[rows[next]]) {
         const Known& candidate = known_[place_[other]];
         const bool is_within = squared_distance(centre_[other] - field.centre, own.axes) < wide_window * wide_window;
-        if (is_within && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface)
-          rows.add(place_[other]);
+        if (is_within && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface) rows.add(place_[other]);
       }
     }
     if (noisy > 0) window.noise = noise / noisy;

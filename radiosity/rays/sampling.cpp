@@ -120,7 +120,8 @@ OriginPlaces origins_in(const PatchShape& patch, Uv jitter) {
   const Strata& strata = Strata::of(patch);
   // Share of the jitter that keeps a point in its stratum. In a triangle 2/3 + room <= 1 must hold for u + v, so room <= 1/3.
   const double room = patch.corner_count == 3 ? 0.3 : 1;
-  const auto size_u = static_cast<float>(double(patch.size_u) / grid_size), size_v = static_cast<float>(double(patch.size_v) / grid_size);
+  const auto size_u = static_cast<float>(double(patch.size_u) / grid_size),
+             size_v = static_cast<float>(double(patch.size_v) / grid_size);
   const auto first_u = static_cast<float>(double(patch.first.i) / grid_size);
   const auto first_v = static_cast<float>(double(patch.first.j) / grid_size);
   const auto move_u = static_cast<float>(room * jitter.u), move_v = static_cast<float>(room * jitter.v);

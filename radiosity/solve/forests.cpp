@@ -96,7 +96,7 @@ void Forests::split_to_start(const Plan& plan) {
     if (!rows_.is_leaf(node) || !is_coarse(node)) continue;
     const NodeIndex leaf = leaf_node_of(node);
     if (leaves_.is_leaf(leaf) && !leaves_.split(leaf, limits_, split)) continue;  // after an edit at the limit of leaves
-    rows_.split(node, limits_, split, Split::quarters, &leaves_);
+    rows_.split_as(leaves_, node, limits_, split);
   }
 }
 
@@ -151,7 +151,7 @@ bool Forests::may_split_leaf(NodeIndex leaf, Split wanted) const {
 bool Forests::may_split_row(NodeIndex row, Split wanted) const {
   const NodeIndex leaf = leaf_node_of(row);
   if (!leaves_.is_leaf(leaf)) return rows_.may_split(row, limits_, leaves_.split_of(leaf));
-  return may_split_leaf(leaf, wanted) && rows_.may_split(row, limits_, allowed(leaf, wanted));
+  return may_split_leaf(leaf, wanted);  // which is in the row's place
 }
 
 bool Forests::split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split, Split wanted) {
@@ -161,7 +161,7 @@ bool Forests::split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split, Split wa
 }
 
 bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
-  const bool is_done = rows_.split(row, limits_, split, Split::quarters, &leaves_);
+  const bool is_done = rows_.split_as(leaves_, row, limits_, split);
   fit_to_nodes();
   return is_done;
 }

@@ -56,7 +56,8 @@ class Forests {
   /// Splits a leaf of the leaf forest as `wanted`, or into quarters if it is too large for slabs or they are not allowed, after
   /// the neighbours that must go first. Appends every node that was split to `split`. Returns false if the limits forbid it.
   bool split_leaf(NodeIndex leaf, std::vector<NodeIndex>& split, Split wanted = Split::quarters);
-  /// Splits a leaf of the row forest as the leaf forest is split there. Returns false if that is not split, or as split_leaf().
+  /// Splits a leaf of the row forest as the leaf forest is split there. Returns false if that is not split there, or the limits
+  /// forbid it.
   bool split_row(NodeIndex row, std::vector<NodeIndex>& split);
 
   /// Takes roots that the mesh has got. To be followed by note_relit().

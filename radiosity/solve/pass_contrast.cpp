@@ -46,7 +46,7 @@ Pass::Contrast Pass::squared_contrast(std::size_t place_of_leaf, const RelativeS
   return {contrast > rounding * square ? contrast : 0, split};
 }
 
-/// Lets rows be split as direct light asks for, where it does: rows have noise.
+/// Where the leaf in a row's place asks for slabs, the row is split so, too: direct light has less noise than rows.
 void Pass::split_rows_as_leaves(std::span<const Split> splits) {
   std::vector<Split> by_leaf(state_.forests.leaves().node_count());
   for (std::size_t n = 0; n < splits.size(); ++n) by_leaf[system_->leaves()[n]] = splits[n];

@@ -94,10 +94,10 @@ double SolveState::unshot_power() const {
   return direct.waiting_power() + tbb::parallel_deterministic_reduce(all, 0.0, add_part, std::plus());
 }
 
-bool SolveState::split_leaf(NodeIndex leaf, Split how) {
+bool SolveState::split_leaf(NodeIndex leaf, Split wanted) {
   if (!forests.leaves().is_leaf(leaf)) return true;
   std::vector<NodeIndex> split;
-  const bool is_done = forests.split_leaf(leaf, split, how);
+  const bool is_done = forests.split_leaf(leaf, split, wanted);
   fit_to_nodes();
   for (const NodeIndex parent : split) {
     for (int k = 0; k < 4; ++k) shot[forests.leaves().child(parent, k)] = shot[parent];
@@ -113,15 +113,15 @@ void SolveState::follow_contact(NodeIndex split_leaf) {
   if (is_same_place && (!rows.is_traced(row) || rows[row].crosses_contact())) split_row(row);
 }
 
-bool SolveState::split_row(NodeIndex row, Split how) {
+bool SolveState::split_row(NodeIndex row, Split wanted) {
   if (!forests.rows().is_leaf(row)) return true;
-  if (!split_leaf(forests.leaf_node_of(row), how)) return false;
+  if (!split_leaf(forests.leaf_node_of(row), wanted)) return false;
   if (!forests.rows().is_leaf(row)) return true;  // split_leaf() split the row, which lies along a contact
   std::vector<NodeIndex> split;
   const bool is_done = forests.split_row(row, split);
   fit_to_nodes();
   for (const NodeIndex parent : split) {
-    split_leaf(forests.leaf_node_of(parent), forests.rows().split_of(parent));
+    assert(!forests.leaves().is_leaf(forests.leaf_node_of(parent)));
     field.hand_down(parent);
     rows.hand_down_guide(parent);
     rows.forget(parent);

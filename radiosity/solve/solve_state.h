@@ -79,12 +79,13 @@ class SolveState {
   /// light. Summed over bands, in emission units times m2.
   double unshot_power() const;
 
-  /// Splits a leaf of the leaf forest. Also splits the row of the same place, if there is one and it is not traced or a solid's
-  /// outline crosses it. Returns true if the leaf is split now, false if the limits forbid it.
-  bool split_leaf(NodeIndex leaf, Split how = Split::quarters);
-  /// Splits a row, and the leaf of its place if that is not split. Returns true if the row is split now, false if the limits
-  /// forbid it.
-  bool split_row(NodeIndex row, Split how = Split::quarters);
+  /// Splits a leaf of the leaf forest as `wanted`, or into quarters where slabs are not allowed. Also splits the row of the same
+  /// place, if there is one and it is not traced or a solid's outline crosses it. Returns true if the leaf is split now, false if
+  /// the limits forbid it.
+  bool split_leaf(NodeIndex leaf, Split wanted = Split::quarters);
+  /// Splits a row as the leaf of its place is split; before, splits that as `wanted` if it is not split. Returns true if the row
+  /// is split now, false if the limits forbid it.
+  bool split_row(NodeIndex row, Split wanted = Split::quarters);
   /// Uses the hidden origins that tracing found for a row; to be called when it was traced. Direct light of the row's leaves is
   /// found again without hidden points. A row that a solid's outline crosses is split as its leaves are, because only rows know
   /// which points are hidden.

@@ -93,7 +93,7 @@ std::shared_ptr<const SceneContent> relit(std::shared_ptr<const SceneContent> su
     BaseMesh mesh = submitted->mesh.edited_as(edited, meshes);
     return std::make_shared<const SceneContent>(SceneContent{std::move(edited), std::move(mesh), std::move(submitted), added});
   } catch (const TooManyRoots& fault) {
-    throw invalid_argument(fault.what());
+    throw invalid_argument(std::string("step.edits: then ") + fault.what());
   }
 }
 

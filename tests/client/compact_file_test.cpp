@@ -187,6 +187,8 @@ TEST_F(HostileCompactFile, OfAnotherVersionIsRefused) {
 TEST_F(HostileCompactFile, WithCountsThatAreWrongIsRefused) {
   parts_[0].mutable_header()->set_root_count(3);
   expect_refused("but the header says 3");
+  parts_[0].mutable_header()->set_root_count(PatchId::most_roots + 1);
+  expect_refused("more root patches than there can be");
   parts_[0].mutable_header()->set_root_count(mesh_.roots().size());
   parts_[0].mutable_header()->set_leaf_count(leaves_.size() + 1);
   expect_refused("leaves: some are missing");

@@ -88,6 +88,39 @@ TEST(PatchForest, LimitsAreKept) {
   }
 }
 
+TEST(PatchForest, ASlabThatIsTooThinForQuartersDoesNotKeepItsNeighboursFromSplits) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5)};
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  const BaseMesh mesh(scene);
+  PatchForest forest(mesh);
+  const RefinementLimits limits{.min_edge = 0.04};
+  std::vector<NodeIndex> split;
+  ASSERT_TRUE(forest.split(0, limits, split));
+  // The upper left quarter becomes slabs of 0.5 by 0.125 m, and the lowest of them such of 0.5 by 0.03 m: too thin.
+  const NodeIndex upper_left = forest.child(0, 2);
+  ASSERT_TRUE(forest.split(upper_left, {}, split, Split::slabs_along_v));
+  ASSERT_TRUE(forest.split(forest.child(upper_left, 0), {}, split, Split::slabs_along_v));
+  const NodeIndex lower_left = forest.child(0, 0);
+  ASSERT_TRUE(forest.split(lower_left, limits, split));
+  EXPECT_TRUE(forest.split(forest.child(lower_left, 2), limits, split)) << "0.25 m wide, below slabs 0.5 m long";
+}
+
+TEST(PatchForest, TheSidesOfATranslucentFaceAreSplitAlikeAlsoIntoSlabs) {
+  Scene scene;
+  scene.materials = {{.name = "lampshade", .two_sided = true, .diffuse_transmittance = {0.3, 0.3, 0.3}}};
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  test::add_polygon(scene, {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}});
+  const BaseMesh mesh(scene);
+  PatchForest forest(mesh);
+  split_at_random(forest, {}, 200, Kinds::all);
+  for (const NodeIndex leaf : forest.leaves()) {
+    const NodeIndex behind = forest.leaf_behind(leaf);
+    EXPECT_EQ(forest.id(behind), twin_of(mesh, forest.id(leaf)));
+    EXPECT_NEAR(length(centre_of(mesh, forest.shape(leaf)) - centre_of(mesh, forest.shape(behind))), 0, 1e-12);
+  }
+}
+
 TEST(PatchForest, LeafAtFindsTheLeafOfAPointAmongSlabs) {
   const BaseMesh mesh(mixed_room());
   PatchForest forest(mesh);
@@ -113,7 +146,7 @@ TEST(PatchForest, TheCoarserOfTwoForestsIsSplitAsTheFinerIs) {
   std::vector<NodeIndex> split;
   for (int n = 0; n < 300; ++n) {
     const auto leaves = coarse.leaves();
-    coarse.split(leaves[random() % leaves.size()], {}, split, Split::slabs_along_u, &fine);
+    coarse.split_as(fine, leaves[random() % leaves.size()], {}, split);
   }
   EXPECT_GT(coarse.leaf_count(), 200u);
   for (const NodeIndex leaf : coarse.leaves()) EXPECT_EQ(fine.id(fine.node_in_place_of(coarse.id(leaf))), coarse.id(leaf));

@@ -63,7 +63,7 @@ double mean_irradiance(const BaseMesh& mesh, const std::vector<LeafValue>& leave
   return sum / all;
 }
 
-/// Returns the mean of a function over 8 x 8 points of a quad.
+/// Returns the mean of a function over 8 x 8 points of a parallelogram.
 template <class Function>
 double mean_over(const BaseMesh& mesh, const PatchShape& shape, Function&& function) {
   constexpr int points = 8;
