@@ -92,6 +92,11 @@ export class Mirror {
     return (path & -path) / 2 ** 30;
   }
 
+  /** Whether an ancestor of the node was split into slabs. */
+  isAmongSlabs(node: number): boolean {
+    return this.slabs[node] !== 0;
+  }
+
   levelOf(node: number): number {
     return levelOf(this.path[node]);
   }

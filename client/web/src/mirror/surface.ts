@@ -1,6 +1,7 @@
 // What is drawn of a mirror: for each leaf a slot of nine vertices, its centre, four corners and four middles of edges, and of eight
-// triangles around the centre. Middles are drawn where a neighbour has a corner, so that no crack opens. Where slabs end at an edge, further
-// corners lie on it: there shading may break, and a crack of less than a pixel may open. Triangles that a slot does not need have no area. Only slots that changed are written again.
+// triangles around the centre. Middles are drawn where a neighbour has a corner, so that no crack opens. Beside slabs further corners may
+// lie on an edge: shading may break there, and so that no crack opens these leaves are drawn over their neighbours a little. Triangles that
+// a slot does not need have no area. Only slots that changed are written again.
 
 import type { BaseMesh } from "./base_mesh";
 import type { Blend } from "./blend";
@@ -37,6 +38,10 @@ const QUAD_COLUMNS = [0, 1, 1, 0];
 const QUAD_ROWS = [0, 0, 1, 1];
 const TRIANGLE_COLUMNS = [0, 1, 0];
 const TRIANGLE_ROWS = [0, 0, 1];
+
+// Share of its longer side by which a leaf among slabs is drawn over its neighbours. Graphics cards round corners to 1/256 of a pixel, so it
+// covers what that opens if the side is four pixels long.
+const LAP = 1 / 1024;
 
 const VALUES = 1;
 const POSITIONS = 2;
@@ -314,10 +319,17 @@ export class Surface implements MirrorListener {
     const parts = this.isQuad(node) ? 2 : 3;
     const [i, j] = [this.nodeI[node] + this.nodeSizeU[node] / parts, this.nodeJ[node] + this.nodeSizeV[node] / parts];
     this.mesh.position(root, i, j, out, at);
+    const lap = this.lapOf(node);
     for (let k = 0; k < POINTS; ++k) {
       this.findPoint(node, k);
-      this.mesh.position(root, this.pointI, this.pointJ, out, at + 3 * (k + 1));
+      const [u, v] = [this.pointI + lap * Math.sign(this.pointI - i), this.pointJ + lap * Math.sign(this.pointJ - j)];
+      this.mesh.position(root, u, v, out, at + 3 * (k + 1));
     }
+  }
+
+  /** How far a leaf is drawn over its neighbours, in grid steps: leaves among slabs a little, because their corners may lie on longer edges. */
+  private lapOf(node: number): number {
+    return this.mirror.isAmongSlabs(node) ? LAP * Math.max(this.nodeSizeU[node], this.nodeSizeV[node]) : 0;
   }
 
   /** Returns `count` numbers of each vertex of `slots`, which `write` mixes from those of the root's corners. */

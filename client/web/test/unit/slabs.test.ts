@@ -211,7 +211,7 @@ describe("a mirror with slabs", () => {
 });
 
 describe("a slab", () => {
-  it("is drawn where it lies", () => {
+  it("is drawn where it lies, lapping over its neighbours by a thousandth of its length", () => {
     const { mesh, surface, mirror } = shown();
     mirror.apply(leaves(MANY));
     const { positions, values } = surface.flush();
@@ -220,13 +220,14 @@ describe("a slab", () => {
       const slot = Array.from({ length: MANY.length }, (_, n) => n).find((n) => values.data[4 * SLOT_VERTICES * n] === light)!;
       const vertex = (k: number) => [0, 1].map((x) => positions.data[3 * (SLOT_VERTICES * slot + k) + x] + mesh.centre[x]);
       expect(vertex(0)).toEqual([u + width / 2, v + height / 2]);
-      expect([1, 2, 3, 4].map(vertex)).toEqual([[u, v], [u + width, v], [u + width, v + height], [u, v + height]]);
-      expect(vertex(5)).toEqual([u + width / 2, v]);
-      expect(vertex(6)).toEqual([u + width, v + height / 2]);
+      const lap = steps.some(([how]) => how !== QUARTERS) ? Math.max(width, height) / 1024 : 0;
+      const [low, high, left, right] = [v - lap, v + height + lap, u - lap, u + width + lap];
+      const corners = [[left, low], [right, low], [right, high], [left, high], [u + width / 2, low], [right, v + height / 2]];
+      corners.flat().forEach((x, n) => expect([1, 2, 3, 4, 5, 6].map(vertex).flat()[n]).toBeCloseTo(x, 6));
     }
   });
 
-  it("covers its root with its neighbours", () => {
+  it("covers its root with its neighbours, and little more", () => {
     const { surface, mirror } = shown();
     mirror.apply(leaves(MANY));
     const { positions, triangles } = surface.flush();
@@ -237,7 +238,8 @@ describe("a slab", () => {
       expect(ab[0] * ac[1] - ab[1] * ac[0]).toBeGreaterThanOrEqual(0);
       area += (ab[0] * ac[1] - ab[1] * ac[0]) / 2;
     }
-    expect(area).toBeCloseTo(1, 10);
+    expect(area).toBeGreaterThan(1);
+    expect(area).toBeLessThan(1.01);
   });
 
   it("is found by a point in it", () => {

@@ -96,11 +96,11 @@ class Shown {
   transmittedByPlace = (root: number) => this.byPlace(root, "transmitted");
   irradianceByPlace = (root: number) => this.byPlace(root, "value");
 
-  /** Returns an attribute by place, of the vertices of a root that are drawn. */
+  /** Returns an attribute by place, of the vertices of a root that are drawn; to 3 cm, because leaves among slabs lap over. */
   private byPlace(root: number, attribute: string): Map<string, Triple> {
     const drawn = this.slots.geometry.index!.array.slice(0, this.slots.geometry.drawRange.count);
     const ofRoot = [...drawn].filter((v) => this.rootOf(Math.floor(v / SLOT_VERTICES)) === root);
-    return new Map(ofRoot.map((v) => [`${this.get("position", v)}`, this.get(attribute, v)]));
+    return new Map(ofRoot.map((v) => [`${this.get("position", v).map((x) => Math.round(32 * x))}`, this.get(attribute, v)]));
   }
 
   /** Returns light that comes through, by root and place, of the vertices that are drawn. */
