@@ -38,24 +38,22 @@ void AxisContrast::add(int stratum, double value) {
   for (Line* line : {&columns_[cells_->column[o]], &rows_[cells_->row[o]]}) line->sum += value, line->count += 1;
 }
 
-double AxisContrast::variance_between(const Lines& lines, double& noise) {
+AxisContrast::Variance AxisContrast::variance_between(const Lines& lines) {
   double sum = 0, squares = 0, used = 0, shares = 0;
   for (const Line& line : lines) {
     if (line.count == 0) continue;
     const double mean = line.sum / line.count;
     sum += mean, squares += mean * mean, used += 1, shares += 1 / line.count;
   }
-  if (used < 2) return 0;
-  noise *= shares / used;
-  return std::max(0.0, squares / used - sum / used * (sum / used));
+  if (used < 2) return {0, 1};
+  return {std::max(0.0, squares / used - sum / used * (sum / used)), shares / used};
 }
 
 Split AxisContrast::best_split(double noise) const {
   if (!cells_) return Split::quarters;
-  double noise_u = noise, noise_v = noise;
-  const double u = variance_between(columns_, noise_u), v = variance_between(rows_, noise_v);
-  if (u - sure * noise_u > worth_slabs * v) return Split::slabs_along_u;
-  if (v - sure * noise_v > worth_slabs * u) return Split::slabs_along_v;
+  const Variance u = variance_between(columns_), v = variance_between(rows_);
+  if (u.of_means - sure * noise * u.share_of_noise > worth_slabs * v.of_means) return Split::slabs_along_u;
+  if (v.of_means - sure * noise * v.share_of_noise > worth_slabs * u.of_means) return Split::slabs_along_v;
   return Split::quarters;
 }
 

@@ -32,8 +32,11 @@ class AxisContrast {
     std::array<std::uint8_t, strata_per_patch> column, row;
   };
   static const Cells& cells_of(int strata_along_u);
-  /// Returns the variance of the means of lines. Multiplies `noise` by the share of it that these means have.
-  static double variance_between(const Lines& lines, double& noise);
+  struct Variance {
+    double of_means = 0;        ///< of the means of lines
+    double share_of_noise = 0;  ///< of the noise of a value, that the mean of a line has on average
+  };
+  static Variance variance_between(const Lines& lines);
 
   const Cells* cells_;  // null: a triangle, which has no slabs
   Lines columns_, rows_;

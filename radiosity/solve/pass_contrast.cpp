@@ -46,7 +46,9 @@ Pass::Contrast Pass::squared_contrast(std::size_t place_of_leaf, const RelativeS
   return {contrast > rounding * square ? contrast : 0, split};
 }
 
-/// Where the leaf in a row's place asks for slabs, the row is split so, too: direct light has less noise than rows.
+/// Changes the candidates that split rows. A row whose place is one leaf is to be split as the leaf, if the light at the leaf's
+/// sixteen points asks for slabs: direct light tells the direction of a line more surely than the noisy rays of a row.
+/// `splits` is by place of the leaf in the system's list.
 void Pass::split_rows_as_leaves(std::span<const Split> splits) {
   std::vector<Split> by_leaf(state_.forests.leaves().node_count());
   for (std::size_t n = 0; n < splits.size(); ++n) by_leaf[system_->leaves()[n]] = splits[n];

@@ -82,6 +82,6 @@ int main(int argc, char** argv) {
         alvor::Case{"deep", Detail::display, 1, 1000, 60}, alvor::Case{"one_page", Detail::exact, 2000, 5000, 2},
         alvor::Case{"uneven", Detail::display, 200, 300, 6, true}, alvor::Case{"errors", Detail::display, 30, 8, 10, false, true},
         alvor::Case{"merges", Detail::display, 6, 40, 40, false, false, true},
-        alvor::Case{"slabs", Detail::display, 6, 40, 60, false, false, true, true}})
+        alvor::Case{"slabs", Detail::display, 100, 60, 40, false, false, true, true}})
     alvor::write(how, argv[1]);
 }

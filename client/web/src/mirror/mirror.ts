@@ -133,11 +133,15 @@ export class Mirror {
   }
 
   private addToHash(node: number): void {
-    this.hash.add((this.slabs[node] << FACE_BITS) | this.root[node], this.path[node], this.rgb, 3 * node);
+    this.hash.add(this.upperHalfOfId(node), this.path[node], this.rgb, 3 * node);
   }
 
   private removeFromHash(node: number): void {
-    this.hash.remove((this.slabs[node] << FACE_BITS) | this.root[node], this.path[node], this.rgb, 3 * node);
+    this.hash.remove(this.upperHalfOfId(node), this.path[node], this.rgb, 3 * node);
+  }
+
+  private upperHalfOfId(node: number): number {
+    return (this.slabs[node] << FACE_BITS) | this.root[node];
   }
 
   /** Requires: the mirror is a state of the solve. Throws BadFrame if there are no such leaves. */

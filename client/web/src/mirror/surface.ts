@@ -6,8 +6,8 @@
 import type { BaseMesh } from "./base_mesh";
 import type { Blend } from "./blend";
 import { collect, type Change } from "./change";
-import { type Mirror, type MirrorListener, GRID, grown } from "./mirror";
-import { QUARTERS, SLABS_ALONG_U } from "./patch_id";
+import { type Mirror, type MirrorListener, grown } from "./mirror";
+import { NodePlaces } from "./node_places";
 import { DirtySet, POINTS, PointTable } from "./points";
 
 export const SLOT_VERTICES = 9;
@@ -34,11 +34,6 @@ export interface SurfaceChange {
 /** Writes the numbers of a point of a root to `out[at]`. */
 type WriteMixed = (root: number, blend: Blend, out: Float32Array, at: number) => void;
 
-const QUAD_COLUMNS = [0, 1, 1, 0];
-const QUAD_ROWS = [0, 0, 1, 1];
-const TRIANGLE_COLUMNS = [0, 1, 0];
-const TRIANGLE_ROWS = [0, 0, 1];
-
 // Share of its longer side by which a leaf among slabs is drawn over its neighbours. Graphics cards round corners to 1/256 of a pixel, so it
 // covers what that opens if the side is four pixels long.
 const LAP = 1 / 1024;
@@ -53,19 +48,13 @@ export class Surface implements MirrorListener {
   private nodeOfSlot = new Int32Array(1024); // -1 where a slot is not used
   private readonly unusedSlots: number[] = [];
   private slotOfNode = new Int32Array(1024).fill(-1);
-  // Of each node: corner 0 on the root's grid, and its sides along u and v; negative for a triangle that is turned by half a circle.
-  private nodeI = new Int32Array(1024);
-  private nodeJ = new Int32Array(1024);
-  private nodeSizeU = new Int32Array(1024);
-  private nodeSizeV = new Int32Array(1024);
   private readonly places = new PointTable();
   private readonly smooth = new PointTable();
   private cornersHere = new Int32Array(1024); // by place: how many leaves have a corner there
   private pointValue = new Float32Array(3 * 1024); // by smooth point
   private readonly dirtySlots = new DirtySet();
   private readonly dirtyPoints = new DirtySet();
-  private pointI = 0;
-  private pointJ = 0;
+  private readonly nodes = new NodePlaces((node) => this.isQuad(node));
   private mirror!: Mirror;
 
   constructor(private readonly mesh: BaseMesh) {}
@@ -75,7 +64,7 @@ export class Surface implements MirrorListener {
     this.mirror = mirror;
     for (let root = 0; root < mirror.rootCount; ++root) {
       this.reserveNodes(root + 1);
-      this.nodeSizeU[root] = this.nodeSizeV[root] = GRID;
+      this.nodes.placeRoot(root);
       this.newSlot(root);
     }
   }
@@ -91,7 +80,7 @@ export class Surface implements MirrorListener {
 
   onSplit(node: number, first: number, how: number): void {
     this.reserveNodes(first + 4);
-    for (let k = 0; k < 4; ++k) this.placeChild(node, first + k, k, how);
+    for (let k = 0; k < 4; ++k) this.nodes.placeChild(node, first + k, k, how);
     const slot = this.slotOfNode[node];
     for (let k = 1; k < 4; ++k) this.newSlot(first + k);
     this.unlink(slot);
@@ -184,30 +173,6 @@ export class Surface implements MirrorListener {
     return this.mesh.cornersOf(this.mirror.root[node]) === 4;
   }
 
-  private placeChild(parent: number, child: number, k: number, how: number): void {
-    if (how === QUARTERS) {
-      const inner = k === 3 && !this.isQuad(parent);
-      const column = this.isQuad(parent) ? k & 1 : Number(k === 1 || inner);
-      const row = this.isQuad(parent) ? k >> 1 : Number(k === 2 || inner);
-      this.placeIn(parent, child, column, row, 2, 2);
-      if (!inner) return;
-      this.nodeSizeU[child] *= -1;
-      this.nodeSizeV[child] *= -1;
-    } else if (how === SLABS_ALONG_U) {
-      this.placeIn(parent, child, k, 0, 4, 1);
-    } else {
-      this.placeIn(parent, child, 0, k, 1, 4);
-    }
-  }
-
-  /** Gives a node its place in the column and row of its parent, which has so many of them. */
-  private placeIn(parent: number, child: number, column: number, row: number, columns: number, rows: number): void {
-    this.nodeSizeU[child] = this.nodeSizeU[parent] / columns;
-    this.nodeSizeV[child] = this.nodeSizeV[parent] / rows;
-    this.nodeI[child] = this.nodeI[parent] + column * this.nodeSizeU[child];
-    this.nodeJ[child] = this.nodeJ[parent] + row * this.nodeSizeV[child];
-  }
-
   private newSlot(node: number): void {
     const slot = this.unusedSlots.pop() ?? this.slotCount++;
     if (slot >= this.nodeOfSlot.length) this.nodeOfSlot = grown(this.nodeOfSlot, Int32Array, 2 * slot);
@@ -221,37 +186,19 @@ export class Surface implements MirrorListener {
     this.dirtySlots.add(slot, VALUES | POSITIONS | ERRORS | (this.mesh.isTranslucent ? TRANSMITTED : 0));
   }
 
-  /** Sets pointI and pointJ. Corners 0 to 3, then the middles of the edges that begin at them. */
-  private findPoint(node: number, k: number): void {
-    const last = this.isQuad(node) ? 4 : 3;
-    const columns = last === 4 ? QUAD_COLUMNS : TRIANGLE_COLUMNS;
-    const rows = last === 4 ? QUAD_ROWS : TRIANGLE_ROWS;
-    const a = (k & 3) % last;
-    const b = k < 4 ? a : (a + 1) % last;
-    this.pointI = this.nodeI[node] + ((columns[a] + columns[b]) * this.nodeSizeU[node]) / 2;
-    this.pointJ = this.nodeJ[node] + ((rows[a] + rows[b]) * this.nodeSizeV[node]) / 2;
-  }
-
-  /** A triangle's last corner and edge are none, and edges as short as the finest grid's have no middle. */
-  private hasPoint(node: number, k: number): boolean {
-    if ((k === 3 || k === 7) && !this.isQuad(node)) return false;
-    // Edges 0 and 2 of a quad lie along u; the sizes of a triangle are alike.
-    return k < 4 || Math.abs(k % 2 === 0 ? this.nodeSizeU[node] : this.nodeSizeV[node]) > 1;
-  }
-
   private link(slot: number, k: number): void {
     const node = this.nodeOfSlot[slot];
     const at = POINTS * slot + k;
-    if (!this.hasPoint(node, k)) {
+    if (!this.nodes.hasPoint(node, k)) {
       this.places.leave(at);
       this.smooth.leave(at);
       return;
     }
-    this.findPoint(node, k);
+    this.nodes.findPoint(node, k);
     const root = this.mirror.root[node];
-    const place = this.mesh.placeKey(root, this.pointI, this.pointJ);
+    const place = this.mesh.placeKey(root, this.nodes.pointI, this.nodes.pointJ);
     this.places.link(at, place);
-    this.smooth.link(at, this.mesh.smoothKey(root, this.pointI, this.pointJ, place));
+    this.smooth.link(at, this.mesh.smoothKey(root, this.nodes.pointI, this.nodes.pointJ, place));
     this.reservePoints();
     const here = this.places.pointOf[at];
     if (k < 4 && this.cornersHere[here]++ === 0) this.openOrClose(here);
@@ -297,8 +244,7 @@ export class Surface implements MirrorListener {
       const node = this.nodeOfSlot[link >> 3];
       const at = 3 * node;
       if (rgb[at] === 0 && rgb[at + 1] === 0 && rgb[at + 2] === 0) continue;
-      const share = this.nodeSizeU[node] * this.nodeSizeV[node];
-      const weight = (isMiddle ? 2 : 1) / (share * this.mesh.area[root[node]]);
+      const weight = (isMiddle ? 2 : 1) / (this.nodes.area(node) * this.mesh.area[root[node]]);
       r += weight * rgb[at];
       g += weight * rgb[at + 1];
       b += weight * rgb[at + 2];
@@ -316,20 +262,19 @@ export class Surface implements MirrorListener {
     if (!this.isUsed(slot)) return;
     const node = this.nodeOfSlot[slot];
     const root = this.mirror.root[node];
-    const parts = this.isQuad(node) ? 2 : 3;
-    const [i, j] = [this.nodeI[node] + this.nodeSizeU[node] / parts, this.nodeJ[node] + this.nodeSizeV[node] / parts];
+    const [i, j] = this.nodes.middle(node);
     this.mesh.position(root, i, j, out, at);
     const lap = this.lapOf(node);
     for (let k = 0; k < POINTS; ++k) {
-      this.findPoint(node, k);
-      const [u, v] = [this.pointI + lap * Math.sign(this.pointI - i), this.pointJ + lap * Math.sign(this.pointJ - j)];
+      this.nodes.findPoint(node, k);
+      const [u, v] = [this.nodes.pointI + lap * Math.sign(this.nodes.pointI - i), this.nodes.pointJ + lap * Math.sign(this.nodes.pointJ - j)];
       this.mesh.position(root, u, v, out, at + 3 * (k + 1));
     }
   }
 
   /** How far a leaf is drawn over its neighbours, in grid steps: leaves among slabs a little, because their corners may lie on longer edges. */
   private lapOf(node: number): number {
-    return this.mirror.isAmongSlabs(node) ? LAP * Math.max(this.nodeSizeU[node], this.nodeSizeV[node]) : 0;
+    return this.mirror.isAmongSlabs(node) ? LAP * this.nodes.longerSide(node) : 0;
   }
 
   /** Returns `count` numbers of each vertex of `slots`, which `write` mixes from those of the root's corners. */
@@ -338,12 +283,10 @@ export class Surface implements MirrorListener {
       if (!this.isUsed(slot)) return;
       const node = this.nodeOfSlot[slot];
       const root = this.mirror.root[node];
-      const parts = this.isQuad(node) ? 2 : 3;
-      const [i, j] = [this.nodeI[node] + this.nodeSizeU[node] / parts, this.nodeJ[node] + this.nodeSizeV[node] / parts];
-      write(root, this.mesh.blendAt(root, i, j), out, at);
+      write(root, this.mesh.blendAt(root, ...this.nodes.middle(node)), out, at);
       for (let k = 0; k < POINTS; ++k) {
-        this.findPoint(node, k);
-        write(root, this.mesh.blendAt(root, this.pointI, this.pointJ), out, at + count * (k + 1));
+        this.nodes.findPoint(node, k);
+        write(root, this.mesh.blendAt(root, this.nodes.pointI, this.nodes.pointJ), out, at + count * (k + 1));
       }
     });
   }
@@ -387,7 +330,7 @@ export class Surface implements MirrorListener {
 
   /** Returns the smooth point in the same place on the other side; -1 if no leaf there has a corner in that place. */
   private pointBehind(node: number, k: number, behind: number, other: number): number {
-    if (!this.hasPoint(node, k)) return -1;
+    if (!this.nodes.hasPoint(node, k)) return -1;
     const slot = this.slotOfNode[behind];
     if (slot < 0) return this.pointOfSmallerBehind(node, k, other);
     const corners = this.isQuad(node) ? 4 : 3;
@@ -397,11 +340,11 @@ export class Surface implements MirrorListener {
 
   /** As pointBehind, where leaves there are smaller: none of them has all points of `node`. */
   private pointOfSmallerBehind(node: number, k: number, other: number): number {
-    this.findPoint(node, k);
-    const key = this.mesh.placeKey(other, this.pointJ, this.pointI);
+    this.nodes.findPoint(node, k);
+    const key = this.mesh.placeKey(other, this.nodes.pointJ, this.nodes.pointI);
     const place = this.places.find(key);
     if (place < 0 || this.cornersHere[place] === 0) return -1;
-    const point = this.smooth.find(this.mesh.smoothKey(other, this.pointJ, this.pointI, key));
+    const point = this.smooth.find(this.mesh.smoothKey(other, this.nodes.pointJ, this.nodes.pointI, key));
     return point >= 0 && this.smooth.head[point] >= 0 ? point : -1;
   }
 
@@ -423,14 +366,9 @@ export class Surface implements MirrorListener {
   }
 
   private reserveNodes(count: number): void {
-    if (count <= this.nodeI.length) return;
-    const room = 2 * count;
-    const before = this.slotOfNode.length;
-    this.slotOfNode = grown(this.slotOfNode, Int32Array, room).fill(-1, before);
-    this.nodeI = grown(this.nodeI, Int32Array, room);
-    this.nodeJ = grown(this.nodeJ, Int32Array, room);
-    this.nodeSizeU = grown(this.nodeSizeU, Int32Array, room);
-    this.nodeSizeV = grown(this.nodeSizeV, Int32Array, room);
+    this.nodes.reserve(count);
+    if (count <= this.slotOfNode.length) return;
+    this.slotOfNode = grown(this.slotOfNode, Int32Array, 2 * count).fill(-1, this.slotOfNode.length);
   }
 
   private reservePoints(): void {
