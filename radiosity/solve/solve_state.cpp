@@ -103,7 +103,10 @@ bool SolveState::split_leaf(NodeIndex leaf, Split wanted) {
     for (int k = 0; k < 4; ++k) shot[forests.leaves().child(parent, k)] = shot[parent];
     direct.hand_down(parent);
   }
-  for (const NodeIndex parent : split) follow_contact(parent);
+  for (const NodeIndex parent : split) {
+    follow_contact(parent);
+    follow_slabs(parent);
+  }
   return is_done;
 }
 
@@ -111,6 +114,12 @@ void SolveState::follow_contact(NodeIndex split_leaf) {
   const NodeIndex row = forests.row_of(split_leaf);
   const bool is_same_place = forests.rows().id(row) == forests.leaves().id(split_leaf);
   if (is_same_place && (!rows.is_traced(row) || rows[row].crosses_contact())) split_row(row);
+}
+
+void SolveState::follow_slabs(NodeIndex split_leaf) {
+  if (!rows.carry_light() || forests.leaves().split_of(split_leaf) == Split::quarters) return;
+  const NodeIndex row = forests.row_of(split_leaf);
+  if (forests.rows().id(row).level() < forests.leaves().id(split_leaf).level()) split_row(row);
 }
 
 bool SolveState::split_row(NodeIndex row, Split wanted) {

@@ -129,6 +129,9 @@ class SolveState {
   double arrived_power() const;
   std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
+  /// Splits the row in the place of a leaf that was split into slabs, if it is larger: where direct light changes across a line,
+  /// reflected light mostly does, too, and the few origins of a large row seldom lie there.
+  void follow_slabs(NodeIndex split_leaf);
 };
 
 }  // namespace alvor
