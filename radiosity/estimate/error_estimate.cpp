@@ -6,11 +6,11 @@
 namespace alvor {
 
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
-                           std::span<const RelativeLight> value, std::span<const RelativeSlope> slope) {
+                           std::span<const RelativeLight> value, std::span<const Vec3> slope) {
   double squares = 0, count = 0;
   bool at_crease = neighbours.at_crease();
   const auto miss = [&](NodeIndex from, NodeIndex to) {
-    return (value[to] - value[from] - slope[from].along(centre[to] - centre[from])).mean();
+    return (value[to] - value[from]).mean() - dot(slope[from], centre[to] - centre[from]);
   };
   for (const NodeIndex other : neighbours) {
     if (value[leaf].is_zero() != value[other].is_zero()) {

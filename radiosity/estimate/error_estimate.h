@@ -11,9 +11,9 @@ namespace alvor {
 /// smooth neighbour's value is compared with the leaf's linear prediction of it, and the leaf's value with the neighbour's
 /// prediction. For a parabola the larger difference is f'' h^2 / 2, and its interpolation errs by 0.18 of that along one axis.
 /// The result is 0.25 of the RMS difference over all neighbours, and 0.4 of it at a crease, up to which the leaf extrapolates.
-/// The spans are indexed by node.
+/// The spans are indexed by node; `slope` is the gradient of the mean of bands, per metre.
 double interpolation_error(NodeIndex leaf, const SmoothNeighbours& neighbours, std::span<const Vec3> centre,
-                           std::span<const RelativeLight> value, std::span<const RelativeSlope> slope);
+                           std::span<const RelativeLight> value, std::span<const Vec3> slope);
 
 /// The parts of the estimated nRMSE of the irradiance: RMS error over the mean irradiance. Their squares add up to total().
 struct ErrorEstimate {

@@ -182,7 +182,7 @@ std::vector<std::vector<std::uint32_t>> CoarseUnits::members() const {
 
 CoarseUnits ancestors(std::span<const PatchId> patches, std::size_t most) {
   CoarseUnits units = ancestors_at(patches, 0);
-  for (int level = 1; level <= PatchId::max_level; ++level) {
+  for (int level = 1; level <= PatchId::max_level && units.count < most; ++level) {
     CoarseUnits finer = ancestors_at(patches, level);
     if (finer.count > most || finer.count == units.count) break;
     units = std::move(finer);

@@ -26,6 +26,7 @@ double Exchange::remaining_error() const {
 }
 
 Settling settle(Exchange& exchange, double enough, const std::function<bool(std::size_t steps)>& after_each) {
+  exchange.expect_sweeps_down_to(enough);
   double lowest = exchange.remaining_error();
   std::size_t steps = 0, low_at = 0;
   while (lowest > enough) {

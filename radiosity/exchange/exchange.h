@@ -36,6 +36,9 @@ class Exchange {
   virtual std::vector<RelativeLight> shot() const { return {}; }
   /// Gives back memory that only makes later sweeps gain more.
   virtual void forget_directions() {}
+  /// Tells down to which remaining_error() sweeps will follow: preparing for fast ones is of no use to few. Without this call,
+  /// many will.
+  virtual void expect_sweeps_down_to(double) {}
 
   /// Returns a bound on the radiosity that is still to come: its RMS over the mean radiosity, in the worst band. Where nearly all
   /// light is reflected it is far more than the unshot radiosity: a small residual is no small error. It holds as far as rows are

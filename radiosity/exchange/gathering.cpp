@@ -5,6 +5,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <cmath>
+#include <utility>
 
 namespace alvor {
 
@@ -25,6 +26,8 @@ constexpr std::size_t sweeps_looked_at = 4;
 // Share of the squared residual that is left after these sweeps if each halves the residual: (1/2)^(2 * 4) = 1/256. A system with
 // more left is slow.
 constexpr double slow = 0.004;
+// Sweeps that take as long as making the finer coarse grid. Measured on the furnished room at 2 %: 0.26 s, and 0.02 s a sweep.
+constexpr double sweeps_of_grid = 12;
 
 // Patches of one part of a sum, so few that threads share the parts evenly. Sums depend on it, but not on the threads. Chosen.
 constexpr std::size_t patches_a_part = 4096;
@@ -104,9 +107,11 @@ void Gathering::coarsen(CoarseUnits units) {
 
 void Gathering::watch_decrease() {
   if (++sweeps_ % sweeps_looked_at != 0 || is_finest_ || ids_.empty()) return;
-  const Rgb squares = product(residual_, residual_), limit = slow * squares_before_;
-  squares_before_ = squares;
-  if (squares.r <= limit.r && squares.g <= limit.g && squares.b <= limit.b) return;
+  const Rgb squares = product(residual_, residual_), before = std::exchange(squares_before_, squares);
+  const double left = ratio(squares, before).max();
+  if (left <= slow) return;
+  const double decrease = -std::log(left) / (2 * sweeps_looked_at), to_come = std::log(remaining_error() / enough_);
+  if (decrease * sweeps_of_grid > to_come) return;
   coarsen(ancestors(ids_, many_units));
   is_finest_ = true;
 }

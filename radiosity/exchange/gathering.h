@@ -29,7 +29,8 @@ struct GatheringRanks {
 
 /// The exchange of light as a linear system with one unknown per patch and band: y = F (e + R y), the irradiance by the patch's
 /// row. R reflects irradiance, and lets it through to the patch behind a translucent one. Each sweep gathers once at all patches,
-/// in parallel. A coarse grid first improves the residual to a step; a finer grid takes its place if the residual falls slowly.
+/// in parallel. A coarse grid first improves the residual to a step; a finer grid takes its place if the residual falls slowly
+/// and is far from where it is to be.
 /// The step is then combined with the last six directions so that the smallest residual is left (GCR, Eisenstat, Elman & Schultz
 /// 1983). Bands are systems of their own; a band that gains less than 1 % takes the step without combination. No transpose of the
 /// rows is needed. R times the residual is the unshot radiosity, of either sign. Results do not depend on the number of threads,
@@ -58,6 +59,7 @@ class Gathering : public Exchange {
   RelativeLight ambient_irradiance() const override { return ambient_gain_ * unshot_sum_; }
   std::size_t patch_count() const override { return patches_.size(); }
   void forget_directions() override;
+  void expect_sweeps_down_to(double remaining_error) override { enough_ = remaining_error; }
 
  private:
   /// A search direction, by patch: a step of the irradiance, and the change that it takes away from the residual.
@@ -76,7 +78,8 @@ class Gathering : public Exchange {
   void remember(Direction direction, const Rgb& in_bands);
   std::vector<Rgb> albedo_seen();
   void coarsen(CoarseUnits units);
-  /// Looks at the residual every four sweeps and takes a finer coarse grid if it falls by less than half per sweep.
+  /// Looks at the residual every four sweeps and takes a finer coarse grid if it falls by less than half per sweep, and many
+  /// sweeps are left.
   void watch_decrease();
   const Rgb& reflectance(std::size_t patch, std::uint32_t place) const {
     return reflectance_.empty() ? patches_[patch].reflectance : reflectance_[place];
@@ -115,6 +118,7 @@ class Gathering : public Exchange {
   std::optional<CoarseGrid> coarse_;
   Rgb squares_before_;  // squared residual when watch_decrease() looked at it last
   std::size_t sweeps_ = 0;
+  double enough_ = 0;       // remaining error down to which light is exchanged
   bool is_finest_ = false;  // the coarse grid has been replaced by the finer one
   double area_ = 0, unshot_power_ = 0;
   RelativeLight unshot_rms_, unshot_sum_, own_power_;

@@ -43,45 +43,35 @@ struct Sample {
   double rays = 0;
 };
 
-/// The rows of a window, each once, in the order in which they were added; at most most_rows.
+/// The rows of a window, each once, in the order in which they were added; at most most_rows. By row node.
 class RowSet {
  public:
-  void add(std::uint32_t row) {
-    std::size_t slot = (row * 0x9e3779b1u >> 23) % slots;
+  /// Returns whether the row is met for the first time.
+  bool meet(NodeIndex row) {
+    std::size_t slot = (row * 0x9e3779b1u >> 22) % slots;
     for (; table_[slot] != 0; slot = (slot + 1) % slots)
-      if (table_[slot] == row + 1) return;
-    if (count_ == most_rows) return;
+      if (table_[slot] == row + 1) return false;
     table_[slot] = row + 1;
-    rows_[count_++] = row;
+    return true;
   }
+  void add(NodeIndex row) { rows_[count_++] = row; }
+  bool is_full() const { return count_ == most_rows; }
   std::size_t size() const { return count_; }
-  std::uint32_t operator[](std::size_t n) const { return rows_[n]; }
+  NodeIndex operator[](std::size_t n) const { return rows_[n]; }
 
  private:
-  static constexpr std::size_t slots = 512;
-  std::array<std::uint32_t, slots> table_{};
-  std::array<std::uint32_t, most_rows> rows_;
+  static constexpr std::size_t slots = 1024, most_neighbours = 8;  // of SmoothNeighbours
+  static_assert(slots > 1 + most_rows * most_neighbours, "rows that are met must all have a slot");
+  std::array<NodeIndex, slots> table_{};
+  std::array<NodeIndex, most_rows> rows_;
   std::size_t count_ = 0;
 };
 
 /// The samples around one row.
 struct Window {
-  std::array<WindowSample, 2 * most_rows + 64> samples;
-  std::size_t count = 0;
+  SampleBlocks samples;
   double noise = 0;  ///< variance of one ray's value (mean over bands), emission units squared
 };
-
-template <int n>
-auto fit(const Window& window, double radius) {
-  FieldEquations<n> equations;
-  const double inverse = 1 / (radius * radius);
-  for (std::size_t k = 0; k < window.count; ++k) {
-    const WindowSample& sample = window.samples[k];
-    const double q = 1 - (sample.s * sample.s + sample.t * sample.t) * inverse;
-    if (q > 0) equations.add(sample, q * q * sample.rays);
-  }
-  return equations.solve();
-}
 
 class Fitter {
  public:
@@ -91,12 +81,13 @@ class Fitter {
         rows_(rows),
         neighbours_(neighbours),
         samples_(samples),
-        centre_(centre),
-        place_(forest.node_count()),
+        spot_(forest.node_count()),
         known_(rows.size()) {
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
-      place_[rows[n]] = static_cast<std::uint32_t>(n);
-      learn(forest.shape(rows[n]), samples[n], known_[n]);
+      const PatchShape shape = forest.shape(rows[n]);
+      learn(shape, samples[n], known_[n]);
+      const Vec3 normal = forest.mesh().roots()[shape.root].normal;
+      spot_[rows[n]] = {centre[rows[n]], normal, static_cast<std::uint32_t>(n), known_[n].is_dark};
     });
   }
 
@@ -111,11 +102,16 @@ class Fitter {
   }
 
  private:
+  /// Where a row is, and whether it tells of light: what decides whether it is in a window.
+  struct Spot {
+    Vec3 centre, normal;
+    std::uint32_t place = 0;  ///< in rows_
+    bool is_dark = true;
+  };
   /// Properties of a row that do not depend on its neighbours.
   struct Known {
     std::array<Vec3, 4> quarter_at;
     Sample whole;
-    Vec3 normal;
     std::array<Vec3, 3> axes;  ///< two along its edges and its normal, each divided by the patch's length along it
     double noise = -1;         ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
     bool is_dark = true;
@@ -127,7 +123,6 @@ class Fitter {
 
   void learn(const PatchShape& shape, const RowSamples& samples, Known& known) const {
     const RootPatch& root = forest_.mesh().roots()[shape.root];
-    known.normal = root.normal;
     known.axes = axes_of(shape);
     RelativeLight sum;
     for (int k = 0; k < 4; ++k) {
@@ -171,7 +166,7 @@ class Fitter {
 
   FieldFit frame_of(std::size_t n) const {
     FieldFit field;
-    field.centre = centre_[rows_[n]];
+    field.centre = spot_[rows_[n]].centre;
     field.s = known_[n].axes[0];
     field.t = known_[n].axes[1];
     return field;
@@ -181,19 +176,24 @@ class Fitter {
   /// `field`.
   void look_around(std::size_t n, FieldFit& field, Window& window) const {
     const Known& own = known_[n];
+    const Vec3 normal = spot_[rows_[n]].normal;
     RowSet rows;
-    rows.add(static_cast<std::uint32_t>(n));
+    rows.meet(rows_[n]);
+    rows.add(rows_[n]);
     field.low = field.high = own.whole.irradiance;
     double noise = 0, noisy = 0;
     for (std::size_t next = 0; next < rows.size(); ++next) {
-      const Known& row = known_[rows[next]];
+      const std::size_t place = spot_[rows[next]].place;
+      const Known& row = known_[place];
       const bool is_near = squared_distance(row.whole.at - field.centre, own.axes) < near_rows * near_rows;
-      add_samples(rows[next], is_near, field, window);
+      add_samples(place, is_near, field, window);
       if (row.noise >= 0) noise += row.noise, noisy += 1;
-      for (const NodeIndex other : neighbours_[rows[next]]) {
-        const Known& candidate = known_[place_[other]];
-        const bool is_within = squared_distance(centre_[other] - field.centre, own.axes) < wide_window * wide_window;
-        if (is_within && !candidate.is_dark && dot(candidate.normal, own.normal) >= same_surface) rows.add(place_[other]);
+      for (const NodeIndex other : neighbours_[place]) {
+        if (rows.is_full()) break;
+        if (!rows.meet(other)) continue;
+        const Spot& spot = spot_[other];
+        const bool is_within = squared_distance(spot.centre - field.centre, own.axes) < wide_window * wide_window;
+        if (is_within && !spot.is_dark && dot(spot.normal, normal) >= same_surface) rows.add(other);
       }
     }
     if (noisy > 0) window.noise = noise / noisy;
@@ -211,16 +211,15 @@ class Fitter {
   static void add_sample(const Sample& sample, const FieldFit& field, Window& window) {
     const Vec3 d = sample.at - field.centre;
     const RelativeLight& value = sample.irradiance;
-    if (window.count == window.samples.size()) return;
-    window.samples[window.count++] = {dot(d, field.s), dot(d, field.t), sample.rays, value.r, value.g, value.b};
+    window.samples.add({dot(d, field.s), dot(d, field.t), sample.rays, value.r, value.g, value.b});
   }
 
   void choose_fit(std::size_t n, const Window& window, FieldFit& field) const {
     const double own_response = 1 / known_[n].whole.rays;
-    const auto wide = alvor::fit<6>(window, wide_window);
+    const auto wide = FieldEquations<6>(window.samples, wide_window).solve();
     if (wide && wide->response < own_response && wide->misfit <= misfit_allowed * wide->noise * window.noise)
       return take(*wide, window, field);
-    const auto narrow = alvor::fit<3>(window, narrow_window);
+    const auto narrow = FieldEquations<3>(window.samples, narrow_window).solve();
     if (narrow && narrow->response < own_response) take(*narrow, window, field);
     else take_own_mean(n, window, field);
   }
@@ -253,9 +252,8 @@ class Fitter {
   std::span<const NodeIndex> rows_;
   std::span<const SmoothNeighbours> neighbours_;
   std::span<const RowSamples> samples_;
-  std::span<const Vec3> centre_;
-  std::vector<std::uint32_t> place_;  // place in rows_ of each node
-  std::vector<Known> known_;          // by place
+  std::vector<Spot> spot_;    // by node
+  std::vector<Known> known_;  // by place
 };
 
 }  // namespace
@@ -271,14 +269,14 @@ RelativeLight FieldFit::at(Vec3 point) const {
 }
 
 void fit_field(const PatchForest& forest, std::span<const NodeIndex> rows, std::span<const SmoothNeighbours> neighbours,
-               std::span<const RowSamples> samples, std::span<const Vec3> centre,
-               const std::function<void(std::size_t, std::span<const FieldFit>)>& take, Ranks& ranks) {
+               std::span<const RowSamples> samples, std::span<const Vec3> centre, std::span<const std::uint32_t> wanted,
+               const std::function<void(std::span<const std::uint32_t>, std::span<const FieldFit>)>& take, Ranks& ranks) {
   const Fitter fitter(forest, rows, neighbours, samples, centre);
   std::vector<FieldFit> fits;
-  for (std::size_t first = 0; first < rows.size(); first += fits.size()) {
-    fits.resize(std::min(fits_at_a_time, rows.size() - first));
-    share_work(ranks, std::span(fits), [&](std::size_t n) { fits[n] = fitter.fit_at(first + n); });
-    take(first, fits);
+  for (; !wanted.empty(); wanted = wanted.subspan(fits.size())) {
+    fits.resize(std::min(fits_at_a_time, wanted.size()));
+    share_work(ranks, std::span(fits), [&](std::size_t n) { fits[n] = fitter.fit_at(wanted[n]); });
+    take(wanted.first(fits.size()), fits);
   }
 }
 

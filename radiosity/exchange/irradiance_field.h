@@ -48,14 +48,16 @@ struct FieldFit {
   RelativeLight at(Vec3 point) const;
 };
 
-/// Makes a fit for each of `rows`, the leaves of `forest`: weighted least squares over the samples of nearby rows that are
+/// Makes fits for some of `rows`, leaves of `forest`: weighted least squares over the samples of nearby rows that are
 /// joined smoothly to it (moving least squares, Lancaster & Salkauskas 1981). It is a quadratic over a window of 3.5 edges if
 /// noise explains its misfit; else a plane over 1.5 edges; else, if neither has less noise, the row's own mean. The noise of a
 /// ray is estimated from the differences between quarters of a row, averaged over the window. `neighbours` and `samples` are by
-/// place in `rows`, `centre` is by node. Calls take(place of the first, fits) for some fits at a time, because all of them would
-/// take much memory. In parallel, on all ranks together: a collective.
+/// place in `rows`, `centre` is by node. Only the rows at the places `wanted` get a fit; `rows` may leave out others that are in
+/// none of their windows. Calls take(places, fits) for some fits at a time, because all of them would take much memory. In
+/// parallel, on all ranks together: a collective.
 void fit_field(const PatchForest& forest, std::span<const NodeIndex> rows, std::span<const SmoothNeighbours> neighbours,
-               std::span<const RowSamples> samples, std::span<const Vec3> centre,
-               const std::function<void(std::size_t, std::span<const FieldFit>)>& take, Ranks& ranks = Ranks::alone());
+               std::span<const RowSamples> samples, std::span<const Vec3> centre, std::span<const std::uint32_t> wanted,
+               const std::function<void(std::span<const std::uint32_t>, std::span<const FieldFit>)>& take,
+               Ranks& ranks = Ranks::alone());
 
 }  // namespace alvor

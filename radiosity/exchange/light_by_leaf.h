@@ -30,9 +30,11 @@ class LightByLeaf {
   /// Returns the sum over hits of the hit's weight times the light of its leaf. Requires: at least as many weights as leaves;
   /// more are ignored.
   RelativeLight weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
-  /// Returns the light of one leaf, mean over bands.
-  double mean(std::uint32_t leaf) const {
-    return has_three_ ? (three_[leaf].r + three_[leaf].g + three_[leaf].b) / 3 : one_[leaf];
+  /// Returns the light of each leaf, mean over bands.
+  std::vector<double> means() const {
+    std::vector<double> means(one_);
+    for (const Padded& of : three_) means.push_back((of.r + of.g + of.b) / 3);
+    return means;
   }
 
  private:

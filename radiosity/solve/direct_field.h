@@ -53,6 +53,8 @@ class DirectField {
   /// after the other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
   /// where the ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
+  /// Returns whether add_new() has found the light of the leaf.
+  bool is_known(NodeIndex leaf) const { return is_known_[leaf]; }
   /// Makes the next add_new() find the leaf's light again.
   void forget(NodeIndex leaf) {
     is_known_[leaf] = false;

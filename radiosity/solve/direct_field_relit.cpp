@@ -150,6 +150,7 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
 
 /// Multiplies the light of all leaves; that at origins and the noise as the mean of its bands.
 void DirectField::scale(const Rgb& factor) {
+  if (factor == Rgb{1, 1, 1}) return;
   for (DirectLight& light : light_) {
     const double before = light.irradiance.mean();
     light.irradiance = factor * light.irradiance;

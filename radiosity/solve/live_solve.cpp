@@ -77,7 +77,7 @@ bool may_go_on(const BaseMesh& before, const Plan& plan_before, const BaseMesh& 
 LiveSolve::LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, Ranks& ranks, bool keeps_mesh)
     : own_mesh_(keeps_mesh ? std::optional(mesh) : std::nullopt),
       state(own_mesh_ ? *own_mesh_ : mesh, plan, options, budget, ranks) {
-  if (keeps_mesh) state.direct.keep_shares();
+  if (keeps_mesh) state.direct.keep_shares(), state.known_errors.keep();
 }
 
 /// Returns whether edits have left many leaves that show no detail any more: each edit then takes long, and at the limit of

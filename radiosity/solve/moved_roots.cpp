@@ -42,6 +42,11 @@ std::vector<BoundingBox> boxes_of(const BaseMesh& mesh, Counts&& counts) {
   return boxes;
 }
 
+bool overlap(const BoundingBox& a, const BoundingBox& b) {
+  return a.high.x >= b.low.x && a.high.y >= b.low.y && a.high.z >= b.low.z && a.low.x <= b.high.x && a.low.y <= b.high.y &&
+         a.low.z <= b.high.z;
+}
+
 bool meets(const BoundingBox& box, Vec3 from, Vec3 to) { return share_before(box, from, to).has_value(); }
 
 /// Returns whether a shaft between two spheres may meet the box: the parts of its axis meet a box that is larger by the largest
@@ -58,6 +63,13 @@ bool shaft_meets(const BoundingBox& box, Vec3 from, double from_radius, Vec3 to,
 }
 
 }  // namespace
+
+BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape) {
+  BoundingBox box;
+  const auto corners = corners_of(mesh, shape);
+  for (int c = 0; c < shape.corner_count; ++c) box.add(corners[static_cast<std::size_t>(c)]);
+  return box;
+}
 
 // Slabs (Kay and Kajiya 1986).
 std::optional<double> share_before(const BoundingBox& box, Vec3 from, Vec3 to) {
@@ -86,6 +98,7 @@ MovedRoots::MovedRoots(const BaseMesh& before, const BaseMesh& after) : moved_(a
   const auto is_moved = [this](std::uint32_t root) { return has(root); };
   old_boxes_ = boxes_of(before, is_moved);
   new_boxes_ = boxes_of(after, is_moved);
+  for (const BoundingBox& box : new_boxes_) all_new_.add(box);
 }
 
 std::vector<BoundingBox> MovedRoots::boxes() const {
@@ -95,13 +108,13 @@ std::vector<BoundingBox> MovedRoots::boxes() const {
 }
 
 bool MovedRoots::touch(const BoundingBox& box) const {
-  const auto touches = [&](const BoundingBox& other) {
-    return lower(box.high, other.low) == other.low && upper(box.low, other.high) == other.high;
-  };
+  const auto touches = [&](const BoundingBox& other) { return overlap(box, other); };
   return std::ranges::any_of(old_boxes_, touches) || std::ranges::any_of(new_boxes_, touches);
 }
 
 bool MovedRoots::may_meet_now(Vec3 from, Vec3 to, double radius) const {
+  const Vec3 low = lower(from, to) - Vec3{radius, radius, radius}, high = upper(from, to) + Vec3{radius, radius, radius};
+  if (!overlap({low, high}, all_new_)) return false;  // most rays of a large scene
   return std::ranges::any_of(new_boxes_, [&](const BoundingBox& box) { return meets(grown(box, radius), from, to); });
 }
 

@@ -3,6 +3,7 @@
 
 #include "meshing/base_mesh.h"
 #include "meshing/bounding_box.h"
+#include "meshing/patch_place.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -45,7 +46,11 @@ class MovedRoots {
   std::vector<std::uint8_t> moved_;  ///< by root
   bool show_backs_ = false;
   std::vector<BoundingBox> old_boxes_, new_boxes_;
+  BoundingBox all_new_;  ///< around new_boxes_
 };
+
+/// Returns the box of a patch.
+BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape);
 
 /// Returns the share of the way between two points that lies before the box; 0 from inside it. Nothing if the way misses it.
 std::optional<double> share_before(const BoundingBox& box, Vec3 from, Vec3 to);

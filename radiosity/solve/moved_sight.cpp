@@ -1,14 +1,19 @@
 #include "radiosity/solve/moved_sight.h"
 
 #include "radiosity/rays/ray_source.h"
+#include "radiosity/solve/seen_space.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace alvor {
 
 namespace {
+
+// How many times as many rays as a SeenSpace takes the patches would send without one. Chosen.
+constexpr std::size_t worth_a_space = 2;
 
 /// Returns a point of a box, in front of a plane through `from` where one of eight is.
 Vec3 point_in(const BoundingBox& box, Vec3 from, Vec3 normal, RandomStream& random) {
@@ -55,8 +60,13 @@ std::vector<std::uint8_t> see_moved(const LocalScene& scene, const MovedRoots& m
   std::vector<std::uint8_t> seen(patches.size());
   const std::vector<BoundingBox> boxes = moved.boxes();
   if (boxes.empty()) return seen;
-  tbb::parallel_for(std::size_t{0}, patches.size(),
-                    [&](std::size_t n) { seen[n] = sees(scene, moved, boxes, patches[n], budget); });
+  std::optional<SeenSpace> space;
+  if (patches.size() * RayPacket::width > worth_a_space * SeenSpace::ray_count)
+    space.emplace(scene, boxes, patches.front().seed, budget);
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t n) {
+    if (space && !space->reaches(box_of(scene.mesh(), patches[n].shape))) return;
+    seen[n] = sees(scene, moved, boxes, patches[n], budget);
+  });
   return seen;
 }
 

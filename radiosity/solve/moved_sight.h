@@ -17,7 +17,8 @@ struct Viewpoint {
 
 /// Returns for each patch whether a box in which moved roots were or are is seen from its front: whether one of sixteen rays,
 /// from points all over the patch to points all over the boxes, gets to the box. A patch that sees a tenth of the boxes is passed
-/// over in one of five cases. Adds its rays to the budget, whatever that allows.
+/// over in one of five cases. Of many patches only those are asked that lie in the space that is seen from the boxes (SeenSpace).
+/// Adds its rays to the budget, whatever that allows.
 std::vector<std::uint8_t> see_moved(const LocalScene& scene, const MovedRoots& moved, std::span<const Viewpoint> patches,
                                     RayBudget& budget);
 

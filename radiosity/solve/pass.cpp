@@ -52,7 +52,11 @@ bool Pass::trace(std::span<const NodeIndex> batch) {
 
 void Pass::add_direct_light(const std::function<void()>& after_each) {
   assert(stage_ == Stage::tracing);
+  if (state_.known_errors.are_of(state_.forests))
+    for (const NodeIndex leaf : state_.forests.leaves().leaves())
+      if (!state_.direct.is_known(leaf)) state_.known_errors.forget_leaf(leaf);
   state_.direct.add_new(state_.rows, after_each);
+  if (state_.direct.waiting_power() == 0) state_.scale_field_to_direct_light();
 }
 
 Exchange& Pass::begin_exchange() {
@@ -70,8 +74,9 @@ Exchange& Pass::prepare() {
 }
 
 bool Pass::refine(const std::function<bool()>& gives_up, double share) {
-  assert(stage_ == Stage::estimated);
+  find_candidates();
   stage_ = Stage::refined;
+  state_.known_errors.clear();
   const Forests& forests = state_.forests;
   const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
   const std::vector<Candidate> marked = mark(std::move(candidates_), share);

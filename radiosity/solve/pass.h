@@ -43,7 +43,7 @@ class Pass {
   void add_direct_light(const std::function<void()>& after_each = [] {});
   /// Returns an exchange of light that begins with what the previous pass found. The caller calls its sweep().
   Exchange& begin_exchange();
-  /// Fits the smooth field that is shown, finds candidates for refinement and returns the estimated error.
+  /// Fits the smooth field that is shown and returns the estimated error.
   ErrorEstimate estimate();
   /// Share of the candidates' squared error that a pass refines (bulk marking). Chosen; half: error -16 %, rays +42 %, double:
   /// error +7 %, rays -19 % (docs/design/constants.md).
@@ -95,7 +95,18 @@ class Pass {
  private:
   enum class Stage { tracing, exchanging, estimated, refined };
   bool trace(std::span<const NodeIndex> rows);
-  void estimate_rows(ErrorEstimate& error);
+  bool knows_errors() const;
+  double unnoticed_change() const;
+  void find_changed_rows(std::span<const SmoothNeighbours> neighbours);
+  /// Places in the system's list of leaves, sorted.
+  struct ChangedLeaves {
+    std::vector<std::uint32_t> places, with_slopes;
+  };
+  ChangedLeaves changed_leaves(std::span<const SmoothNeighbours> neighbours) const;
+  void fit_field_smoothly(std::span<const SmoothNeighbours> neighbours);
+  void find_misfits();
+  void keep_errors(double mean_irradiance);
+  void estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours> neighbours);
   double estimate_leaves(ErrorEstimate& error);
   double visible_area(std::size_t patch) const;
   std::vector<double> irradiance_of_rows() const;
@@ -104,19 +115,19 @@ class Pass {
     double area = 0, irradiance = 0, relative_to = 0;  ///< m2 that are visible and may be lit; emission units
     double error = 0;                                  ///< see ErrorByPlace
   };
-  RelativeLight irradiance_at(std::size_t place) const;
-  double told_error(std::size_t place, const RelativeLight& irradiance, const ErrorEstimate& error) const;
+  void find_irradiance();
+  double told_error(std::size_t place, const ErrorEstimate& error) const;
   std::vector<PlaceError> place_errors(const ErrorEstimate& error) const;
-  void split_rows_as_leaves(std::span<const Split> splits);
   void tell_leaves(double share_of_interpolation);
   void guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up);
-  void guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up);
-  double heed_noise(std::size_t place, Split how, double missed, double noise);
-  double rays_of_split(Candidate::Kind kind, NodeIndex patch) const;
-  void add_candidates(Candidate::Kind kind, std::span<const NodeIndex> patches, std::span<const double> errors,
-                      std::span<const Split> splits);
-  void drop_rays_that_do_not_help(double lasting_error);
-  bool may_split(Candidate::Kind kind, NodeIndex patch, Split how) const;
+  void guide_some(std::span<const NodeIndex> rows, std::span<const double> leaving, const std::function<bool()>& gives_up);
+  double shown_noise(std::size_t place) const;
+  void find_candidates();
+  void find_row_candidates();
+  void find_leaf_candidates();
+  void add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error);
+  double heed_noise(std::size_t place);
+  void drop_rays_that_do_not_help();
   /// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations
   /// above the mean of sixteen squared normal deviations.
   static constexpr double noise_of_origins = 1.7;
@@ -125,14 +136,9 @@ class Pass {
     double square = 0;
     Split split = Split::quarters;
   };
-  Contrast squared_contrast(std::size_t place, const RelativeSlope& slope) const;
+  Contrast squared_contrast(std::size_t place, Vec3 slope) const;
   RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
-  struct OriginMisfit {
-    double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
-    double noise = 0;   ///< variance of a stratum's value, mean over them
-    Split split = Split::quarters;  ///< the split that follows the difference best
-  };
-  OriginMisfit misfit_at_origins(NodeIndex row, const LightByLeaf& radiosity) const;
+  OriginMisfit misfit_at_origins(NodeIndex row, std::span<const double> radiosity) const;
   std::array<Vec3, origins_per_patch> places_of_origins(NodeIndex row, bool has_more_rounds) const;
   bool rows_tell_what_is_lost() const;
   Rgb taken_up(const TransportRow& row) const;
@@ -141,10 +147,19 @@ class Pass {
   Stage stage_ = Stage::tracing;
   std::optional<PassSystem> system_;
   std::unique_ptr<Exchange> exchange_;
+  /// Places in the system's lists of rows and leaves, sorted: those of which the errors are found, and the rows that are sampled.
+  std::vector<std::uint32_t> changed_rows_, sampled_rows_, changed_leaves_;
+  std::vector<OriginMisfit> misfits_;      ///< by patch
+  std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
+  ErrorEstimate told_;                     ///< what estimate() returned
+  double told_scale_ = 0;                  ///< squared error, integrated over the scene, of which the relative error is 1
+  std::vector<SplitError> row_errors_;     ///< by patch
+  std::vector<SplitError> leaf_errors_;    ///< by place of the leaf, without noise; may be negative by chance
+  std::vector<double> row_squares_;        ///< by patch: mean square error of the rows, emission units squared
+  std::vector<double> leaf_squares_;       ///< by place of the leaf, with the row's part
+  bool has_candidates_ = false;            ///< find_candidates() was called
   std::vector<Candidate> candidates_;
-  double lasting_error_ = 0;          ///< squared error that limits of splits and rays let stay, emission units squared times m2
-  std::vector<double> row_squares_;   ///< by patch: mean square error of the rows, emission units squared
-  std::vector<double> leaf_squares_;  ///< by place of the leaf, with the row's part
+  double lasting_error_ = 0;  ///< squared error that limits of splits and rays let stay, as SplitError::square
 };
 
 }  // namespace alvor

@@ -67,7 +67,7 @@ class HitsOfOthers {
 /// Adds hits, seen from `from`, to the guide of a row.
 class HitsAround {
  public:
-  HitsAround(const BaseMesh& mesh, const LightByLeaf& radiosity, const LocalRoot& receiver, Vec3 from, GuideBuilder& builder)
+  HitsAround(const BaseMesh& mesh, std::span<const double> radiosity, const LocalRoot& receiver, Vec3 from, GuideBuilder& builder)
       : mesh_(mesh), radiosity_(radiosity), from_(from), builder_(builder) {
     const auto vec3 = [](const Float3& v) { return Vec3{v.x, v.y, v.z}; };
     s_ = vec3(receiver.tangent), t_ = vec3(receiver.bitangent), normal_ = vec3(receiver.normal);
@@ -78,13 +78,12 @@ class HitsAround {
     const PatchShape place = shape_of(mesh_, hit.place);
     const Uv middle = place.centre();
     const Vec3 way = mesh_.roots()[place.root].at(middle.u, middle.v) - from_;
-    builder_.add({dot(way, s_), dot(way, t_), dot(way, normal_)}, radiosity_.mean(static_cast<NodeIndex>(hit.leaf)),
-                 hit.weight * double(stride));
+    builder_.add({dot(way, s_), dot(way, t_), dot(way, normal_)}, radiosity_[hit.leaf], hit.weight * double(stride));
   }
 
  private:
   const BaseMesh& mesh_;
-  const LightByLeaf& radiosity_;
+  std::span<const double> radiosity_;  // mean of bands that leaves each leaf, by node
   Vec3 from_, s_, t_, normal_;
   GuideBuilder& builder_;
 };
@@ -99,7 +98,7 @@ void Pass::guide_rows(std::span<const Candidate> marked, const std::function<boo
   std::ranges::sort(rows);
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   if (rows.empty()) return;
-  const LightByLeaf leaving = system_->radiosity();
+  const std::vector<double> leaving = system_->radiosity().means();
   for (std::span<const NodeIndex> left = rows; !left.empty();) {
     const std::size_t count = std::min(rows_guided_at_once, left.size());
     guide_some(left.first(count), leaving, gives_up);
@@ -108,7 +107,7 @@ void Pass::guide_rows(std::span<const Candidate> marked, const std::function<boo
 }
 
 /// Collective. Guides the next rays of some rows, by their hits and those of the lit rows around them.
-void Pass::guide_some(std::span<const NodeIndex> rows, const LightByLeaf& leaving, const std::function<bool()>& gives_up) {
+void Pass::guide_some(std::span<const NodeIndex> rows, std::span<const double> leaving, const std::function<bool()>& gives_up) {
   const auto neighbours = state_.forests.row_neighbours(rows);
   const auto for_each_lit = [&](std::size_t n, auto&& body) {
     for (const NodeIndex neighbour : neighbours[n])

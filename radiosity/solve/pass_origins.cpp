@@ -22,8 +22,8 @@ double squared(double x) { return x * x; }
 /// as a quarter of the patch, such as the edge of a book that stands out from a shelf. Rows of several rounds of rays have the
 /// mean over the rounds in each stratum, at its middle; its noise is found from how the rounds differ. With one round it is found
 /// from the rays of each origin as if they were independent. They are stratified and have less, so that noise does not pass for a
-/// misfit.
-Pass::OriginMisfit Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& radiosity) const {
+/// misfit. `radiosity` is the mean of bands that leaves each leaf, by node.
+OriginMisfit Pass::misfit_at_origins(NodeIndex node, std::span<const double> radiosity) const {
   const TransportRow& row = state_.rows[node];
   if (row.origin_hits.size() < origins_per_patch) return {};
   struct Stratum {
@@ -35,7 +35,7 @@ Pass::OriginMisfit Pass::misfit_at_origins(NodeIndex node, const LightByLeaf& ra
     if (row.origin_hits[o] == TransportRow::not_sampled) continue;
     double sum = 0, squares = 0;
     for (const std::size_t last = hit + row.origin_hits[o]; hit < last; ++hit) {
-      const double light = radiosity.mean(leaves[hit]) * (row.hit_weight.empty() ? 1 : row.hit_weight[hit].mean());
+      const double light = radiosity[leaves[hit]] * (row.hit_weight.empty() ? 1 : row.hit_weight[hit].mean());
       sum += light, squares += light * light;
     }
     const double mean = sum / rays_per_origin;

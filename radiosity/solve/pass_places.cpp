@@ -44,9 +44,8 @@ std::vector<Pass::PlaceError> Pass::place_errors(const ErrorEstimate& error) con
   const std::vector<std::uint8_t> counts = counting_roots(state_.mesh, state_.options.objects);
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     places[n].area = state_.rows.may_be_lit(system_->row_of(n)) ? system_->visible_area(n) : 0;
-    const RelativeLight irradiance = irradiance_at(n);
-    places[n].irradiance = irradiance.mean();
-    places[n].error = told_error(n, irradiance, error);
+    places[n].irradiance = irradiance_[n].mean();
+    places[n].error = told_error(n, error);
   });
   double power = 0, area = 0;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
@@ -84,7 +83,7 @@ ErrorByPlace Pass::error_by_place(const ErrorEstimate& error) const {
 }
 
 void Pass::refine_only_what_is_not_within(const ErrorEstimate& error) {
-  assert(stage_ == Stage::estimated);
+  find_candidates();
   const std::vector<PlaceError> places = place_errors(error);
   const double tolerance = state_.options.tolerance;
   std::vector<double> by_leaf(state_.forests.leaves().node_count()), by_row(state_.forests.rows().node_count());

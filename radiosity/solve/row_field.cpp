@@ -44,12 +44,15 @@ void RowField::move_to(std::span<const NodeIndex> rows, std::span<const Relative
 
 void RowField::set_fits(std::span<const NodeIndex> rows, std::span<const FieldFit> fits) {
   assert(fits.size() == rows.size() && (has_rows_ || rows.empty()));
-  for (std::size_t n = 0; n < rows.size(); ++n) fit_[rows[n]] = fits[n];
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) { fit_[rows[n]] = fits[n]; });
 }
 
 void RowField::scale(const Rgb& factor) {
-  for (RelativeLight& irradiance : irradiance_) irradiance = factor * irradiance;
-  for (FieldFit& fit : fit_) fit.scale(factor);
+  if (factor == Rgb{1, 1, 1}) return;
+  tbb::parallel_for(std::size_t{0}, fit_.size(), [&](std::size_t row) {
+    irradiance_[row] = factor * irradiance_[row];
+    fit_[row].scale(factor);
+  });
 }
 
 void RowField::append(const AppendedRoots& roots) {

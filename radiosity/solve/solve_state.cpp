@@ -45,6 +45,13 @@ Rgb largest_irradiance(const BaseMesh& mesh) {
   return lower(most, {held_by_floats, held_by_floats, held_by_floats});
 }
 
+/// Returns whether two meshes have the same lights, and equal emission of each material.
+bool has_same_lights(const BaseMesh& before, const BaseMesh& after) {
+  const auto emit_alike = [](const Material& a, const Material& b) { return a.emission == b.emission; };
+  return std::ranges::equal(before.materials(), after.materials(), emit_alike) &&
+         std::ranges::equal(before.lights(), after.lights());
+}
+
 }  // namespace
 
 SolveState::SolveState(const BaseMesh& base_mesh, Plan solve_plan, SolveOptions solve_options, RayBudget& ray_budget,
@@ -82,16 +89,19 @@ std::vector<LeafValue> SolveState::leaf_values() const {
   return values;
 }
 
-double SolveState::unshot_power() const {
+double SolveState::unshot_power() const { return direct.waiting_power() + scattered_power().sum(); }
+
+/// Returns the power of the direct light that all leaves scatter, in emission units times m2.
+RelativeLight SolveState::scattered_power() const {
   const std::vector<NodeIndex> leaves = forests.leaves().leaves();
-  const auto add_part = [&](const tbb::blocked_range<std::size_t>& part, double sum) {
+  const auto add_part = [&](const tbb::blocked_range<std::size_t>& part, RelativeLight sum) {
     for (std::size_t n = part.begin(); n < part.end(); ++n)
-      sum += forests.leaf_area(leaves[n]) * scattered_direct_light(leaves[n]).sum();
+      sum += forests.leaf_area(leaves[n]) * scattered_direct_light(leaves[n]);
     return sum;
   };
   constexpr std::size_t leaves_a_part = 4096;
   const tbb::blocked_range<std::size_t> all(0, leaves.size(), leaves_a_part);
-  return direct.waiting_power() + tbb::parallel_deterministic_reduce(all, 0.0, add_part, std::plus());
+  return tbb::parallel_deterministic_reduce(all, RelativeLight{}, add_part, std::plus());
 }
 
 bool SolveState::split_leaf(NodeIndex leaf, Split wanted) {
@@ -154,6 +164,8 @@ double SolveState::arrived_power() const {
 }
 
 std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
+  if (!scattered_before_) scattered_before_ = scattered_power();
+  known_errors.clear();
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
   const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);
   const double change = ratio >= least_kept && ratio <= 1 / least_kept ? ratio : 0;
@@ -162,7 +174,9 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   forests.note_relit();
   for (RelativeLight& light : shot) light = change * light;
   const auto factor = direct.note_relit(change);
-  field.scale(factor && reflects_as_before ? *factor : Rgb{change, change, change});
+  const Rgb field_change = factor && reflects_as_before ? *factor : Rgb{change, change, change};
+  field.scale(field_change);
+  scattered_before_ = field_change * *scattered_before_;
   if (rows.carry_light()) {
     std::vector<NodeIndex> dark = forests.rows().leaves();
     std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
@@ -174,6 +188,15 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   const bool is_scaled = factor && factor->is_grey() && !plan.emission_by_rows() && reflects_as_before && change > 0 &&
                          leaf_count() == leaves_before;
   return is_scaled ? std::optional(factor->r / change) : std::nullopt;
+}
+
+void SolveState::scale_field_to_direct_light() {
+  if (!scattered_before_) return;
+  const RelativeLight before = *std::exchange(scattered_before_, std::nullopt), now = scattered_power();
+  const auto ratio = [](double was, double is) {
+    return was > 0 && is > least_kept * was && was > least_kept * is ? is / was : 1;
+  };
+  field.scale({ratio(before.r, now.r), ratio(before.g, now.g), ratio(before.b, now.b)});
 }
 
 void SolveState::note_appended(std::size_t roots_before) {
@@ -191,7 +214,13 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   move_ = Move{std::move(before), std::move(roots)};
   scene = LocalScene(mesh);
   forests.note_moved();
+  const double unit_before = unit_.to_watts(1);
+  KnownErrors known = std::move(known_errors);
   note_relit(std::move(new_plan), reflects_as_before);
+  const bool shines_alike = unit_.to_watts(1) == unit_before && has_same_lights(move_->before, mesh);
+  if (!reflects_as_before || !shines_alike) known.clear();
+  known_errors = std::move(known);
+  scattered_before_.reset();  // light that a moved object takes from one room is not missing in the next
   if (!rows.carry_light()) return;
   std::vector<NodeIndex> of_moved = forests.rows().leaves();
   std::erase_if(of_moved, [this](NodeIndex row) { return !move_->roots.has(forests.rows().id(row).root_face()); });
@@ -220,7 +249,10 @@ void SolveState::mend_moved() {
   assert(move_);
   direct.note_moved(move_->roots, [this] { return rows_in_sight(move_->roots); });
   std::vector<NodeIndex> leaves;
-  for (const NodeIndex row : rows.note_moved(move_->before, move_->roots)) forests.append_leaves_of_row(row, leaves);
+  for (const NodeIndex row : rows.note_moved(move_->before, move_->roots)) {
+    forests.append_leaves_of_row(row, leaves);
+    if (known_errors.are_of(forests)) known_errors.forget_row(row);
+  }
   for (const NodeIndex leaf : leaves) direct.forget(leaf);
   move_.reset();
 }

@@ -4,6 +4,7 @@
 #include "radiosity/direct/emission_unit.h"
 #include "radiosity/solve/direct_field.h"
 #include "radiosity/solve/forests.h"
+#include "radiosity/solve/known_errors.h"
 #include "radiosity/solve/moved_roots.h"
 #include "radiosity/solve/row_field.h"
 #include "radiosity/solve/traced_rows.h"
@@ -38,6 +39,7 @@ class SolveState {
   TracedRows rows;
   RowField field;
   DirectField direct;
+  KnownErrors known_errors;         ///< of the last estimate; not in what save() writes
   std::vector<RelativeLight> shot;  ///< by leaf node: radiosity that shots distributed so far; 0 if light is gathered
 
   std::size_t leaf_count() const { return forests.leaves().leaf_count(); }
@@ -97,6 +99,10 @@ class SolveState {
   /// Requires: rows and forests are those of the mesh as it is now.
   std::optional<double> note_relit(Plan new_plan, bool reflects_as_before);
 
+  /// Multiplies the field by as much as scattered direct light has changed in all since note_relit(), per band: the exchange then
+  /// has less to change. To be called when direct light is known.
+  void scale_field_to_direct_light();
+
   /// Takes roots that the mesh has got at its end since it had `roots_before`, all of them hidden. To be followed by note_relit()
   /// or note_moved(). Requires: one rank.
   void note_appended(std::size_t roots_before);
@@ -124,9 +130,11 @@ class SolveState {
   };
   std::optional<Move> move_;  ///< that rows and direct light do not heed yet
   EmissionUnit unit_{mesh};
-  Rgb largest_irradiance_;  ///< upper bound on the irradiance of the solution, W/m2
+  std::optional<RelativeLight> scattered_before_;  ///< power of the direct light that the field is of, if an edit has changed it
+  Rgb largest_irradiance_;                         ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
   double arrived_power() const;
+  RelativeLight scattered_power() const;
   std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
   /// Splits the row in the place of a leaf that was split into slabs, if it is larger: where direct light changes across a line,

@@ -17,13 +17,6 @@ namespace {
 
 Vec3 point_of(const PatchPoints& points, std::size_t o) { return {points.x[o], points.y[o], points.z[o]}; }
 
-BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape) {
-  BoundingBox box;
-  const auto corners = corners_of(mesh, shape);
-  for (int c = 0; c < shape.corner_count; ++c) box.add(corners[static_cast<std::size_t>(c)]);
-  return box;
-}
-
 /// Returns how far the corners of each leaf node, split or not, are from its centre at most, metres.
 std::vector<double> radii_of_leaves(const Forests& forests) {
   const PatchForest& leaves = forests.leaves();
@@ -131,7 +124,8 @@ std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const Move
     if (moved.has(shape.root) || moved.touch(box_of(scene_.mesh(), shape)) || (carry_light() && (!may_mend || has_unknown)) ||
         (may_hide_otherwise && !mender.is_hidden_as_before(shape, id, options_.seed, row)))
       outcomes[n] = RowMender::Outcome::lost;
-    else if (carry_light()) outcomes[n] = mender.mend(shape, id, options_.seed, row, known_leaves(rows[n]));
+    else if (carry_light() && moved.are_in_front(root.corners[0], root.normal, true))
+      outcomes[n] = mender.mend(shape, id, options_.seed, row, known_leaves(rows[n]));
   });
   std::vector<NodeIndex> lost;
   for (std::size_t n = 0; n < rows.size(); ++n) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace alvor {
@@ -48,8 +49,12 @@ struct Rows {
   }
   std::vector<FieldFit> fit(std::span<const RowSamples> samples) const {
     std::vector<FieldFit> all;
-    const auto take = [&](std::size_t, std::span<const FieldFit> fits) { all.insert(all.end(), fits.begin(), fits.end()); };
-    fit_field(forest, nodes, neighbours, samples, centre_of_node, take);
+    const auto take = [&](std::span<const std::uint32_t>, std::span<const FieldFit> fits) {
+      all.insert(all.end(), fits.begin(), fits.end());
+    };
+    std::vector<std::uint32_t> wanted(nodes.size());
+    std::iota(wanted.begin(), wanted.end(), 0);
+    fit_field(forest, nodes, neighbours, samples, centre_of_node, wanted, take);
     return all;
   }
 };

@@ -1,0 +1,68 @@
+#pragma once
+// What an estimate found about single rows and leaves, kept for the next one.
+
+#include "radiosity/solve/forests.h"
+
+#include <vector>
+
+namespace alvor {
+
+/// By how much the irradiance at the origins of a row differs from the field that is shown.
+struct OriginMisfit {
+  double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
+  double noise = 0;   ///< variance of a stratum's value, mean over them
+  Split split = Split::quarters;  ///< the split that follows the difference best
+};
+
+/// The error of a patch that splitting it would remove, squared and integrated over it, in emission units squared times m2, and
+/// the split that follows it best.
+struct SplitError {
+  double square = 0;
+  Split split = Split::quarters;
+};
+
+/// The errors of the last estimate, by node, if nothing was refined since. After an edit that leaves most of a scene as it was,
+/// only those are found again whose light has changed. Empty unless they are kept.
+class KnownErrors {
+ public:
+  /// An error, and the irradiance that it was found at, mean over bands, emission units.
+  template <class Error>
+  struct Known {
+    Error error;
+    double irradiance = 0;
+    bool is_known = false;
+  };
+
+  /// Lets errors be kept from now on.
+  void keep() { are_kept_ = true; }
+  void clear() { rows_ = {}, leaves_ = {}; }
+  /// Makes room for the errors of these forests, if errors are kept. Forgets all that are of other forests.
+  void fit_to(const Forests& forests, double mean_irradiance) {
+    if (!are_kept_) return;
+    mean_irradiance_ = mean_irradiance;
+    if (are_of(forests)) return;
+    rows_.assign(forests.rows().node_count(), {});
+    leaves_.assign(forests.leaves().node_count(), {});
+  }
+  bool are_of(const Forests& forests) const {
+    return !leaves_.empty() && rows_.size() == forests.rows().node_count() && leaves_.size() == forests.leaves().node_count();
+  }
+  bool empty() const { return leaves_.empty(); }
+  double mean_irradiance() const { return mean_irradiance_; }  ///< of the scene, emission units
+
+  // Requires: not empty; nodes of the forests that the errors are of.
+  const Known<OriginMisfit>& of_row(NodeIndex row) const { return rows_[row]; }
+  const Known<SplitError>& of_leaf(NodeIndex leaf) const { return leaves_[leaf]; }
+  void set_row(NodeIndex row, const OriginMisfit& error, double irradiance) { rows_[row] = {error, irradiance, true}; }
+  void set_leaf(NodeIndex leaf, const SplitError& error, double irradiance) { leaves_[leaf] = {error, irradiance, true}; }
+  void forget_row(NodeIndex row) { rows_[row].is_known = false; }
+  void forget_leaf(NodeIndex leaf) { leaves_[leaf].is_known = false; }
+
+ private:
+  bool are_kept_ = false;
+  double mean_irradiance_ = 0;
+  std::vector<Known<OriginMisfit>> rows_;
+  std::vector<Known<SplitError>> leaves_;
+};
+
+}  // namespace alvor

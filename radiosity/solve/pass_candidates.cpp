@@ -1,0 +1,109 @@
+// Finds what may be refined after a pass: patches to split, and rows and leaves to give more rays.
+
+#include "radiosity/rays/ray_source.h"
+#include "radiosity/solve/pass.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <functional>
+
+namespace alvor {
+
+namespace {
+
+// A level more of shadow rays: how many times the rays, and the share of the variance that it removes (VisibleFraction).
+constexpr double times_rays_of_level = 4, removed_by_rays = 7.0 / 8;
+// Shadow rays of a leaf of level 0: the geometric mean of 16 and 64. Splitting it costs those of four children.
+constexpr double rays_per_leaf = 32, rays_per_leaf_split = 4 * rays_per_leaf;
+// Rays that splitting a row costs: four children, a row and 32 shadow rays each.
+constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
+// Rays above which a row gets no more. Chosen; half and double give the same solutions (docs/design/constants.md).
+constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
+// Share of the squared error that the limits keep from being refined: rays that would remove less are not sent. Removing all of
+// it would make the error a tenth smaller. Chosen.
+constexpr double worth_rays = 0.2;
+
+}  // namespace
+
+/// Sets `candidates_`; once a pass, because it takes as long as the estimate of leaves, and a solve that is done needs none.
+void Pass::find_candidates() {
+  assert(stage_ == Stage::estimated);
+  if (has_candidates_) return;
+  has_candidates_ = true;
+  find_row_candidates();
+  find_leaf_candidates();
+  if (told_.sampling < 0.5 * told_.mesh() && std::ranges::none_of(candidates_, &Candidate::splits)) candidates_.clear();
+  drop_rays_that_do_not_help();
+}
+
+void Pass::find_row_candidates() {
+  const auto patches = system_->patches();
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const NodeIndex row = system_->rows()[p];
+    const double noise = visible_area(p) * state_.field.fit(row).variance, rays = state_.rows[row].ray_count();
+    if (noise > 0 && rays < most_rays_per_row)
+      candidates_.push_back({Candidate::Kind::add_rays, row, noise * rays_per_row / (rays + rays_per_row), rays_per_row});
+  }
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const auto& [square, by_origins] = row_errors_[p];
+    // Direct light tells the direction of a line more surely than the noisy rays of a row.
+    const Split by_light = patches[p].leaf_count == 1 ? leaf_errors_[patches[p].first_leaf].split : Split::quarters;
+    add_split(Candidate::Kind::split_row, system_->rows()[p], {square, by_light == Split::quarters ? by_origins : by_light});
+  }
+}
+
+void Pass::find_leaf_candidates() {
+  const auto leaves = system_->leaves();
+  std::vector<SplitError> errors(leaf_errors_);
+  for (std::size_t n = 0; n < leaves.size(); ++n) errors[n].square = heed_noise(n);
+  for (std::size_t n = 0; n < leaves.size(); ++n) add_split(Candidate::Kind::split_leaf, leaves[n], errors[n]);
+}
+
+/// Adds a candidate that splits a patch, where limits allow it.
+void Pass::add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error) {
+  if (!state_.plan.needs(Feature::refinement) || error.square <= 0) return;
+  const Forests& forests = state_.forests;
+  const bool is_leaf = kind == Candidate::Kind::split_leaf;
+  if (!(is_leaf ? forests.may_split_leaf(patch, error.split) : forests.may_split_row(patch, error.split))) {
+    lasting_error_ += error.square;
+    return;
+  }
+  const double rays = is_leaf ? rays_per_leaf_split * state_.direct.ray_share(patch) : rays_per_row_split;
+  candidates_.push_back({kind, patch, error.square, rays, error.split});
+}
+
+/// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove. Both parts of the error,
+/// what interpolation misses and the noise of shadow rays, go where the edge of a shadow leaves the smaller leaves. Where noise
+/// is the larger part, there is no edge to find, and smaller leaves are as noisy: then this adds a candidate that gives the leaf
+/// more shadow rays instead. So it does where a leaf cannot be split, and noise of its origins may be part of what is taken for
+/// missed.
+double Pass::heed_noise(std::size_t place) {
+  const NodeIndex leaf = system_->leaves()[place];
+  const double missed = std::max(0.0, leaf_errors_[place].square), noise = shown_noise(place);
+  const bool may_split = state_.forests.may_split_leaf(leaf, leaf_errors_[place].split);
+  const double doubtful = may_split ? 0 : system_->visible_area(place) * noise_of_origins * state_.direct[leaf].origin_variance;
+  if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
+    const double in_doubt = std::min(missed, doubtful) / 2, removed = removed_by_rays * noise + in_doubt;
+    if (!may_split) lasting_error_ += missed - in_doubt;
+    candidates_.push_back(
+        {Candidate::Kind::add_shadow_rays, leaf, removed, times_rays_of_level * rays_per_leaf * state_.direct.ray_share(leaf)});
+    return 0;
+  }
+  if (noise <= missed) return missed + noise;
+  lasting_error_ += noise;
+  return missed;
+}
+
+/// Drops the candidates that add rays if the error that would need splits which the limits forbid is beyond the tolerance, and
+/// all of these rays would hardly reduce it.
+void Pass::drop_rays_that_do_not_help() {
+  if (state_.options.is_by_place() || !(told_scale_ > 0)) return;
+  if (std::sqrt(lasting_error_ / told_scale_) <= state_.options.tolerance) return;
+  double removable = 0;
+  for (const Candidate& candidate : candidates_)
+    if (!candidate.splits()) removable += candidate.squared_error;
+  if (removable < worth_rays * lasting_error_) std::erase_if(candidates_, std::not_fn(&Candidate::splits));
+}
+
+}  // namespace alvor

@@ -1,0 +1,103 @@
+#include "radiosity/solve/seen_space.h"
+
+#include "meshing/tangent_frame.h"
+#include "radiosity/rays/sampling.h"
+#include "radiosity/rays/unit_disk.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace alvor {
+
+namespace {
+
+// Cells along the longest side of the scene: in a house of 25 m, cells of 20 cm, and 2 MB. Chosen.
+constexpr int cells = 128;
+// Steps along a ray in each cell that it crosses. Chosen.
+constexpr double steps_a_cell = 2;
+
+/// The cell of a coordinate in local units, in which the scene lies between -1/2 and 1/2.
+int cell_of(double x) { return std::clamp(static_cast<int>(std::floor((x + 0.5) * cells)), 0, cells - 1); }
+
+std::size_t index_of(int x, int y, int z) {
+  return static_cast<std::size_t>(x) + cells * (static_cast<std::size_t>(y) + cells * static_cast<std::size_t>(z));
+}
+
+/// A ray from a box outwards.
+struct Outward {
+  Vec3 from, way;  ///< local units; the way is of unit length
+};
+
+/// Returns a ray from a random point of a side of a box; cosine-distributed about the side's normal.
+Outward outward_ray(const BoundingBox& box, std::size_t side, RandomStream& random) {
+  const std::size_t axis = side / 2;
+  const bool is_high = side % 2 == 1;
+  const auto between = [&](double low, double high) { return low + random.next() * (high - low); };
+  std::array<double, 3> at{between(box.low.x, box.high.x), between(box.low.y, box.high.y), between(box.low.z, box.high.z)};
+  const Vec3& end = is_high ? box.high : box.low;
+  at[axis] = std::array{end.x, end.y, end.z}[axis];
+  std::array<double, 3> normal{};
+  normal[axis] = is_high ? 1 : -1;
+  const Vec3 up{normal[0], normal[1], normal[2]};
+  const TangentFrame plane(up);
+  const double u = random.next(), v = random.next();
+  const DiskPoint disk = concentric_disk({u, v});
+  const double height = std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y));
+  return {{at[0], at[1], at[2]}, disk.x * plane.s + disk.y * plane.t + height * up};
+}
+
+}  // namespace
+
+SeenSpace::SeenSpace(const LocalScene& scene, std::span<const BoundingBox> boxes, std::uint64_t seed, RayBudget& budget)
+    : frame_(scene.frame()), is_seen_(static_cast<std::size_t>(cells) * cells * cells) {
+  constexpr float far = 4;  // leaves the scene from everywhere in it
+  constexpr std::size_t packets = ray_count / RayPacket::width;
+  std::vector<RayPacket> rays(packets);
+  std::vector<HitPacket> hits(packets);
+  RandomStream random(seed, PatchId::root(0));
+  for (std::size_t n = 0; n < ray_count; ++n) {
+    const BoundingBox& box = boxes[n / 6 % boxes.size()];
+    const Outward ray = outward_ray({frame_.to_local(box.low), frame_.to_local(box.high)}, n % 6, random);
+    rays[n / RayPacket::width].set(n % RayPacket::width, ray.from, ray.way, far);
+  }
+  budget.spend(ray_count, [&] {
+    tbb::parallel_for(std::size_t{0}, packets, [&](std::size_t p) {
+      scene.visibility().closest_hits({&rays[p], 1}, {&hits[p], 1});
+    });
+  });
+  for (std::size_t n = 0; n < ray_count; ++n) {
+    const RayPacket& of = rays[n / RayPacket::width];
+    const HitPacket& hit = hits[n / RayPacket::width];
+    const std::size_t lane = n % RayPacket::width;
+    const Vec3 from{of.origin_x[lane], of.origin_y[lane], of.origin_z[lane]};
+    const Vec3 way{of.direction_x[lane], of.direction_y[lane], of.direction_z[lane]};
+    mark(from, from + double(hit.root[lane] == HitPacket::nothing ? far : hit.t[lane]) * way);
+  }
+}
+
+void SeenSpace::mark(Vec3 from, Vec3 to) {
+  const int steps = 1 + static_cast<int>(length(to - from) * cells * steps_a_cell);
+  for (int n = 0; n <= steps; ++n) {
+    const Vec3 at = lerp(from, to, double(n) / steps);
+    is_seen_[index_of(cell_of(at.x), cell_of(at.y), cell_of(at.z))] = 1;
+    if (n > 0 && std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > 0.5) return;
+  }
+}
+
+bool SeenSpace::reaches(const BoundingBox& box) const {
+  const Vec3 low = frame_.to_local(box.low), high = frame_.to_local(box.high);
+  const auto range = [](double from, double to) {
+    return std::array{std::max(0, cell_of(from) - 1), std::min(cells - 1, cell_of(to) + 1)};
+  };
+  const auto x = range(low.x, high.x), y = range(low.y, high.y), z = range(low.z, high.z);
+  for (int k = z[0]; k <= z[1]; ++k)
+    for (int j = y[0]; j <= y[1]; ++j)
+      for (int i = x[0]; i <= x[1]; ++i)
+        if (is_seen_[index_of(i, j, k)]) return true;
+  return false;
+}
+
+}  // namespace alvor
