@@ -36,8 +36,8 @@ class Exchange {
   virtual std::vector<RelativeLight> shot() const { return {}; }
   /// Gives back memory that only makes later sweeps gain more.
   virtual void forget_directions() {}
-  /// Tells down to which remaining_error() sweeps will follow: preparing for fast ones is of no use to few. Without this call,
-  /// many will.
+  /// Tells the remaining_error() at which the caller will stop. An exchange may then skip preparations that pay only over many
+  /// sweeps. Without this call it is 0.
   virtual void expect_sweeps_down_to(double) {}
 
   /// Returns a bound on the radiosity that is still to come: its RMS over the mean radiosity, in the worst band. Where nearly all

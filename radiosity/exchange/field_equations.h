@@ -19,7 +19,7 @@ struct WindowSample {
 /// Samples around a row, four side by side, so that sums over them are made four at a time.
 class SampleBlocks {
  public:
-  static constexpr std::size_t most = 192;  ///< samples; more are ignored
+  static constexpr std::size_t most = 192;  ///< samples; more are ignored: two for each of 64 rows, and 64 more
   using Lanes [[gnu::vector_size(4 * sizeof(double))]] = double;
   struct Block {
     Lanes s, t, rays, r, g, b;

@@ -77,7 +77,9 @@ bool may_go_on(const BaseMesh& before, const Plan& plan_before, const BaseMesh& 
 LiveSolve::LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions& options, Ranks& ranks, bool keeps_mesh)
     : own_mesh_(keeps_mesh ? std::optional(mesh) : std::nullopt),
       state(own_mesh_ ? *own_mesh_ : mesh, plan, options, budget, ranks) {
-  if (keeps_mesh) state.direct.keep_shares(), state.known_errors.keep();
+  if (!keeps_mesh) return;
+  state.direct.keep_shares();
+  if (ranks.is_alone() && state.rows.carry_light()) state.known_errors.keep();
 }
 
 /// Returns whether edits have left many leaves that show no detail any more: each edit then takes long, and at the limit of
@@ -111,6 +113,7 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
     state.note_moved(std::move(before), plan, is_alike);
     if (leaves_at_first_end > 0 && grows) added_leaves += state.leaf_count() - leaves_before;
   } else {
+    state.note_scattered_light();
     *own_mesh_ = edited;
     factor = state.note_relit(plan, is_alike);
   }

@@ -45,6 +45,9 @@ class Pass {
   Exchange& begin_exchange();
   /// Fits the smooth field that is shown and returns the estimated error.
   ErrorEstimate estimate();
+  /// Keeps the errors that were found for the next pass, which is faster if an edit has moved a little in between. To be called
+  /// between estimate() and refine(), if refine() will not be.
+  void keep_errors();
   /// Share of the candidates' squared error that a pass refines (bulk marking). Chosen; half: error -16 %, rays +42 %, double:
   /// error +7 %, rays -19 % (docs/design/constants.md).
   static constexpr double marked_share = 0.9;
@@ -96,7 +99,7 @@ class Pass {
   enum class Stage { tracing, exchanging, estimated, refined };
   bool trace(std::span<const NodeIndex> rows);
   bool knows_errors() const;
-  double unnoticed_change() const;
+  double unnoticed_change(std::span<const RelativeLight> irradiance) const;
   void find_changed_rows(std::span<const SmoothNeighbours> neighbours);
   /// Places in the system's list of leaves, sorted.
   struct ChangedLeaves {
@@ -105,7 +108,7 @@ class Pass {
   ChangedLeaves changed_leaves(std::span<const SmoothNeighbours> neighbours) const;
   void fit_field_smoothly(std::span<const SmoothNeighbours> neighbours);
   void find_misfits();
-  void keep_errors(double mean_irradiance);
+  void note_errors();
   void estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours> neighbours);
   double estimate_leaves(ErrorEstimate& error);
   double visible_area(std::size_t patch) const;
@@ -149,6 +152,7 @@ class Pass {
   std::unique_ptr<Exchange> exchange_;
   /// Places in the system's lists of rows and leaves, sorted: those of which the errors are found, and the rows that are sampled.
   std::vector<std::uint32_t> changed_rows_, sampled_rows_, changed_leaves_;
+  double unnoticed_change_ = 0;            ///< of the irradiance, where errors are not found again; emission units
   std::vector<OriginMisfit> misfits_;      ///< by patch
   std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
   ErrorEstimate told_;                     ///< what estimate() returned

@@ -1,9 +1,10 @@
-// Finds the rows and leaves of which an estimate must find the errors again. After an edit that leaves most of the scene as it
-// was, these are few.
+// Finds the rows and leaves whose errors an estimate finds again. After an edit that leaves most of the scene as it was, these
+// are few.
 
 #include "radiosity/solve/pass.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -14,7 +15,8 @@ namespace {
 // Share of the tolerated error by which light may have changed where errors are not found again. Squares add: an error of the
 // tolerance would be 0.1 % larger. Chosen.
 constexpr double unnoticed = 0.05;
-// Rings of neighbours around rows that have changed, whose windows (fit_field()) hold these rows: a window reaches 3.5 edges.
+// Rings of neighbours around rows that have changed whose fields are found again, too: windows reach 3.5 edges (fit_field()).
+// Windows of much larger rows may hold a changed row that is farther off, and are left: their own light has hardly changed.
 constexpr int rings_of_window = 4;
 // Rings of neighbours in which all rows of a window lie, also where they are a quarter as large. Chosen.
 constexpr int rings_of_samples = 14;
@@ -62,25 +64,33 @@ class Marked {
 
 }  // namespace
 
-/// Returns whether the errors that are known from the estimate before are of use.
-bool Pass::knows_errors() const {
-  return state_.ranks.is_alone() && state_.rows.carry_light() && state_.known_errors.are_of(state_.forests);
-}
+/// Returns whether the errors that are known from the estimate before are of use. Those by place would have to be known better
+/// where it is dark.
+bool Pass::knows_errors() const { return !state_.options.is_by_place() && state_.known_errors.are_of(state_.forests); }
 
 /// Returns by how much the irradiance at a place may have changed, mean over bands, where errors are not found again.
-double Pass::unnoticed_change() const { return unnoticed * state_.options.tolerance * state_.known_errors.mean_irradiance(); }
+/// `irradiance` is by patch, of rows.
+double Pass::unnoticed_change(std::span<const RelativeLight> irradiance) const {
+  double power = 0, area = 0;
+  for (std::size_t p = 0; p < irradiance.size(); ++p) {
+    for (const NodeIndex leaf : system_->leaves_of(p))
+      power += state_.forests.leaf_area(leaf) * (irradiance[p] + state_.direct[leaf].irradiance).mean();
+    area += system_->patches()[p].area;
+  }
+  return unnoticed * state_.options.tolerance * power / area;
+}
 
-/// Sets the rows of which the field and its errors are found again, and those whose samples that takes.
+/// Sets `changed_rows_`, whose field and errors are found again, and `sampled_rows_`, those in their windows.
 void Pass::find_changed_rows(std::span<const SmoothNeighbours> neighbours) {
   const auto rows = system_->rows();
   changed_rows_ = sampled_rows_ = all_places(rows.size());
   if (!knows_errors()) return;
   const std::vector<RelativeLight> irradiance = exchange_->irradiance();
-  const double least = unnoticed_change();
+  unnoticed_change_ = unnoticed_change(irradiance);
   Marked marked(rows, neighbours, state_.forests.rows().node_count());
   for (std::uint32_t p = 0; p < rows.size(); ++p) {
     const auto& known = state_.known_errors.of_row(rows[p]);
-    if (!known.is_known || std::abs(irradiance[p].mean() - known.irradiance) > least) marked.mark(p);
+    if (!known.is_known || std::abs(irradiance[p].mean() - known.irradiance) > unnoticed_change_) marked.mark(p);
   }
   marked.grow(rings_of_window);
   changed_rows_ = marked.sorted();
@@ -88,23 +98,40 @@ void Pass::find_changed_rows(std::span<const SmoothNeighbours> neighbours) {
   sampled_rows_ = marked.sorted();
 }
 
-/// Returns the places of the leaves of which errors are found again, and of those whose slopes that takes.
+/// Returns the leaves whose errors are found again, and with those around them whose slopes tell of these errors.
 Pass::ChangedLeaves Pass::changed_leaves(std::span<const SmoothNeighbours> neighbours) const {
   const auto leaves = system_->leaves();
   if (!knows_errors()) return {all_places(leaves.size()), all_places(leaves.size())};
-  const double least = unnoticed_change();
   Marked marked(leaves, neighbours, state_.forests.leaves().node_count());
   for (const std::uint32_t p : changed_rows_)
     for (std::uint32_t k = 0; k < system_->patches()[p].leaf_count; ++k) marked.mark(system_->patches()[p].first_leaf + k);
   for (std::uint32_t n = 0; n < leaves.size(); ++n) {
     const auto& known = state_.known_errors.of_leaf(leaves[n]);
-    if (!known.is_known || std::abs(irradiance_[n].mean() - known.irradiance) > least) marked.mark(n);
+    if (!known.is_known || std::abs(irradiance_[n].mean() - known.irradiance) > unnoticed_change_) marked.mark(n);
   }
   marked.grow(rings_of_slopes);
   ChangedLeaves changed{marked.sorted(), {}};
   marked.grow(1);
   changed.with_slopes = marked.sorted();
   return changed;
+}
+
+/// Brings what is known from the estimate before up to date, or forgets it where all was found again.
+void Pass::note_errors() {
+  KnownErrors& known = state_.known_errors;
+  if (!knows_errors()) return known.clear();
+  for (const std::uint32_t p : changed_rows_) {
+    const NodeIndex row = system_->rows()[p];
+    known.set_row(row, misfits_[p], state_.field.irradiance(row).mean());
+  }
+  for (const std::uint32_t n : changed_leaves_) known.set_leaf(system_->leaves()[n], leaf_errors_[n], irradiance_[n].mean());
+}
+
+void Pass::keep_errors() {
+  assert(stage_ == Stage::estimated);
+  if (state_.known_errors.are_of(state_.forests)) return;
+  state_.known_errors.make_room(state_.forests);
+  note_errors();
 }
 
 }  // namespace alvor

@@ -300,6 +300,7 @@ ErrorEstimate Pass::estimate() {
   ErrorEstimate error;
   estimate_rows(error, neighbours);
   const double power = estimate_leaves(error);
+  note_errors();
   if (power <= 0) return {};
   double area = 0;
   for (std::size_t p = 0; p < system_->patches().size(); ++p) area += visible_area(p);
@@ -309,20 +310,7 @@ ErrorEstimate Pass::estimate() {
   error.unshot = exchange_->remaining_error();
   told_ = error;
   told_scale_ = area * squared(mean);
-  keep_errors(mean);
   return error;
-}
-
-/// Keeps the errors that were found for the next estimate.
-void Pass::keep_errors(double mean_irradiance) {
-  KnownErrors& known = state_.known_errors;
-  known.fit_to(state_.forests, mean_irradiance);
-  if (known.empty()) return;
-  for (const std::uint32_t p : changed_rows_) {
-    const NodeIndex row = system_->rows()[p];
-    known.set_row(row, misfits_[p], state_.field.irradiance(row).mean());
-  }
-  for (const std::uint32_t n : changed_leaves_) known.set_leaf(system_->leaves()[n], leaf_errors_[n], irradiance_[n].mean());
 }
 
 }  // namespace alvor

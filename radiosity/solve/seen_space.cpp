@@ -14,8 +14,9 @@ namespace alvor {
 
 namespace {
 
-// Cells along the longest side of the scene: in a house of 25 m, cells of 20 cm, and 2 MB. Chosen.
-constexpr int cells = 128;
+// Cells along the longest side of the scene: in a house of 25 m, cells of 40 cm. Across it, one or two
+// of the rays from a box meet a cell or one beside it. Chosen.
+constexpr int cells = 64;
 // Steps along a ray in each cell that it crosses. Chosen.
 constexpr double steps_a_cell = 2;
 
@@ -54,7 +55,7 @@ Outward outward_ray(const BoundingBox& box, std::size_t side, RandomStream& rand
 SeenSpace::SeenSpace(const LocalScene& scene, std::span<const BoundingBox> boxes, std::uint64_t seed, RayBudget& budget)
     : frame_(scene.frame()), is_seen_(static_cast<std::size_t>(cells) * cells * cells) {
   constexpr float far = 4;  // leaves the scene from everywhere in it
-  constexpr std::size_t packets = ray_count / RayPacket::width;
+  const std::size_t ray_count = rays_per_box * boxes.size(), packets = ray_count / RayPacket::width;
   std::vector<RayPacket> rays(packets);
   std::vector<HitPacket> hits(packets);
   RandomStream random(seed, PatchId::root(0));

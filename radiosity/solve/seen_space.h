@@ -11,12 +11,13 @@
 
 namespace alvor {
 
-/// The cells of a grid over the scene through which rays run that leave boxes to all sides, up to the first face that they meet.
-/// What lies in none of them sees the boxes at most through a gap, or from so far away that they are small. Immutable.
+/// The cells of a grid over the scene that are crossed by rays sent outwards from boxes. The rays are random, and end at the
+/// first face that they meet. What lies neither in such a cell nor beside one sees the boxes at most through a gap, or from so
+/// far away that few of the rays get there. Immutable.
 class SeenSpace {
  public:
-  /// Rays that are sent, and added to the budget, whatever that allows.
-  static constexpr std::size_t ray_count = 32'768;
+  /// Rays that are sent from each box, and added to the budget, whatever that allows.
+  static constexpr std::size_t rays_per_box = 8192;
 
   /// Boxes in metres; there is at least one.
   SeenSpace(const LocalScene& scene, std::span<const BoundingBox> boxes, std::uint64_t seed, RayBudget& budget);

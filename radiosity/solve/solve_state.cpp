@@ -23,6 +23,10 @@ constexpr double held_by_floats = 1e37;
 // within the range of float32. Else its light becomes 0 and is found anew.
 constexpr double least_kept = 1e-6;
 
+// Largest factor by which the field is scaled with direct light. A larger one says that a light was switched on or off that
+// others do not make up for: rooms that it does not light would be shown far too dark or bright at first. Chosen.
+constexpr double most_scaled = 2;
+
 /// Returns an upper bound on the irradiance of the solution, W/m2, per band: max E / (1 - max albedo). If every surface emitted
 /// and scattered like the brightest, B would be this everywhere, and H no larger. Estimates by rays may lie above it, the truth
 /// does not. Near a lamp, under a sky that is brighter beside its zenith, and among panes that emit, irradiance has no such
@@ -164,7 +168,6 @@ double SolveState::arrived_power() const {
 }
 
 std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
-  if (!scattered_before_) scattered_before_ = scattered_power();
   known_errors.clear();
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
   const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);
@@ -176,7 +179,7 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   const auto factor = direct.note_relit(change);
   const Rgb field_change = factor && reflects_as_before ? *factor : Rgb{change, change, change};
   field.scale(field_change);
-  scattered_before_ = field_change * *scattered_before_;
+  if (scattered_before_) scattered_before_ = field_change * *scattered_before_;
   if (rows.carry_light()) {
     std::vector<NodeIndex> dark = forests.rows().leaves();
     std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
@@ -187,15 +190,18 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   fit_to_nodes();
   const bool is_scaled = factor && factor->is_grey() && !plan.emission_by_rows() && reflects_as_before && change > 0 &&
                          leaf_count() == leaves_before;
+  if (is_scaled) scattered_before_.reset();
   return is_scaled ? std::optional(factor->r / change) : std::nullopt;
+}
+
+void SolveState::note_scattered_light() {
+  if (rows.carry_light() && !plan.emission_by_rows() && !scattered_before_) scattered_before_ = scattered_power();
 }
 
 void SolveState::scale_field_to_direct_light() {
   if (!scattered_before_) return;
   const RelativeLight before = *std::exchange(scattered_before_, std::nullopt), now = scattered_power();
-  const auto ratio = [](double was, double is) {
-    return was > 0 && is > least_kept * was && was > least_kept * is ? is / was : 1;
-  };
+  const auto ratio = [](double was, double is) { return is > was / most_scaled && is < was * most_scaled ? is / was : 1; };
   field.scale({ratio(before.r, now.r), ratio(before.g, now.g), ratio(before.b, now.b)});
 }
 
@@ -220,13 +226,22 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   const bool shines_alike = unit_.to_watts(1) == unit_before && has_same_lights(move_->before, mesh);
   if (!reflects_as_before || !shines_alike) known.clear();
   known_errors = std::move(known);
-  scattered_before_.reset();  // light that a moved object takes from one room is not missing in the next
+  std::vector<NodeIndex> dark = forests.rows().leaves();
+  std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
+  forget_errors(dark);  // note_relit() has made their field dark
   if (!rows.carry_light()) return;
   std::vector<NodeIndex> of_moved = forests.rows().leaves();
   std::erase_if(of_moved, [this](NodeIndex row) { return !move_->roots.has(forests.rows().id(row).root_face()); });
   std::vector<RelativeLight> irradiance;  // without slopes: that of light at the old place says nothing at the new one
   for (const NodeIndex row : of_moved) irradiance.push_back(field.irradiance(row));
   field.set(of_moved, irradiance);
+  forget_errors(of_moved);
+}
+
+/// Lets the errors of rows be found again, because their field was replaced or their hits have changed.
+void SolveState::forget_errors(std::span<const NodeIndex> of_rows) {
+  if (!known_errors.are_of(forests)) return;
+  for (const NodeIndex row : of_rows) known_errors.forget_row(row);
 }
 
 /// Returns for each row, by node, whether it or one beside it sees a place of moved roots.
@@ -249,10 +264,10 @@ void SolveState::mend_moved() {
   assert(move_);
   direct.note_moved(move_->roots, [this] { return rows_in_sight(move_->roots); });
   std::vector<NodeIndex> leaves;
-  for (const NodeIndex row : rows.note_moved(move_->before, move_->roots)) {
-    forests.append_leaves_of_row(row, leaves);
-    if (known_errors.are_of(forests)) known_errors.forget_row(row);
-  }
+  const MendedRows found = rows.note_moved(move_->before, move_->roots);
+  forget_errors(found.mended);
+  forget_errors(found.lost);
+  for (const NodeIndex row : found.lost) forests.append_leaves_of_row(row, leaves);
   for (const NodeIndex leaf : leaves) direct.forget(leaf);
   move_.reset();
 }

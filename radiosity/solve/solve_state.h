@@ -99,8 +99,10 @@ class SolveState {
   /// Requires: rows and forests are those of the mesh as it is now.
   std::optional<double> note_relit(Plan new_plan, bool reflects_as_before);
 
-  /// Multiplies the field by as much as scattered direct light has changed in all since note_relit(), per band: the exchange then
-  /// has less to change. To be called when direct light is known.
+  /// Notes how much direct light is scattered, before materials and lights of the mesh change.
+  void note_scattered_light();
+  /// Multiplies the field, per band, by the ratio of the scattered direct light of the whole scene to what was noted last, if it
+  /// is between 1/2 and 2: the exchange then has less to change. To be called when direct light is known.
   void scale_field_to_direct_light();
 
   /// Takes roots that the mesh has got at its end since it had `roots_before`, all of them hidden. To be followed by note_relit()
@@ -130,11 +132,12 @@ class SolveState {
   };
   std::optional<Move> move_;  ///< that rows and direct light do not heed yet
   EmissionUnit unit_{mesh};
-  std::optional<RelativeLight> scattered_before_;  ///< power of the direct light that the field is of, if an edit has changed it
+  std::optional<RelativeLight> scattered_before_;  ///< see note_scattered_light(); nothing where no edit is pending
   Rgb largest_irradiance_;                         ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
   double arrived_power() const;
   RelativeLight scattered_power() const;
+  void forget_errors(std::span<const NodeIndex> of_rows);
   std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
   /// Splits the row in the place of a leaf that was split into slabs, if it is larger: where direct light changes across a line,

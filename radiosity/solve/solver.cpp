@@ -128,7 +128,10 @@ class Run {
       save_if_due();
       pass_.emplace(state_);
       if (!pass()) return requests_.reason();
-      if (error_to_keep() <= options_.tolerance) return converge(StopReason::tolerance);
+      if (error_to_keep() <= options_.tolerance) {
+        pass_->keep_errors();
+        return converge(StopReason::tolerance);
+      }
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
       if (const auto& made = requests_.ask(); made.break_off() || made.edited) return requests_.reason();

@@ -14,6 +14,11 @@
 
 namespace alvor {
 
+/// Rows of which rays were sent again after a move, and those that must be traced anew. Row nodes.
+struct MendedRows {
+  std::vector<NodeIndex> mended, lost;
+};
+
 /// The transport rows of the row forest's leaves. Indices are row nodes. Each row's hits are on the rank that traced it
 /// (is_own()); all else of the row is on all ranks. Borrows all that it is made with. Used by one thread at a time.
 class TracedRows {
@@ -73,10 +78,10 @@ class TracedRows {
   /// Takes roots that the mesh has got; their rows are untraced.
   void append(const AppendedRoots& roots);
   /// Takes roots that have moved since the mesh was `before`: sends the rays again that ended on them, or may meet them where
-  /// they are now. Returns the rows that must be traced anew instead, which are forgotten: those of moved roots, those that touch
+  /// they are now. The rows that must be traced anew instead are forgotten: those of moved roots, those that touch
   /// places where these were or are, and where not all is known of the rays: under panes and media, with hemicubes, and where
   /// rays left the scene. Requires: one rank; the scene is the new one.
-  std::vector<NodeIndex> note_moved(const BaseMesh& before, const MovedRoots& moved);
+  MendedRows note_moved(const BaseMesh& before, const MovedRoots& moved);
 
   /// Collective. Every rank writes the rows of all.
   void save_rows(PlainWriter& out) const;

@@ -100,7 +100,7 @@ class RowMender {
 
 }  // namespace
 
-std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const MovedRoots& moved) {
+MendedRows TracedRows::note_moved(const BaseMesh& before, const MovedRoots& moved) {
   const bool may_mend = plan_.needs(Feature::refinement) && !plan_.needs(Feature::panes) && !plan_.needs(Feature::medium) &&
                         !directions_.has_weights();
   // Rays that were added since hits were looked up last have no leaves yet.
@@ -127,17 +127,17 @@ std::vector<NodeIndex> TracedRows::note_moved(const BaseMesh& before, const Move
     else if (carry_light() && moved.are_in_front(root.corners[0], root.normal, true))
       outcomes[n] = mender.mend(shape, id, options_.seed, row, known_leaves(rows[n]));
   });
-  std::vector<NodeIndex> lost;
+  MendedRows found;
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    if (outcomes[n] == RowMender::Outcome::mended) found_among_[rows[n]] = 0;
+    if (outcomes[n] == RowMender::Outcome::mended) found.mended.push_back(rows[n]), found_among_[rows[n]] = 0;
     if (outcomes[n] != RowMender::Outcome::lost) continue;
     forget(rows[n]);
     is_traced_[rows[n]] = false;
     guides_.erase(rows[n]);
-    lost.push_back(rows[n]);
+    found.lost.push_back(rows[n]);
   }
   std::erase_if(wanting_, [this](NodeIndex row) { return !is_traced_[row]; });
-  return lost;
+  return found;
 }
 
 }  // namespace alvor

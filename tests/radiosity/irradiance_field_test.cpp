@@ -1,5 +1,7 @@
 #include "radiosity/exchange/irradiance_field.h"
 
+#include "radiosity/exchange/field_equations.h"
+
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>
@@ -58,6 +60,22 @@ struct Rows {
     return all;
   }
 };
+
+/// Fits of some rows, from samples of those around them alone.
+std::vector<FieldFit> fit_some(const Rows& rows, std::span<const RowSamples> samples, std::span<const std::uint32_t> given,
+                               std::span<const std::uint32_t> wanted) {
+  std::vector<NodeIndex> nodes;
+  std::vector<SmoothNeighbours> neighbours;
+  std::vector<RowSamples> of_given;
+  for (const std::uint32_t n : given)
+    nodes.push_back(rows.nodes[n]), neighbours.push_back(rows.neighbours[n]), of_given.push_back(samples[n]);
+  std::vector<FieldFit> fits(rows.size());
+  const auto take = [&](std::span<const std::uint32_t> places, std::span<const FieldFit> found) {
+    for (std::size_t k = 0; k < places.size(); ++k) fits[given[places[k]]] = found[k];
+  };
+  fit_field(rows.forest, nodes, neighbours, of_given, rows.centre_of_node, wanted, take);
+  return fits;
+}
 
 Rows floor_rows(int level = 4, bool has_slabs = false) {
   Scene scene;
@@ -279,6 +297,46 @@ TEST(IrradianceField, BandsAreFittedApart) {
     EXPECT_NEAR(value.r, 50 + rows.centre(n).x, 1e-10);
     EXPECT_EQ(value.g, 0);
     EXPECT_NEAR(value.b, 80 - rows.centre(n).z, 1e-10);
+  }
+}
+
+TEST(IrradianceField, FitsOfSomeRowsAreThoseOfAllRows) {
+  const Rows rows = floor_rows();
+  const auto samples = rows.samples([](Vec3 at) { return 2 + std::sin(at.x) * std::cos(0.7 * at.z); });
+  const std::vector<FieldFit> all = rows.fit(samples);
+  std::vector<std::uint32_t> given, wanted;
+  for (std::uint32_t n = 0; n < rows.size(); ++n) {
+    const double distance = length(rows.centre(n) - Vec3{8, 0, 8});
+    if (distance < 2.5) wanted.push_back(static_cast<std::uint32_t>(given.size()));
+    if (distance < 6.5) given.push_back(n);
+  }
+  ASSERT_GT(wanted.size(), 10u);
+  ASSERT_LT(given.size(), rows.size());
+  const std::vector<FieldFit> some = fit_some(rows, samples, given, wanted);
+  for (const std::uint32_t k : wanted) {
+    const FieldFit &a = some[given[k]], &b = all[given[k]];
+    for (std::size_t c = 0; c < 6; ++c) EXPECT_EQ(a.coefficient[c].r, b.coefficient[c].r);
+    EXPECT_EQ(a.window_misfit, b.window_misfit);
+    EXPECT_EQ(a.variance, b.variance);
+  }
+}
+
+TEST(FieldEquations, FindAPlaneFromAnyNumberOfSamples) {
+  for (const int count : {5, 6, 7, 8, 100, 192, 193}) {
+    SampleBlocks samples;
+    for (int n = 0; n < count; ++n) {
+      const double s = std::cos(2.4 * n) * std::sqrt(n) / 15, t = std::sin(2.4 * n) * std::sqrt(n) / 15;
+      const double value = 3 + 2 * s - t;
+      samples.add({s, t, 16, value, 2 * value, 0});
+    }
+    const auto plane = FieldEquations<3>(samples, 1.5).solve();
+    ASSERT_TRUE(plane) << count;
+    EXPECT_NEAR(plane->coefficient[0].r, 3, 1e-9);
+    EXPECT_NEAR(plane->coefficient[1].g, 4, 1e-9);
+    EXPECT_NEAR(plane->coefficient[2].r, -1, 1e-9);
+    EXPECT_NEAR(plane->misfit, 0, 1e-9);
+    EXPECT_NEAR(plane->noise, 1.0 / 16, 1e-12);
+    EXPECT_EQ(bool(FieldEquations<6>(samples, 1.5).solve()), count >= 9);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "radiosity/solve/moved_roots.h"
 #include "tests/radiosity/edited_solve.h"
 #include "tests/scenes.h"
+#include "tests/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -120,6 +121,10 @@ std::vector<Addition> additions() {
   lamp.lights = {Light{"spot", LightKind::spot, {2, 2, 2}, {0.4, 1.2, 0.3}}};
   lamp.lights[0].direction = {0, -1, 0};
   const auto lit = std::make_shared<const Scene>(std::move(lamp));
+  Scene patterned = *table;
+  patterned.materials[0] = test::textured(test::checkerboard(4, 10, 200));
+  test::complete_texture_points(patterned);
+  const auto checked = std::make_shared<const Scene>(std::move(patterned));
   return {{"second box", ObjectCopy{"second box", "box"}, {0.8, 0.3, 1}, {}, {}, false},
           {"second lamp", ObjectCopy{"second lamp", "lamp"}, {1.2, -0.3, 1}, {}, {}, true},
           {"table",
@@ -133,6 +138,12 @@ std::vector<Addition> additions() {
            {1.2, 0, 1},
            {{"scenes/lit", lit}},
            {{"scenes/lit", std::make_shared<const BaseMesh>(*lit)}},
+           true},
+          {"checked table",
+           ObjectCopy{.name = "checked table", .of = "", .scene = "scenes/checked"},
+           {1.2, 0, 1},
+           {{"scenes/checked", checked}},
+           {{"scenes/checked", std::make_shared<const BaseMesh>(*checked)}},
            true}};
 }
 

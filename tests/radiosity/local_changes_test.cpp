@@ -1,0 +1,135 @@
+// After an edit that changes little, only what it changes is looked at again.
+
+#include "meshing/edit/edited_scene.h"
+#include "radiosity/solve/pass.h"
+#include "radiosity/solve/seen_space.h"
+#include "tests/radiosity/edited_solve.h"
+#include "tests/radiosity/solve_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace alvor {
+namespace {
+
+using test::EditedSolve;
+
+/// Two rooms of 4 x 3 x 4 m with lamps, 6 m apart, and a box of half a metre in the first one.
+Scene two_rooms() {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0)};
+  for (const double x : {0.0, 10.0}) {
+    test::add_box(scene, {x, 0, 0}, {x + 4, 3, 4}, true);
+    test::add_polygon(scene, {{x + 1, 2.9, 1}, {x + 2, 2.9, 1}, {x + 2, 2.9, 2}, {x + 1, 2.9, 2}}, 1);
+    test::add_polygon(scene, {{x + 3, 2.9, 1}, {x + 3.5, 2.9, 1}, {x + 3.5, 2.9, 2}, {x + 3, 2.9, 2}}, 1);
+  }
+  scene.objects = {{.name = "box", .first_face = static_cast<std::uint32_t>(scene.faces.size()), .face_count = 6}};
+  test::add_box(scene, {1, 0.5, 1}, {1.5, 1, 1.5}, false);
+  return scene;
+}
+
+void move_box(Scene& scene) {
+  scene = edited_scene(two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = Vec3{1, 0.2, 1}}});
+}
+
+/// Exchanges the light of a pass until hardly any is left, and returns the estimate.
+ErrorEstimate estimate_of(Pass& pass) {
+  pass.prepare();
+  settle(pass.exchange(), 1e-6, [](std::size_t) { return true; });
+  return pass.estimate();
+}
+
+TEST(KnownErrors, TellWhatAnEstimateOfAllTells) {
+  EditedSolve solve(two_rooms(), {.tolerance = 0.05});
+  const double before = solve.last().estimated_error;
+  solve.edit(move_box);
+  SolveState& state = solve.live()->state;
+  ASSERT_TRUE(state.known_errors.are_of(state.forests)) << "refined after the edit";
+  Pass some(state);
+  const ErrorEstimate of_some = estimate_of(some);
+  const std::vector<float> told = some.leaf_errors(of_some);
+  state.known_errors.clear();
+  Pass all(state);
+  const ErrorEstimate of_all = estimate_of(all);
+  const std::vector<float> told_of_all = all.leaf_errors(of_all);
+  EXPECT_NEAR(of_some.total(), of_all.total(), 0.01 * of_all.total());
+  EXPECT_NE(of_all.total(), before);
+  ASSERT_EQ(told.size(), told_of_all.size());
+  double squares = 0, all_squares = 0;
+  for (std::size_t n = 0; n < told.size(); ++n) {
+    squares += std::pow(told[n] - told_of_all[n], 2);
+    all_squares += std::pow(told_of_all[n], 2);
+  }
+  EXPECT_LT(std::sqrt(squares / all_squares), 0.05);
+}
+
+TEST(KnownErrors, AreForgottenWhereLightsOrReflectancesChange) {
+  const auto is_known_after = [](const Scene& edited) {
+    EditedSolve solve(two_rooms(), {.tolerance = 0.05});
+    LiveSolve& live = *solve.live();
+    const BaseMesh mesh = BaseMesh(two_rooms()).edited_as(edited);
+    EXPECT_TRUE(live.take_edit(mesh, Plan(mesh, live.state.options)));
+    return !live.state.known_errors.empty();
+  };
+  Scene moved = two_rooms(), dimmed = two_rooms(), recoloured = two_rooms();
+  move_box(moved);
+  dimmed.materials[1].emission = {1, 1, 0.5};
+  recoloured.materials[0].reflectance = {0.5, 0.5, 0.4};
+  EXPECT_TRUE(is_known_after(moved));
+  EXPECT_FALSE(is_known_after(dimmed));
+  EXPECT_FALSE(is_known_after(recoloured));
+  dimmed = moved;
+  dimmed.materials[1].emission = {1, 1, 0.5};
+  EXPECT_FALSE(is_known_after(dimmed));
+}
+
+TEST(SeenSpace, ReachesAllOfARoomAndNothingOfAnother) {
+  const Scene scene = two_rooms();
+  const BaseMesh mesh(scene);
+  const LocalScene local(mesh);
+  RayBudget budget([] { return false; });
+  const BoundingBox box{{1, 0.5, 1}, {1.5, 1, 1.5}};
+  const SeenSpace space(local, std::span(&box, 1), 1, budget);
+  EXPECT_EQ(budget.rays(), SeenSpace::rays_per_box);
+  constexpr double size = 0.1;
+  for (double x = 0; x + size <= 4; x += size)
+    for (double y = 0; y + size <= 3; y += size)
+      for (double z = 0; z + size <= 4; z += size) {
+        const Vec3 low{x, y, z}, of_cell{size, size, size};
+        EXPECT_TRUE(space.reaches({low, low + of_cell}));
+        const Vec3 there = low + Vec3{10, 0, 0};
+        EXPECT_FALSE(space.reaches({there, there + of_cell}));
+      }
+}
+
+TEST(EditedSolve, ShowsReflectedLightDimmedBeforeItHasGoneRound) {
+  const Scene submitted = test::room_with_lamps_and_sun();
+  EditedSolve solve(submitted, {.tolerance = 0.05});
+  LiveSolve& live = *solve.live();
+  const auto mean = [&] {
+    double sum = 0, area = 0;
+    for (const LeafValue& leaf : live.state.leaf_values()) {
+      const double own = area_of(live.state.mesh, shape_of(live.state.mesh, leaf.patch));
+      sum += own * leaf.irradiance.mean(), area += own;
+    }
+    return sum / area;
+  };
+  const double before = mean();
+  Scene dimmed = submitted;
+  dimmed.lights[2].intensity = 0.5 * dimmed.lights[2].intensity;
+  const BaseMesh mesh = BaseMesh(submitted).edited_as(dimmed);
+  ASSERT_TRUE(live.take_edit(mesh, Plan(mesh, live.state.options)));
+  Pass pass(live.state);
+  pass.trace_rows();
+  pass.add_direct_light();
+  const double at_first = mean();
+  settle(pass.begin_exchange(), 1e-6, [](std::size_t) { return true; });
+  pass.show_smoothly();
+  const double at_last = mean();
+  EXPECT_LT(at_last, 0.9 * before) << "the edit changes little";
+  EXPECT_NEAR(at_first, at_last, 0.03 * at_last);
+}
+
+}  // namespace
+}  // namespace alvor
