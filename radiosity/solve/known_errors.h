@@ -21,8 +21,8 @@ struct SplitError {
   Split split = Split::quarters;
 };
 
-/// The errors of the last estimate, by node, if nothing was refined since: 40 bytes a row, 32 a leaf. After an edit that leaves
-/// most of a scene as it was, only those are found again whose light has changed. Empty unless they are kept.
+/// The errors of the last estimate, by node: 40 bytes a row, 32 a leaf. After an edit that leaves most of a scene as it was, only
+/// those are found again whose light has changed. Empty unless they are kept.
 class KnownErrors {
  public:
   /// An error, and the irradiance that it was found at, mean over bands, emission units.
@@ -42,8 +42,11 @@ class KnownErrors {
     rows_.assign(forests.rows().node_count(), {});
     leaves_.assign(forests.leaves().node_count(), {});
   }
-  bool are_of(const Forests& forests) const {
-    return !leaves_.empty() && rows_.size() == forests.rows().node_count() && leaves_.size() == forests.leaves().node_count();
+  /// Makes room for new nodes, whose errors are not known, unless it is empty.
+  void fit_to_nodes(const Forests& forests) {
+    if (empty()) return;
+    rows_.resize(forests.rows().node_count());
+    leaves_.resize(forests.leaves().node_count());
   }
   bool empty() const { return leaves_.empty(); }
 

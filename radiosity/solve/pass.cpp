@@ -52,7 +52,7 @@ bool Pass::trace(std::span<const NodeIndex> batch) {
 
 void Pass::add_direct_light(const std::function<void()>& after_each) {
   assert(stage_ == Stage::tracing);
-  if (state_.known_errors.are_of(state_.forests))
+  if (!state_.known_errors.empty())
     for (const NodeIndex leaf : state_.forests.leaves().leaves())
       if (!state_.direct.is_known(leaf)) state_.known_errors.forget_leaf(leaf);
   state_.direct.add_new(state_.rows, after_each);
@@ -76,7 +76,6 @@ Exchange& Pass::prepare() {
 bool Pass::refine(const std::function<bool()>& gives_up, double share) {
   find_candidates();
   stage_ = Stage::refined;
-  state_.known_errors.clear();
   const Forests& forests = state_.forests;
   const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
   const std::vector<Candidate> marked = mark(std::move(candidates_), share);
@@ -99,6 +98,7 @@ bool Pass::refine(const std::function<bool()>& gives_up, double share) {
     }
   }
   state_.rows.want_rays(wanting);
+  state_.forget_errors(wanting);
   const bool has_split = forests.leaves().leaf_count() != leaves_before || forests.rows().leaf_count() != rows_before;
   return state_.rows.want_any() || wants_shadow_rays || has_split;
 }

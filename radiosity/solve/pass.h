@@ -45,8 +45,8 @@ class Pass {
   Exchange& begin_exchange();
   /// Fits the smooth field that is shown and returns the estimated error.
   ErrorEstimate estimate();
-  /// Keeps the errors that were found for the next pass, which is faster if an edit has moved a little in between. To be called
-  /// between estimate() and refine(), if refine() will not be.
+  /// Keeps the errors that were found for the next pass, which is faster if little is refined or moved in between. To be called
+  /// between estimate() and refine().
   void keep_errors();
   /// Share of the candidates' squared error that a pass refines (bulk marking). Chosen; half: error -16 %, rays +42 %, double:
   /// error +7 %, rays -19 % (docs/design/constants.md).

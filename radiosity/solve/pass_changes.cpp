@@ -66,7 +66,7 @@ class Marked {
 
 /// Returns whether the errors that are known from the estimate before are of use. Those by place would have to be known better
 /// where it is dark.
-bool Pass::knows_errors() const { return !state_.options.is_by_place() && state_.known_errors.are_of(state_.forests); }
+bool Pass::knows_errors() const { return !state_.options.is_by_place() && !state_.known_errors.empty(); }
 
 /// Returns by how much the irradiance at a place may have changed, mean over bands, where errors are not found again.
 /// `irradiance` is by patch, of rows.
@@ -129,7 +129,7 @@ void Pass::note_errors() {
 
 void Pass::keep_errors() {
   assert(stage_ == Stage::estimated);
-  if (state_.known_errors.are_of(state_.forests)) return;
+  if (!state_.known_errors.empty()) return;
   state_.known_errors.make_room(state_.forests);
   note_errors();
 }

@@ -80,6 +80,7 @@ void SolveState::fit_to_nodes() {
   field.fit_to_nodes();
   direct.fit_to_nodes();
   shot.resize(forests.leaves().node_count());
+  known_errors.fit_to_nodes(forests);
 }
 
 std::vector<LeafValue> SolveState::leaf_values() const {
@@ -207,6 +208,7 @@ void SolveState::scale_field_to_direct_light() {
 
 void SolveState::note_appended(std::size_t roots_before) {
   const AppendedRoots roots{static_cast<NodeIndex>(roots_before), static_cast<NodeIndex>(mesh.roots().size() - roots_before)};
+  known_errors.clear();
   forests.append(roots);
   rows.append(roots);
   field.append(roots);
@@ -226,6 +228,7 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   const bool shines_alike = unit_.to_watts(1) == unit_before && has_same_lights(move_->before, mesh);
   if (!reflects_as_before || !shines_alike) known.clear();
   known_errors = std::move(known);
+  known_errors.fit_to_nodes(forests);
   std::vector<NodeIndex> dark = forests.rows().leaves();
   std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
   forget_errors(dark);  // note_relit() has made their field dark
@@ -238,9 +241,8 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   forget_errors(of_moved);
 }
 
-/// Lets the errors of rows be found again, because their field was replaced or their hits have changed.
 void SolveState::forget_errors(std::span<const NodeIndex> of_rows) {
-  if (!known_errors.are_of(forests)) return;
+  if (known_errors.empty()) return;
   for (const NodeIndex row : of_rows) known_errors.forget_row(row);
 }
 

@@ -118,6 +118,9 @@ class SolveState {
   /// Mends rows and forgets direct light that the moved roots were or are in the way of. Requires: has_unmended_move().
   void mend_moved();
 
+  /// Lets the next estimate find the errors of rows again, because their field was replaced or their hits change.
+  void forget_errors(std::span<const NodeIndex> of_rows);
+
   /// Collective. Writes the values of leaves and rows, from which another state of this mesh, plan and options can go on, with
   /// any number of ranks; all else is computed again.
   void save(PlainWriter& out) const;
@@ -137,7 +140,6 @@ class SolveState {
   void fit_to_nodes();
   double arrived_power() const;
   RelativeLight scattered_power() const;
-  void forget_errors(std::span<const NodeIndex> of_rows);
   std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
   /// Splits the row in the place of a leaf that was split into slabs, if it is larger: where direct light changes across a line,

@@ -128,10 +128,9 @@ class Run {
       save_if_due();
       pass_.emplace(state_);
       if (!pass()) return requests_.reason();
-      if (error_to_keep() <= options_.tolerance) {
-        pass_->keep_errors();
-        return converge(StopReason::tolerance);
-      }
+      const bool is_done = error_to_keep() <= options_.tolerance;
+      if (is_done || has_ended_before()) pass_->keep_errors();
+      if (is_done) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
       if (const auto& made = requests_.ask(); made.break_off() || made.edited) return requests_.reason();
@@ -164,7 +163,7 @@ class Run {
     const ErrorEstimate& error = is_.error;
     const double all = squared(error.total()), refinable = all - squared(error.unshot) - squared(error.balance);
     if (refinable <= 0) return Pass::marked_share;
-    const double spare = live_.leaves_at_first_end == 0 ? spare_of_new_solve : 1;
+    const double spare = has_ended_before() ? 1 : spare_of_new_solve;
     const double excess = all - squared(well_within * options_.tolerance);
     return std::min(spare * excess / (removed_by_refining * refinable), Pass::marked_share);
   }
@@ -310,10 +309,13 @@ class Run {
   double cpu_s() const { return is_.cpu_s + cpu_.seconds(); }
 
   bool is_stuck() const { return has_stalled_ && is_.error.unshot > pass_remaining * options_.tolerance; }
+  /// Returns whether the solve had reached its tolerance or a limit, and an edit lets it go on.
+  bool has_ended_before() const { return live_.leaves_at_first_end > 0; }
   /// Returns whether this pass may be the last and its exchange is cheap. It then goes on to the end, so that all of the light is
   /// smoothed.
   bool may_be_last() const {
-    if (live_.error_before_edit) return false;  // the sooner the estimate comes; converge() goes on to the end
+    // After an edit the estimate comes the sooner; converge() goes on to the end.
+    if (live_.error_before_edit || has_ended_before()) return false;
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
   /// Collective.
