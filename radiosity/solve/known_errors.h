@@ -3,6 +3,7 @@
 
 #include "radiosity/solve/forests.h"
 
+#include <span>
 #include <vector>
 
 namespace alvor {
@@ -21,8 +22,8 @@ struct SplitError {
   Split split = Split::quarters;
 };
 
-/// The errors of the last estimate, by node: 40 bytes a row, 32 a leaf. After an edit that leaves most of a scene as it was, only
-/// those are found again whose light has changed. Empty unless they are kept.
+/// The errors of the last estimate, 40 bytes for each node of the row forest and 32 of the leaf forest. After an edit that leaves
+/// most of a scene as it was, only those are found again whose light has changed. Empty unless they are kept.
 class KnownErrors {
  public:
   /// An error, and the irradiance that it was found at, mean over bands, emission units.
@@ -55,6 +56,12 @@ class KnownErrors {
   const Known<SplitError>& of_leaf(NodeIndex leaf) const { return leaves_[leaf]; }
   void set_row(NodeIndex row, const OriginMisfit& error, double irradiance) { rows_[row] = {error, irradiance, true}; }
   void set_leaf(NodeIndex leaf, const SplitError& error, double irradiance) { leaves_[leaf] = {error, irradiance, true}; }
+  /// Notes light that came since the errors were found, and that is no reason to find them again. `light` is the irradiance that
+  /// a row and its leaves got, mean over bands, emission units.
+  void add_light(NodeIndex row, std::span<const NodeIndex> leaves, double light) {
+    rows_[row].irradiance += light;
+    for (const NodeIndex leaf : leaves) leaves_[leaf].irradiance += light;
+  }
   void forget_row(NodeIndex row) { rows_[row].is_known = false; }
   void forget_leaf(NodeIndex leaf) { leaves_[leaf].is_known = false; }
 

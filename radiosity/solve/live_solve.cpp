@@ -133,6 +133,7 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
 bool LiveSolve::may_scale() const { return ended_with && state.ranks.is_alone() && told_errors.size() == state.leaf_count(); }
 
 void LiveSolve::scale(double factor) {
+  state.scale_field_to_direct_light();  // by 1, because both have the factor; what was noted for that is used up
   for (float& error : told_errors) error = static_cast<float>(std::min(factor * error, 1e37));
   for (double* power : {&progress.balance.emitted, &progress.balance.absorbed, &progress.balance.lost, &progress.balance.unshot})
     *power *= factor;

@@ -61,7 +61,7 @@ std::vector<std::uint8_t> see_moved(const LocalScene& scene, const MovedRoots& m
   const std::vector<BoundingBox> boxes = moved.boxes();
   if (boxes.empty()) return seen;
   std::optional<SeenSpace> space;
-  if (patches.size() * RayPacket::width > worth_a_space * SeenSpace::rays_per_box * boxes.size())
+  if (patches.size() * RayPacket::width > worth_a_space * SeenSpace::rays_from(boxes.size()))
     space.emplace(scene, boxes, patches.front().seed, budget);
   tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t n) {
     if (space && !space->reaches(box_of(scene.mesh(), patches[n].shape))) return;

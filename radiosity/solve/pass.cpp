@@ -46,6 +46,7 @@ bool Pass::trace(std::span<const NodeIndex> batch) {
   // Some rows are no longer leaves: they were split because a row traced before them lies along a contact.
   std::erase_if(rows, [this](NodeIndex row) { return !state_.forests.rows().is_leaf(row); });
   if (!state_.rows.trace(rows)) return false;
+  state_.forget_errors(rows);
   for (const NodeIndex row : rows) state_.heed_hidden_origins(row);
   return true;
 }
@@ -113,6 +114,19 @@ Shooting Pass::unshot_system() {
 void Pass::show(std::span<const RelativeLight> irradiance) { state_.field.set(system_->rows(), irradiance); }
 
 void Pass::show_what_came_since() {
+  if (stage_ == Stage::estimated && knows_errors()) {
+    const std::vector<RelativeLight> irradiance = exchange_->irradiance();
+    for (std::size_t p = 0; p < irradiance.size(); ++p) {
+      const NodeIndex row = system_->rows()[p];
+      const double more = (irradiance[p] - state_.field.irradiance(row)).mean();
+      state_.known_errors.add_light(row, system_->leaves_of(p), more);
+    }
+  }
+  move_field();
+}
+
+/// Adds to the field of each row what its irradiance has changed since it was set.
+void Pass::move_field() {
   if (state_.rows.carry_light()) state_.field.move_to(system_->rows(), exchange_->irradiance());
 }
 

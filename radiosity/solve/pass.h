@@ -106,6 +106,7 @@ class Pass {
     std::vector<std::uint32_t> places, with_slopes;
   };
   ChangedLeaves changed_leaves(std::span<const SmoothNeighbours> neighbours) const;
+  void move_field();
   void fit_field_smoothly(std::span<const SmoothNeighbours> neighbours);
   void find_misfits();
   void note_errors();

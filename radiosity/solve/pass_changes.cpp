@@ -64,8 +64,8 @@ class Marked {
 
 }  // namespace
 
-/// Returns whether the errors that are known from the estimate before are of use. Those by place would have to be known better
-/// where it is dark.
+/// Returns whether the errors that are known from the estimate before are of use. They are not where the tolerance is by place:
+/// there a small change of light is a large one in the dark.
 bool Pass::knows_errors() const { return !state_.options.is_by_place() && !state_.known_errors.empty(); }
 
 /// Returns by how much the irradiance at a place may have changed, mean over bands, where errors are not found again.

@@ -38,7 +38,7 @@ void Pass::show_smoothly() {
 void Pass::fit_field_smoothly(std::span<const SmoothNeighbours> neighbours) {
   find_changed_rows(neighbours);
   const auto rows = system_->rows();
-  if (knows_errors()) show_what_came_since();
+  if (knows_errors()) move_field();
   else show(exchange_->irradiance());
   std::vector<NodeIndex> sampled;
   std::vector<SmoothNeighbours> beside;

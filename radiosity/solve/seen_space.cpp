@@ -8,17 +8,20 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace alvor {
 
 namespace {
 
-// Cells along the longest side of the scene: in a house of 25 m, cells of 40 cm. Across it, one or two
-// of the rays from a box meet a cell or one beside it. Chosen.
+// Cells along the longest side of the scene: in a house of 25 m, cells of 40 cm. Chosen.
 constexpr int cells = 64;
 // Steps along a ray in each cell that it crosses. Chosen.
 constexpr double steps_a_cell = 2;
+// Rays from each box, and from all boxes together at most. With the first, six rays from a box meet a cell, or one beside it,
+// that is as far away as the scene is long: 3^2 / 64^2 of 4 pi. Chosen.
+constexpr std::size_t rays_per_box = 32'768, most_rays = 8 * rays_per_box;
 
 /// The cell of a coordinate in local units, in which the scene lies between -1/2 and 1/2.
 int cell_of(double x) { return std::clamp(static_cast<int>(std::floor((x + 0.5) * cells)), 0, cells - 1); }
@@ -52,38 +55,40 @@ Outward outward_ray(const BoundingBox& box, std::size_t side, RandomStream& rand
 
 }  // namespace
 
+std::size_t SeenSpace::rays_from(std::size_t boxes) { return std::min(rays_per_box * boxes, most_rays); }
+
 SeenSpace::SeenSpace(const LocalScene& scene, std::span<const BoundingBox> boxes, std::uint64_t seed, RayBudget& budget)
     : frame_(scene.frame()), is_seen_(static_cast<std::size_t>(cells) * cells * cells) {
   constexpr float far = 4;  // leaves the scene from everywhere in it
-  const std::size_t ray_count = rays_per_box * boxes.size(), packets = ray_count / RayPacket::width;
-  std::vector<RayPacket> rays(packets);
-  std::vector<HitPacket> hits(packets);
-  RandomStream random(seed, PatchId::root(0));
-  for (std::size_t n = 0; n < ray_count; ++n) {
-    const BoundingBox& box = boxes[n / 6 % boxes.size()];
-    const Outward ray = outward_ray({frame_.to_local(box.low), frame_.to_local(box.high)}, n % 6, random);
-    rays[n / RayPacket::width].set(n % RayPacket::width, ray.from, ray.way, far);
-  }
-  budget.spend(ray_count, [&] {
-    tbb::parallel_for(std::size_t{0}, packets, [&](std::size_t p) {
-      scene.visibility().closest_hits({&rays[p], 1}, {&hits[p], 1});
+  constexpr std::size_t width = RayPacket::width;
+  const std::size_t rays = rays_from(boxes.size());
+  budget.spend(rays, [&] {
+    tbb::parallel_for(std::size_t{0}, rays / width, [&](std::size_t packet) {
+      RandomStream random(seed, PatchId::root(static_cast<std::uint32_t>(packet)));
+      std::array<Outward, width> outward;
+      RayPacket sent;
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        const std::size_t n = packet * width + lane;
+        const BoundingBox& box = boxes[n / 6 % boxes.size()];
+        outward[lane] = outward_ray({frame_.to_local(box.low), frame_.to_local(box.high)}, n % 6, random);
+        sent.set(lane, outward[lane].from, outward[lane].way, far);
+      }
+      HitPacket hits;
+      scene.visibility().closest_hits({&sent, 1}, {&hits, 1});
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        const double way = hits.root[lane] == HitPacket::nothing ? far : hits.t[lane];
+        mark(outward[lane].from, outward[lane].from + way * outward[lane].way);
+      }
     });
   });
-  for (std::size_t n = 0; n < ray_count; ++n) {
-    const RayPacket& of = rays[n / RayPacket::width];
-    const HitPacket& hit = hits[n / RayPacket::width];
-    const std::size_t lane = n % RayPacket::width;
-    const Vec3 from{of.origin_x[lane], of.origin_y[lane], of.origin_z[lane]};
-    const Vec3 way{of.direction_x[lane], of.direction_y[lane], of.direction_z[lane]};
-    mark(from, from + double(hit.root[lane] == HitPacket::nothing ? far : hit.t[lane]) * way);
-  }
 }
 
+/// Marks the cells along a ray. May be called from several threads at a time.
 void SeenSpace::mark(Vec3 from, Vec3 to) {
   const int steps = 1 + static_cast<int>(length(to - from) * cells * steps_a_cell);
   for (int n = 0; n <= steps; ++n) {
     const Vec3 at = lerp(from, to, double(n) / steps);
-    is_seen_[index_of(cell_of(at.x), cell_of(at.y), cell_of(at.z))] = 1;
+    std::atomic_ref(is_seen_[index_of(cell_of(at.x), cell_of(at.y), cell_of(at.z))]).store(1, std::memory_order_relaxed);
     if (n > 0 && std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > 0.5) return;
   }
 }

@@ -12,12 +12,13 @@
 namespace alvor {
 
 /// The cells of a grid over the scene that are crossed by rays sent outwards from boxes. The rays are random, and end at the
-/// first face that they meet. What lies neither in such a cell nor beside one sees the boxes at most through a gap, or from so
-/// far away that few of the rays get there. Immutable.
+/// first face that they meet. What lies neither in such a cell nor beside one sees the boxes at most through a gap, or is left
+/// out by chance: at the distance of the whole scene one of 300 places that see one of few boxes, and one of ten that see a
+/// single one of twenty; at half of that distance hardly any. Immutable.
 class SeenSpace {
  public:
-  /// Rays that are sent from each box, and added to the budget, whatever that allows.
-  static constexpr std::size_t rays_per_box = 8192;
+  /// Returns the number of rays that are sent from some boxes, and added to the budget, whatever that allows.
+  static std::size_t rays_from(std::size_t boxes);
 
   /// Boxes in metres; there is at least one.
   SeenSpace(const LocalScene& scene, std::span<const BoundingBox> boxes, std::uint64_t seed, RayBudget& budget);

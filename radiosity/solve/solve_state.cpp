@@ -191,7 +191,6 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   fit_to_nodes();
   const bool is_scaled = factor && factor->is_grey() && !plan.emission_by_rows() && reflects_as_before && change > 0 &&
                          leaf_count() == leaves_before;
-  if (is_scaled) scattered_before_.reset();
   return is_scaled ? std::optional(factor->r / change) : std::nullopt;
 }
 

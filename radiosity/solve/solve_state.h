@@ -99,7 +99,8 @@ class SolveState {
   /// Requires: rows and forests are those of the mesh as it is now.
   std::optional<double> note_relit(Plan new_plan, bool reflects_as_before);
 
-  /// Notes how much direct light is scattered, before materials and lights of the mesh change.
+  /// Notes how much direct light is scattered, before materials and lights of the mesh change. What was noted before an earlier
+  /// edit, whose direct light is not found yet, stays.
   void note_scattered_light();
   /// Multiplies the field, per band, by the ratio of the scattered direct light of the whole scene to what was noted last, if it
   /// is between 1/2 and 2: the exchange then has less to change. To be called when direct light is known.
