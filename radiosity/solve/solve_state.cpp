@@ -1,6 +1,7 @@
 #include "radiosity/solve/solve_state.h"
 
 #include "radiosity/solve/moved_sight.h"
+#include "radiosity/solve/near_surfaces.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <tbb/blocked_range.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -22,6 +24,10 @@ constexpr double held_by_floats = 1e37;
 // An edited solve keeps its light where the emission unit changes by a factor from this to its inverse, so that squares stay
 // within the range of float32. Else its light becomes 0 and is found anew.
 constexpr double least_kept = 1e-6;
+
+// Edge of a row, as a share of the mean distance of what it sees (near_distance()), from which rows follow slabs. Measured:
+// docs/error-vs-time/tried.md.
+constexpr double near_edge = 0.25;
 
 // Largest factor by which the field is scaled with direct light. A larger one says that a light was switched on or off that
 // others do not make up for: rooms that it does not light would be shown far too dark or bright at first. Chosen.
@@ -134,7 +140,16 @@ void SolveState::follow_contact(NodeIndex split_leaf) {
 void SolveState::follow_slabs(NodeIndex split_leaf) {
   if (!rows.carry_light() || forests.leaves().split_of(split_leaf) == Split::quarters) return;
   const NodeIndex row = forests.row_of(split_leaf);
-  if (forests.rows().id(row).level() < forests.leaves().id(split_leaf).level()) split_row(row);
+  if (forests.rows().id(row).level() < forests.leaves().id(split_leaf).level() && sees_near_surfaces(row)) split_row(row);
+}
+
+/// Returns whether reflected light may vary much over a row. Each rank finds it, and the first counts the rays.
+bool SolveState::sees_near_surfaces(NodeIndex row) {
+  const PatchShape shape = forests.rows().shape(row);
+  double distance = 0;
+  budget.spend(ranks.is_first() ? rays_to_near_surfaces : 0,
+               [&] { distance = near_distance(scene, shape, forests.rows().id(row), options.seed); });
+  return std::sqrt(area_of(mesh, shape)) > near_edge * distance;
 }
 
 bool SolveState::split_row(NodeIndex row, Split wanted) {

@@ -143,9 +143,10 @@ class SolveState {
   RelativeLight scattered_power() const;
   std::vector<std::uint8_t> rows_in_sight(const MovedRoots& moved);
   void follow_contact(NodeIndex split_leaf);
-  /// Splits the row in the place of a leaf that was split into slabs, if it is larger: where direct light changes across a line,
-  /// reflected light mostly does, too, and the few origins of a large row seldom lie there.
+  /// Splits the row in the place of a leaf that was split into slabs, if it is larger and sees near surfaces: where direct light
+  /// changes across a line because of these, reflected light does, too, and the few origins of a large row seldom lie there.
   void follow_slabs(NodeIndex split_leaf);
+  bool sees_near_surfaces(NodeIndex row);
 };
 
 }  // namespace alvor

@@ -274,7 +274,8 @@ void expect_no_darkness_leaks(const Scene& scene) {
     least = std::min(least, baked.light(primitive, s, t) / std::min(traced, there->irradiance.mean()));
     ++looked_at;
   });
-  EXPECT_GT(least, 0.9);
+  constexpr double paths_noise = 0.05, shadow_across_texel = 0.1;
+  EXPECT_GT(least, 1 - paths_noise - shadow_across_texel);
   EXPECT_GT(looked_at, 200u);
 }
 
