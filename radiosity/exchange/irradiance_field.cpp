@@ -102,7 +102,7 @@ class Fitter {
   }
 
  private:
-  /// Where a row is, and whether it tells of light: what decides whether it is in a window.
+  /// The place of a row and whether any of its rays met light, which decide whether a fit around another row uses it.
   struct Spot {
     Vec3 centre, normal;
     std::uint32_t place = 0;  ///< in rows_

@@ -1,8 +1,11 @@
 #pragma once
-// The concentric map between the unit square and the unit disk, which preserves area (Shirley & Chiu 1997).
+// The concentric map between the unit square and the unit disk, which preserves area (Shirley & Chiu 1997), and directions from
+// it.
 
 #include "meshing/patch_place.h"
+#include "meshing/tangent_frame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -20,6 +23,14 @@ inline DiskPoint concentric_disk(Uv p) {
   const bool wide = std::abs(a) > std::abs(b);
   const double r = wide ? a : b, phi = wide ? quarter * b / a : quarter * (2 - a / b);
   return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Returns a direction about a normal that is cosine-distributed if `p` is uniform in the unit square (Nusselt 1928).
+inline Vec3 cosine_direction(Vec3 normal, Uv p) {
+  const TangentFrame plane(normal);
+  const DiskPoint disk = concentric_disk(p);
+  const double height = std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y));
+  return disk.x * plane.s + disk.y * plane.t + height * normal;
 }
 
 /// Returns the point of the unit square that concentric_disk() maps to a point of the unit disk.

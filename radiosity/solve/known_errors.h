@@ -1,5 +1,5 @@
 #pragma once
-// What an estimate found about single rows and leaves, kept for the next one.
+// The errors of single rows and leaves that an estimate of a solve found, kept for its next estimate.
 
 #include "radiosity/solve/forests.h"
 

@@ -1,6 +1,5 @@
 #include "radiosity/solve/near_surfaces.h"
 
-#include "meshing/tangent_frame.h"
 #include "radiosity/rays/ray_source.h"
 #include "radiosity/rays/unit_disk.h"
 
@@ -15,15 +14,12 @@ double near_distance(const LocalScene& scene, const PatchShape& patch, PatchId i
   constexpr std::size_t side = 4;  // of the grid of strata
   RandomStream random(seed, id);
   const Vec3 normal = scene.mesh().roots()[patch.root].normal;
-  const TangentFrame plane(normal);
   const Vec3 from = scene.frame().to_local(centre_of(scene.mesh(), patch)) + double(ray_offset) * normal;
   RayPacket rays;
   for (std::size_t n = 0; n < rays_to_near_surfaces; ++n) {
     const double u = (static_cast<double>(n % side) + random.next()) / side,
                  v = (static_cast<double>(n / side) + random.next()) / side;
-    const DiskPoint disk = concentric_disk({u, v});
-    const double height = std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y));
-    rays.set(n, from, disk.x * plane.s + disk.y * plane.t + height * normal, far);
+    rays.set(n, from, cosine_direction(normal, {u, v}), far);
   }
   HitPacket hits;
   scene.visibility().closest_hits({&rays, 1}, {&hits, 1});

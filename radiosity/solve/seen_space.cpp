@@ -1,6 +1,5 @@
 #include "radiosity/solve/seen_space.h"
 
-#include "meshing/tangent_frame.h"
 #include "radiosity/rays/sampling.h"
 #include "radiosity/rays/unit_disk.h"
 
@@ -46,11 +45,8 @@ Outward outward_ray(const BoundingBox& box, std::size_t side, RandomStream& rand
   std::array<double, 3> normal{};
   normal[axis] = is_high ? 1 : -1;
   const Vec3 up{normal[0], normal[1], normal[2]};
-  const TangentFrame plane(up);
   const double u = random.next(), v = random.next();
-  const DiskPoint disk = concentric_disk({u, v});
-  const double height = std::sqrt(std::max(0.0, 1 - disk.x * disk.x - disk.y * disk.y));
-  return {{at[0], at[1], at[2]}, disk.x * plane.s + disk.y * plane.t + height * up};
+  return {{at[0], at[1], at[2]}, cosine_direction(up, {u, v})};
 }
 
 }  // namespace

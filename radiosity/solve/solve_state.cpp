@@ -185,6 +185,11 @@ double SolveState::arrived_power() const {
 
 std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
   known_errors.clear();
+  return relight(std::move(new_plan), reflects_as_before);
+}
+
+/// What note_relit() does, but for known errors: only those of rows are forgotten that become dark.
+std::optional<double> SolveState::relight(Plan new_plan, bool reflects_as_before) {
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
   const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);
   const double change = ratio >= least_kept && ratio <= 1 / least_kept ? ratio : 0;
@@ -200,6 +205,7 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
     std::vector<NodeIndex> dark = forests.rows().leaves();
     std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
     field.set(dark, std::vector<RelativeLight>(dark.size()));
+    forget_errors(dark);
   }
   const std::size_t leaves_before = leaf_count();
   forests.split_as_at_start(plan);
@@ -237,15 +243,9 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   scene = LocalScene(mesh);
   forests.note_moved();
   const double unit_before = unit_.to_watts(1);
-  KnownErrors known = std::move(known_errors);
-  note_relit(std::move(new_plan), reflects_as_before);
+  relight(std::move(new_plan), reflects_as_before);
   const bool shines_alike = unit_.to_watts(1) == unit_before && has_same_lights(move_->before, mesh);
-  if (!reflects_as_before || !shines_alike) known.clear();
-  known_errors = std::move(known);
-  known_errors.fit_to_nodes(forests);
-  std::vector<NodeIndex> dark = forests.rows().leaves();
-  std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
-  forget_errors(dark);  // note_relit() has made their field dark
+  if (!reflects_as_before || !shines_alike) known_errors.clear();
   if (!rows.carry_light()) return;
   std::vector<NodeIndex> of_moved = forests.rows().leaves();
   std::erase_if(of_moved, [this](NodeIndex row) { return !move_->roots.has(forests.rows().id(row).root_face()); });

@@ -29,8 +29,8 @@ Scene two_rooms() {
   return scene;
 }
 
-void move_box(Scene& scene) {
-  scene = edited_scene(two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = Vec3{1, 0.2, 1}}});
+Scene two_rooms_with_box_moved(Vec3 move) {
+  return edited_scene(two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = move}});
 }
 
 /// Exchanges the light of a pass until hardly any is left, and returns the estimate.
@@ -64,8 +64,7 @@ void expect_to_tell_what_an_estimate_of_all_tells(SolveState& state) {
 
 /// Moves the box of a live solve, and mends what that changes.
 void take_move(LiveSolve& live, Vec3 move) {
-  const Scene moved = edited_scene(two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = move}});
-  const BaseMesh mesh = BaseMesh(two_rooms()).edited_as(moved);
+  const BaseMesh mesh = BaseMesh(two_rooms()).edited_as(two_rooms_with_box_moved(move));
   ASSERT_TRUE(live.take_edit(mesh, Plan(mesh, live.state.options)));
   live.state.mend_moved();
 }
@@ -104,7 +103,7 @@ TEST(KnownErrors, TellWhatAnEstimateOfAllTells) {
     SCOPED_TRACE(tolerance);
     EditedSolve solve(two_rooms(), {.tolerance = tolerance});
     const std::uint64_t leaves = solve.last().leaves;
-    solve.edit(move_box);
+    solve.edit([](Scene& scene) { scene = two_rooms_with_box_moved({1, 0.2, 1}); });
     refined += solve.last().leaves > leaves;
     expect_to_tell_what_an_estimate_of_all_tells(solve.live()->state);
   }
@@ -119,8 +118,8 @@ TEST(KnownErrors, AreForgottenWhereLightsOrReflectancesChange) {
     EXPECT_TRUE(live.take_edit(mesh, Plan(mesh, live.state.options)));
     return !live.state.known_errors.empty();
   };
-  Scene moved = two_rooms(), dimmed = two_rooms(), recoloured = two_rooms();
-  move_box(moved);
+  const Scene moved = two_rooms_with_box_moved({1, 0.2, 1});
+  Scene dimmed = two_rooms(), recoloured = two_rooms();
   dimmed.materials[1].emission = {1, 1, 0.5};
   recoloured.materials[0].reflectance = {0.5, 0.5, 0.4};
   EXPECT_TRUE(is_known_after(moved));

@@ -1,4 +1,4 @@
-// Where the nodes of a mirror lie on the grids of their roots.
+// Computes where each patch that a viewer holds lies, and how long its sides are, as whole numbers on a grid over its root patch.
 
 import { GRID, grown } from "./mirror";
 import { QUARTERS, SLABS_ALONG_U } from "./patch_id";
