@@ -1,8 +1,8 @@
 #include "radiosity/exchange/gathering.h"
 
-#include <tbb/blocked_range.h>
+#include "radiosity/exchange/parallel_sum.h"
+
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <cmath>
 #include <utility>
@@ -29,19 +29,9 @@ constexpr double slow = 0.004;
 // Sweeps that take as long as making the finer coarse grid. Measured on the furnished room at 2 %: 0.26 s, and 0.02 s a sweep.
 constexpr double sweeps_of_grid = 12;
 
-// Patches of one part of a sum, so few that threads share the parts evenly. Sums depend on it, but not on the threads. Chosen.
-constexpr std::size_t patches_a_part = 4096;
-
-/// Returns the sum of term(n) over [0, count). In parallel, in an order that does not depend on the threads.
-template <class Sum, class Term>
-Sum sum_of(std::size_t count, Term&& term) {
-  const auto add_part = [&](const tbb::blocked_range<std::size_t>& part, Sum sum) {
-    for (std::size_t n = part.begin(); n < part.end(); ++n) sum += term(n);
-    return sum;
-  };
-  return tbb::parallel_deterministic_reduce(tbb::blocked_range<std::size_t>(0, count, patches_a_part), Sum{}, add_part,
-                                            [](Sum a, const Sum& b) { return a += b; });
-}
+// Amplification above which it is worth a gathering to find out how much albedo rows see. Below it, a tighter bound spares about
+// one sweep, which gathers as much. Chosen.
+constexpr double worth_a_gathering = 10;
 
 /// Unshot light of some patches: |power|, power, and squared power by area.
 struct UnshotSums {
@@ -78,14 +68,14 @@ Gathering::Gathering(std::span<const ShootingPatch> patches, std::span<const std
       leaving_(leaf_count, needs.three_bands),
       irradiance_(std::move(irradiance)),
       residual_(patches.size()),
+      power_weight_(patches.size()),
       ids_(std::move(ids)) {
-  for (const ShootingPatch& patch : patches_) {
-    power_weight_.push_back(patch.area * patch.albedo());
-    area_ += patch.area;
-  }
+  tbb::parallel_for(std::size_t{0}, patches_.size(),
+                    [this](std::size_t p) { power_weight_[p] = patches_[p].area * patches_[p].albedo(); });
+  area_ = parallel_sum<double>(patches_.size(), [this](std::size_t p) { return patches_[p].area; });
   find_own_power();
   ambient_gain_ = ambient_gain(patches_);
-  amplification_ = alvor::amplification(patches_, albedo_seen(), reflectance_);
+  find_amplification();
   spread(irradiance_, [this](std::uint32_t place) { return own_radiosity_[place]; });
   gather(residual_);
   for (std::size_t p = 0; p < patches_.size(); ++p) residual_[p] -= irradiance_[p];
@@ -140,6 +130,11 @@ void Gathering::gather(std::vector<RelativeLight>& received) {
   of_ranks_.patches.for_each(of_ranks_.ranks, std::span(received), [&](std::size_t p) { received[p] = row_times_radiosity(p); });
 }
 
+void Gathering::find_amplification() {
+  amplification_ = alvor::amplification(patches_, {}, reflectance_);
+  if (amplification_.max() > worth_a_gathering) amplification_ = alvor::amplification(patches_, albedo_seen(), reflectance_);
+}
+
 // A row sees as much albedo as it would gather light if all patches scattered an irradiance of 1.
 std::vector<Rgb> Gathering::albedo_seen() {
   static constexpr RelativeLight one{1, 1, 1};
@@ -152,18 +147,21 @@ std::vector<Rgb> Gathering::albedo_seen() {
 }
 
 Rgb Gathering::product(std::span<const RelativeLight> a, std::span<const RelativeLight> b) const {
-  return sum_of<Rgb>(a.size(), [&](std::size_t p) { return patches_[p].area * alvor::product(a[p], b[p]); });
+  return parallel_sum<Rgb>(a.size(), [&](std::size_t p) { return patches_[p].area * alvor::product(a[p], b[p]); });
 }
 
 // All leaves of a patch are taken to have the same area, because the sum only tells how much light there is.
 void Gathering::find_own_power() {
-  for (const ShootingPatch& patch : patches_)
-    for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k)
-      own_power_ += (patch.area / patch.leaf_count) * own_radiosity_[k];
+  own_power_ = parallel_sum<RelativeLight>(patches_.size(), [this](std::size_t p) {
+    const ShootingPatch& patch = patches_[p];
+    RelativeLight sum;
+    for (std::uint32_t k = patch.first_leaf; k < patch.first_leaf + patch.leaf_count; ++k) sum += own_radiosity_[k];
+    return patch.leaf_count > 0 ? (patch.area / patch.leaf_count) * sum : sum;
+  });
 }
 
 void Gathering::find_unshot() {
-  const auto all = sum_of<UnshotSums>(patches_.size(), [this](std::size_t p) {
+  const auto all = parallel_sum<UnshotSums>(patches_.size(), [this](std::size_t p) {
     const RelativeLight unshot = power_weight_[p] * residual_[p];
     const double area = patches_[p].area;
     return UnshotSums{absolute(unshot).sum(), unshot, area > 0 ? (1 / area) * alvor::product(unshot, unshot) : Rgb{}};
@@ -206,12 +204,14 @@ void Gathering::conjugate_step() {
   spread(next.step);
   gather(next.change);
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { next.change[p] = next.step[p] - next.change[p]; });
-  const Direction plain = next;
+  std::optional<Direction> plain;
+  if (!directions_.empty()) plain = next;
   make_conjugate(next);
   const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
   const Rgb taken = helps(length, overlap), left = Rgb{1, 1, 1} - taken;
   advance(taken * length, next.step, next.change);
-  if (!left.is_zero()) advance(left, plain.step, plain.change);
+  const Direction& uncombined = plain ? *plain : next;
+  if (!left.is_zero()) advance(left, uncombined.step, uncombined.change);
   remember(std::move(next), taken);
 }
 
@@ -242,8 +242,9 @@ void Gathering::forget_directions() {
 }
 
 RelativeLight Gathering::mean_radiosity() const {
-  RelativeLight power = own_power_;
-  for (std::size_t p = 0; p < patches_.size(); ++p) power += power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
+  const RelativeLight power = own_power_ + parallel_sum<RelativeLight>(patches_.size(), [this](std::size_t p) {
+                                return power_weight_[p] * absolute(irradiance_[p] + residual_[p]);
+                              });
   return area_ > 0 ? (1 / area_) * power : RelativeLight{};
 }
 

@@ -76,6 +76,7 @@ class Gathering : public Exchange {
   Rgb helps(const Rgb& length, const Rgb& overlap) const;
   void advance(const Rgb& length, std::span<const RelativeLight> step, std::span<const RelativeLight> change);
   void remember(Direction direction, const Rgb& in_bands);
+  void find_amplification();
   std::vector<Rgb> albedo_seen();
   void coarsen(CoarseUnits units);
   /// Looks at the residual every four sweeps and takes a finer coarse grid if it falls by less than half per sweep, and many

@@ -1,5 +1,7 @@
 #include "radiosity/exchange/shooting.h"
 
+#include "radiosity/exchange/parallel_sum.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,26 +10,42 @@
 
 namespace alvor {
 
-Rgb ambient_gain(std::span<const ShootingPatch> patches) {
+namespace {
+
+/// Sums over patches, by area: their albedo and what their rows keep of light, and the area.
+struct GainSums {
   Rgb reflected, kept;
   double area = 0;
-  for (const ShootingPatch& patch : patches) {
-    area += patch.area;
-    reflected += patch.area * patch.albedo();
-    if (!patch.row->is_hidden()) kept += (patch.area / patch.row->ray_count()) * patch.row->stored_weight();
+
+  GainSums& operator+=(const GainSums& other) {
+    reflected += other.reflected, kept += other.kept, area += other.area;
+    return *this;
   }
+};
+
+}  // namespace
+
+Rgb ambient_gain(std::span<const ShootingPatch> patches) {
+  const auto sums = parallel_sum<GainSums>(patches.size(), [&](std::size_t p) {
+    const ShootingPatch& patch = patches[p];
+    const bool is_hidden = patch.row->is_hidden();
+    const Rgb kept = is_hidden ? Rgb{} : (patch.area / patch.row->ray_count()) * patch.row->stored_weight();
+    return GainSums{patch.area * patch.albedo(), kept, patch.area};
+  });
+  const auto& [reflected, kept, area] = sums;
   if (area == 0) return {};
-  const auto band = [&](double k, double r) { return k / (area * area) / (1 - k * r / (area * area)); };
+  const double squared = area * area;
+  const auto band = [squared](double k, double r) { return k / squared / (1 - k * r / squared); };
   return {band(kept.r, reflected.r), band(kept.g, reflected.g), band(kept.b, reflected.b)};
 }
 
 Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> albedo_seen,
                   std::span<const Rgb> leaf_reflectance) {
-  Rgb largest, most_seen;
+  Rgb largest, most_seen = albedo_seen.empty() ? Rgb{1, 1, 1} : Rgb{};
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const ShootingPatch& patch = patches[p];
     largest = upper(largest, patch.albedo());
-    most_seen = upper(most_seen, albedo_seen[p]);
+    if (!albedo_seen.empty()) most_seen = upper(most_seen, albedo_seen[p]);
     for (std::uint32_t k = patch.first_leaf; !leaf_reflectance.empty() && k < patch.first_leaf + patch.leaf_count; ++k)
       largest = upper(largest, leaf_reflectance[k] + patch.diffuse_transmittance);
   }

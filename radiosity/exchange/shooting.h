@@ -32,9 +32,9 @@ struct ShootingPatch {
 Rgb ambient_gain(std::span<const ShootingPatch> patches);
 
 /// Returns 1 / (1 - q) per band (see Exchange::amplification), where q bounds the share of the RMS radiosity that is left after a
-/// reflection. The largest radiosity is multiplied by at most the largest mean albedo that a row sees (`albedo_seen`, by patch);
-/// the power by at most the largest albedo, if rows are reciprocal. For the RMS q is their geometric mean (Riesz & Thorin).
-/// `leaf_reflectance` as in Shooting.
+/// reflection. The largest radiosity is multiplied by at most the largest mean albedo that a row sees (`albedo_seen`, by patch;
+/// empty if it is not known); the power by at most the largest albedo, if rows are reciprocal. For the RMS q is their geometric
+/// mean (Riesz & Thorin). `leaf_reflectance` as in Shooting.
 Rgb amplification(std::span<const ShootingPatch> patches, std::span<const Rgb> albedo_seen,
                   std::span<const Rgb> leaf_reflectance);
 

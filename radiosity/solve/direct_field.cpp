@@ -1,5 +1,6 @@
 #include "radiosity/solve/direct_field.h"
 
+#include "radiosity/exchange/parallel_sum.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <tbb/parallel_for.h>
@@ -22,6 +23,16 @@ constexpr std::size_t parts_shown = 8;
 // Measured: above them the noise of shadow rays is small beside the error, and rays take half of the time on slats_and_boxes; at
 // 0.5 % the Cornell box takes a quarter of the time with exact shadows (docs/design/direct-light.md).
 constexpr double exact_below_tolerance = 0.025, exact_below_error = 0.1;
+
+/// Areas of leaves that light may reach, and of those of them that show none, m2.
+struct LitAreas {
+  double all = 0, unlit = 0;
+
+  LitAreas& operator+=(const LitAreas& other) {
+    all += other.all, unlit += other.unlit;
+    return *this;
+  }
+};
 
 bool is_sound(const DirectLight& light) {
   const auto is_finite = [](float x) { return std::isfinite(x); };
@@ -125,7 +136,7 @@ void DirectField::hand_down(NodeIndex split_leaf) {
 }
 
 std::vector<NodeIndex> DirectField::unlit_leaves() const {
-  std::vector<NodeIndex> leaves = forests_.leaves().leaves();
+  std::vector<NodeIndex> leaves = forests_.all_leaves();
   std::erase_if(leaves,
                 [&](NodeIndex leaf) { return is_known_[leaf] || !plan_.may_be_lit(forests_.leaves().id(leaf).root_face()); });
   return leaves;
@@ -315,17 +326,18 @@ void DirectField::show_on_whole_face(NodeIndex leaf) {
 }
 
 double DirectField::unlit_fraction() const {
-  double all = 0, unlit = 0;
-  for (const NodeIndex leaf : forests_.leaves().leaves()) {
-    if (!plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) continue;
-    all += forests_.leaf_area(leaf);
-    if (!is_lit_[leaf]) unlit += forests_.leaf_area(leaf);
-  }
-  return all > 0 ? unlit / all : 0;
+  const std::vector<NodeIndex> leaves = forests_.all_leaves();
+  const auto areas = parallel_sum<LitAreas>(leaves.size(), [&](std::size_t n) {
+    const NodeIndex leaf = leaves[n];
+    if (!plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) return LitAreas{};
+    const double area = forests_.leaf_area(leaf);
+    return LitAreas{area, is_lit_[leaf] ? 0 : area};
+  });
+  return areas.all > 0 ? areas.unlit / areas.all : 0;
 }
 
 void DirectField::save_light(PlainWriter& out) const {
-  const auto leaves = forests_.leaves().leaves();
+  const auto leaves = forests_.all_leaves();
   save_at(leaves, light_, out);
   if (counts_arrivals_) save_at(leaves, arrived_, out);
   save_flags(leaves, is_known_, out);
@@ -334,7 +346,7 @@ void DirectField::save_light(PlainWriter& out) const {
 
 void DirectField::load_light(PlainReader& in, std::uint32_t version) {
   fit_to_nodes();
-  const auto leaves = forests_.leaves().leaves();
+  const auto leaves = forests_.all_leaves();
   load_at(leaves, light_, in, "direct light", [](const DirectLight& light) { return is_sound(light); });
   constexpr std::uint32_t first_of_lamps = 7;  // versions before counted distant lights only
   if (version >= first_of_lamps ? counts_arrivals_ : has_distant_lights_)
@@ -346,11 +358,11 @@ void DirectField::load_light(PlainReader& in, std::uint32_t version) {
   if (version < first_of_lamps && has_lamps) is_known_.assign(is_known_.size(), false);
 }
 
-void DirectField::save_ray_levels(PlainWriter& out) const { save_at(forests_.leaves().leaves(), ray_level_, out); }
+void DirectField::save_ray_levels(PlainWriter& out) const { save_at(forests_.all_leaves(), ray_level_, out); }
 
 void DirectField::load_ray_levels(PlainReader& in) {
   const auto is_level = [](std::uint8_t level) { return level <= most_ray_level; };
-  load_at(forests_.leaves().leaves(), ray_level_, in, "level of shadow rays", is_level);
+  load_at(forests_.all_leaves(), ray_level_, in, "level of shadow rays", is_level);
 }
 
 void DirectField::save_waiting(PlainWriter& out) const { out.put(waiting_power_); }
@@ -359,8 +371,7 @@ void DirectField::load_waiting(PlainReader& in) {
   waiting_power_ = in.get<double>();
   if (!std::isfinite(waiting_power_)) throw BadBytes("waiting power: not a finite number");
   // No leaf has the light of all lights, so the first light is the next again.
-  if (std::ranges::none_of(forests_.leaves().leaves(), [this](NodeIndex leaf) { return is_known_[leaf]; }))
-    waiting_power_ = power_;
+  if (std::ranges::none_of(forests_.all_leaves(), [this](NodeIndex leaf) { return is_known_[leaf]; })) waiting_power_ = power_;
 }
 
 }  // namespace alvor

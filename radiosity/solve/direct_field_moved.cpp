@@ -2,6 +2,7 @@
 
 #include "radiosity/solve/direct_field.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -73,12 +74,16 @@ void DirectField::note_moved(const MovedRoots& moved, const RowsInSight& in_sigh
   blockers_.reset();
   if (exact_faces_ || exact_exits_) blockers_ = std::make_unique<BlockerTree>(scene_);
   keep_shares_of_present_lights();
-  const std::vector<NodeIndex> leaves = forests_.leaves().leaves();
+  const std::vector<NodeIndex> leaves = forests_.all_leaves();
   std::vector<std::uint8_t> seeing;
   const LeavesInSight leaves_in_sight = [&]() -> const std::vector<std::uint8_t>& {
     if (!seeing.empty()) return seeing;
     const std::vector<std::uint8_t> by_row = in_sight();
-    for (const NodeIndex leaf : leaves) seeing.push_back(by_row[forests_.row_of(leaf)]);
+    seeing.resize(leaves.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()), [&](const tbb::blocked_range<std::size_t>& part) {
+      RowFinder finder(forests_);
+      for (std::size_t n = part.begin(); n < part.end(); ++n) seeing[n] = by_row[finder.row_of(leaves[n])];
+    });
     return seeing;
   };
   std::vector<std::uint8_t> is_lost(leaves.size());

@@ -139,7 +139,7 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
     // noise.
     if (shares_.light_count() == 0) ray_level_.assign(ray_level_.size(), 0);
   }
-  for (const NodeIndex leaf : forests_.leaves().leaves()) {
+  for (const NodeIndex leaf : forests_.all_leaves()) {
     if (plan_.may_be_lit(forests_.leaves().id(leaf).root_face())) continue;
     light_[leaf] = {};
     if (counts_arrivals_) arrived_[leaf] = 0;
@@ -160,7 +160,7 @@ void DirectField::scale(const Rgb& factor) {
     light.origin_variance *= change * change;
   }
   if (counts_all_arrivals()) {
-    for (const NodeIndex leaf : forests_.leaves().leaves()) arrived_[leaf] = stopped_by(leaf, light_[leaf].irradiance);
+    for (const NodeIndex leaf : forests_.all_leaves()) arrived_[leaf] = stopped_by(leaf, light_[leaf].irradiance);
     return;
   }
   const auto mean = static_cast<float>(factor.mean());

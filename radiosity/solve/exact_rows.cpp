@@ -41,7 +41,7 @@ double scale_to_closure(std::span<const MatrixEntry> entries, double visible_sha
 // area. Exact rows have no origins and no noise.
 void TracedRows::make_exact() {
   const BaseMesh& mesh = forests_.mesh();
-  const std::vector<NodeIndex> rows = forests_.rows().leaves();
+  const std::vector<NodeIndex> rows = forests_.all_rows();
   std::vector<std::vector<Vec3>> polygons;
   std::vector<std::vector<NodeIndex>> leaves(rows.size());
   for (std::size_t n = 0; n < rows.size(); ++n) {

@@ -2,6 +2,8 @@
 
 #include "solution/leaf_value.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -91,9 +93,14 @@ void Forests::split_to_start(const Plan& plan) {
     const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area_;
     return shows_no_curvature || longest_edge(mesh_, rows_.shape(node)) > start_edge * mesh_.extent();
   };
+  // After an edit hardly any of many nodes is coarse: they are found in parallel.
+  const NodeIndex old_nodes = static_cast<NodeIndex>(rows_.node_count());
+  std::vector<std::uint8_t> is_to_split(old_nodes);
+  tbb::parallel_for(NodeIndex{0}, old_nodes, [&](NodeIndex node) { is_to_split[node] = rows_.is_leaf(node) && is_coarse(node); });
   std::vector<NodeIndex> split;
   for (NodeIndex node = 0; node < rows_.node_count(); ++node) {
-    if (!rows_.is_leaf(node) || !is_coarse(node)) continue;
+    const bool may_be_coarse = node >= old_nodes || is_to_split[node];
+    if (!may_be_coarse || !rows_.is_leaf(node) || !is_coarse(node)) continue;
     const NodeIndex leaf = leaf_node_of(node);
     if (leaves_.is_leaf(leaf) && !leaves_.split(leaf, limits_, split)) continue;  // after an edit at the limit of leaves
     rows_.split_as(leaves_, node, limits_, split);
@@ -130,6 +137,11 @@ void Forests::fit_to_nodes() {
     leaf_area_.push_back(area_of(mesh_, shape));
     if (mesh_.has_varying_reflectance()) leaf_surface_.push_back(reflectance_->of(shape));
   }
+}
+
+const std::vector<NodeIndex>& Forests::LeafList::of(const PatchForest& forest) {
+  if (nodes_ != forest.node_count()) leaves_ = forest.leaves(), nodes_ = forest.node_count();
+  return leaves_;
 }
 
 NodeIndex Forests::leaf_node_of(NodeIndex row) const { return leaves_.node_in_place_of(rows_.id(row)); }
@@ -169,6 +181,7 @@ bool Forests::split_row(NodeIndex row, std::vector<NodeIndex>& split) {
 void Forests::append(const AppendedRoots& roots) {
   rows_.append(roots), leaves_.append(roots);
   row_neighbours_.forget(), leaf_neighbours_.forget();
+  row_list_ = leaf_list_ = {};
   for (std::vector<Vec3>* centres : {&row_centre_, &leaf_centre_}) roots.make_room(*centres);
   roots.make_room(leaf_area_);
   for (NodeIndex root = roots.first; root < roots.first + roots.count; ++root) {
@@ -178,9 +191,13 @@ void Forests::append(const AppendedRoots& roots) {
   find_area();
 }
 
-void Forests::note_moved() {
-  for (NodeIndex row = 0; row < row_centre_.size(); ++row) row_centre_[row] = centre_of(mesh_, rows_.shape(row));
-  for (NodeIndex leaf = 0; leaf < leaf_centre_.size(); ++leaf) leaf_centre_[leaf] = centre_of(mesh_, leaves_.shape(leaf));
+void Forests::note_moved(const MovedRoots& moved) {
+  const auto find_again = [&](const PatchForest& forest, std::vector<Vec3>& centres) {
+    for (NodeIndex node = 0; node < centres.size(); ++node)
+      if (moved.has(forest.id(node).root_face())) centres[node] = centre_of(mesh_, forest.shape(node));
+  };
+  find_again(rows_, row_centre_);
+  find_again(leaves_, leaf_centre_);
 }
 
 void Forests::note_relit() {
@@ -199,6 +216,7 @@ void Forests::save(PlainWriter& out) const {
 // split them as the start of a solve does. So the forests are built again from the roots.
 void Forests::load(PlainReader& in) {
   rows_ = leaves_ = PatchForest(mesh_);
+  row_list_ = leaf_list_ = {};
   row_centre_.clear(), leaf_centre_.clear(), leaf_area_.clear(), leaf_surface_.clear();
   load_leaves(rows_, in);
   load_leaves(leaves_, in);

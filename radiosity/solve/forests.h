@@ -5,6 +5,7 @@
 #include "meshing/patch_forest.h"
 #include "meshing/patch_reflectance.h"
 #include "radiosity/plan/plan.h"
+#include "radiosity/solve/moved_roots.h"
 #include "solution/plain_bytes.h"
 
 #include <optional>
@@ -24,6 +25,10 @@ class Forests {
   const BaseMesh& mesh() const { return mesh_; }
   const PatchForest& rows() const { return rows_; }
   const PatchForest& leaves() const { return leaves_; }
+  /// Return the leaves of either forest, sorted by id. Cheap where nothing was split since the last call, for they are kept: to
+  /// be called by one thread at a time.
+  std::vector<NodeIndex> all_rows() const { return row_list_.of(rows_); }
+  std::vector<NodeIndex> all_leaves() const { return leaf_list_.of(leaves_); }
   double area() const { return area_; }  ///< area of all roots, m2
 
   /// Returns the row whose place contains the leaf node's.
@@ -62,8 +67,8 @@ class Forests {
 
   /// Takes roots that the mesh has got. To be followed by note_relit().
   void append(const AppendedRoots& roots);
-  /// Finds the middles of nodes again, after roots of the mesh have moved as rigid bodies.
-  void note_moved();
+  /// Finds the middles of nodes of roots again that have moved as rigid bodies.
+  void note_moved(const MovedRoots& moved);
   /// Finds the reflectances of nodes again, after the materials of the mesh have changed.
   void note_relit();
 
@@ -75,6 +80,16 @@ class Forests {
   void load(PlainReader& in);
 
  private:
+  /// The leaves of a forest, in which nodes are only split.
+  class LeafList {
+   public:
+    const std::vector<NodeIndex>& of(const PatchForest& forest);
+
+   private:
+    std::vector<NodeIndex> leaves_;
+    std::size_t nodes_ = 0;  // of the forest when they were listed
+  };
+
   Split allowed(NodeIndex leaf, Split wanted) const;
   void split_to_start(const Plan& plan);
   void split_to_show_textures(const Plan& plan);
@@ -85,11 +100,28 @@ class Forests {
   const RefinementLimits limits_;
   double area_ = 0;
   PatchForest rows_, leaves_;
+  mutable LeafList row_list_, leaf_list_;
   NeighbourTable row_neighbours_{rows_}, leaf_neighbours_{leaves_};
   std::vector<Vec3> row_centre_, leaf_centre_;
   std::vector<double> leaf_area_;
   std::optional<PatchReflectance> reflectance_;  // never empty
   std::vector<MeanSurface> leaf_surface_;        // by leaf node; none if no reflectance varies
+};
+
+/// Finds the rows of leaves one after the other. A leaf mostly has the row of the one before, if they are sorted by id.
+class RowFinder {
+ public:
+  /// Borrows the forests.
+  explicit RowFinder(const Forests& forests) : forests_(forests) {}
+  NodeIndex row_of(NodeIndex leaf) {
+    const bool is_same = row_ != PatchForest::no_node && forests_.rows().id(row_).contains(forests_.leaves().id(leaf));
+    if (!is_same) row_ = forests_.row_of(leaf);
+    return row_;
+  }
+
+ private:
+  const Forests& forests_;
+  NodeIndex row_ = PatchForest::no_node;
 };
 
 /// Sorts patches so that any first part of them is spread over the scene and holds much of its area. One patch of each face comes

@@ -79,7 +79,7 @@ LiveSolve::LiveSolve(const BaseMesh& mesh, const Plan& plan, const SolveOptions&
       state(own_mesh_ ? *own_mesh_ : mesh, plan, options, budget, ranks) {
   if (!keeps_mesh) return;
   state.direct.keep_shares();
-  if (ranks.is_alone() && state.rows.carry_light()) state.known_errors.keep();
+  if (ranks.is_alone() && state.rows.carry_light()) state.known_errors.keep(), state.rows.keep_hit_boxes();
 }
 
 /// Returns whether edits have left many leaves that show no detail any more: each edit then takes long, and at the limit of

@@ -112,6 +112,18 @@ bool MovedRoots::touch(const BoundingBox& box) const {
   return std::ranges::any_of(old_boxes_, touches) || std::ranges::any_of(new_boxes_, touches);
 }
 
+bool MovedRoots::may_cover(double share, Vec3 from, double radius) const {
+  double covered = 0;
+  for (const auto* boxes : {&old_boxes_, &new_boxes_}) {
+    for (const BoundingBox& box : *boxes) {
+      const double around = length(box.high - box.low) / 2;
+      const double distance = std::max(length(lerp(box.low, box.high, 0.5) - from) - radius, around);
+      covered += around * around / (distance * distance);
+    }
+  }
+  return covered > share;
+}
+
 bool MovedRoots::may_meet_now(Vec3 from, Vec3 to, double radius) const {
   const Vec3 low = lower(from, to) - Vec3{radius, radius, radius}, high = upper(from, to) + Vec3{radius, radius, radius};
   if (!overlap({low, high}, all_new_)) return false;  // most rays of a large scene

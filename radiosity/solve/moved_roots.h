@@ -25,6 +25,7 @@ class MovedRoots {
   bool has_any(std::span<const std::uint32_t> roots) const {
     return std::ranges::any_of(roots, [this](std::uint32_t root) { return has(root); });
   }
+  const BoundingBox& all_new() const { return all_new_; }  ///< around all moved roots where they are now; empty if none is shown
   /// Returns whether a box touches one in which moved roots were or are.
   bool touch(const BoundingBox& box) const;
   /// Returns whether a ray that starts up to `radius` from `from` and ends at `to` may meet moved roots where they are now. May
@@ -36,6 +37,9 @@ class MovedRoots {
   /// Returns whether part of a box in which moved roots are now, or were if `also_before`, lies in front of the plane through
   /// `point`.
   bool are_in_front(Vec3 point, Vec3 normal, bool also_before) const;
+  /// Returns whether the places where moved roots were and are may together cover more than a share of the cosine-weighted
+  /// directions of a point within `radius` of `from`. A sphere of radius R at the distance d covers at most (R / d)^2.
+  bool may_cover(double share, Vec3 from, double radius) const;
   /// Returns the boxes in which moved roots were, and those in which they are, each a little larger than what is in it.
   std::vector<BoundingBox> boxes() const;
   /// Returns whether rays from outside may meet the back of a moved root that has no other side. They do not if moved roots

@@ -54,7 +54,7 @@ bool Pass::trace(std::span<const NodeIndex> batch) {
 void Pass::add_direct_light(const std::function<void()>& after_each) {
   assert(stage_ == Stage::tracing);
   if (!state_.known_errors.empty())
-    for (const NodeIndex leaf : state_.forests.leaves().leaves())
+    for (const NodeIndex leaf : state_.forests.all_leaves())
       if (!state_.direct.is_known(leaf)) state_.known_errors.forget_leaf(leaf);
   state_.direct.add_new(state_.rows, after_each);
   if (state_.direct.waiting_power() == 0) state_.scale_field_to_direct_light();

@@ -1,10 +1,25 @@
 // The power balance of a pass.
 
+#include "radiosity/exchange/parallel_sum.h"
 #include "radiosity/solve/pass.h"
 
 #include <algorithm>
 
 namespace alvor {
+
+namespace {
+
+/// Light that patches take up, and that leaves them and the scene.
+struct PowerSums {
+  RelativeLight absorbed, lost;
+
+  PowerSums& operator+=(const PowerSums& other) {
+    absorbed += other.absorbed, lost += other.lost;
+    return *this;
+  }
+};
+
+}  // namespace
 
 // Returns whether every patch that sends light has a row. Rows may be switched off for all faces, or for emitters that no light
 // reaches.
@@ -35,8 +50,8 @@ PowerBalance Pass::balance() const {
   std::vector<Rgb> taken(patches.size());
   system_->deal().for_each(state_.ranks, std::span(taken), [&](std::size_t p) { taken[p] = taken_up(*patches[p].row); });
   const auto irradiance = state_.rows.carry_light() ? exchange_->irradiance() : std::vector<RelativeLight>(patches.size());
-  RelativeLight absorbed, lost;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
+  const auto sums_of = [&](std::size_t p) {
+    PowerSums sums;
     const ShootingPatch& patch = patches[p];
     const TransportRow& row = *patch.row;
     const std::uint32_t root = state_.forests.rows().id(system_->rows()[p]).root_face();
@@ -51,14 +66,16 @@ PowerBalance Pass::balance() const {
       const Rgb reflectance = state_.forests.reflectance(leaf);
       const RelativeLight arriving = irradiance[p] + direct[leaf].irradiance, emission = direct.emission_of(root);
       const RelativeLight leaving = emission + reflectance * irradiance[p] + through + state_.scattered_direct_light(leaf);
-      absorbed += seen * ((kept - reflectance) * arriving);
-      lost += seen * ((white - found) * leaving) + (area - seen) * emission;
+      sums.absorbed += seen * ((kept - reflectance) * arriving);
+      sums.lost += seen * ((white - found) * leaving) + (area - seen) * emission;
     }
-  }
-  balance.absorbed = state_.in_watts(absorbed.sum());
+    return sums;
+  };
+  const auto sums = parallel_sum<PowerSums>(patches.size(), sums_of);
+  balance.absorbed = state_.in_watts(sums.absorbed.sum());
   balance.unshot = state_.in_watts(exchange_->unshot_power());
   const double not_seen_again = std::max(0.0, balance.emitted - balance.absorbed - balance.unshot);
-  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(lost.sum() + state_.power_lost_on_the_way()) : not_seen_again;
+  balance.lost = rows_tell_what_is_lost() ? state_.in_watts(sums.lost.sum() + state_.power_lost_on_the_way()) : not_seen_again;
   return balance;
 }
 

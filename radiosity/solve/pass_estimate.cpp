@@ -2,6 +2,7 @@
 
 #include "radiosity/solve/pass.h"
 
+#include "radiosity/exchange/parallel_sum.h"
 #include "radiosity/rays/ray_source.h"
 
 #include <tbb/parallel_for.h>
@@ -42,6 +43,16 @@ double squared(double x) { return x * x; }
 /// Returns by what errors are multiplied that were told as at least 0 each, so that they add up to the sum of errors of either
 /// sign.
 double share_of(double sum, double told) { return told > 0 ? std::max(0.0, sum) / told : 0; }
+
+/// Squared errors, integrated over patches: with either sign, as at least 0 each, and their noise.
+struct ErrorSums {
+  double all = 0, told = 0, noise = 0;
+
+  ErrorSums& operator+=(const ErrorSums& other) {
+    all += other.all, told += other.told, noise += other.noise;
+    return *this;
+  }
+};
 
 /// Some leaves of a forest, each with its neighbours, and their centres and values, by node.
 struct Field {
@@ -109,7 +120,8 @@ void Pass::find_misfits() {
                            [&](std::size_t n) { found[n] = misfit_at_origins(rows[changed_rows_[n]], leaving); });
   misfits_.resize(rows.size());
   if (knows_errors())
-    for (std::size_t p = 0; p < rows.size(); ++p) misfits_[p] = state_.known_errors.of_row(rows[p]).error;
+    tbb::parallel_for(std::size_t{0}, rows.size(),
+                      [&](std::size_t p) { misfits_[p] = state_.known_errors.of_row(rows[p]).error; });
   for (std::size_t n = 0; n < found.size(); ++n) misfits_[changed_rows_[n]] = found[n];
 }
 
@@ -120,11 +132,7 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
   row_errors_.resize(patches.size());
   row_squares_.resize(patches.size());
   const std::vector<double> irradiance = irradiance_of_rows();
-  struct Told {
-    double misfit = 0, noise = 0, area = 0;
-  };
-  std::vector<Told> told(patches.size());
-  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t p) {
+  const auto squares = parallel_sum<ErrorSums>(patches.size(), [&](std::size_t p) {
     const NodeIndex node = system_->rows()[p];
     const TransportRow& row = state_.rows[node];
     const FieldFit& fit = state_.field.fit(node);
@@ -137,17 +145,14 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
     const double seen = std::max(0.0, at_origins.square - chance_of_origins * at_origins.noise);
     row_errors_[p] = {area * (std::max(seen, misfit_at_centre * fit.window_misfit) + by_contact), at_origins.split};
     row_squares_[p] = std::max(0.0, misfit) + by_contact;
-    told[p] = {area * (misfit + by_contact), area * fit.variance, area};
+    return ErrorSums{area * (misfit + by_contact), area * row_squares_[p], area * fit.variance};
   });
-  double told_misfit = 0;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    error.misfit += told[p].misfit;
-    error.sampling += told[p].noise;
-    told_misfit += told[p].area * row_squares_[p];
-  }
-  const double share = share_of(error.misfit, told_misfit);
-  for (std::size_t p = 0; p < patches.size(); ++p)
+  error.misfit += squares.all;
+  error.sampling += squares.noise;
+  const double share = share_of(squares.all, squares.told);
+  tbb::parallel_for(std::size_t{0}, patches.size(), [&](std::size_t p) {
     row_squares_[p] = share * row_squares_[p] + state_.field.fit(system_->rows()[p]).variance;
+  });
 }
 
 /// Sets `irradiance_` to that of the field that is shown.
@@ -166,9 +171,9 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   const auto leaves = system_->leaves();
   std::vector<RelativeLight> irradiance(forests.leaves().node_count());
   find_irradiance();
-  for (std::size_t n = 0; n < leaves.size(); ++n) irradiance[leaves[n]] = irradiance_[n];
-  double power = 0;
-  for (std::size_t n = 0; n < leaves.size(); ++n) power += system_->visible_area(n) * irradiance[leaves[n]].mean();
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) { irradiance[leaves[n]] = irradiance_[n]; });
+  const auto power =
+      parallel_sum<double>(leaves.size(), [this](std::size_t n) { return system_->visible_area(n) * irradiance_[n].mean(); });
   const auto neighbours = forests.leaf_neighbours(leaves);
   const Field field{forests.leaves(), leaves, neighbours, forests.leaf_centres(), irradiance};
   ChangedLeaves changed = changed_leaves(neighbours);
@@ -186,18 +191,18 @@ double Pass::estimate_leaves(ErrorEstimate& error) {
   });
   leaf_errors_.resize(leaves.size());
   if (knows_errors())
-    for (std::size_t n = 0; n < leaves.size(); ++n) leaf_errors_[n] = state_.known_errors.of_leaf(leaves[n]).error;
+    tbb::parallel_for(std::size_t{0}, leaves.size(),
+                      [&](std::size_t n) { leaf_errors_[n] = state_.known_errors.of_leaf(leaves[n]).error; });
   for (std::size_t k = 0; k < found.size(); ++k) leaf_errors_[changed_leaves_[k]] = found[k];
   leaf_squares_.resize(leaves.size());
-  double told_interpolation = 0;
-  for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const double square = leaf_errors_[n].square;
-    error.interpolation += unseen_detail * square;
-    error.sampling += shown_noise(n);
-    leaf_squares_[n] = unseen_detail * std::max(0.0, square);
-    told_interpolation += leaf_squares_[n];
-  }
-  tell_leaves(share_of(error.interpolation, told_interpolation));
+  const auto squares = parallel_sum<ErrorSums>(leaves.size(), [this](std::size_t n) {
+    const double square = unseen_detail * leaf_errors_[n].square;
+    leaf_squares_[n] = std::max(0.0, square);
+    return ErrorSums{square, leaf_squares_[n], shown_noise(n)};
+  });
+  error.interpolation += squares.all;
+  error.sampling += squares.noise;
+  tell_leaves(share_of(squares.all, squares.told));
   return power;
 }
 
@@ -247,8 +252,7 @@ ErrorEstimate Pass::estimate() {
   const double power = estimate_leaves(error);
   note_errors();
   if (power <= 0) return {};
-  double area = 0;
-  for (std::size_t p = 0; p < system_->patches().size(); ++p) area += visible_area(p);
+  const auto area = parallel_sum<double>(system_->patches().size(), [this](std::size_t p) { return visible_area(p); });
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;

@@ -6,33 +6,53 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace alvor {
 
-PassSystem::PassSystem(SolveState& state) : state_(state), rows_(state.forests.rows().leaves()), deal_(state.rows.deal(rows_)) {
-  const Forests& forests = state.forests;
-  for (const NodeIndex row : rows_) {
-    const auto first = static_cast<std::uint32_t>(leaves_.size());
-    forests.append_leaves_of_row(row, leaves_);
-    ShootingPatch patch{&state.rows[row], first, static_cast<std::uint32_t>(leaves_.size()) - first,
-                        state.mesh.material_of(forests.rows().id(row).root_face()).reflectance};
-    Rgb reflecting;
-    double covered = 0;
-    for (std::size_t n = first; n < leaves_.size(); ++n) {
-      const double area = forests.leaf_area(leaves_[n]);
-      patch.area += area;
-      if (!state.mesh.has_varying_reflectance()) continue;
-      leaf_reflectance_.push_back(forests.reflectance(leaves_[n]));
-      reflecting += area * forests.cover(leaves_[n]) * leaf_reflectance_.back();
-      covered += area * forests.cover(leaves_[n]);
-    }
-    if (covered > 0) patch.reflectance = (1 / covered) * reflecting;
-    patches_.push_back(patch);
-  }
+PassSystem::PassSystem(SolveState& state)
+    : state_(state),
+      rows_(state.forests.all_rows()),
+      leaves_(state.forests.all_leaves()),
+      deal_(state.rows.deal(rows_)),
+      patches_(rows_.size()) {
+  deal_leaves();
+  if (state.mesh.has_varying_reflectance()) leaf_reflectance_.resize(leaves_.size());
+  tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) { describe_patch(p); });
   find_patches_behind();
   describe_places();
   if (state.rows.carry_light())
     deal_.for_each_own(state.ranks, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
+}
+
+/// Gives each patch its leaves. Rows and leaves are both sorted by id, and each leaf lies within a row.
+void PassSystem::deal_leaves() {
+  const PatchForest &rows = state_.forests.rows(), &leaves = state_.forests.leaves();
+  std::uint32_t next = 0;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    patches_[p].first_leaf = next;
+    while (next < leaves_.size() && rows.id(rows_[p]).contains(leaves.id(leaves_[next]))) ++next;
+    patches_[p].leaf_count = next - patches_[p].first_leaf;
+  }
+  assert(next == leaves_.size());
+}
+
+void PassSystem::describe_patch(std::size_t p) {
+  const Forests& forests = state_.forests;
+  ShootingPatch& patch = patches_[p];
+  patch.row = &state_.rows[rows_[p]];
+  patch.reflectance = state_.mesh.material_of(forests.rows().id(rows_[p]).root_face()).reflectance;
+  Rgb reflecting;
+  double covered = 0;
+  for (std::size_t n = patch.first_leaf; n < patch.first_leaf + patch.leaf_count; ++n) {
+    const double area = forests.leaf_area(leaves_[n]);
+    patch.area += area;
+    if (leaf_reflectance_.empty()) continue;
+    leaf_reflectance_[n] = forests.reflectance(leaves_[n]);
+    reflecting += area * forests.cover(leaves_[n]) * leaf_reflectance_[n];
+    covered += area * forests.cover(leaves_[n]);
+  }
+  if (covered > 0) patch.reflectance = (1 / covered) * reflecting;
 }
 
 void PassSystem::describe_places() {
@@ -69,14 +89,14 @@ std::unique_ptr<Exchange> PassSystem::begin_exchange() const {
 }
 
 std::unique_ptr<Exchange> PassSystem::begin_gathering() const {
-  std::vector<const NodeIndex*> hit_leaf;
-  std::vector<RelativeLight> irradiance;
-  std::vector<PatchId> ids;
-  for (const NodeIndex row : rows_) {
-    ids.push_back(state_.forests.rows().id(row));
-    hit_leaf.push_back(state_.rows.leaves_hit(row).data());
-    irradiance.push_back(state_.field.irradiance(row));
-  }
+  std::vector<const NodeIndex*> hit_leaf(rows_.size());
+  std::vector<RelativeLight> irradiance(rows_.size());
+  std::vector<PatchId> ids(rows_.size());
+  tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t p) {
+    ids[p] = state_.forests.rows().id(rows_[p]);
+    hit_leaf[p] = state_.rows.leaves_hit(rows_[p]).data();
+    irradiance[p] = state_.field.irradiance(rows_[p]);
+  });
   return std::make_unique<Gathering>(
       patches_, leaves_, state_.forests.leaves().node_count(), own_radiosity_, std::move(hit_leaf), std::move(irradiance),
       std::move(ids), GatheringNeeds{state_.plan.needs(Feature::three_bands), state_.plan.needs(Feature::acceleration)},

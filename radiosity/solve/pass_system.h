@@ -42,13 +42,15 @@ class PassSystem {
 
  private:
   std::unique_ptr<Exchange> begin_gathering() const;
+  void deal_leaves();
+  void describe_patch(std::size_t patch);
   void find_patches_behind();
   void describe_places();
 
   SolveState& state_;
-  std::vector<ShootingPatch> patches_;
   std::vector<NodeIndex> rows_, leaves_;
   Deal deal_;
+  std::vector<ShootingPatch> patches_;
   std::vector<std::uint32_t> patch_of_place_;
   std::vector<double> visible_area_;          ///< by place
   std::vector<RelativeLight> own_radiosity_;  ///< by place: emission that rows carry, and scattered direct light

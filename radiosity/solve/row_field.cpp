@@ -77,7 +77,7 @@ void RowField::hand_down(NodeIndex split_row) {
 
 void RowField::save(PlainWriter& out) const {
   if (!has_rows_) return;
-  const auto rows = forests_.rows().leaves();
+  const auto rows = forests_.all_rows();
   save_at(rows, irradiance_, out);
   save_at(rows, fit_, out);
 }
@@ -85,7 +85,7 @@ void RowField::save(PlainWriter& out) const {
 void RowField::load(PlainReader& in) {
   if (!has_rows_) return;
   fit_to_nodes();
-  const auto rows = forests_.rows().leaves();
+  const auto rows = forests_.all_rows();
   load_at(rows, irradiance_, in, "irradiance of rows", [](const RelativeLight& light) { return light.is_finite(); });
   load_at(rows, fit_, in, "field of rows", [](const FieldFit& fit) { return is_sound(fit); });
 }

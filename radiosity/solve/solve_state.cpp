@@ -1,17 +1,16 @@
 #include "radiosity/solve/solve_state.h"
 
+#include "radiosity/exchange/parallel_sum.h"
 #include "radiosity/solve/moved_sight.h"
 #include "radiosity/solve/near_surfaces.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 namespace alvor {
@@ -90,13 +89,17 @@ void SolveState::fit_to_nodes() {
 }
 
 std::vector<LeafValue> SolveState::leaf_values() const {
-  const auto leaves = forests.leaves().leaves();
+  const auto leaves = forests.all_leaves();
   std::vector<LeafValue> values(leaves.size());
-  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    const NodeIndex leaf = leaves[n];
-    const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf, forests.row_of(leaf)));
-    values[n] = {forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))};
-  });
+  const auto find_part = [&](const tbb::blocked_range<std::size_t>& part) {
+    RowFinder finder(forests);
+    for (std::size_t n = part.begin(); n < part.end(); ++n) {
+      const NodeIndex leaf = leaves[n];
+      const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf, finder.row_of(leaf)));
+      values[n] = {forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))};
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()), find_part);
   return values;
 }
 
@@ -104,15 +107,9 @@ double SolveState::unshot_power() const { return direct.waiting_power() + scatte
 
 /// Returns the power of the direct light that all leaves scatter, in emission units times m2.
 RelativeLight SolveState::scattered_power() const {
-  const std::vector<NodeIndex> leaves = forests.leaves().leaves();
-  const auto add_part = [&](const tbb::blocked_range<std::size_t>& part, RelativeLight sum) {
-    for (std::size_t n = part.begin(); n < part.end(); ++n)
-      sum += forests.leaf_area(leaves[n]) * scattered_direct_light(leaves[n]);
-    return sum;
-  };
-  constexpr std::size_t leaves_a_part = 4096;
-  const tbb::blocked_range<std::size_t> all(0, leaves.size(), leaves_a_part);
-  return tbb::parallel_deterministic_reduce(all, RelativeLight{}, add_part, std::plus());
+  const std::vector<NodeIndex> leaves = forests.all_leaves();
+  return parallel_sum<RelativeLight>(
+      leaves.size(), [&](std::size_t n) { return forests.leaf_area(leaves[n]) * scattered_direct_light(leaves[n]); });
 }
 
 bool SolveState::split_leaf(NodeIndex leaf, Split wanted) {
@@ -178,9 +175,13 @@ void SolveState::heed_hidden_origins(NodeIndex row) {
 
 /// Requires: direct.counts_arrivals().
 double SolveState::arrived_power() const {
-  double power = 0;
-  for (const NodeIndex leaf : forests.leaves().leaves()) power += visible_area(leaf, forests.row_of(leaf)) * direct.arrived(leaf);
-  return power;
+  const std::vector<NodeIndex> leaves = forests.all_leaves();
+  return parallel_sum_of_parts<double>(leaves.size(), [&](const tbb::blocked_range<std::size_t>& part, double sum) {
+    RowFinder finder(forests);
+    for (std::size_t n = part.begin(); n < part.end(); ++n)
+      sum += visible_area(leaves[n], finder.row_of(leaves[n])) * direct.arrived(leaves[n]);
+    return sum;
+  });
 }
 
 std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_before) {
@@ -196,13 +197,14 @@ std::optional<double> SolveState::relight(Plan new_plan, bool reflects_as_before
   plan = std::move(new_plan);
   largest_irradiance_ = largest_irradiance(mesh);
   forests.note_relit();
-  for (RelativeLight& light : shot) light = change * light;
+  if (change != 1)
+    for (RelativeLight& light : shot) light = change * light;
   const auto factor = direct.note_relit(change);
   const Rgb field_change = factor && reflects_as_before ? *factor : Rgb{change, change, change};
   field.scale(field_change);
   if (scattered_before_) scattered_before_ = field_change * *scattered_before_;
   if (rows.carry_light()) {
-    std::vector<NodeIndex> dark = forests.rows().leaves();
+    std::vector<NodeIndex> dark = forests.all_rows();
     std::erase_if(dark, [this](NodeIndex row) { return rows.may_be_lit(row); });
     field.set(dark, std::vector<RelativeLight>(dark.size()));
     forget_errors(dark);
@@ -241,13 +243,13 @@ void SolveState::note_moved(BaseMesh before, Plan new_plan, bool reflects_as_bef
   MovedRoots roots(before, mesh);
   move_ = Move{std::move(before), std::move(roots)};
   scene = LocalScene(mesh);
-  forests.note_moved();
+  forests.note_moved(move_->roots);
   const double unit_before = unit_.to_watts(1);
   relight(std::move(new_plan), reflects_as_before);
   const bool shines_alike = unit_.to_watts(1) == unit_before && has_same_lights(move_->before, mesh);
   if (!reflects_as_before || !shines_alike) known_errors.clear();
   if (!rows.carry_light()) return;
-  std::vector<NodeIndex> of_moved = forests.rows().leaves();
+  std::vector<NodeIndex> of_moved = forests.all_rows();
   std::erase_if(of_moved, [this](NodeIndex row) { return !move_->roots.has(forests.rows().id(row).root_face()); });
   std::vector<RelativeLight> irradiance;  // without slopes: that of light at the old place says nothing at the new one
   for (const NodeIndex row : of_moved) irradiance.push_back(field.irradiance(row));
@@ -262,15 +264,16 @@ void SolveState::forget_errors(std::span<const NodeIndex> of_rows) {
 
 /// Returns for each row, by node, whether it or one beside it sees a place of moved roots.
 std::vector<std::uint8_t> SolveState::rows_in_sight(const MovedRoots& moved) {
-  const std::vector<NodeIndex> all = forests.rows().leaves();
+  std::vector<NodeIndex> asked = forests.all_rows();
+  std::erase_if(asked, [&](NodeIndex row) { return !rows.may_reach(moved, row); });
   std::vector<Viewpoint> viewpoints;
-  for (const NodeIndex row : all) viewpoints.push_back({forests.rows().shape(row), options.seed + row});
+  for (const NodeIndex row : asked) viewpoints.push_back({forests.rows().shape(row), options.seed + row});
   const auto sees = see_moved(scene, moved, viewpoints, budget);
-  const auto neighbours = forests.row_neighbours(all);
+  const auto neighbours = forests.row_neighbours(asked);
   std::vector<std::uint8_t> in_sight(forests.rows().node_count());
-  for (std::size_t n = 0; n < all.size(); ++n) {
+  for (std::size_t n = 0; n < asked.size(); ++n) {
     if (!sees[n]) continue;
-    in_sight[all[n]] = 1;
+    in_sight[asked[n]] = 1;
     for (const NodeIndex beside : neighbours[n]) in_sight[beside] = 1;
   }
   return in_sight;
@@ -293,7 +296,7 @@ void SolveState::save(PlainWriter& out) const {
   rows.save_rows(out);
   field.save(out);
   direct.save_light(out);
-  save_at(forests.leaves().leaves(), shot, out);
+  save_at(forests.all_leaves(), shot, out);
   rows.save_wanted(out);
   rows.save_guides(out);
   direct.save_waiting(out);
@@ -301,13 +304,13 @@ void SolveState::save(PlainWriter& out) const {
 }
 
 void SolveState::load(PlainReader& in, std::uint32_t version) {
-  assert(std::ranges::none_of(forests.rows().leaves(), [this](NodeIndex row) { return rows.is_traced(row); }));
+  assert(std::ranges::none_of(forests.all_rows(), [this](NodeIndex row) { return rows.is_traced(row); }));
   forests.load(in);
   fit_to_nodes();
   rows.load_rows(in, version);
   field.load(in);
   direct.load_light(in, version);
-  load_at(forests.leaves().leaves(), shot, in, "shot light", [](const RelativeLight& light) { return light.is_finite(); });
+  load_at(forests.all_leaves(), shot, in, "shot light", [](const RelativeLight& light) { return light.is_finite(); });
   rows.load_wanted(in);
   if (version >= 4) rows.load_guides(in);
   direct.load_waiting(in);

@@ -90,6 +90,7 @@ void TracedRows::fit_to_nodes() {
   rows_.resize(count);
   is_traced_.resize(count);
   if (carry_light()) hit_leaves_.resize(count), found_among_.resize(count);
+  if (hit_boxes_) hit_boxes_->fit_to_nodes(count);
 }
 
 void TracedRows::append(const AppendedRoots& roots) {
@@ -100,6 +101,7 @@ void TracedRows::append(const AppendedRoots& roots) {
   for (std::size_t& nodes : found_among_) nodes += nodes > 0 ? roots.count : 0;
   roots.make_room(hit_leaves_);
   roots.make_room(found_among_);
+  if (hit_boxes_) hit_boxes_->append(roots), hit_boxes_->heed(forests_.mesh());
   std::map<NodeIndex, DirectionGuide> guides;
   for (const auto& [row, guide] : guides_) guides.emplace(roots.moved(row), guide);
   guides_ = std::move(guides);
@@ -112,7 +114,7 @@ void TracedRows::forget(NodeIndex row) {
 }
 
 std::vector<NodeIndex> TracedRows::untraced() const {
-  std::vector<NodeIndex> rows = forests_.rows().leaves();
+  std::vector<NodeIndex> rows = forests_.all_rows();
   std::erase_if(rows, [this](NodeIndex row) { return is_traced_[row] || !may_be_lit(row); });
   return rows;
 }
@@ -128,7 +130,15 @@ bool TracedRows::trace(std::span<const NodeIndex> rows) {
     is_traced_[rows[n]] = true;
     guides_.erase(rows[n]);
   }
+  note_hits(rows);
   return true;
+}
+
+void TracedRows::note_hits(std::span<const NodeIndex> rows) {
+  if (!hit_boxes_) return;
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
+    hit_boxes_->note(rows[n], box_of(scene_.mesh(), forests_.rows().shape(rows[n])), rows_[rows[n]].hits);
+  });
 }
 
 /// Collective. Returns the rows, those of other ranks without hits; nothing if the ray budget ran out.
@@ -210,6 +220,7 @@ bool TracedRows::add_wanted_rays() {
     rows_[rows[n]].append((*more)[n]);
     guides_.erase(rows[n]);
   }
+  note_hits(rows);
   wanting_.resize(wanting_.size() - count);
   return true;
 }
@@ -231,7 +242,7 @@ void TracedRows::find_hit_leaves(NodeIndex row) {
 }
 
 void TracedRows::save_rows(PlainWriter& out) const {
-  const auto rows = forests_.rows().leaves();
+  const auto rows = forests_.all_rows();
   if (ranks_.is_alone())
     for (const NodeIndex row : rows) save(rows_[row], out);
   else
@@ -249,11 +260,12 @@ void TracedRows::save_batch(std::span<const NodeIndex> rows, PlainWriter& out) c
 
 void TracedRows::load_rows(PlainReader& in, std::uint32_t version) {
   fit_to_nodes();
-  const auto rows = forests_.rows().leaves();
+  const auto rows = forests_.all_rows();
   for (const NodeIndex row : rows) {
     rows_[row] = load_row(forests_.mesh().roots().size(), in, version);
     if (!is_own(row)) drop_hits(rows_[row]);
   }
+  note_hits(rows);
   load_flags(rows, is_traced_, in);
 }
 

@@ -5,6 +5,7 @@
 #include "radiosity/ranks/deal.h"
 #include "radiosity/rays/transport_rows.h"
 #include "radiosity/solve/forests.h"
+#include "radiosity/solve/hit_boxes.h"
 #include "radiosity/solve/moved_roots.h"
 
 #include <map>
@@ -71,6 +72,16 @@ class TracedRows {
   /// Does nothing for rows of other ranks.
   void find_hit_leaves(NodeIndex row);
 
+  /// Keeps a box around the hits of each row from now on, so that note_moved() passes over most rows at once. Requires: one rank;
+  /// nothing is traced.
+  void keep_hit_boxes() { hit_boxes_.emplace(forests_.mesh()), fit_to_nodes(); }
+
+  /// Returns whether the box around a row's patch and its hits touches a place where moved roots were or are. True where that is
+  /// not known: no boxes are kept, the row is not traced, or some of its rays met no front.
+  bool may_reach(const MovedRoots& moved, NodeIndex row) const {
+    return !hit_boxes_ || !is_traced_[row] || !rows_[row].is_closed || moved.touch(hit_boxes_->of(row));
+  }
+
   /// Makes room for new nodes of the row forest.
   void fit_to_nodes();
   /// Forgets the row of a node that was split.
@@ -79,8 +90,9 @@ class TracedRows {
   void append(const AppendedRoots& roots);
   /// Takes roots that have moved since the mesh was `before`: sends the rays again that ended on them, or may meet them where
   /// they are now. The rows that must be traced anew instead are forgotten: those of moved roots, those that touch
-  /// places where these were or are, and where not all is known of the rays: under panes and media, with hemicubes, and where
-  /// rays left the scene. Requires: one rank; the scene is the new one.
+  /// places where these were or are, and where not all is known of the rays: where some met no front and a moved root was or is
+  /// in front of the row, and, of rows that may
+  /// reach these places, under panes and media and with hemicubes. Requires: one rank; the scene is the new one.
   MendedRows note_moved(const BaseMesh& before, const MovedRoots& moved);
 
   /// Collective. Every rank writes the rows of all.
@@ -102,6 +114,9 @@ class TracedRows {
   std::optional<std::vector<TransportRow>> traced(std::span<const NodeIndex> rows, std::span<const RowSize> sizes,
                                                   std::uint64_t seed);
   std::vector<TransportRow> traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
+  bool may_hide_otherwise(const MovedRoots& moved, NodeIndex row) const;
+  bool is_far_from(const MovedRoots& moved, NodeIndex row) const;
+  void note_hits(std::span<const NodeIndex> rows);
   void save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const;
   RowSize size_of(PatchId patch) const;
 
@@ -115,7 +130,8 @@ class TracedRows {
   std::vector<TransportRow> rows_;
   std::vector<bool> is_traced_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;
-  std::vector<std::size_t> found_among_;        ///< by row: the number of leaf nodes when find_hit_leaves() was called last
+  std::vector<std::size_t> found_among_;  ///< by row: the number of leaf nodes when find_hit_leaves() was called last
+  std::optional<HitBoxes> hit_boxes_;
   std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
   std::uint64_t rounds_of_rays_ = 0;            ///< each adds independent rays
   std::vector<NodeIndex> wanting_;              ///< rows that have not got the rays of the newest round

@@ -1,9 +1,11 @@
 #include "radiosity/exchange/exchange.h"
 
+#include "radiosity/exchange/parallel_sum.h"
 #include "radiosity/exchange/strategies.h"
 #include "tests/radiosity/systems.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <cmath>
 
@@ -28,6 +30,18 @@ double true_error(const System& system, std::span<const RelativeLight> solution,
     area += patch.area;
   }
   return std::sqrt(squares / area) / (power / area);
+}
+
+TEST(ParallelSum, IsTheSameOnAnyNumberOfThreads) {
+  constexpr std::size_t count = 100'000;
+  const auto sum = [](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([] { return parallel_sum<double>(count, [](std::size_t n) { return 1 / (1.0 + double(n)); }); });
+  };
+  double expected = 0;
+  for (std::size_t n = count; n > 0; --n) expected += 1 / double(n);
+  EXPECT_NEAR(sum(1), expected, 1e-13 * expected);
+  EXPECT_EQ(sum(2), sum(1));
 }
 
 TEST(Exchange, RemainingErrorIsNeverLessThanTheErrorOfReciprocalRows) {

@@ -15,22 +15,8 @@ namespace {
 
 using test::EditedSolve;
 
-/// Two rooms of 4 x 3 x 4 m with lamps, 6 m apart, and a box of half a metre in the first one.
-Scene two_rooms() {
-  Scene scene;
-  scene.materials = {test::grey(0, 0.5), test::grey(1, 0)};
-  for (const double x : {0.0, 10.0}) {
-    test::add_box(scene, {x, 0, 0}, {x + 4, 3, 4}, true);
-    test::add_polygon(scene, {{x + 1, 2.9, 1}, {x + 2, 2.9, 1}, {x + 2, 2.9, 2}, {x + 1, 2.9, 2}}, 1);
-    test::add_polygon(scene, {{x + 3, 2.9, 1}, {x + 3.5, 2.9, 1}, {x + 3.5, 2.9, 2}, {x + 3, 2.9, 2}}, 1);
-  }
-  scene.objects = {{.name = "box", .first_face = static_cast<std::uint32_t>(scene.faces.size()), .face_count = 6}};
-  test::add_box(scene, {1, 0.5, 1}, {1.5, 1, 1.5}, false);
-  return scene;
-}
-
 Scene two_rooms_with_box_moved(Vec3 move) {
-  return edited_scene(two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = move}});
+  return edited_scene(test::two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = move}});
 }
 
 /// Exchanges the light of a pass until hardly any is left, and returns the estimate.
@@ -64,13 +50,13 @@ void expect_to_tell_what_an_estimate_of_all_tells(SolveState& state) {
 
 /// Moves the box of a live solve, and mends what that changes.
 void take_move(LiveSolve& live, Vec3 move) {
-  const BaseMesh mesh = BaseMesh(two_rooms()).edited_as(two_rooms_with_box_moved(move));
+  const BaseMesh mesh = BaseMesh(test::two_rooms()).edited_as(two_rooms_with_box_moved(move));
   ASSERT_TRUE(live.take_edit(mesh, Plan(mesh, live.state.options)));
   live.state.mend_moved();
 }
 
 TEST(KnownErrors, AreNotFoundAgainInTheOtherRoom) {
-  EditedSolve solve(two_rooms(), {.tolerance = 0.05});
+  EditedSolve solve(test::two_rooms(), {.tolerance = 0.05});
   SolveState& state = solve.live()->state;
   for (const NodeIndex leaf : state.forests.leaves().leaves()) {
     if (centre_of(state.mesh, state.forests.leaves().shape(leaf)).x < 10) continue;
@@ -85,7 +71,7 @@ TEST(KnownErrors, AreNotFoundAgainInTheOtherRoom) {
 TEST(KnownErrors, OfAMoveThatIsBrokenOffAreFoundAfterTheNext) {
   for (const int steps : {0, 1, 2}) {
     SCOPED_TRACE(steps);
-    EditedSolve solve(two_rooms(), {.tolerance = 0.05});
+    EditedSolve solve(test::two_rooms(), {.tolerance = 0.05});
     LiveSolve& live = *solve.live();
     take_move(live, {1, 0.2, 1});
     if (Pass broken_off(live.state); steps > 0) {
@@ -101,7 +87,7 @@ TEST(KnownErrors, TellWhatAnEstimateOfAllTells) {
   std::size_t refined = 0;
   for (const double tolerance : {0.05, 0.03, 0.02}) {
     SCOPED_TRACE(tolerance);
-    EditedSolve solve(two_rooms(), {.tolerance = tolerance});
+    EditedSolve solve(test::two_rooms(), {.tolerance = tolerance});
     const std::uint64_t leaves = solve.last().leaves;
     solve.edit([](Scene& scene) { scene = two_rooms_with_box_moved({1, 0.2, 1}); });
     refined += solve.last().leaves > leaves;
@@ -112,14 +98,14 @@ TEST(KnownErrors, TellWhatAnEstimateOfAllTells) {
 
 TEST(KnownErrors, AreForgottenWhereLightsOrReflectancesChange) {
   const auto is_known_after = [](const Scene& edited) {
-    EditedSolve solve(two_rooms(), {.tolerance = 0.05});
+    EditedSolve solve(test::two_rooms(), {.tolerance = 0.05});
     LiveSolve& live = *solve.live();
-    const BaseMesh mesh = BaseMesh(two_rooms()).edited_as(edited);
+    const BaseMesh mesh = BaseMesh(test::two_rooms()).edited_as(edited);
     EXPECT_TRUE(live.take_edit(mesh, Plan(mesh, live.state.options)));
     return !live.state.known_errors.empty();
   };
   const Scene moved = two_rooms_with_box_moved({1, 0.2, 1});
-  Scene dimmed = two_rooms(), recoloured = two_rooms();
+  Scene dimmed = test::two_rooms(), recoloured = test::two_rooms();
   dimmed.materials[1].emission = {1, 1, 0.5};
   recoloured.materials[0].reflectance = {0.5, 0.5, 0.4};
   EXPECT_TRUE(is_known_after(moved));
@@ -131,7 +117,7 @@ TEST(KnownErrors, AreForgottenWhereLightsOrReflectancesChange) {
 }
 
 TEST(SeenSpace, ReachesAllOfARoomAndNothingOfAnother) {
-  const Scene scene = two_rooms();
+  const Scene scene = test::two_rooms();
   const BaseMesh mesh(scene);
   const LocalScene local(mesh);
   RayBudget budget([] { return false; });

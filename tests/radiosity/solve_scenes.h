@@ -92,4 +92,18 @@ inline Scene curtained_room() {
   return scene;
 }
 
+/// Returns two rooms of 4 x 3 x 4 m with lamps, 6 m apart, and a box of half a metre in the first one.
+inline Scene two_rooms() {
+  Scene scene;
+  scene.materials = {grey(0, 0.5), grey(1, 0)};
+  for (const double x : {0.0, 10.0}) {
+    add_box(scene, {x, 0, 0}, {x + 4, 3, 4}, true);
+    add_polygon(scene, {{x + 1, 2.9, 1}, {x + 2, 2.9, 1}, {x + 2, 2.9, 2}, {x + 1, 2.9, 2}}, 1);
+    add_polygon(scene, {{x + 3, 2.9, 1}, {x + 3.5, 2.9, 1}, {x + 3.5, 2.9, 2}, {x + 3, 2.9, 2}}, 1);
+  }
+  scene.objects = {{.name = "box", .first_face = static_cast<std::uint32_t>(scene.faces.size()), .face_count = 6}};
+  add_box(scene, {1, 0.5, 1}, {1.5, 1, 1.5}, false);
+  return scene;
+}
+
 }  // namespace alvor::test
