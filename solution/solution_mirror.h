@@ -32,6 +32,8 @@ class SolutionMirror {
   bool misses_errors() const { return misses_errors_; }
   /// Returns every step so far, oldest first.
   const std::vector<Step>& steps() const { return steps_; }
+  /// Returns the revision of the newest edits that the mirror's state heeds; 0: of none.
+  std::uint64_t edits() const { return steps_.empty() ? 0 : steps_.back().edits; }
 
  private:
   std::optional<std::string> fault_in(const Delta& delta) const;

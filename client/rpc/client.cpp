@@ -237,10 +237,11 @@ void Client::delete_scene(const std::string& name) {
   by_name<v1::DeleteSceneRequest, google::protobuf::Empty>(name, [this](auto&... call) { return scenes_->DeleteScene(call...); });
 }
 
-Scene Client::read_scene(const std::string& name) {
+Scene Client::read_scene(const std::string& name, std::optional<std::uint64_t> edits) {
   grpc::ClientContext context;
   v1::ReadSceneRequest request;
   request.set_name(name);
+  if (edits) request.set_edits(*edits);
   const auto reader = scenes_->ReadScene(&context, request);
   SceneAssembler assembler;
   std::optional<Fault> fault;

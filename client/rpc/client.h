@@ -79,7 +79,8 @@ class Client {
   v1::Scene get_scene(const std::string& name);
   std::vector<v1::Scene> list_scenes();  ///< reads all pages of the list
   void delete_scene(const std::string& name);
-  Scene read_scene(const std::string& name);
+  /// Returns a scene; of a solve, with its edits up to a revision, or with all of them.
+  Scene read_scene(const std::string& name, std::optional<std::uint64_t> edits = {});
 
   v1::Solve create_solve(const std::string& scene_name, const v1::SolveSpec& spec);
   v1::Solve get_solve(const std::string& name);

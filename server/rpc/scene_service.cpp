@@ -130,33 +130,45 @@ SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::Del
   return keep(context, "DeleteScene", [this, request](const std::string& tenant) { scenes_.remove(request->name(), tenant); });
 }
 
+namespace {
+
+std::optional<std::uint64_t> edits_of(const auto& request) {
+  return request.has_edits() ? std::optional<std::uint64_t>(request.edits()) : std::nullopt;
+}
+
+}  // namespace
+
 template <class Message, class Slicer, class Part>
-grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& name, Part part) {
+grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& name,
+                                                      std::optional<std::uint64_t> edits, Part part) {
   std::string tenant;
   const grpc::Status refusal = attempt(logger_, call, [&] { tenant = tenants_.of(context); });
   if (!refusal.ok()) return new Refusal<grpc::ServerWriteReactor<Message>>(refusal);
-  const auto load = [this, name, tenant](const CallStop& stop) {
+  const auto load = [this, name, tenant, edits](const CallStop& stop) {
     const auto end_of_scene = name.find("/solves/");
     const auto solve = end_of_scene == std::string::npos ? nullptr : solves_.find(name, tenant);
     const auto stored = scenes_.find(name.substr(0, end_of_scene), tenant);
+    if (edits && !solve) throw invalid_argument("edits: only solves have them");
     limits_.memory.admit("scene", 2 * stored->facts.content_bytes);
-    return solve ? solve->content(stop) : stored->content(stop);
+    return solve ? solve->content(stop, edits) : stored->content(stop);
   };
   return new SendCall<Message, Slicer, Part>(context, pools_, limits_.patience, turn_of(tenant, context), logger_, call, part,
                                              load);
 }
 
 grpc::ServerWriteReactor<v1::ReadSceneResponse>* SceneService::ReadScene(Context* context, const v1::ReadSceneRequest* request) {
-  return send<v1::ReadSceneResponse, SceneSlicer>(*context, "ReadScene", request->name(), &SceneContent::scene);
+  return send<v1::ReadSceneResponse, SceneSlicer>(*context, "ReadScene", request->name(), edits_of(*request),
+                                                  &SceneContent::scene);
 }
 
 grpc::ServerWriteReactor<v1::ReadMeshResponse>* SceneService::ReadMesh(Context* context, const v1::ReadMeshRequest* request) {
-  return send<v1::ReadMeshResponse, WholeMeshSlicer>(*context, "ReadMesh", request->name(), &SceneContent::mesh);
+  return send<v1::ReadMeshResponse, WholeMeshSlicer>(*context, "ReadMesh", request->name(), edits_of(*request),
+                                                     &SceneContent::mesh);
 }
 
 grpc::ServerWriteReactor<v1::ReadImagesResponse>* SceneService::ReadImages(Context* context,
                                                                            const v1::ReadImagesRequest* request) {
-  return send<v1::ReadImagesResponse, SceneImageSlicer>(*context, "ReadImages", request->name(), &SceneContent::scene);
+  return send<v1::ReadImagesResponse, SceneImageSlicer>(*context, "ReadImages", request->name(), {}, &SceneContent::scene);
 }
 
 }  // namespace alvor

@@ -8,6 +8,8 @@
 #include "server/scenes/uploads.h"
 #include "server/solves/solve_store.h"
 
+#include <optional>
+
 namespace spdlog {
 class logger;
 }
@@ -40,10 +42,11 @@ class SceneService final : public v1::SceneService::CallbackService {
   /// Answers from CallPools::keeping, see answer_from.
   template <class Body>
   Reactor* keep(Context* context, const char* call, Body body);
-  /// Streams the part of the content of a scene, or of a solve with its edits, that `part` returns, cut into messages by a
-  /// Slicer.
+  /// Streams the part of the content of a scene, or of a solve with its edits up to a revision or all of them, that `part`
+  /// returns, cut into messages by a Slicer.
   template <class Message, class Slicer, class Part>
-  grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& name, Part part);
+  grpc::ServerWriteReactor<Message>* send(Context& context, const char* call, const std::string& name,
+                                          std::optional<std::uint64_t> edits, Part part);
 
   SceneStore& scenes_;
   const SolveStore& solves_;

@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -101,8 +102,9 @@ class StoredSolve {
   std::uint64_t newest_edits() const { return newest_edits_; }
   /// Returns the number of root patches of the scene as submitted.
   std::size_t submitted_roots() const { return scene_->content()->mesh.roots().size(); }
-  /// Returns the content with the newest edits.
-  std::shared_ptr<const SceneContent> content(const CallStop& stop = {}) const;
+  /// Returns the content with the edits up to a revision, or with all of them. Throws StatusError: OUT_OF_RANGE if they were
+  /// not made yet, ABORTED if a step took the place of that revision's.
+  std::shared_ptr<const SceneContent> content(const CallStop& stop = {}, std::optional<std::uint64_t> up_to = {}) const;
   /// Returns how the scene looks after the newest edits.
   v1::Look look() const;
   /// Gives back what is kept in memory for edits.

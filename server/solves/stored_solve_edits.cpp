@@ -1,8 +1,8 @@
 // The part of StoredSolve that takes edits of its scene.
 
-#include "proto/codec.h"
 #include "server/base/request_ids.h"
 #include "server/base/status_error.h"
+#include "server/solves/edited_look.h"
 #include "server/solves/stored_solve.h"
 
 #include <algorithm>
@@ -21,48 +21,15 @@ AddedContents contents_of(const std::map<std::string, SceneUse>& scenes, const C
   return contents;
 }
 
-/// Appends runs of faces that have other materials than before. Requires: both have the same faces.
-void add_faces(const Scene& before, const Scene& after, v1::Look& look) {
-  v1::FaceMaterials* run = nullptr;
-  for (std::uint32_t face = 0; face < after.faces.size(); ++face) {
-    const std::uint32_t material = after.faces[face].material;
-    if (material == before.faces[face].material) {
-      run = nullptr;
-      continue;
-    }
-    if (!run || run->material() != material) {
-      run = look.add_faces();
-      run->set_first_face(face);
-      run->set_material(material);
-    }
-    run->set_face_count(run->face_count() + 1);
-  }
-}
-
-/// Appends objects that are not as the submitted scene, which has so many materials, has them. `added`: the contents of added
-/// scenes.
-void add_objects(std::span<const SceneObject> objects, std::size_t materials, const AddedContents& added, v1::Look& look) {
-  for (std::uint32_t n = 0; n < objects.size(); ++n) {
-    const bool is_added = objects[n].is_added();
-    if (!objects[n].is_hidden && !is_added && objects[n].motion == Placement{}) continue;
-    v1::LookOfObject& changed = *look.add_objects();
-    changed.set_number(n);
-    encode(objects[n].motion, *changed.mutable_motion());
-    changed.set_hidden(objects[n].is_hidden);
-    if (!is_added) continue;
-    if (objects[n].copy_of) changed.set_copy_of(*objects[n].copy_of);
-    changed.set_name(as_utf8(objects[n].name));
-    changed.set_first_face(objects[n].first_face);
-    changed.set_face_count(objects[n].face_count);
-    if (objects[n].from_scene.empty()) continue;
-    changed.set_from_scene(objects[n].from_scene);
-    changed.set_first_material(static_cast<std::uint32_t>(materials));
-    materials += added.at(objects[n].from_scene)->scene.materials.size();
-  }
-}
-
-bool look_alike(const Material& a, const Material& b) {
-  return a.emission == b.emission && a.reflectance == b.reflectance && a.diffuse_transmittance == b.diffuse_transmittance;
+/// Returns the steps up to the one of a revision; none for revision 0. Throws StatusError.
+std::span<const KeptEdit> edits_up_to(std::uint64_t revision, std::span<const KeptEdit> edits) {
+  const auto end = std::ranges::upper_bound(edits, revision, {}, &KeptEdit::revision);
+  const std::span first(edits.begin(), end);
+  if (first.size() == edits.size() && revision > (edits.empty() ? 0 : edits.back().revision))
+    throw StatusError(grpc::OUT_OF_RANGE, "edits: there are none of revision " + std::to_string(revision) + " yet");
+  if (revision > 0 && (first.empty() || first.back().revision != revision))
+    throw StatusError(grpc::ABORTED, "edits: revision " + std::to_string(revision) + " is no more, because a slide went on");
+  return first;
 }
 
 }  // namespace
@@ -126,32 +93,18 @@ std::shared_ptr<const SceneContent> StoredSolve::content_of(std::span<const Kept
   }
   auto edited = edited_content(scene_->content(stop), edits, contents_of(added_scenes(), stop));
   Lock hold(lock_);
-  if (revision >= edited_.first) edited_ = {revision, edited};
+  if (revision >= newest_edits_) edited_ = {revision, edited};
   return edited;
 }
 
-std::shared_ptr<const SceneContent> StoredSolve::content(const CallStop& stop) const { return content_of(edits(), stop); }
+std::shared_ptr<const SceneContent> StoredSolve::content(const CallStop& stop, std::optional<std::uint64_t> up_to) const {
+  const std::vector<KeptEdit> all = edits();
+  return content_of(up_to ? edits_up_to(*up_to, all) : all, stop);
+}
 
 v1::Look StoredSolve::look() const {
   const std::vector<KeptEdit> newest = edits();
-  const auto after = content_of(newest, {});
-  const Scene& submitted = after->submitted ? after->submitted->scene : after->scene;
-  std::optional<Scene> with_added;  // a copy of a large scene takes long
-  if (after->scene.objects.size() > submitted.objects.size()) with_added = with_added_objects(submitted, newest, after->added);
-  const Scene& before = with_added ? *with_added : submitted;
-  v1::Look look;
-  look.set_edits(newest_revision(newest));
-  for (std::uint32_t n = 0; n < after->scene.materials.size(); ++n) {
-    const Material& material = after->scene.materials[n];
-    if (n < before.materials.size() && look_alike(before.materials[n], material)) continue;
-    v1::LookOfMaterial& changed = *look.add_materials();
-    changed.set_number(n);
-    *changed.mutable_material() = encode(material);
-    changed.mutable_material()->clear_texture();
-  }
-  add_faces(before, after->scene, look);
-  add_objects(after->scene.objects, submitted.materials.size(), after->added, look);
-  return look;
+  return look_of(*content_of(newest, {}), newest);
 }
 
 std::shared_ptr<LiveSolve> StoredSolve::take_live() {

@@ -50,6 +50,37 @@ TEST_F(EditingTest, UndoAndRedoAreEdits) {
   EXPECT_NE(refusal(redo()).find("FAILED_PRECONDITION"), std::string::npos);
 }
 
+TEST_F(EditingTest, TheSceneIsReadAsAnyRevisionOfItsEditsHasIt) {
+  end();
+  client.edit_solve(solve, recolour("m0", 0.1, 0.1, 0.1));
+  client.edit_solve(solve, dim_light("bulb", 0));
+  for (const double dim : {0.7, 0.5}) {  // a slide of two steps: revision 3 is no more
+    v1::EditStep step = dim_light("sun", dim);
+    step.set_continues(true);
+    step.set_author("Ada");
+    client.edit_solve(solve, step);
+  }
+  const auto emits = [&](std::optional<std::uint64_t> edits) { return client.read_scene(solve, edits).lights; };
+  const auto grey = [&](std::uint64_t edits) { return client.read_scene(solve, edits).materials[0].reflectance; };
+  EXPECT_EQ(grey(0), room().materials[0].reflectance);
+  EXPECT_EQ(grey(1), (Rgb{0.1, 0.1, 0.1}));
+  EXPECT_EQ(emits(1), room().lights);
+  EXPECT_TRUE(emits(2)[0].intensity.is_zero());
+  EXPECT_EQ(emits(2)[2].intensity, room().lights[2].intensity);
+  EXPECT_EQ(emits(4), emits({}));
+  const auto refusal_to_read = [&](const std::string& name, std::uint64_t edits) -> std::string {
+    try {
+      client.read_scene(name, edits);
+    } catch (const RpcError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal_to_read(solve, 3), "ABORTED: edits: revision 3 is no more, because a slide went on");
+  EXPECT_EQ(refusal_to_read(solve, 5), "OUT_OF_RANGE: edits: there are none of revision 5 yet");
+  EXPECT_EQ(refusal_to_read(scene_name, 0), "INVALID_ARGUMENT: edits: only solves have them");
+}
+
 TEST_F(EditingTest, ADayPassesAndIsOneStep) {
   const std::vector<LeafValue> before = end();
   v1::EditStep step;

@@ -19,12 +19,13 @@ TEST_P(Vectors, LeadToTheSameLeavesInEveryMirror) {
     ASSERT_FALSE(decode(frame, delta));
     ASSERT_EQ(mirror.apply(delta), std::nullopt);
   }
+  EXPECT_EQ(frames.back().look().edits(), mirror.edits()) << "no look where there are no edits";
   EXPECT_EQ(vectors::bytes_of(mirror.leaves()), vectors::read(path + ".leaves"));
   EXPECT_EQ(vectors::bytes_of(mirror.errors()), vectors::read(path + ".errors")) << "none, if there is no such file";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Vectors,
-                         testing::Values("display", "exact", "deep", "one_page", "uneven", "errors", "merges", "slabs"),
+                         testing::Values("display", "exact", "deep", "one_page", "uneven", "errors", "merges", "slabs", "edits"),
                          [](const auto& vector) { return std::string(vector.param); });
 
 }  // namespace

@@ -1,8 +1,12 @@
 // make_vectors DIRECTORY: writes the test vectors; to be run when the format of frames has changed. Each run writes the same.
 
+#include "meshing/edit/edited_scene.h"
 #include "proto/codec.h"
+#include "proto/mesh_codec.h"
+#include "server/solves/edited_look.h"
 #include "solution/solution_log.h"
 #include "solution/solution_mirror.h"
+#include "tests/scenes.h"
 #include "tests/server/growing_leaves.h"
 #include "tests/vectors/vectors.h"
 
@@ -68,6 +72,71 @@ void write(const Case& how, const std::filesystem::path& directory) {
   if (how.has_errors) std::ofstream(path.string() + ".errors", std::ios::binary) << vectors::bytes_of(mirror.errors());
 }
 
+std::vector<v1::ReadMeshResponse> mesh_messages(const BaseMesh& mesh) {
+  std::vector<v1::ReadMeshResponse> messages;
+  MeshSlicer slicer(mesh, 50, MeshParts::all);
+  for (v1::ReadMeshResponse message; slicer.next(message);) messages.push_back(message);
+  return messages;
+}
+
+/// Returns steps that move, turn, recolour, dim, copy, hide and take back.
+std::vector<EditStep> steps_of_edits() {
+  using Kind = EditStep::Kind;
+  const auto move = [](const char* name, Vec3 by) { return ObjectEdit{.name = name, .move = by}; };
+  MaterialEdit recolour;
+  recolour.name = "m0";
+  recolour.reflectance = Rgb{0.3, 0.2, 0.1};
+  ObjectEdit turned = move("box", {0.5, 0, 0.3});
+  turned.turn = 30;
+  return {{Kind::edit, {turned, recolour}},
+          {Kind::edit, {ObjectCopy{.name = "box.1", .of = "box"}, move("box.1", {-0.7, 0.1, 0.9})}},
+          {Kind::edit, {ObjectEdit{.name = "lamp", .dim = 0.5}, ObjectEdit{.name = "block", .hidden = true}}},
+          {Kind::undo, {}},
+          {Kind::redo, {}},
+          {Kind::edit, {ObjectCopy{.name = "box.2", .of = "box.1"}, ObjectEdit{.name = "box", .hidden = true}}},
+          {Kind::edit, {ObjectCopy{.name = "lamp.1", .of = "lamp"}}},
+          {Kind::undo, {}}};
+}
+
+/// Writes a watch of a scene that is edited: after each step all root patches have leaves of new values, the first of them four.
+void write_edits(const std::filesystem::path& directory) {
+  const Scene scene = test::room_of_objects();
+  const auto submitted = std::make_shared<const SceneContent>(SceneContent{scene, BaseMesh(scene)});
+  SolutionLog log;
+  SolutionMirror mirror;
+  std::vector<v1::WatchSolveResponse> frames;
+  EditedContent now{{}, submitted};
+  Cursor cursor;
+  const auto watch = [&] {
+    Step step;
+    step.edits = newest_revision(now.edits);
+    std::vector<LeafValue> values;
+    for (std::uint32_t root = 0; root < now.content->mesh.roots().size(); ++root) {
+      const auto light = static_cast<float>(1 + root + 100 * step.edits);
+      if (root > 0) values.push_back({PatchId::root(root), {light, 2 * light, 3 * light}});
+      for (int k = 0; root == 0 && k < 4; ++k) values.push_back({PatchId::root(root).child(k), {light, light, light}});
+    }
+    log.publish(values, step);
+    const Delta delta = log.since(cursor, Detail::exact, 1000);
+    cursor = delta.next;
+    encode(delta, frames.emplace_back());
+    if (step.edits > 0) *frames.back().mutable_look() = look_of(*now.content, now.edits);
+    if (const auto fault = mirror.apply(delta)) throw std::runtime_error(*fault);
+  };
+  watch();
+  for (const EditStep& step : steps_of_edits()) {
+    now = with_step(now.edits, {.step = step}, submitted);
+    watch();
+  }
+  const auto write_file = [&](const char* ending, const std::string& bytes) {
+    std::ofstream((directory / "edits").string() + ending, std::ios::binary) << bytes;
+  };
+  write_file(".frames", vectors::bytes_of(frames));
+  write_file(".leaves", vectors::bytes_of(mirror.leaves()));
+  write_file(".submitted", vectors::bytes_of(mesh_messages(submitted->mesh)));
+  write_file(".edited", vectors::bytes_of(mesh_messages(now.content->mesh)));
+}
+
 }  // namespace
 }  // namespace alvor
 
@@ -84,4 +153,5 @@ int main(int argc, char** argv) {
         alvor::Case{"merges", Detail::display, 6, 40, 40, false, false, true},
         alvor::Case{"slabs", Detail::display, 100, 60, 40, false, false, true, true}})
     alvor::write(how, argv[1]);
+  alvor::write_edits(argv[1]);
 }

@@ -1,7 +1,8 @@
 #pragma once
 // Test vectors that every mirror must apply alike. FILE.frames holds frames, each a length of 32 bits (little-endian) and a
 // WatchSolveResponse; FILE.leaves holds the mirror's leaves afterwards, each an id of 64 bits and three float32, in order;
-// FILE.errors, where errors were told, those of the leaves as float32.
+// FILE.errors, where errors were told, those of the leaves as float32. Where frames tell looks, FILE.submitted and FILE.edited
+// hold the ReadMeshResponses of the scene as submitted and with all edits, each after its length.
 
 #include "alvor/v1/solve_service.pb.h"
 #include "solution/leaf_value.h"
@@ -33,11 +34,12 @@ inline std::string bytes_of(std::span<const float> errors) {
   return bytes;
 }
 
-inline std::string bytes_of(const std::vector<v1::WatchSolveResponse>& frames) {
+template <class Message>
+std::string bytes_of(const std::vector<Message>& messages) {
   std::string bytes;
-  for (const v1::WatchSolveResponse& frame : frames) {
-    append(bytes, static_cast<std::uint32_t>(frame.ByteSizeLong()));
-    frame.AppendToString(&bytes);
+  for (const Message& message : messages) {
+    append(bytes, static_cast<std::uint32_t>(message.ByteSizeLong()));
+    message.AppendToString(&bytes);
   }
   return bytes;
 }

@@ -1,22 +1,47 @@
 #include "client/command/commands/edited_mesh.h"
 
 #include "client/command/options/solve_name.h"
+#include "client/command/output/notes.h"
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace alvor {
 
-BaseMesh read_edited_mesh(Client& client, const std::string& solve) {
-  return read_edited_mesh(client, BaseMesh(client.read_scene(scene_name_of(solve))), solve);
+namespace {
+
+/// Reads the scene of a solve with edits up to a revision. If that is no more, with all edits, and warns.
+Scene read_edited_scene(Client& client, const std::string& solve, std::optional<std::uint64_t> edits) {
+  try {
+    return client.read_scene(solve, edits);
+  } catch (const RpcError& error) {
+    if (error.code != grpc::ABORTED) throw;
+    const std::vector<std::string> warnings{
+        "the scene was edited after this state: it is shown with the newest edits, in light that does not heed them yet"};
+    warn(warnings);
+    return client.read_scene(solve);
+  }
 }
 
-BaseMesh read_edited_mesh(Client& client, const BaseMesh& submitted, const std::string& solve) {
-  const Scene edited = client.read_scene(solve);
+}  // namespace
+
+BaseMesh read_edited_mesh(Client& client, const std::string& solve, std::optional<std::uint64_t> edits) {
+  return read_edited_mesh(client, BaseMesh(client.read_scene(scene_name_of(solve))), solve, edits);
+}
+
+BaseMesh read_edited_mesh(Client& client, BaseMesh submitted, const std::string& solve, std::optional<std::uint64_t> edits) {
+  if (edits == 0) return submitted;
+  const Scene edited = read_edited_scene(client, solve, edits);
   AddedMeshes added;
   for (const SceneObject& object : edited.objects)
     if (const std::string& scene = object.from_scene; !scene.empty() && !added.contains(scene))
       added[scene] = std::make_shared<const BaseMesh>(client.read_scene(scene));
   return submitted.edited_as(edited, added);
+}
+
+std::optional<std::uint64_t> edits_shown(const SolutionMirror& mirror) {
+  return mirror.whole() ? std::optional(mirror.edits()) : std::nullopt;
 }
 
 }  // namespace alvor

@@ -2,15 +2,23 @@
 
 #include "client/rpc/client.h"
 #include "meshing/base_mesh.h"
+#include "solution/solution_mirror.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace alvor {
 
-/// Returns the mesh of a solve as its edits have made it. Throws RpcError, and Failure (usage) if `solve` is not the name of a
-/// solve.
-BaseMesh read_edited_mesh(Client& client, const std::string& solve);
+/// Returns the mesh of a solve as its edits up to a revision (Step::edits of a state) have made it, or all of them. Where the
+/// step of that revision is no more, because a slide went on, it warns and returns that with all edits. Throws RpcError, and
+/// Failure (usage) if `solve` is not the name of a solve.
+BaseMesh read_edited_mesh(Client& client, const std::string& solve, std::optional<std::uint64_t> edits);
 /// Returns that mesh without reading the scene as submitted, whose mesh is `submitted`. Throws as above.
-BaseMesh read_edited_mesh(Client& client, const BaseMesh& submitted, const std::string& solve);
+BaseMesh read_edited_mesh(Client& client, BaseMesh submitted, const std::string& solve, std::optional<std::uint64_t> edits);
+
+/// Returns the revision of the edits that a mirror's leaves heed; nothing while frames are under way, some of whose leaves may
+/// heed newer edits: then draw with all.
+std::optional<std::uint64_t> edits_shown(const SolutionMirror& mirror);
 
 }  // namespace alvor

@@ -50,7 +50,7 @@ DisplayMesh read_served_solution(const ServedSolution& source) {
   Connection connection(source.server);
   const State state = newest_state(connection.client(), source.solve);
   require_published(state, source.solve);
-  const BaseMesh base = read_edited_mesh(connection.client(), source.solve);
+  const BaseMesh base = read_edited_mesh(connection.client(), source.solve, edits_shown(state.mirror));
   return decode_glb(encode_glb(mesh_of(base, state, source.ambient)));
 }
 

@@ -118,8 +118,7 @@ FollowedSolve solve_and_follow(const SolveCommand& command, RawScene bytes) {
   const v1::Solve solve = client.create_solve(scene.name(), spec_of(command));
   if (connection.remote()) progress() << solve.name() << '\n';
   solved.followed = follow_own(client, solve, options, interrupt.token());
-  const auto& steps = solved.followed.mirror.steps();
-  if (!steps.empty() && steps.back().edits > 0) solved.mesh = read_edited_mesh(client, *solved.mesh, solve.name());
+  solved.mesh = read_edited_mesh(client, *std::move(solved.mesh), solve.name(), edits_shown(solved.followed.mirror));
   return solved;
 }
 

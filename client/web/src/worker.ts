@@ -54,7 +54,7 @@ abstract class Shown {
   protected readonly scenes = new Map<string, ReadMeshResponse[]>();
   /** The scenes whose images were asked for; undefined before any were. */
   private imagesAsked?: string;
-  private look: Pick<Look, "objects"> = { objects: [] };
+  protected look: Pick<Look, "objects" | "edits"> = { objects: [], edits: 0n };
   protected ambient: [number, number, number] = [0, 0, 0];
   private isDrawn = true;
   protected isChanged = false;
@@ -79,7 +79,7 @@ abstract class Shown {
 
   protected setMesh(messages: ReadMeshResponse[]): void {
     this.messages = messages;
-    this.look = { objects: [] };
+    this.look = { objects: [], edits: 0n };
     this.mesh = new BaseMesh(messages);
     this.forget();
     this.tellMesh();
@@ -117,7 +117,7 @@ abstract class Shown {
 
   private beginMirror(): void {
     this.surface = new Surface(this.mesh);
-    this.mirror = new Mirror(this.mesh.rootCount, this.surface);
+    this.mirror = new Mirror(this.mesh.rootCount, this.surface, (root) => this.mesh.cornersOf(root) === 3);
     this.surface.attach(this.mirror);
   }
 
@@ -322,6 +322,7 @@ class Watch extends Shown {
     this.epoch = frame.epoch;
     this.isWhole = frame.toRevision === frame.headRevision || (frame.leaves?.count ?? 0) === 0 || frame.toRevision > this.revision;
     this.revision = frame.toRevision;
+    if (frame.steps.some(({ edits }) => edits > this.look.edits)) throw new BadFrame("a state heeds edits of which no look has told");
     if (frame.stateHash !== undefined && frame.stateHash !== this.mirror.stateHash)
       throw new BadFrame("the state has another hash than the server's");
     if (frame.errors) {

@@ -64,6 +64,8 @@ export class Mirror {
   constructor(
     readonly rootCount: number,
     private readonly listener?: MirrorListener,
+    /** Whether a root is a triangle, which has no slabs. */
+    private readonly isTriangle: (root: number) => boolean = () => false,
   ) {
     const room = Math.max(64, 2 * rootCount);
     this.firstChild = new Int32Array(room);
@@ -103,8 +105,11 @@ export class Mirror {
 
   /** Whole or, where it throws BadFrame, not at all. */
   apply(leaves: Leaves): void {
-    for (let n = 0; n < leaves.count; ++n)
-      if (leaves.face[n] >= this.rootCount) throw new BadFrame(`root patch ${leaves.face[n]} is not in the mesh`);
+    for (let n = 0; n < leaves.count; ++n) {
+      const root = leaves.face[n];
+      if (root >= this.rootCount) throw new BadFrame(`root patch ${root} is not in the mesh`);
+      if (leaves.slabs[n] !== 0 && this.isTriangle(root)) throw new BadFrame(`root patch ${root} is a triangle, and has slabs`);
+    }
     for (let n = 0; n < leaves.count; ++n) this.setLeaf(leaves.face[n], leaves.path[n], leaves.slabs[n], leaves.rgb, 3 * n);
   }
 

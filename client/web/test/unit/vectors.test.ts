@@ -1,22 +1,40 @@
 import { readFileSync } from "node:fs";
-import { fromBinary } from "@bufbuild/protobuf";
+import { fromBinary, type DescMessage, type MessageShape } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
-import { WatchSolveResponseSchema, type WatchSolveResponse } from "../../src/gen/alvor/v1/solve_service_pb";
+import { ReadMeshResponseSchema } from "../../src/gen/alvor/v1/scene_service_pb";
+import { WatchSolveResponseSchema } from "../../src/gen/alvor/v1/solve_service_pb";
+import { BaseMesh } from "../../src/mirror/base_mesh";
+import { withAdded } from "../../src/mirror/copies";
 import { decodeErrors } from "../../src/mirror/errors";
 import { BadFrame, decodeLeaves } from "../../src/mirror/leaves";
-import { Mirror } from "../../src/mirror/mirror";
+import { GRID, Mirror } from "../../src/mirror/mirror";
 
 const VECTORS = new URL("../../../../tests/vectors/", import.meta.url);
 
-function framesOf(name: string): WatchSolveResponse[] {
-  const bytes = readFileSync(new URL(`${name}.frames`, VECTORS));
-  const frames: WatchSolveResponse[] = [];
+function messagesOf<Schema extends DescMessage>(schema: Schema, file: string): MessageShape<Schema>[] {
+  const bytes = readFileSync(new URL(file, VECTORS));
+  const messages: MessageShape<Schema>[] = [];
   for (let at = 0; at < bytes.length; ) {
     const length = bytes.readUInt32LE(at);
-    frames.push(fromBinary(WatchSolveResponseSchema, bytes.subarray(at + 4, at + 4 + length)));
+    messages.push(fromBinary(schema, bytes.subarray(at + 4, at + 4 + length)));
     at += 4 + length;
   }
-  return frames;
+  return messages;
+}
+
+const framesOf = (name: string) => messagesOf(WatchSolveResponseSchema, `${name}.frames`);
+
+/** What is drawn of each root patch of a mesh: its corners, how it is joined to others, and its material; null if it is hidden. */
+function rootsOf(mesh: BaseMesh) {
+  const rounded = (x: number) => Math.round(1e9 * x) / 1e9 + 0; // no -0
+  return Array.from({ length: mesh.rootCount }, (_, root) => {
+    if (mesh.isHidden(root)) return null;
+    const [first, end] = [mesh.firstCorner[root], mesh.firstCorner[root + 1]];
+    const corners = Array.from(mesh.corners.subarray(3 * first, 3 * end), (x, n) => rounded(x + mesh.centre[n % 3]));
+    const { emission, reflectance, diffuseTransmittance } = mesh.materials[mesh.material[root]];
+    const joined = [mesh.placeKey(root, 0, 0), mesh.placeKey(root, GRID / 2, 0), mesh.placeKey(root, 0, GRID / 2)];
+    return { corners, joined, faces: mesh.sceneFacesOf(root), emission, reflectance, diffuseTransmittance };
+  });
 }
 
 function bytesOf(mirror: Mirror): Buffer {
@@ -32,7 +50,7 @@ function bytesOf(mirror: Mirror): Buffer {
 }
 
 describe("the mirror", () => {
-  it.each(["display", "exact", "deep", "one_page", "uneven", "errors", "merges", "slabs"])("holds what the C++ mirror holds after the frames of %s", (name) => {
+  it.each(["display", "exact", "deep", "one_page", "uneven", "errors", "merges", "slabs", "edits"])("holds what the C++ mirror holds after the frames of %s", (name) => {
     const mirror = new Mirror(2000);
     const frames = framesOf(name);
     expect(frames.length).toBeGreaterThan(0);
@@ -53,6 +71,21 @@ describe("the mirror", () => {
     }
   });
 
+  it("shows edits as the server has them, whether it saw all of them or the last look alone", () => {
+    const submitted = messagesOf(ReadMeshResponseSchema, "edits.submitted");
+    const looks = framesOf("edits").flatMap(({ look }) => look ?? []);
+    expect(looks.map(({ edits }) => Number(edits))).toEqual([1, 2, 3, 4, 5, 6, 7, 8]);
+    const withAll = withAdded(submitted, looks.at(-1)!);
+    const expected = rootsOf(new BaseMesh(messagesOf(ReadMeshResponseSchema, "edits.edited")));
+    for (const applied of [looks, looks.slice(-1)]) {
+      const mesh = new BaseMesh(withAll, submitted.length);
+      for (const look of applied) mesh.applyLook(look);
+      expect(rootsOf(mesh)).toEqual(expected);
+    }
+    expect(expected.some((root) => root === null)).toBe(true);
+    expect(expected.length).toBeGreaterThan(new BaseMesh(submitted).rootCount);
+  });
+
   it("refuses errors of leaves that are not there, and pages that claim too much", () => {
     const { errors } = framesOf("errors").find((frame) => frame.errors)!;
     expect(() => new Mirror(2000).takeErrors(decodeErrors(errors!))).toThrow(BadFrame);
@@ -67,6 +100,14 @@ describe("the mirror", () => {
     const before = bytesOf(mirror);
     expect(() => mirror.apply(decodeLeaves(frames[0].leaves!))).toThrow(BadFrame);
     expect(bytesOf(mirror).equals(before)).toBe(true);
+  });
+
+  it("refuses slabs of a triangle", () => {
+    const ofQuads = new Mirror(2000, undefined, () => false);
+    const ofTriangles = new Mirror(2000, undefined, () => true);
+    const withSlabs = framesOf("slabs").map(({ leaves }) => decodeLeaves(leaves!));
+    expect(() => withSlabs.forEach((leaves) => ofQuads.apply(leaves))).not.toThrow();
+    expect(() => withSlabs.forEach((leaves) => ofTriangles.apply(leaves))).toThrow(/is a triangle, and has slabs/);
   });
 
   it("refuses frames that are cut off, or claim too much", () => {
