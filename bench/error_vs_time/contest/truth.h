@@ -35,7 +35,8 @@ Truth find_truth(const Scene& scene, const SceneSettings& scene_settings, const 
 ErrorStatistics errors_of(const DisplayMesh& solution, const Truth& truth);
 
 /// Returns the share of the points that count whose error is within two of the solution's told errors, the noise of the truth
-/// added to them. Requires: the solution tells errors.
+/// added to them. Points whose truth is 0, or has a standard error above a fifth of it, do not count. NaN if none counts.
+/// Requires: the solution tells errors.
 double within_two_told(const DisplayMesh& solution, const Truth& truth);
 
 /// Returns the errors of other estimates at the truth's points, in order. Throws std::runtime_error if one is not finite.

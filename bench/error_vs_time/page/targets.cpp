@@ -141,7 +141,7 @@ Judgement judge_estimates(std::span<const double> ratios) {
 
 Judgement judge_told_errors(std::span<const double> within_two) {
   Judgement judgement{"Truth within two of the told errors at " + figure(100 * least_within_two) + " to " +
-                      tolerance_percent(most_within_two) + " of the points, in every solve"};
+                      tolerance_percent(most_within_two) + " of the points whose truth is known to a fifth, in every solve"};
   if (within_two.empty()) return judgement;
   const Spread spread = spread_of({within_two.begin(), within_two.end()});
   judgement.measured = percent(spread);
