@@ -1,13 +1,12 @@
 #include "radiosity/solve/hit_boxes.h"
 
+#include "radiosity/solve/moved_roots.h"
+
 namespace alvor {
 
 void HitBoxes::heed(const BaseMesh& mesh) {
   box_of_face_.clear();
-  for (const RootPatch& root : mesh.roots()) {
-    BoundingBox& box = box_of_face_.emplace_back();
-    for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[static_cast<std::size_t>(c)]);
-  }
+  for (const RootPatch& root : mesh.roots()) box_of_face_.push_back(box_of(root));
 }
 
 void HitBoxes::note(NodeIndex row, const BoundingBox& patch, std::span<const PatchId> hits) {

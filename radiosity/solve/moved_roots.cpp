@@ -31,7 +31,7 @@ std::vector<BoundingBox> boxes_of(const BaseMesh& mesh, Counts&& counts) {
     const RootPatch& root = mesh.roots()[r];
     if (!counts(r) || root.is_hidden) continue;
     BoundingBox& box = by_object[object_of_face(mesh.objects(), root.input.first).value_or(mesh.objects().size())];
-    for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[c]);
+    box.add(box_of(root));
   }
   std::vector<BoundingBox> boxes;
   for (const auto& [object, box] : by_object) {
@@ -63,6 +63,12 @@ bool shaft_meets(const BoundingBox& box, Vec3 from, double from_radius, Vec3 to,
 }
 
 }  // namespace
+
+BoundingBox box_of(const RootPatch& root) {
+  BoundingBox box;
+  for (int c = 0; c < root.corner_count; ++c) box.add(root.corners[static_cast<std::size_t>(c)]);
+  return box;
+}
 
 BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape) {
   BoundingBox box;

@@ -53,6 +53,7 @@ class MovedRoots {
   BoundingBox all_new_;  ///< around new_boxes_
 };
 
+BoundingBox box_of(const RootPatch& root);
 /// Returns the box of a patch.
 BoundingBox box_of(const BaseMesh& mesh, const PatchShape& shape);
 

@@ -189,7 +189,8 @@ std::optional<double> SolveState::note_relit(Plan new_plan, bool reflects_as_bef
   return relight(std::move(new_plan), reflects_as_before);
 }
 
-/// What note_relit() does, but for known errors: only those of rows are forgotten that become dark.
+/// Takes the changed materials and lights of the mesh as note_relit() does, but keeps the known errors (KnownErrors) of rows and
+/// leaves, except of rows that no light may reach any more.
 std::optional<double> SolveState::relight(Plan new_plan, bool reflects_as_before) {
   const EmissionUnit unit_before = std::exchange(unit_, EmissionUnit(mesh));
   const double ratio = unit_before.to_watts(1) / unit_.to_watts(1);

@@ -89,10 +89,10 @@ class TracedRows {
   /// Takes roots that the mesh has got; their rows are untraced.
   void append(const AppendedRoots& roots);
   /// Takes roots that have moved since the mesh was `before`: sends the rays again that ended on them, or may meet them where
-  /// they are now. The rows that must be traced anew instead are forgotten: those of moved roots, those that touch
-  /// places where these were or are, and where not all is known of the rays: where some met no front and a moved root was or is
-  /// in front of the row, and, of rows that may
-  /// reach these places, under panes and media and with hemicubes. Requires: one rank; the scene is the new one.
+  /// they are now. The rows that must be traced anew instead are forgotten: those of moved roots, those that touch places where
+  /// these were or are, and where not all is known of the rays: where some met no front and a moved root was or is in front of
+  /// the row, and, of rows that may reach these places, under panes and media and with hemicubes. Requires: one rank; the scene
+  /// is the new one.
   MendedRows note_moved(const BaseMesh& before, const MovedRoots& moved);
 
   /// Collective. Every rank writes the rows of all.

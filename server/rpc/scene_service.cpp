@@ -33,6 +33,11 @@ class SceneImageSlicer : public MeshImageSlicer {
 };
 bool next(SceneImageSlicer& slicer, v1::ReadImagesResponse& message) { return slicer.next(message); }
 
+/// Returns the revision up to which edits were asked for, if one was.
+std::optional<std::uint64_t> edits_of(const auto& request) {
+  return request.has_edits() ? std::optional<std::uint64_t>(request.edits()) : std::nullopt;
+}
+
 // A call that loads a scene and sends a part of its content, piece by piece. Deletes itself.
 template <class Message, class Slicer, class Part>
 class SendCall final : public grpc::ServerWriteReactor<Message> {
@@ -129,14 +134,6 @@ SceneService::Reactor* SceneService::DeleteScene(Context* context, const v1::Del
                                                  google::protobuf::Empty*) {
   return keep(context, "DeleteScene", [this, request](const std::string& tenant) { scenes_.remove(request->name(), tenant); });
 }
-
-namespace {
-
-std::optional<std::uint64_t> edits_of(const auto& request) {
-  return request.has_edits() ? std::optional<std::uint64_t>(request.edits()) : std::nullopt;
-}
-
-}  // namespace
 
 template <class Message, class Slicer, class Part>
 grpc::ServerWriteReactor<Message>* SceneService::send(Context& context, const char* call, const std::string& name,

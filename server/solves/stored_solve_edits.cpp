@@ -22,11 +22,10 @@ AddedContents contents_of(const std::map<std::string, SceneUse>& scenes, const C
 }
 
 /// Returns the steps up to the one of a revision; none for revision 0. Throws StatusError.
-std::span<const KeptEdit> edits_up_to(std::uint64_t revision, std::span<const KeptEdit> edits) {
-  const auto end = std::ranges::upper_bound(edits, revision, {}, &KeptEdit::revision);
-  const std::span first(edits.begin(), end);
-  if (first.size() == edits.size() && revision > (edits.empty() ? 0 : edits.back().revision))
+std::span<const KeptEdit> edits_up_to(std::uint64_t revision, const std::vector<KeptEdit>& edits) {
+  if (revision > newest_revision(edits))
     throw StatusError(grpc::OUT_OF_RANGE, "edits: there are none of revision " + std::to_string(revision) + " yet");
+  const std::span first(edits.begin(), std::ranges::upper_bound(edits, revision, {}, &KeptEdit::revision));
   if (revision > 0 && (first.empty() || first.back().revision != revision))
     throw StatusError(grpc::ABORTED, "edits: revision " + std::to_string(revision) + " is no more, because a slide went on");
   return first;

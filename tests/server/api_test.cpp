@@ -2,6 +2,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "proto/codec.h"
+#include "tests/server/refusal.h"
 #include "tests/server/sample_scenes.h"
 #include "tests/server/staged_solver.h"
 #include "tests/server/test_server.h"
@@ -12,16 +13,6 @@
 
 namespace alvor {
 namespace {
-
-template <class Call>
-std::string error_of(Call&& call) {
-  try {
-    call();
-  } catch (const RpcError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 ServiceOptions staged(StagedSolver& stage) {
   ServiceOptions options;

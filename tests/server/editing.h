@@ -6,6 +6,7 @@
 #include "proto/codec.h"
 #include "tests/radiosity/solve_scenes.h"
 #include "tests/server/alvord_process.h"
+#include "tests/server/refusal.h"
 #include "tests/server/test_server.h"
 
 #include <gtest/gtest.h>
@@ -115,12 +116,7 @@ class EditingTest : public testing::Test {
     return watch.mirror.leaves();
   }
   std::string refusal(const v1::EditStep& step, std::optional<std::uint64_t> base = std::nullopt) {
-    try {
-      client.edit_solve(solve, step, base);
-    } catch (const RpcError& error) {
-      return error.what();
-    }
-    return "";
+    return error_of([&] { client.edit_solve(solve, step, base); });
   }
 
   TestServer server{live_options()};

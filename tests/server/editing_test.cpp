@@ -68,13 +68,8 @@ TEST_F(EditingTest, TheSceneIsReadAsAnyRevisionOfItsEditsHasIt) {
   EXPECT_TRUE(emits(2)[0].intensity.is_zero());
   EXPECT_EQ(emits(2)[2].intensity, room().lights[2].intensity);
   EXPECT_EQ(emits(4), emits({}));
-  const auto refusal_to_read = [&](const std::string& name, std::uint64_t edits) -> std::string {
-    try {
-      client.read_scene(name, edits);
-    } catch (const RpcError& error) {
-      return error.what();
-    }
-    return "";
+  const auto refusal_to_read = [&](const std::string& name, std::uint64_t edits) {
+    return error_of([&] { client.read_scene(name, edits); });
   };
   EXPECT_EQ(refusal_to_read(solve, 3), "ABORTED: edits: revision 3 is no more, because a slide went on");
   EXPECT_EQ(refusal_to_read(solve, 5), "OUT_OF_RANGE: edits: there are none of revision 5 yet");

@@ -4,7 +4,6 @@
 #include "client/command/output/notes.h"
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace alvor {
