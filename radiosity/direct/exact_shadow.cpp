@@ -61,10 +61,11 @@ bool ExactShadow::begin_through(const BlockerTree::Flat& patch, const LightSourc
   return found_.is_complete;
 }
 
-/// Sets lit_ to what is seen from a point of what lies above the horizon. Returns false if that has too many parts.
-bool ExactShadow::cut(Vec3 point) {
+/// Sets lit_ to what is seen from a point, past some blockers, of what lies above the horizon. Returns false if that has too many
+/// parts.
+bool ExactShadow::cut(Vec3 point, std::span<const std::span<const Vec3>> blockers) {
   lit_.assign(1, above_);
-  for (const auto& blocker : blockers_) {
+  for (const auto& blocker : blockers) {
     const ShadowCone shadow(point, blocker);
     next_.clear();
     for (const ConvexPolygon& piece : lit_) shadow.cut_from(piece, next_);
@@ -77,16 +78,22 @@ bool ExactShadow::cut(Vec3 point) {
 
 std::optional<double> ExactShadow::through_to(Vec3 point, const LightSource& light) {
   if (above_.is_empty()) return 0;
-  if (!cut(point)) return std::nullopt;
+  if (!cut(point, blockers_)) return std::nullopt;
   const double sum = light.through(lit_, point, normal_);
   return sum < small && sum < rounding * light.unblocked(point, normal_) ? 0 : sum;
 }
 
+// What the last blocker hides has fewer edges than what it leaves, and need not be cut again.
 std::optional<double> ExactShadow::visible_from(Vec3 point) {
   if (above_.is_empty() || lamp_.height(point) <= 0) return 0;
-  if (!cut(point)) return std::nullopt;
+  const std::size_t cutting = blockers_.empty() ? 0 : blockers_.size() - 1;
+  if (!cut(point, std::span(blockers_).first(cutting))) return std::nullopt;
   double sum = 0;
   for (const ConvexPolygon& piece : lit_) sum += point_to_polygon_above(point, normal_, piece.corners());
+  for (const auto& blocker : std::span(blockers_).subspan(cutting)) {
+    const ShadowCone shadow(point, blocker);
+    for (const ConvexPolygon& piece : lit_) sum -= point_to_polygon_above(point, normal_, shadow.part_inside(piece).corners());
+  }
   if (sum < small && sum < rounding * point_to_polygon_above(point, normal_, above_.corners())) return 0;
   return std::clamp(sum, 0.0, 1.0);
 }

@@ -57,7 +57,7 @@ class ExactShadow {
 
  private:
   void add_part_before_light(std::span<const Vec3> blocker);
-  bool cut(Vec3 point);
+  bool cut(Vec3 point, std::span<const std::span<const Vec3>> blockers);
 
   const BlockerTree& tree_;
   BlockerTree::Found found_;

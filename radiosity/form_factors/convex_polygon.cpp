@@ -1,5 +1,7 @@
 #include "radiosity/form_factors/convex_polygon.h"
 
+#include <array>
+
 namespace alvor {
 
 Vec3 area_vector(std::span<const Vec3> polygon) {
@@ -41,6 +43,33 @@ ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane) {
     height_before = height;
   }
   return kept;
+}
+
+void move_part_below(ConvexPolygon& polygon, const Plane& plane, ConvexPolygon& below) {
+  below.clear();
+  std::array<double, ConvexPolygon::capacity> height;
+  double lowest = 0, highest = 0;
+  const std::size_t count = polygon.corners().size();
+  for (std::size_t c = 0; c < count; ++c) {
+    height[c] = plane.height(polygon.corners()[c]);
+    lowest = std::min(lowest, height[c]), highest = std::max(highest, height[c]);
+  }
+  if (lowest == 0) return;
+  if (highest == 0) {
+    below = polygon;
+    return polygon.clear();
+  }
+  ConvexPolygon above;
+  for (std::size_t before = count - 1, here = 0; here < count; before = here++) {
+    const Vec3 corner = polygon.corners()[here];
+    if ((height[here] > 0 && height[before] < 0) || (height[here] < 0 && height[before] > 0)) {
+      const Vec3 crossing = lerp(polygon.corners()[before], corner, height[before] / (height[before] - height[here]));
+      above.add(crossing), below.add(crossing);
+    }
+    if (height[here] >= 0) above.add(corner);
+    if (height[here] <= 0) below.add(corner);
+  }
+  polygon = above;
 }
 
 }  // namespace alvor

@@ -72,4 +72,7 @@ inline bool lies_below(std::span<const Vec3> polygon, const Plane& plane, double
 /// Returns the part of the polygon at heights >= 0 (Sutherland & Hodgman 1974). It has at most one corner more than the polygon.
 ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane);
 
+/// Cuts the polygon along the plane: `below` becomes its part at heights <= 0, and the polygon its part_above().
+void move_part_below(ConvexPolygon& polygon, const Plane& plane, ConvexPolygon& below);
+
 }  // namespace alvor

@@ -33,6 +33,15 @@ class ShadowCone {
                                      [&](const Plane& side) { return lies_above(piece.corners(), side, 0); });
   }
 
+  /// Returns the part of `piece` that lies inside.
+  ConvexPolygon part_inside(const ConvexPolygon& piece) const {
+    if (count_ == 0 || misses(piece)) return {};
+    ConvexPolygon rest = piece;
+    for (int s = 0; s < count_ && !rest.is_empty(); ++s)
+      if (!lies_above(rest.corners(), sides_[s], 0)) rest = part_above(rest, sides_[s]);
+    return rest;
+  }
+
   /// Appends to `lit` the parts of `piece` that lie outside.
   void cut_from(const ConvexPolygon& piece, std::vector<ConvexPolygon>& lit) const {
     if (count_ == 0 || misses(piece)) {
@@ -41,9 +50,9 @@ class ShadowCone {
     }
     ConvexPolygon rest = piece;
     for (int s = 0; s < count_ && !rest.is_empty(); ++s) {
-      const Plane outside{-sides_[s].normal, -sides_[s].offset};
-      if (ConvexPolygon cut = part_above(rest, outside); !cut.is_empty()) lit.push_back(cut);
-      rest = part_above(rest, sides_[s]);
+      lit.emplace_back();
+      move_part_below(rest, sides_[s], lit.back());
+      if (lit.back().is_empty()) lit.pop_back();
     }
   }
 

@@ -26,6 +26,21 @@ TEST(FormFactor, ParallelRectangleMatchesTheClosedForm) {
   }
 }
 
+// A regular polygon over the point: by symmetry each edge brings the same. Its edges are seen under angles from 1e-7 to nearly
+// pi.
+TEST(FormFactor, RegularPolygonOfAnyNumberOfCornersMatchesTheClosedForm) {
+  for (const double height : {1e-6, 0.1, 1.0, 1e6})
+    for (int count = 3; count <= 64; ++count) {
+      std::vector<Vec3> polygon;
+      for (int c = 0; c < count; ++c) polygon.push_back({std::sin(2 * pi * c / count), std::cos(2 * pi * c / count), height});
+      const double half_edge = std::sin(pi / count), apothem = std::cos(pi / count), distance = std::hypot(apothem, height);
+      const double expected = count / pi * std::atan(half_edge / distance) * apothem / distance;
+      EXPECT_NEAR(point_to_polygon_above({0, 0, 0}, {0, 0, 1}, polygon), expected, 1e-9 * expected)
+          << count << " corners at height " << height;
+      EXPECT_NEAR(point_to_polygon_above({0, 0, 0}, {0, 0, 1}, polygon), expected, 1e-14);
+    }
+}
+
 TEST(FormFactor, BackOfThePolygonGivesNothing) {
   const Vec3 front_up[] = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   EXPECT_EQ(point_to_polygon({0, 0, 0}, {0, 0, 1}, front_up), 0);
