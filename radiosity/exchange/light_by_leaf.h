@@ -20,8 +20,8 @@ class LightByLeaf {
 
   /// Sets the light of a leaf. Requires: with one band, the bands of `light` are equal but for rounding.
   void set(std::uint32_t leaf, const RelativeLight& light) {
-    if (has_three_) three_[leaf] = {static_cast<Stored>(light.r), static_cast<Stored>(light.g), static_cast<Stored>(light.b), 0};
-    else one_[leaf] = static_cast<Stored>(light.g);
+    if (has_three_) three_[leaf] = {light.r, light.g, light.b, light.mean()};
+    else one_[leaf] = light.g;
   }
 
   std::size_t size() const { return has_three_ ? three_.size() : one_.size(); }
@@ -30,24 +30,30 @@ class LightByLeaf {
   /// Returns the sum over hits of the hit's weight times the light of its leaf. Requires: at least as many weights as leaves;
   /// more are ignored.
   RelativeLight weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
+  /// Light of hits, and squares of the same light's mean over bands, summed over the hits.
+  struct Sums {
+    RelativeLight light;
+    double squares = 0;
+  };
+  /// Returns both sums over hits. `weight` as for weighted_sum(), or empty: all weights are 1.
+  Sums sums(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
   /// Returns the light of each leaf, mean over bands.
   std::vector<double> means() const {
     std::vector<double> means(one_);
-    for (const Padded& of : three_) means.push_back((of.r + of.g + of.b) / 3);
+    for (const Padded& of : three_) means.push_back(of.mean);
     return means;
   }
 
  private:
-  using Stored = double;
-  struct alignas(4 * sizeof(Stored)) Padded {
-    Stored r = 0, g = 0, b = 0, unused = 0;
+  struct alignas(4 * sizeof(double)) Padded {
+    double r = 0, g = 0, b = 0, mean = 0;
   };
   /// Sums three bands, in four lanes: one load and one addition per hit.
   RelativeLight sum_of_three(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     for (const std::uint32_t l : leaf) {
       const Padded& hit = three_[l];
-      const Stored lanes[4] = {hit.r, hit.g, hit.b, hit.unused};
+      const double lanes[4] = {hit.r, hit.g, hit.b, hit.mean};
       for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
     }
     return {sum[0], sum[1], sum[2]};
@@ -64,7 +70,7 @@ class LightByLeaf {
   }
 
   std::vector<Padded> three_;
-  std::vector<Stored> one_;
+  std::vector<double> one_;
   bool has_three_;
 };
 
@@ -81,6 +87,15 @@ inline RelativeLight LightByLeaf::weighted_sum(std::span<const std::uint32_t> le
     sum += widen(weight[h]) * RelativeLight{hit.r, hit.g, hit.b};
   }
   return sum;
+}
+
+inline LightByLeaf::Sums LightByLeaf::sums(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const {
+  Sums sums{weight.empty() ? sum(leaf) : weighted_sum(leaf, weight), 0};
+  for (std::size_t h = 0; h < leaf.size(); ++h) {
+    const double mean = (has_three_ ? three_[leaf[h]].mean : one_[leaf[h]]) * (weight.empty() ? 1 : weight[h].mean());
+    sums.squares += mean * mean;
+  }
+  return sums;
 }
 
 }  // namespace alvor

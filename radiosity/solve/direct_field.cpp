@@ -149,12 +149,11 @@ std::vector<Receiver> DirectField::receivers_of(std::span<const NodeIndex> leave
 
 void DirectField::add_new(const TracedRows& rows, const std::function<void()>& after_each) {
   std::vector<NodeIndex> leaves = unlit_leaves();
-  const std::size_t all_unlit = leaves.size();
+  const std::size_t all_unlit = leaves.size(), unlit = all_unlit - recall(leaves);
   std::erase_if(leaves, [&](NodeIndex leaf) {
     const NodeIndex row = forests_.row_of(leaf);
     return !rows.is_traced(row) && rows.may_be_lit(row);
   });
-  const std::size_t unlit = all_unlit - recall(leaves);
   if (all_unlit > 0) waiting_power_ *= static_cast<double>(unlit) / static_cast<double>(all_unlit);
   if (light_tree_) spread_out(forests_.leaves(), leaves);  // else all leaves get the light of a light at once
   const std::vector<Receiver> receivers = receivers_of(leaves, rows);
@@ -199,7 +198,6 @@ std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
   const auto is_kept = [this](const LightSource* light) { return shares_.keeps(*light); };
   if (light_tree_ || lights_.empty() || !std::ranges::all_of(lights_, is_kept)) return 0;
   std::vector<std::uint8_t> is_recalled(leaves.size());
-  std::vector<DirectLight> recalled_light(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
     DirectLight light;
     float arrived = 0;
@@ -209,15 +207,20 @@ std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
       light += *brought;
       if (!is_face(*next)) arrived += stopped_by(leaves[n], brought->irradiance);
     }
-    recalled_light[n] = light;
+    light_[leaves[n]] = light;
     if (counts_arrivals_) arrived_[leaves[n]] = arrived;
     is_recalled[n] = 1;
   });
-  std::vector<NodeIndex> left;
+  std::vector<NodeIndex> left, newly_lit;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
-    if (is_recalled[n]) show_one(leaves[n], recalled_light[n], true);
-    else left.push_back(leaves[n]);
+    if (!is_recalled[n]) {
+      left.push_back(leaves[n]);
+      continue;
+    }
+    if (!is_lit_[leaves[n]]) newly_lit.push_back(leaves[n]);
+    is_known_[leaves[n]] = is_lit_[leaves[n]] = true;
   }
+  for (const NodeIndex leaf : newly_lit) show_on_whole_face(leaf);
   const std::size_t recalled = leaves.size() - left.size();
   leaves = std::move(left);
   return recalled;
@@ -297,13 +300,11 @@ void DirectField::add(std::span<const DirectLight> brought, std::span<const Node
 }
 
 void DirectField::show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all) {
-  for (std::size_t n = 0; n < leaves.size(); ++n) show_one(leaves[n], light[n], is_of_all);
-}
-
-void DirectField::show_one(NodeIndex leaf, const DirectLight& light, bool is_of_all) {
-  light_[leaf] = light;
-  is_known_[leaf] = is_of_all;
-  if (is_of_all && !is_lit_[leaf]) show_on_whole_face(leaf);
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    light_[leaves[n]] = light[n];
+    is_known_[leaves[n]] = is_of_all;
+    if (is_of_all && !is_lit_[leaves[n]]) show_on_whole_face(leaves[n]);
+  }
 }
 
 /// Gives the light of this leaf to all leaves of its face that show none; they show it until their own is found.

@@ -138,7 +138,6 @@ class DirectField {
   std::vector<NodeIndex> unlit_leaves() const;
   std::vector<Receiver> receivers_of(std::span<const NodeIndex> leaves, const TracedRows& rows) const;
   void show(std::span<const NodeIndex> leaves, std::span<const DirectLight> light, bool is_of_all);
-  void show_one(NodeIndex leaf, const DirectLight& light, bool is_of_all);
   void show_on_whole_face(NodeIndex leaf);
 
   const Forests& forests_;

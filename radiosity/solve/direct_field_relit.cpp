@@ -151,14 +151,15 @@ std::optional<Rgb> DirectField::note_relit(double unit_change) {
 /// Multiplies the light of all leaves; that at origins and the noise as the mean of its bands.
 void DirectField::scale(const Rgb& factor) {
   if (factor == Rgb{1, 1, 1}) return;
-  for (DirectLight& light : light_) {
+  tbb::parallel_for(std::size_t{0}, light_.size(), [&](std::size_t node) {
+    DirectLight& light = light_[node];
     const double before = light.irradiance.mean();
     light.irradiance = factor * light.irradiance;
     const auto change = static_cast<float>(before > 0 ? light.irradiance.mean() / before : factor.mean());
     for (float& at : light.at_origin) at *= change;
     light.variance *= change * change;
     light.origin_variance *= change * change;
-  }
+  });
   if (counts_all_arrivals()) {
     for (const NodeIndex leaf : forests_.all_leaves()) arrived_[leaf] = stopped_by(leaf, light_[leaf].irradiance);
     return;

@@ -141,8 +141,19 @@ class Pass {
     Split split = Split::quarters;
   };
   Contrast squared_contrast(std::size_t place, Vec3 slope) const;
-  RowSamples samples_of(NodeIndex row, const LightByLeaf& radiosity) const;
-  OriginMisfit misfit_at_origins(NodeIndex row, std::span<const double> radiosity) const;
+  /// What the origins of one stratum of a row see: their mean irradiance, mean over bands, in emission units, and its variance,
+  /// which is negative if no origin of the stratum is sampled.
+  struct StratumSample {
+    float irradiance = 0, noise = -1;
+    bool is_sampled() const { return noise >= 0; }
+  };
+  using StrataSamples = std::array<StratumSample, origins_per_patch>;
+  struct RowView {
+    RowSamples quarters;
+    StrataSamples strata;
+  };
+  RowView view_of(NodeIndex row, const LightByLeaf& radiosity) const;
+  OriginMisfit misfit_at_origins(NodeIndex row, const StrataSamples& strata) const;
   std::array<Vec3, origins_per_patch> places_of_origins(NodeIndex row, bool has_more_rounds) const;
   bool rows_tell_what_is_lost() const;
   Rgb taken_up(const TransportRow& row) const;
@@ -154,6 +165,7 @@ class Pass {
   /// Places in the system's lists of rows and leaves, sorted: those of which the errors are found, and the rows that are sampled.
   std::vector<std::uint32_t> changed_rows_, sampled_rows_, changed_leaves_;
   double unnoticed_change_ = 0;            ///< of the irradiance, where errors are not found again; emission units
+  std::vector<StrataSamples> strata_;      ///< of changed_rows_, by place, where this rank has their hits
   std::vector<OriginMisfit> misfits_;      ///< by patch
   std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
   ErrorEstimate told_;                     ///< what estimate() returned

@@ -114,10 +114,11 @@ double Pass::contact_variation(NodeIndex row, const SmoothNeighbours& neighbours
 /// Sets `misfits_`, those of rows that have not changed to what they were.
 void Pass::find_misfits() {
   const auto rows = system_->rows();
-  const std::vector<double> leaving = system_->radiosity().means();
   std::vector<OriginMisfit> found(changed_rows_.size());
-  system_->deal().for_each(state_.ranks, std::span(found),
-                           [&](std::size_t n) { found[n] = misfit_at_origins(rows[changed_rows_[n]], leaving); });
+  if (state_.rows.carry_light())
+    system_->deal().for_each(state_.ranks, std::span(found),
+                             [&](std::size_t n) { found[n] = misfit_at_origins(rows[changed_rows_[n]], strata_[n]); });
+  strata_ = {};
   misfits_.resize(rows.size());
   if (knows_errors())
     tbb::parallel_for(std::size_t{0}, rows.size(),

@@ -7,26 +7,51 @@
 
 namespace alvor {
 
-RowSamples Pass::samples_of(NodeIndex node, const LightByLeaf& radiosity) const {
+namespace {
+
+constexpr std::uint32_t not_changed = ~0u;  // the place of a row among others that have changed
+
+}  // namespace
+
+// Rows of several rounds of rays have the mean over the rounds in each stratum; its noise is found from how the rounds differ.
+// With one round it is found from the rays of each origin as if they were independent. They are stratified and have less, so that
+// noise does not pass for a misfit.
+Pass::RowView Pass::view_of(NodeIndex node, const LightByLeaf& radiosity) const {
   const TransportRow& row = state_.rows[node];
-  RowSamples quarters;
+  RowView view;
   if (row.origin_hits.empty()) {
-    quarters.fill({state_.field.irradiance(node), double(row.rays)});
-    return quarters;
+    view.quarters.fill({state_.field.irradiance(node), double(row.rays)});
+    return view;
   }
+  struct Stratum {
+    double sum = 0, squares = 0, rounds = 0, noise_of_rays = 0;
+  };
+  std::array<Stratum, origins_per_patch> strata;
   std::size_t hit = 0;
   for (std::size_t o = 0; o < row.origin_hits.size(); ++o) {
     if (row.origin_hits[o] == TransportRow::not_sampled) continue;
-    QuarterSample& quarter = quarters[o % origins_per_patch / 4];
-    quarter.rays += rays_per_origin;
     const std::span found = state_.rows.leaves_hit(node).subspan(hit, row.origin_hits[o]);
-    quarter.irradiance +=
-        row.hit_weight.empty() ? radiosity.sum(found) : radiosity.weighted_sum(found, std::span(row.hit_weight).subspan(hit));
+    const auto [light, squares] =
+        radiosity.sums(found, row.hit_weight.empty() ? std::span<const RgbF>() : std::span(row.hit_weight).subspan(hit));
     hit += found.size();
+    QuarterSample& quarter = view.quarters[o % origins_per_patch / 4];
+    quarter.rays += rays_per_origin;
+    quarter.irradiance += light;
+    const double mean = light.mean() / rays_per_origin;
+    Stratum& stratum = strata[o % origins_per_patch];
+    stratum.sum += mean, stratum.squares += mean * mean, stratum.rounds += 1;
+    stratum.noise_of_rays += std::max(0.0, squares / rays_per_origin - mean * mean) / (rays_per_origin - 1);
   }
-  for (QuarterSample& quarter : quarters)
+  for (QuarterSample& quarter : view.quarters)
     if (quarter.rays > 0) quarter.irradiance *= 1 / quarter.rays;
-  return quarters;
+  for (std::size_t k = 0; k < strata.size(); ++k) {
+    const Stratum& of = strata[k];
+    if (of.rounds == 0) continue;
+    const double mean = of.sum / of.rounds;
+    const double noise = of.rounds > 1 ? std::max(0.0, of.squares / of.rounds - mean * mean) / (of.rounds - 1) : of.noise_of_rays;
+    view.strata[k] = {static_cast<float>(mean), static_cast<float>(noise)};
+  }
+  return view;
 }
 
 void Pass::show_smoothly() {
@@ -42,18 +67,22 @@ void Pass::fit_field_smoothly(std::span<const SmoothNeighbours> neighbours) {
   else show(exchange_->irradiance());
   std::vector<NodeIndex> sampled;
   std::vector<SmoothNeighbours> beside;
-  std::vector<std::uint32_t> wanted;
+  std::vector<std::uint32_t> wanted, place_among_changed(sampled_rows_.size(), not_changed);
   for (std::size_t n = 0, k = 0; n < sampled_rows_.size(); ++n) {
     sampled.push_back(rows[sampled_rows_[n]]);
     beside.push_back(neighbours[sampled_rows_[n]]);
     if (k == changed_rows_.size() || changed_rows_[k] != sampled_rows_[n]) continue;
     wanted.push_back(static_cast<std::uint32_t>(n));
-    ++k;
+    place_among_changed[n] = static_cast<std::uint32_t>(k++);
   }
   const auto leaving = system_->radiosity();
   std::vector<RowSamples> samples(sampled.size());
-  system_->deal().for_each(state_.ranks, std::span(samples),
-                           [&](std::size_t n) { samples[n] = samples_of(sampled[n], leaving); });
+  strata_.resize(changed_rows_.size());
+  system_->deal().for_each(state_.ranks, std::span(samples), [&](std::size_t n) {
+    const RowView view = view_of(sampled[n], leaving);
+    samples[n] = view.quarters;
+    if (place_among_changed[n] != not_changed) strata_[place_among_changed[n]] = view.strata;
+  });
   const auto take = [&](std::span<const std::uint32_t> places, std::span<const FieldFit> fits) {
     std::vector<NodeIndex> of(places.size());
     std::ranges::transform(places, of.begin(), [&](std::uint32_t place) { return sampled[place]; });

@@ -60,6 +60,10 @@ constexpr double removed_by_refining = 0.75;
 // slats_and_boxes are 9 to 15 % too small, and close to a tight tolerance passes hardly bring the error down.
 constexpr double spare_of_new_solve = 1.5;
 
+// After an edit pass() publishes direct light when it is complete. Before, it is published only if finding it takes longer than
+// so many times publishing it. Chosen.
+constexpr double worth_waiting = 3;
+
 /// Publishes one step: every face, and no light on any.
 SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log, std::uint64_t edits) {
   std::vector<LeafValue> values;
@@ -189,13 +193,15 @@ class Run {
   /// false if it was stopped.
   bool light() {
     state_.direct.heed_error(live_.error_before_edit.value_or(error_to_keep()));
+    const double began = clock_.elapsed_s();
     bool is_more = true;
     while (is_more && !must_stop()) {
       is_more = pass_->trace_rows([this] { save_if_due(); }, is_.passes == 0 ? RowsToTrace::a_part : RowsToTrace::all);
       if (must_stop()) return false;
-      pass_->add_direct_light([this] {
+      pass_->add_direct_light([this, began] {
         ++is_.shots;
-        if ((is_.passes == 0 || live_.error_before_edit) && !requests_.made_here().any()) publish_if_due();
+        const bool is_slow = !live_.error_before_edit || clock_.elapsed_s() - began > worth_waiting * live_.publishing_s;
+        if ((is_.passes == 0 || live_.error_before_edit) && is_slow && !requests_.made_here().any()) publish_if_due();
         save_if_due();
       });
     }
@@ -243,7 +249,7 @@ class Run {
   void publish_if_due() {
     if (!ranks_.is_first()) return;
     const bool is_early = log_.head() < always_published;
-    if (is_early || clock_.elapsed_s() - published_at_ > publishing_s_ / publishing_share) publish();
+    if (is_early || clock_.elapsed_s() - published_at_ > live_.publishing_s / publishing_share) publish();
   }
 
   void publish() {
@@ -265,7 +271,7 @@ class Run {
     log_.publish(state_.leaf_values(), step, leaf_errors());
     requests_.heed_edits(true);
     published_at_ = clock_.elapsed_s();
-    publishing_s_ = published_at_ - before;
+    live_.publishing_s = published_at_ - before;
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return requests_.made_here().any(); });
   }
 
@@ -356,7 +362,7 @@ class Run {
   StopRequests requests_{control_, clock_, options_.time_limit_s + live_.edited_at_s};
   std::optional<Pass> pass_{state_};
   bool has_stalled_ = false;  // the last exchange ended before it converged
-  double published_at_ = 0, publishing_s_ = 0;
+  double published_at_ = 0;
 };
 
 tbb::task_arena::priority priority_of(SolvePriority priority) {
