@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t most_parts = 64;
 // Share of a light that rounding leaves where the edges of two shadows meet: no light may leak into a closed room. Chosen.
 constexpr double rounding = 1e-9;
+// Form factor that rounding may leave where the last shadow is subtracted and hides all. Chosen.
+constexpr double subtracted = 1e-14;
 // Form factor below which it is worth finding out whether it is rounding.
 constexpr double small = 1e-6;
 
@@ -83,18 +85,18 @@ std::optional<double> ExactShadow::through_to(Vec3 point, const LightSource& lig
   return sum < small && sum < rounding * light.unblocked(point, normal_) ? 0 : sum;
 }
 
-// What the last blocker hides has fewer edges than what it leaves, and need not be cut again.
+// What the last blocker hides is subtracted, because it has fewer edges than the parts that are left around it.
 std::optional<double> ExactShadow::visible_from(Vec3 point) {
   if (above_.is_empty() || lamp_.height(point) <= 0) return 0;
-  const std::size_t cutting = blockers_.empty() ? 0 : blockers_.size() - 1;
-  if (!cut(point, std::span(blockers_).first(cutting))) return std::nullopt;
+  const bool is_blocked = !blockers_.empty();
+  if (!cut(point, std::span(blockers_).first(blockers_.size() - is_blocked))) return std::nullopt;
   double sum = 0;
   for (const ConvexPolygon& piece : lit_) sum += point_to_polygon_above(point, normal_, piece.corners());
-  for (const auto& blocker : std::span(blockers_).subspan(cutting)) {
-    const ShadowCone shadow(point, blocker);
+  if (is_blocked) {
+    const ShadowCone shadow(point, blockers_.back());
     for (const ConvexPolygon& piece : lit_) sum -= point_to_polygon_above(point, normal_, shadow.part_inside(piece).corners());
   }
-  if (sum < small && sum < rounding * point_to_polygon_above(point, normal_, above_.corners())) return 0;
+  if (sum < small && sum < rounding * point_to_polygon_above(point, normal_, above_.corners()) + subtracted) return 0;
   return std::clamp(sum, 0.0, 1.0);
 }
 

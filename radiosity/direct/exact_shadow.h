@@ -44,7 +44,8 @@ class ExactShadow {
   /// Returns whether nothing stands between any two points of patch and light.
   bool is_clear() const { return blockers_.empty(); }
   /// Returns the form factor, in [0, 1], from a point of the patch to what it sees of the light's front: the shadow of each
-  /// blocker is cut off, and Lambert's contour formula is summed over the rest. Nothing if the rest has too many parts.
+  /// blocker but the last is cut off, Lambert's contour formula is summed over the rest, and what the last blocker hides of that
+  /// is subtracted. Nothing if the rest has too many parts.
   std::optional<double> visible_from(Vec3 point);
   /// Returns what arrives at a point of the patch through the aperture, in multiples of the light's colour. Nothing if the rest
   /// has too many parts. Requires: begin_through() was called with this light.

@@ -30,12 +30,12 @@ class LightByLeaf {
   /// Returns the sum over hits of the hit's weight times the light of its leaf. Requires: at least as many weights as leaves;
   /// more are ignored.
   RelativeLight weighted_sum(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
-  /// Light of hits, and squares of the same light's mean over bands, summed over the hits.
+  /// The light of hits, and the squares of each hit's light, mean over bands, both summed over the hits.
   struct Sums {
     RelativeLight light;
     double squares = 0;
   };
-  /// Returns both sums over hits. `weight` as for weighted_sum(), or empty: all weights are 1.
+  /// Returns both sums over hits. `weight` as for weighted_sum(), or empty: all weights are 1. With one band, weights are grey.
   Sums sums(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const;
   /// Returns the light of each leaf, mean over bands.
   std::vector<double> means() const {
@@ -45,10 +45,11 @@ class LightByLeaf {
   }
 
  private:
+  using Lanes [[gnu::vector_size(4 * sizeof(double))]] = double;
   struct alignas(4 * sizeof(double)) Padded {
     double r = 0, g = 0, b = 0, mean = 0;
   };
-  /// Sums three bands, in four lanes: one load and one addition per hit.
+  /// Sums three bands, in four lanes: one load and one addition per hit. The fourth, of means, is not used.
   RelativeLight sum_of_three(std::span<const std::uint32_t> leaf) const {
     double sum[4] = {};
     for (const std::uint32_t l : leaf) {
@@ -90,10 +91,23 @@ inline RelativeLight LightByLeaf::weighted_sum(std::span<const std::uint32_t> le
 }
 
 inline LightByLeaf::Sums LightByLeaf::sums(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const {
-  Sums sums{weight.empty() ? sum(leaf) : weighted_sum(leaf, weight), 0};
+  Sums sums;
+  if (weight.empty()) {
+    sums.light = sum(leaf);
+    for (const std::uint32_t l : leaf) {
+      const double mean = has_three_ ? three_[l].mean : one_[l];
+      sums.squares += mean * mean;
+    }
+    return sums;
+  }
   for (std::size_t h = 0; h < leaf.size(); ++h) {
-    const double mean = (has_three_ ? three_[leaf[h]].mean : one_[leaf[h]]) * (weight.empty() ? 1 : weight[h].mean());
-    sums.squares += mean * mean;
+    const Padded hit = has_three_ ? three_[leaf[h]] : Padded{one_[leaf[h]], one_[leaf[h]], one_[leaf[h]], one_[leaf[h]]};
+    const auto [r, g, b] = widen(weight[h]);
+    // Multiplied side by side, so that no product is fused with the sum of bands: swapped bands then give the same mean.
+    const Lanes bands = Lanes{r, g, b, 0} * Lanes{hit.r, hit.g, hit.b, 0};
+    const RelativeLight light{bands[0], bands[1], bands[2]};
+    sums.light += light;
+    sums.squares += light.mean() * light.mean();
   }
   return sums;
 }

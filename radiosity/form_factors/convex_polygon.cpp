@@ -45,6 +45,15 @@ ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane) {
   return kept;
 }
 
+ConvexPolygon part_inside(const ConvexPolygon& polygon, std::span<const Plane> sides, double slack) {
+  ConvexPolygon inside = polygon;
+  for (const Plane& side : sides) {
+    if (inside.is_empty() || lies_below(inside.corners(), side, slack)) return {};
+    if (!lies_above(inside.corners(), side, 0)) inside = part_above(inside, side);
+  }
+  return inside;
+}
+
 void move_part_below(ConvexPolygon& polygon, const Plane& plane, ConvexPolygon& below) {
   below.clear();
   std::array<double, ConvexPolygon::capacity> height;

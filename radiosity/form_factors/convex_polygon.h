@@ -72,7 +72,11 @@ inline bool lies_below(std::span<const Vec3> polygon, const Plane& plane, double
 /// Returns the part of the polygon at heights >= 0 (Sutherland & Hodgman 1974). It has at most one corner more than the polygon.
 ConvexPolygon part_above(const ConvexPolygon& polygon, const Plane& plane);
 
-/// Cuts the polygon along the plane: `below` becomes its part at heights <= 0, and the polygon its part_above().
+/// Returns the part of the polygon above all `sides`; empty if it reaches above one of them by no more than `slack`.
+ConvexPolygon part_inside(const ConvexPolygon& polygon, std::span<const Plane> sides, double slack);
+
+/// Cuts the polygon along the plane: `below` becomes its part at heights <= 0, and the polygon keeps its part at heights >= 0. A
+/// part without area is empty; a polygon in the plane counts as above. Requires: `below` is another object.
 void move_part_below(ConvexPolygon& polygon, const Plane& plane, ConvexPolygon& below);
 
 }  // namespace alvor

@@ -58,11 +58,13 @@ Lanes polynomial(Lanes x, const std::array<double, count>& coefficient) {
 
 constexpr double tiny = std::numeric_limits<double>::min();  // added to divisors, so that 0 / 0 is 0
 
-/// Returns angles in [0, pi] of which the sine and the cosine are given, both multiplied by the same factor; to 1e-15. std::atan2
-/// takes twice as long for four.
+/// Returns angles in [0, pi] of which the sine and the cosine are given, both multiplied by the same factor; to 4e-15, and 0
+/// where the sine is 0. std::atan2 takes twice as long for four.
 Lanes angle_of(Lanes sine, Lanes cosine) {
-  const Lanes along = root(sine * sine + cosine * cosine) + cosine;           // tan(angle / 2) = sine / along
-  const Lanes x = sine / (along + root(along * along + sine * sine) + tiny);  // tan(angle / 4), in [0, 1]
+  const Lanes size = root(sine * sine + cosine * cosine);
+  // size + cosine, without loss of digits where the cosine is negative.
+  const Lanes along = cosine > 0 ? size + cosine : sine * sine / (size - cosine + tiny);  // tan(angle / 2) = sine / along
+  const Lanes x = sine / (along + root(along * along + sine * sine) + tiny);              // tan(angle / 4), in [0, 1]
   // Coefficients of atan(x) / x in powers of x^2: interpolation at the 18 Chebyshev nodes of [0, 1].
   static constexpr std::array<double, 18> series{
       0.9999999999999988,     -0.3333333333325326,   0.19999999991318923,   -0.14285713910445952,  0.11111102500071403,
@@ -94,7 +96,7 @@ double lambert_sum(Vec3 point, Vec3 normal, std::span<const Vec3> polygon) {
   const auto corner = [&](std::size_t c) -> const Vec3& { return polygon[std::min(c, last)]; };
   const Vec3* before = &polygon.back();
   for (std::size_t c = 0; c <= last; c += 4) {
-    // The ends of four edges. Beyond the last edge both are one corner, which adds nothing.
+    // The ends of four edges. Beyond the last edge both are one corner, which adds no more than rounding.
     const VecLanes to = VecLanes::of(corner(c), corner(c + 1), corner(c + 2), corner(c + 3));
     const VecLanes from = VecLanes::of(*before, corner(c), corner(c + 1), corner(c + 2));
     before = &corner(c + 3);

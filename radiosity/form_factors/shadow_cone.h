@@ -36,10 +36,7 @@ class ShadowCone {
   /// Returns the part of `piece` that lies inside.
   ConvexPolygon part_inside(const ConvexPolygon& piece) const {
     if (count_ == 0 || misses(piece)) return {};
-    ConvexPolygon rest = piece;
-    for (int s = 0; s < count_ && !rest.is_empty(); ++s)
-      if (!lies_above(rest.corners(), sides_[s], 0)) rest = part_above(rest, sides_[s]);
-    return rest;
+    return alvor::part_inside(piece, std::span(sides_).first(static_cast<std::size_t>(count_)), 0);
   }
 
   /// Appends to `lit` the parts of `piece` that lie outside.

@@ -50,16 +50,6 @@ bool does_not_part(const ConvexPolygon& blocker, const ConvexPolygon& from, cons
          (lies_above(from.corners(), below, 0) && lies_above(to.corners(), below, 0));
 }
 
-/// Returns the part of the polygon above all `sides`; empty if it reaches above one of them by no more than `slack`.
-ConvexPolygon part_inside(const ConvexPolygon& polygon, std::span<const Plane> sides, double slack) {
-  ConvexPolygon inside = polygon;
-  for (const Plane& side : sides) {
-    if (inside.is_empty() || lies_below(inside.corners(), side, slack)) return {};
-    if (!lies_above(inside.corners(), side, 0)) inside = part_above(inside, side);
-  }
-  return inside;
-}
-
 /// A triangle of the surface that is integrated over.
 struct Cell {
   std::array<Vec3, 3> corner;

@@ -220,7 +220,12 @@ std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
     if (!is_lit_[leaves[n]]) newly_lit.push_back(leaves[n]);
     is_known_[leaves[n]] = is_lit_[leaves[n]] = true;
   }
-  for (const NodeIndex leaf : newly_lit) show_on_whole_face(leaf);
+  std::optional<std::uint32_t> filled_face;  // leaves are sorted by id, so those of a face follow each other
+  for (const NodeIndex leaf : newly_lit) {
+    const std::uint32_t face = forests_.leaves().id(leaf).root_face();
+    if (filled_face != face) show_on_whole_face(leaf);
+    filled_face = face;
+  }
   const std::size_t recalled = leaves.size() - left.size();
   leaves = std::move(left);
   return recalled;

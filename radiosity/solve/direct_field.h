@@ -49,9 +49,10 @@ class DirectField {
   /// Tells the estimated nRMSE of the pass before, by which add_new() decides how to find shadows of flat lights: exactly
   /// if it is small. Those of light through exits are then exact at once. Without this call, shadows are found by rays.
   void heed_error(double error_so_far);
-  /// Collective. Adds direct light to the leaves whose rows are traced. Up to twelve lights reach all of these leaves, one light
-  /// after the other; more lights together reach them in parts. `after_each` is called after each light or part. Returns early
-  /// where the ray budget is out.
+  /// Collective. First recalls the light of leaves of which the shares of all lights are kept. Their rows need not be traced: a
+  /// row only tells which origins are hidden, and a kept share already leaves these out. Then finds the light of the other leaves
+  /// whose rows are traced. Up to twelve lights reach all of these leaves, one light after the other; more lights together reach
+  /// them in parts. `after_each` is called after each light or part. Returns early where the ray budget is out.
   void add_new(const TracedRows& rows, const std::function<void()>& after_each);
   /// Returns whether add_new() has found the light of the leaf.
   bool is_known(NodeIndex leaf) const { return is_known_[leaf]; }

@@ -39,7 +39,8 @@ class Pass {
   /// is out; called again, it goes on from there. Returns whether a part was traced and other rows are left.
   bool trace_rows(
       const std::function<void()>& after_each = [] {}, RowsToTrace which = RowsToTrace::all);
-  /// Adds direct light to the leaves whose rows are traced, calling `after_each` as above.
+  /// Adds direct light to the leaves whose rows are traced, or where it is known from before (DirectField::add_new), calling
+  /// `after_each` as above.
   void add_direct_light(const std::function<void()>& after_each = [] {});
   /// Returns an exchange of light that begins with what the previous pass found. The caller calls its sweep().
   Exchange& begin_exchange();
@@ -148,6 +149,7 @@ class Pass {
     bool is_sampled() const { return noise >= 0; }
   };
   using StrataSamples = std::array<StratumSample, origins_per_patch>;
+  /// What the rays of a row see: the mean irradiance of each quarter, for the fit, and of each stratum, for the misfit.
   struct RowView {
     RowSamples quarters;
     StrataSamples strata;
@@ -164,8 +166,10 @@ class Pass {
   std::unique_ptr<Exchange> exchange_;
   /// Places in the system's lists of rows and leaves, sorted: those of which the errors are found, and the rows that are sampled.
   std::vector<std::uint32_t> changed_rows_, sampled_rows_, changed_leaves_;
-  double unnoticed_change_ = 0;            ///< of the irradiance, where errors are not found again; emission units
-  std::vector<StrataSamples> strata_;      ///< of changed_rows_, by place, where this rank has their hits
+  double unnoticed_change_ = 0;  ///< of the irradiance, where errors are not found again; emission units
+  /// strata_[n] is what row changed_rows_[n] sees, from fit_field_smoothly() to find_misfits(); only where this rank has its
+  /// hits.
+  std::vector<StrataSamples> strata_;
   std::vector<OriginMisfit> misfits_;      ///< by patch
   std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
   ErrorEstimate told_;                     ///< what estimate() returned

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -32,9 +33,10 @@ constexpr double misfit_at_centre = 0.25;
 // squared normal deviations. With 0 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken for detail; with
 // 0.7 half of the gain in the furnished room is lost (docs/error-vs-time.md).
 constexpr double chance_of_origins = 0.35;
-// The same for rows of several rounds of rays, whose noise is not overestimated: a third of them exceeds 0.35 by chance, and what
-// is split loses its rounds. Measured: with 1 or less the Cornell box is not within 0.5 % after 30 million rays, with 1.5 after
-// 21, with 2.5 after 12 million, and with 3 its error is a tenth larger; other scenes have the same errors after the same time.
+// Multiple of the noise of origins that the misfit of a row of several rounds of rays must exceed. Its noise is not
+// overestimated: one in three exceeds 0.35 times that by chance, and a row that is split loses its rounds. Measured: with 1 the
+// Cornell box is not told to be within 0.5 % after 30 million rays, with 1.5 it is after 21 million, with 2.5 after 12 million,
+// and with 3 its error is a tenth larger; three other scenes have the same error after the same time.
 constexpr double chance_of_rounds = 2.5;
 // Multiple of the noise of origins that a misfit must exceed to be part of the told error: two standard deviations of that mean.
 constexpr double sure_of_origins = 0.7;
@@ -57,6 +59,16 @@ struct ErrorSums {
     return *this;
   }
 };
+
+/// Returns whether most strata of a row have several rounds of rays, so that their noise is found from how the rounds differ.
+bool has_rounds_in_most(const TransportRow& row) {
+  std::array<std::size_t, origins_per_patch> rounds{};
+  for (std::size_t o = 0; o < row.origin_hits.size(); ++o)
+    rounds[o % origins_per_patch] += row.origin_hits[o] != TransportRow::not_sampled;
+  const auto any = std::ranges::count_if(rounds, [](std::size_t n) { return n > 0; });
+  const auto several = std::ranges::count_if(rounds, [](std::size_t n) { return n > 1; });
+  return 2 * several > any;
+}
 
 /// Some leaves of a forest, each with its neighbours, and their centres and values, by node.
 struct Field {
@@ -122,7 +134,7 @@ void Pass::find_misfits() {
   if (state_.rows.carry_light())
     system_->deal().for_each(state_.ranks, std::span(found),
                              [&](std::size_t n) { found[n] = misfit_at_origins(rows[changed_rows_[n]], strata_[n]); });
-  strata_ = {};
+  strata_ = std::vector<StrataSamples>();  // frees the memory
   misfits_.resize(rows.size());
   if (knows_errors())
     tbb::parallel_for(std::size_t{0}, rows.size(),
@@ -147,7 +159,7 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
     const bool is_seen = has_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
-    const double chance = has_rounds ? chance_of_rounds : chance_of_origins;
+    const double chance = has_rounds_in_most(row) ? chance_of_rounds : chance_of_origins;
     const double seen = std::max(0.0, at_origins.square - chance * at_origins.noise);
     row_errors_[p] = {area * (std::max(seen, misfit_at_centre * fit.window_misfit) + by_contact), at_origins.split};
     row_squares_[p] = std::max(0.0, misfit) + by_contact;

@@ -13,9 +13,9 @@ constexpr std::uint32_t not_changed = ~0u;  // the place of a row among others t
 
 }  // namespace
 
-// Rows of several rounds of rays have the mean over the rounds in each stratum; its noise is found from how the rounds differ.
-// With one round it is found from the rays of each origin as if they were independent. They are stratified and have less, so that
-// noise does not pass for a misfit.
+// In rows of several rounds of rays each stratum has the mean over its rounds, and its noise is found from how these differ. With
+// one round the noise is found from the rays of the origin as if they were independent. Stratified rays have less noise than
+// that, so it is overestimated, and does not pass for a misfit.
 Pass::RowView Pass::view_of(NodeIndex node, const LightByLeaf& radiosity) const {
   const TransportRow& row = state_.rows[node];
   RowView view;

@@ -1,9 +1,12 @@
 #include "radiosity/form_factors/convex_polygon.h"
 
+#include "radiosity/form_factors/shadow_cone.h"
+
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace alvor {
 namespace {
@@ -45,6 +48,28 @@ TEST(ConvexPolygon, PlaneThatMissesOrTouchesLeavesItWhole) {
     EXPECT_TRUE(other.is_empty());
     EXPECT_EQ(area(below), area(square));
   }
+}
+
+// What a blocker hides and what it leaves make the whole, for blockers that hide all, a part or nothing of a square.
+TEST(ShadowCone, PartInsideAndPartsOutsideMakeTheWhole) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const ConvexPolygon square = regular_polygon(4);
+  int partly = 0;
+  for (int n = 0; n < 1000; ++n) {
+    const Vec3 middle{number(random), number(random), -1 + 0.5 * number(random)};
+    const Vec3 s{number(random), number(random), 0.4 * number(random)}, t{number(random), number(random), 0.4 * number(random)};
+    const Vec3 blocker[] = {middle - s, middle - t, middle + s, middle + t};
+    const ShadowCone shadow({0.1 * number(random), 0.1 * number(random), -3}, blocker);
+    std::vector<ConvexPolygon> outside;
+    shadow.cut_from(square, outside);
+    double sum = 0;
+    for (const ConvexPolygon& part : outside) sum += area(part);
+    const double inside = area(shadow.part_inside(square));
+    EXPECT_NEAR(sum + inside, area(square), 1e-12);
+    partly += inside > 0.01 && sum > 0.01;
+  }
+  EXPECT_GT(partly, 100);
 }
 
 TEST(ConvexPolygon, NothingIsCutFromNothing) {

@@ -68,6 +68,32 @@ TEST(ExactShadow, OfAScreenOverHalfTheLampLeavesTheOtherHalf) {
   EXPECT_EQ(view.visible_from({1.9, 0, 0}), 0);
 }
 
+// The second screen lies in the shadow of the first one. Its part of the shadow must not count twice.
+TEST(ExactShadow, OfAScreenBehindAnotherIsNoDarker) {
+  Scene one = floor_and_lamp();
+  test::add_polygon(one, {{0, 1.4, -5}, {5, 1.4, -5}, {5, 1.4, 5}, {0, 1.4, 5}});
+  Scene both = one;
+  test::add_polygon(both, {{0.1, 1.5, -5}, {5, 1.5, -5}, {5, 1.5, 5}, {0.1, 1.5, 5}});
+  View by_one(one), by_both(both);
+  ASSERT_TRUE(by_one.begin(0, 1) && by_both.begin(0, 1));
+  for (const double x : {-1.5, -0.5, 0.0, 0.1}) {
+    EXPECT_GT(by_one.visible_from({x, 0, 0.3}), 0.01);
+    EXPECT_NEAR(by_both.visible_from({x, 0, 0.3}), by_one.visible_from({x, 0, 0.3}), 1e-12);
+  }
+}
+
+TEST(ExactShadow, OfTwoScreensWhoseEdgesLineUpHidesAllOfTheLamp) {
+  for (const double seam : {0.0, 0.1, 0.3}) {
+    Scene scene = floor_and_lamp();
+    test::add_polygon(scene, {{seam, 1.5, -5}, {5, 1.5, -5}, {5, 1.5, 5}, {seam, 1.5, 5}});
+    test::add_polygon(scene, {{-5, 1.4, -5}, {seam, 1.4, -5}, {seam, 1.4, 5}, {-5, 1.4, 5}});
+    View view(scene);
+    ASSERT_TRUE(view.begin(0, 1));
+    EXPECT_EQ(view.visible_from({seam, 0, 0.3}), 0) << "straight below the line where they meet, " << seam;
+    EXPECT_GT(view.visible_from({seam + 1, 0, 0.3}), 1e-4) << "between the edges, which lie at different heights";
+  }
+}
+
 TEST(ExactShadow, OfASolidIsThatOfItsOutline) {
   Scene box = floor_and_lamp(), lid = floor_and_lamp();
   test::add_box(box, {-0.2, 1.0, -0.2}, {0.1, 1.3, 0.3}, false);

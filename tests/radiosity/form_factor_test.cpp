@@ -26,8 +26,8 @@ TEST(FormFactor, ParallelRectangleMatchesTheClosedForm) {
   }
 }
 
-// A regular polygon over the point: by symmetry each edge brings the same. Its edges are seen under angles from 1e-7 to nearly
-// pi.
+// A regular polygon over the point: by symmetry each edge brings the same. Its edges are seen under angles from 1e-7
+// to 2.1 radians (120 degrees).
 TEST(FormFactor, RegularPolygonOfAnyNumberOfCornersMatchesTheClosedForm) {
   for (const double height : {1e-6, 0.1, 1.0, 1e6})
     for (int count = 3; count <= 64; ++count) {
@@ -39,6 +39,17 @@ TEST(FormFactor, RegularPolygonOfAnyNumberOfCornersMatchesTheClosedForm) {
           << count << " corners at height " << height;
       EXPECT_NEAR(point_to_polygon_above({0, 0, 0}, {0, 0, 1}, polygon), expected, 1e-14);
     }
+}
+
+// A wall that stands on the receiver's plane, close to the point, so that its lower edge is seen under nearly 180 degrees. It is
+// two perpendicular rectangles (Howell, catalogue B-4), each of height and width 1.
+TEST(FormFactor, WallBesideThePointMatchesTheClosedForm) {
+  for (const double away : {1e-1, 1e-2, 1e-4, 1e-6, 1e-8}) {
+    const Vec3 wall[] = {{-1, away, 0}, {1, away, 0}, {1, away, 1}, {-1, away, 1}};
+    const double slant = std::hypot(away, 1);
+    const double expected = (std::atan(1 / away) - away / slant * std::atan(1 / slant)) / pi;
+    EXPECT_NEAR(point_to_polygon_above({0, 0, 0}, {0, 0, 1}, wall), expected, 1e-14) << away << " m away";
+  }
 }
 
 TEST(FormFactor, BackOfThePolygonGivesNothing) {

@@ -282,5 +282,24 @@ TEST(Gathering, HitsCountByTheirWeight) {
   expect_weakened(run, System(11), std::vector<Rgb>(weighted.rows.size(), {0.5, 1, 0.25}));
 }
 
+TEST(LightByLeaf, SumsTheLightOfHitsAndTheSquaresOfTheirMeans) {
+  const RelativeLight red{3, 0, 0}, white{1, 1, 1};
+  const std::vector<std::uint32_t> hits{0, 1, 1};
+  LightByLeaf three(2, true), one(2, false);
+  three.set(0, red), three.set(1, white);
+  one.set(0, 2.0 * white), one.set(1, white);
+  const auto expect_sums = [](const LightByLeaf::Sums& sums, const RelativeLight& light, double squares) {
+    EXPECT_NEAR(absolute(sums.light - light).max(), 0, 1e-15);
+    EXPECT_NEAR(sums.squares, squares, 1e-15);
+  };
+  expect_sums(three.sums(hits, {}), {5, 2, 2}, 1 + 1 + 1);
+  expect_sums(one.sums(hits, {}), {4, 4, 4}, 4 + 1 + 1);
+  // Behind red glass a red light keeps its mean of 1; a white one has a third of it.
+  const std::vector<RgbF> glass{{1, 0, 0}, {1, 0, 0}, {0.5f, 0.5f, 0.5f}};
+  expect_sums(three.sums(hits, glass), {3 + 1 + 0.5, 0.5, 0.5}, 1 + 1.0 / 9 + 0.25);
+  const std::vector<RgbF> grey{{0.5f, 0.5f, 0.5f}, {1, 1, 1}, {0, 0, 0}};
+  expect_sums(one.sums(hits, grey), {2, 2, 2}, 1 + 1);
+}
+
 }  // namespace
 }  // namespace alvor
