@@ -85,7 +85,8 @@ std::optional<double> ExactShadow::through_to(Vec3 point, const LightSource& lig
   return sum < small && sum < rounding * light.unblocked(point, normal_) ? 0 : sum;
 }
 
-// What the last blocker hides is subtracted, because it has fewer edges than the parts that are left around it.
+// The form factor to the parts of the light that the last blocker hides is subtracted: these parts have fewer edges than those
+// that are left around them.
 std::optional<double> ExactShadow::visible_from(Vec3 point) {
   if (above_.is_empty() || lamp_.height(point) <= 0) return 0;
   const bool is_blocked = !blockers_.empty();

@@ -112,7 +112,7 @@ class SurfaceIntegral {
   }
 
   void refine(double accuracy, std::uint64_t most_points) {
-    while (error_ > accuracy * value_ && error_ > negligible_ && points_ + 28 <= most_points) refine_worst();
+    while (error_ > accuracy * value_ && error_ > negligible_ && points_ + 28 <= most_points) refine_worst_ones(most_points);
   }
 
   double value() const { return value_; }  ///< form factor times the area of `from`
@@ -127,6 +127,16 @@ class SurfaceIntegral {
       sum += weight * point_to_visible(p + a * (q - p) + b * (r - p), normal_, to_, blockers_);
     points_ += radon_7.size();
     return 0.5 * length(cross(q - p, r - p)) * sum;
+  }
+
+  /// Refines the cell with the largest error and those whose errors differ from it by rounding only. Else rounding would decide
+  /// which of some symmetric cells are refined before the error is small enough, and the result would depend on the unit of
+  /// length.
+  void refine_worst_ones(std::uint64_t most_points) {
+    constexpr double alike = 1 - 1e-6;
+    const double worst = cells_.top().error;
+    do refine_worst();
+    while (cells_.top().error >= alike * worst && points_ + 28 <= most_points);
   }
 
   void refine_worst() {

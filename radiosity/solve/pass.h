@@ -142,14 +142,15 @@ class Pass {
     Split split = Split::quarters;
   };
   Contrast squared_contrast(std::size_t place, Vec3 slope) const;
-  /// What the origins of one stratum of a row see: their mean irradiance, mean over bands, in emission units, and its variance,
-  /// which is negative if no origin of the stratum is sampled.
+  /// The irradiance of one stratum of a row: the mean over its origins and over bands, in emission units, and the variance of
+  /// that mean, in emission units squared. A negative variance says that no origin of the stratum is sampled.
   struct StratumSample {
     float irradiance = 0, noise = -1;
     bool is_sampled() const { return noise >= 0; }
   };
   using StrataSamples = std::array<StratumSample, origins_per_patch>;
-  /// What the rays of a row see: the mean irradiance of each quarter, for the fit, and of each stratum, for the misfit.
+  /// The irradiance that the rays of a row found: of each quarter, to which the field is fitted, and of each stratum, by which
+  /// the misfit of that field is found.
   struct RowView {
     RowSamples quarters;
     StrataSamples strata;

@@ -155,8 +155,8 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
     const FieldFit& fit = state_.field.fit(node);
     const OriginMisfit& at_origins = misfits_[p];
     const double area = visible_area(p);
-    const bool has_rounds = row.origin_hits.size() > origins_per_patch;
-    const bool is_seen = has_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
+    const bool is_seen = row.origin_hits.size() > origins_per_patch ||
+                         at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
     const double chance = has_rounds_in_most(row) ? chance_of_rounds : chance_of_origins;

@@ -200,9 +200,8 @@ class Run {
       if (must_stop()) return false;
       pass_->add_direct_light([this, began = clock_.elapsed_s()] {
         ++is_.shots;
-        const bool is_slow =
-            is_.passes == 0 || !live_.error_before_edit || clock_.elapsed_s() - began > worth_waiting * live_.publishing_s;
-        if ((is_.passes == 0 || live_.error_before_edit) && is_slow && !requests_.made_here().any()) publish_if_due();
+        const bool is_slow_edit = live_.error_before_edit && clock_.elapsed_s() - began > worth_waiting * live_.publishing_s;
+        if ((is_.passes == 0 || is_slow_edit) && !requests_.made_here().any()) publish_if_due();
         save_if_due();
       });
     }

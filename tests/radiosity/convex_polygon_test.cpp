@@ -50,7 +50,8 @@ TEST(ConvexPolygon, PlaneThatMissesOrTouchesLeavesItWhole) {
   }
 }
 
-// What a blocker hides and what it leaves make the whole, for blockers that hide all, a part or nothing of a square.
+// The part of a square inside the shadow of a blocker and the parts outside make the whole square. The blockers hide all of it, a
+// part or nothing.
 TEST(ShadowCone, PartInsideAndPartsOutsideMakeTheWhole) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> number(-1, 1);
