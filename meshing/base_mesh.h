@@ -108,6 +108,10 @@ class BaseMesh {
   /// scene by edits (edited_as()), and has at least as many roots.
   BaseMesh with_hidden_roots_of(const BaseMesh& other) const;
 
+  /// Returns a mesh of some roots, in this order, with the objects and lights that are there, and faces numbered as
+  /// PresentObjects does. Requires: none of the roots is hidden, or named twice.
+  BaseMesh with_roots(std::span<const std::uint32_t> order) const;
+
   std::span<const RootPatch> roots() const { return roots_; }
   std::span<const Material> materials() const { return materials_; }
   const Material& material_of(std::uint32_t root) const { return materials_[roots_[root].material]; }

@@ -2,6 +2,7 @@
 
 #include "meshing/leaf_gradient.h"
 #include "meshing/patch_reflectance.h"
+#include "meshing/present_objects.h"
 #include "meshing/vertex_key.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ Vec3 miter(std::span<const Vec3> normals) {
 class Triangulation {
  public:
   Triangulation(const BaseMesh& mesh, std::span<const LeafValue> values, std::span<const float> errors)
-      : mesh_(mesh), forest_(mesh), keys_(mesh), errors_(errors) {
+      : mesh_(mesh), present_(mesh.objects()), forest_(mesh), keys_(mesh), errors_(errors) {
     forest_.split_down_to(values);
     leaves_.reserve(values.size());
     value_.resize(forest_.node_count());
@@ -89,7 +90,7 @@ class Triangulation {
     out_.quantity = mesh_.quantity();
     std::ranges::remove_copy_if(mesh_.lights(), std::back_inserter(out_.lights), &Light::is_hidden);
     out_.materials.assign(mesh_.materials().begin(), mesh_.materials().end());
-    out_.objects.assign(mesh_.objects().begin(), mesh_.objects().end());
+    out_.objects = present_.objects();
     for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);
     for (std::size_t n = 0; n < leaves_.size(); ++n) emit(n);
     return std::move(out_);
@@ -152,7 +153,7 @@ class Triangulation {
     for (const GridPoint& p : points) ring.push_back(corner_vertex(shape.root, p));
     for (std::size_t k = 0; k < ring.size(); ++k) out_.triangles.push_back({centre, ring[k], ring[(k + 1) % ring.size()]});
     const RootPatch& root = mesh_.roots()[shape.root];
-    append_run(out_.faces, {root.input, root.material, static_cast<std::uint32_t>(ring.size())});
+    append_run(out_.faces, {present_.numbers_of(root.input), root.material, static_cast<std::uint32_t>(ring.size())});
   }
 
   std::uint32_t corner_vertex(std::uint32_t root, GridPoint p) {
@@ -262,6 +263,7 @@ class Triangulation {
   };
 
   const BaseMesh& mesh_;
+  const PresentObjects present_;
   PatchForest forest_;
   VertexKeys keys_;
   const std::span<const float> errors_;  // by leaf; empty if none were told

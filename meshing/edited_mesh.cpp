@@ -3,6 +3,7 @@
 #include "meshing/base_mesh.h"
 #include "meshing/bounding_box.h"
 #include "meshing/face_object.h"
+#include "meshing/present_objects.h"
 #include "solution/patch_id.h"
 
 #include <algorithm>
@@ -91,6 +92,29 @@ BaseMesh BaseMesh::with_hidden_roots_of(const BaseMesh& other) const {
     root.is_hidden = root.is_behind = true;
   }
   return all;
+}
+
+BaseMesh BaseMesh::with_roots(std::span<const std::uint32_t> order) const {
+  const PresentObjects present(objects_);
+  std::vector<std::uint32_t> number(roots_.size(), RootPatch::no_twin);
+  for (std::uint32_t n = 0; n < order.size(); ++n) number[order[n]] = n;
+  BaseMesh some = *this;
+  some.objects_ = present.objects();
+  std::erase_if(some.lights_, [](const Light& light) { return light.is_hidden; });
+  some.roots_.clear(), some.neighbours_.clear(), some.texture_points_.clear(), some.corner_colours_.clear();
+  for (const std::uint32_t r : order) {
+    some.append_root(*this, r);
+    RootPatch& root = some.roots_.back();
+    root.input = present.numbers_of(root.input);
+    if (root.twin != RootPatch::no_twin) root.twin = number[root.twin];
+    if (root.twin == RootPatch::no_twin) root.is_behind = false;
+    for (auto& other : some.neighbours_.back()) {
+      if (other) other->root = number[other->root];
+      if (other && other->root == RootPatch::no_twin) other.reset();
+    }
+  }
+  some.find_bounds();
+  return some;
 }
 
 /// Takes roots of objects that are hidden or have moved from those that do not move with them. Puts them where the motions say if

@@ -128,6 +128,11 @@ class PatchId {
   /// Returns which child (0 to 3) of its ancestor at `level` - 1 contains this patch. Requires: 1 <= level <= this->level().
   constexpr int child_index(int level) const { return static_cast<int>(bits_ >> (2 * (max_level - level) + 1)) & 3; }
 
+  /// Returns the patch of root `face` that is what this one is of its own root. Requires: face < most_roots.
+  constexpr PatchId of_root(std::uint32_t face) const {
+    assert(face < most_roots);
+    return PatchId((bits_ & ~(std::uint64_t{most_roots - 1} << 32)) | static_cast<std::uint64_t>(face) << 32);
+  }
   /// Returns the patch of root `face` in whose place u and v are exchanged: children 1 and 2 of quarters, and the axes of slabs.
   constexpr PatchId mirrored(std::uint32_t face) const {
     const auto lsb = static_cast<std::uint32_t>(lsb_()), path = static_cast<std::uint32_t>(bits_) - lsb;

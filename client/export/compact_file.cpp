@@ -3,7 +3,7 @@
 #include "client/export/part_stream.h"
 #include "client/export/solution_file.h"
 #include "client/export/vertex_index.h"
-#include "meshing/face_object.h"
+#include "meshing/present_objects.h"
 #include "proto/codec.h"
 #include "proto/leaf_codec.h"
 #include "proto/mesh_codec.h"
@@ -109,6 +109,33 @@ class Writer {
   std::string bytes_;
 };
 
+/// Returns the roots of a mesh that are there, backs of two-sided faces last: as in the mesh that a Reader makes.
+std::vector<std::uint32_t> roots_in_order(const BaseMesh& mesh) {
+  std::vector<std::uint32_t> order;
+  for (const bool backs : {false, true})
+    for (std::uint32_t r = 0; r < mesh.roots().size(); ++r)
+      if (!mesh.roots()[r].is_hidden && mesh.roots()[r].is_back == backs) order.push_back(r);
+  return order;
+}
+
+/// Leaves and their errors, if any.
+struct LeavesOfFile {
+  std::vector<LeafValue> leaves;
+  std::vector<float> errors;
+};
+
+/// Returns the leaves of some roots, numbered by their places in the list. Requires: `leaves` are sorted.
+LeavesOfFile leaves_of(std::span<const std::uint32_t> order, std::span<const LeafValue> leaves, std::span<const float> errors) {
+  LeavesOfFile of;
+  const auto root_of = [](const LeafValue& leaf) { return leaf.patch.root_face(); };
+  for (std::uint32_t n = 0; n < order.size(); ++n)
+    for (const LeafValue& leaf : std::ranges::equal_range(leaves, order[n], {}, root_of)) {
+      of.leaves.push_back({leaf.patch.of_root(n), leaf.irradiance});
+      if (!errors.empty()) of.errors.push_back(errors[static_cast<std::size_t>(&leaf - leaves.data())]);
+    }
+  return of;
+}
+
 /// Collects the parts of a file.
 class Reader {
  public:
@@ -120,30 +147,28 @@ class Reader {
     const BaseMesh mesh = base_mesh();
     check_leaves(mesh);
     DisplayMesh display = build_display_mesh(mesh, leaves_, errors_);
-    name_faces(display);
-    display.objects = std::move(objects_);
+    name_parts(display);
     return display;
   }
 
  private:
-  /// Replaces the faces of the scene that was rebuilt by those of the scene that was solved, without those of hidden objects.
-  void name_faces(DisplayMesh& display) const {
-    const auto is_hidden = [this](const InputFaces& faces) {
-      const auto object = object_of_face(objects_, faces.first);
-      return object && objects_[*object].is_hidden;
-    };
+  /// Replaces the objects and faces of the scene that was rebuilt by those of the scene that was solved which are there.
+  void name_parts(DisplayMesh& display) const {
+    check_objects(objects_);
+    const PresentObjects present(objects_);
     std::vector<FaceTriangles> faces;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     for (auto first = display.triangles.cbegin(); const FaceTriangles& run : display.faces) {
       const auto last = first + run.count;
-      if (const InputFaces& source = sources_[run.faces.first]; !is_hidden(source)) {
-        append_run(faces, {source, run.material, run.count});
+      if (const InputFaces& source = sources_[run.faces.first]; present.has(source.first)) {
+        append_run(faces, {present.numbers_of(source), run.material, run.count});
         triangles.insert(triangles.end(), first, last);
       }
       first = last;
     }
     display.faces = std::move(faces);
     display.triangles = std::move(triangles);
+    display.objects = present.objects();
   }
 
   void read_header() {
@@ -316,7 +341,10 @@ class Reader {
 }  // namespace
 
 std::string encode_compact(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors) {
-  return Writer(mesh, leaves).write(errors);
+  const auto order = roots_in_order(mesh);
+  if (order.size() == mesh.roots().size() && std::ranges::is_sorted(order)) return Writer(mesh, leaves).write(errors);
+  const LeavesOfFile of = leaves_of(order, leaves, errors);
+  return Writer(mesh.with_roots(order), of.leaves).write(of.errors);
 }
 
 DisplayMesh decode_compact(std::string_view bytes) { return Reader(bytes).read(); }

@@ -10,7 +10,8 @@
 
 namespace alvor {
 
-/// Returns the bytes of a file. `leaves` are sorted by id and cover every root; `errors` are their told errors, or none. Values
+/// Returns the bytes of a file, without roots that are hidden. `leaves` are sorted by id and cover every root; `errors` are their
+/// told errors, or none. Values
 /// are rounded to nine bits a band and a common exponent, an error of at most 0.2 % of the brightest band; errors to a byte.
 /// About six bytes a leaf. Throws SolutionFileError if there are more leaves than a file can hold.
 std::string encode_compact(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors = {});

@@ -88,17 +88,11 @@ void check_faces(const DisplayMesh& mesh) {
                             std::to_string(mesh.triangles.size()));
 }
 
-void check_objects(const DisplayMesh& mesh) {
-  for (std::size_t i = 0; i < mesh.objects.size(); ++i)
-    if (const auto reason = fault_in(mesh.objects, i, std::numeric_limits<std::uint32_t>::max()))
-      throw SolutionFileError("object " + std::to_string(i) + ": " + *reason);
-}
-
 DisplayMesh checked(DisplayMesh mesh) {
   check_vertices(mesh);
   check_triangles(mesh);
   check_faces(mesh);
-  check_objects(mesh);
+  check_objects(mesh.objects);
   return mesh;
 }
 
@@ -115,6 +109,12 @@ auto naming(const std::string& name, Work work) {
 }
 
 }  // namespace
+
+void check_objects(std::span<const SceneObject> objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (const auto reason = fault_in(objects, i, std::numeric_limits<std::uint32_t>::max()))
+      throw SolutionFileError("object " + std::to_string(i) + ": " + *reason);
+}
 
 void write_solution_file(const std::filesystem::path& path, const DisplayMesh& mesh) {
   naming(path.string(), [&] { write_whole_file(path, encode_solution(mesh, lower_case_extension(path))); });

@@ -4,6 +4,7 @@
 #include "meshing/display_mesh.h"
 
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -35,5 +36,8 @@ std::string encode_solution(const DisplayMesh& mesh, const std::string& extensio
 /// Reads the bytes of a solution, whose extension is ".glb", ".ply" or ".alvor". Throws SolutionFileError that begins with
 /// `name`.
 DisplayMesh decode_solution(std::string_view bytes, const std::string& extension, const std::string& name);
+
+/// Throws SolutionFileError if objects cannot be those of one scene.
+void check_objects(std::span<const SceneObject> objects);
 
 }  // namespace alvor

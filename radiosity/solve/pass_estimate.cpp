@@ -29,17 +29,16 @@ constexpr double noise_in_differences = 0.25;
 // Share of a window's squared misfit that its fit has at the centre: a guess. Chosen; half: error same, rays +1 %, double: error
 // -5 %, rays +10 % (docs/design/constants.md).
 constexpr double misfit_at_centre = 0.25;
-// Multiple of the noise of origins that their misfit must exceed: sqrt(2 / 16), one standard deviation of the mean of sixteen
-// squared normal deviations. With 0 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken for detail; with
-// 0.7 half of the gain in the furnished room is lost (docs/error-vs-time.md).
-constexpr double chance_of_origins = 0.35;
-// Multiple of the noise of origins that the misfit of a row of several rounds of rays must exceed. Its noise is not
-// overestimated: one in three exceeds 0.35 times that by chance, and a row that is split loses its rounds. Measured: with 1 the
-// Cornell box is not told to be within 0.5 % after 30 million rays, with 1.5 it is after 21 million, with 2.5 after 12 million,
-// and with 3 its error is a tenth larger; three other scenes have the same error after the same time.
-constexpr double chance_of_rounds = 2.5;
-// Multiple of the noise of origins that a misfit must exceed to be part of the told error: two standard deviations of that mean.
-constexpr double sure_of_origins = 0.7;
+// Multiple of the noise of origins that a row's misfit must exceed to be worth a split. The mean of sixteen squared normal
+// deviations has a standard deviation of sqrt(2 / 16), so this is seven times that: a row that is split loses its rounds of rays.
+// Measured for rows of several rounds: with 1 the Cornell box is not told to be within 0.5 % after 30 million rays, with 1.5 it
+// is after 21 million, with 2.5 after 12 million, and with 3 its error is a tenth larger; three other scenes have the same error
+// after the same time. For rows of one round: with 1.5 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken
+// for detail; with 3.3 half of the gain in the furnished room is lost (docs/error-vs-time.md).
+constexpr double chance_of_origins = 2.5;
+// Multiple of the noise of origins that the misfit of a row of one round must exceed to be part of the told error. The share of
+// the noise that stratified rays have is a mean; single rows have up to 2.5 times that. Chosen: two standard deviations above.
+constexpr double sure_of_origins = 3.25;
 // Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
@@ -155,12 +154,11 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
     const FieldFit& fit = state_.field.fit(node);
     const OriginMisfit& at_origins = misfits_[p];
     const double area = visible_area(p);
-    const bool is_seen = row.origin_hits.size() > origins_per_patch ||
-                         at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
+    const bool is_seen =
+        has_rounds_in_most(row) || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
-    const double chance = has_rounds_in_most(row) ? chance_of_rounds : chance_of_origins;
-    const double seen = std::max(0.0, at_origins.square - chance * at_origins.noise);
+    const double seen = std::max(0.0, at_origins.square - chance_of_origins * at_origins.noise);
     row_errors_[p] = {area * (std::max(seen, misfit_at_centre * fit.window_misfit) + by_contact), at_origins.split};
     row_squares_[p] = std::max(0.0, misfit) + by_contact;
     return ErrorSums{area * (misfit + by_contact), area * row_squares_[p], area * fit.variance};

@@ -12,8 +12,9 @@ namespace {
 
 // A row is guided if that is expected to divide the variance of its rays by at least this. Below, weights cost more memory and
 // time than they save.
-constexpr double least_gain = 3;
-// Every fourth hit of a neighbouring row is used, so that eight neighbours tell as much as two whole rows.
+constexpr double least_gain = 2;
+// The hits of every fourth origin of a neighbouring row are used, so that eight neighbours tell as much as two whole rows. The
+// rays of an origin are spread over the hemisphere; every fourth ray of a row would lie in one quarter of it.
 constexpr std::size_t neighbour_stride = 4;
 // Rows whose guides are made together, so that what ranks tell each other for it stays small. Chosen.
 constexpr std::size_t rows_guided_at_once = 8192;
@@ -25,16 +26,22 @@ struct HitSeen {
   double weight;       ///< mean over bands
 };
 
-/// Calls body(HitSeen) for every n-th hit of a row of this rank.
+/// Calls body(HitSeen) for the hits of every n-th sampled origin of a row of this rank.
 template <class Body>
 void for_each_hit(const SolveState& state, NodeIndex row, std::size_t stride, Body&& body) {
   const TransportRow& traced = state.rows[row];
   const auto leaves = state.rows.leaves_hit(row);
-  for (std::size_t h = 0; h < leaves.size(); h += stride)
-    body(HitSeen{traced.hits[h], leaves[h], traced.hit_weight.empty() ? 1.0 : traced.hit_weight[h].mean()});
+  std::size_t first = 0, sampled = 0;
+  for (const std::uint8_t count : traced.origin_hits) {
+    if (count == TransportRow::not_sampled) continue;
+    if (sampled++ % stride == 0)
+      for (std::size_t h = first; h < first + count; ++h)
+        body(HitSeen{traced.hits[h], leaves[h], traced.hit_weight.empty() ? 1.0 : traced.hit_weight[h].mean()});
+    first += count;
+  }
 }
 
-/// Copies of every n-th hit of some rows, wherever they are: for ranks that guide rows beside them.
+/// Copies of the hits of every n-th origin of some rows, wherever they are: for ranks that guide rows beside them.
 class HitsOfOthers {
  public:
   /// Collective. `wanted` may name rows more than once.
@@ -127,6 +134,8 @@ void Pass::guide_some(std::span<const NodeIndex> rows, std::span<const double> l
     HitsAround around(state_.mesh, leaving, state_.scene.root(state_.forests.rows().id(rows[n]).root_face()),
                       state_.forests.row_centres()[rows[n]], builder);
     for_each_hit(state_, rows[n], 1, [&](const HitSeen& hit) { around.add(hit, 1); });
+    // Neighbours are most of the work, and hardly ever find a guide worth having where the row's own hits do not.
+    if (builder.guide(least_gain).is_none()) return;
     const auto add_of_neighbour = [&](const HitSeen& hit) { around.add(hit, neighbour_stride); };
     for_each_lit(n, [&](NodeIndex neighbour) {
       if (state_.rows.is_own(neighbour)) for_each_hit(state_, neighbour, neighbour_stride, add_of_neighbour);

@@ -12,7 +12,7 @@ namespace {
 
 // Multiple of the noise of origins that counts where they are to tell of slabs. Slabs cannot be undone, and many rows are tested.
 // Chosen; not measured at half and double.
-constexpr double noise_of_slabs = 3;
+constexpr double noise_of_slabs = 7.5;
 
 double squared(double x) { return x * x; }
 

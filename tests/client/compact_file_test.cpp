@@ -5,6 +5,8 @@
 #include "client/export/part_stream.h"
 #include "client/export/solution_file.h"
 #include "client/export/vtu_file.h"
+#include "meshing/edit/edited_scene.h"
+#include "meshing/mesh_area.h"
 #include "proto/codec.h"
 #include "proto/leaf_codec.h"
 #include "solution/shared_exponent.h"
@@ -105,6 +107,36 @@ TEST(CompactFile, HoldsWhatTheDisplayMeshHas) {
     ASSERT_EQ(read.errors.size(), made.errors.size());
     for (std::size_t v = 0; v < read.errors.size(); ++v) EXPECT_NEAR(read.errors[v], made.errors[v], 0.05 * made.errors[v]);
   }
+}
+
+/// Returns the green light that arrives at all triangles, W.
+double power_on(const DisplayMesh& mesh) {
+  double power = 0;
+  for (std::uint32_t n = 0; n < mesh.triangles.size(); ++n) {
+    const double area = length(double_area_of(mesh, n)) / 2;
+    for (const std::uint32_t corner : mesh.triangles[n]) power += area / 3 * mesh.irradiance[corner].g;
+  }
+  return power;
+}
+
+TEST(CompactFile, HoldsWhatIsThereOfAnEditedScene) {
+  Scene scene = varied_scene(false);
+  for (Material& material : scene.materials) material.two_sided = true;
+  ASSERT_GE(scene.objects.size(), 1u);
+  const std::vector<SceneEdit> edits{ObjectCopy{.name = "twin", .of = scene.objects[0].name},
+                                     ObjectEdit{.name = scene.objects[0].name, .hidden = true},
+                                     ObjectEdit{.name = "twin", .move = Vec3{0.1, 0, 0}}};
+  ASSERT_FALSE(fault_in(edits, scene));
+  const Scene edited = edited_scene(scene, edits);
+  const BaseMesh mesh = BaseMesh(scene).edited_as(edited);
+  auto leaves = random_leaves(mesh, 1);
+  std::vector<float> errors;
+  for (const LeafValue& leaf : leaves) errors.push_back(0.1F * leaf.irradiance.g);
+  const DisplayMesh read = decode_compact(encode_compact(mesh, leaves, errors)), made = build_display_mesh(mesh, leaves, errors);
+  EXPECT_EQ(read.objects, made.objects);
+  EXPECT_EQ(read.objects.back().name, "twin");
+  ASSERT_EQ(read.triangles.size(), made.triangles.size());
+  EXPECT_NEAR(power_on(read), power_on(made), 0.002 * power_on(made));
 }
 
 TEST(CompactFile, TakesTenBytesALeafAtMost) {

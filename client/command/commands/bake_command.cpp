@@ -4,10 +4,12 @@
 #include "client/bake/probe_grid.h"
 #include "client/bake/scene_document.h"
 #include "client/command/commands/commands.h"
+#include "client/command/commands/served_solution.h"
 #include "client/command/commands/solve_here.h"
 #include "client/command/options/input_file.h"
 #include "client/command/options/option_checks.h"
 #include "client/command/options/scene_options.h"
+#include "client/command/options/served_solve_option.h"
 #include "client/command/output/display.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/files.h"
@@ -26,6 +28,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 namespace alvor {
 
@@ -45,6 +48,7 @@ const std::map<std::string, LightmapUnit> conventions{{"three", LightmapUnit::ir
 
 struct BakeCommand {
   std::filesystem::path scene, solution;  ///< an empty solution: the scene is solved
+  ServerChoice server;                    ///< given: `scene` is the name of a solve
   std::string format;                     ///< format of a scene from stdin
   OutputFile output;
   std::string form = "lightmap", lightmap_format = "png", convention = "three";
@@ -52,6 +56,13 @@ struct BakeCommand {
   std::string probes;  ///< NX,NY,NZ; empty: none
   SolveOptions solve;
   SceneOptions scene_options;
+};
+
+/// A scene, the document that is to show it, and its solution; no solution if the scene is still to be solved.
+struct Input {
+  Scene scene;
+  GltfDocument document;
+  std::optional<DisplayMesh> solution;
 };
 
 GltfDocument document_of(const RawScene& bytes, const Scene& scene) {
@@ -90,6 +101,18 @@ Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, cons
       line.show(progress_bar(share) + " " + percent(share) + " of the texels");
   };
   return bake(std::move(document), scene, solution, options, std::move(layout));
+}
+
+Input read_input(const BakeCommand& command) {
+  if (command.server.is_given()) {
+    ServedSolve solve = read_served_solve(command.server, command.scene);
+    GltfDocument document = document_of(solve.scene);
+    return {std::move(solve.scene), std::move(document), std::move(solve.mesh)};
+  }
+  const RawScene bytes = scene_bytes(command.scene, command.format);
+  Scene scene = read_scene(command.scene_options, bytes, name_of(command.scene));
+  GltfDocument document = naming_the_scene(command, [&] { return document_of(bytes, scene); });
+  return {std::move(scene), std::move(document), std::nullopt};
 }
 
 /// Returns the solution of the scene, given or solved. Throws Failure if the given one is of another scene.
@@ -158,7 +181,8 @@ std::string summary_of(const BakeCommand& command, const Baked& baked) {
 }
 
 void run_bake(const BakeCommand& command) {
-  require_inputs({{InputKind::scene, command.scene}}, command.format);
+  require_server(command.server, command.scene);
+  if (!command.server.is_given()) require_inputs({{InputKind::scene, command.scene}}, command.format);
   require_output(command.output, baked_kind, "--output");
   if (is_stream(command.output.path) && command.lightmap_format == "exr")
     throw Failure(ExitStatus::usage, "--output: lightmaps in EXR are files beside the scene, so it cannot go to stdout");
@@ -172,14 +196,13 @@ void run_bake(const BakeCommand& command) {
     throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
   require_other_output(command);
   reserve_stdout_for({command.output.path});
-  const RawScene bytes = scene_bytes(command.scene, command.format);
-  const Scene scene = read_scene(command.scene_options, bytes, name_of(command.scene));
+  Input input = read_input(command);
   BakeOptions options = options_of(command);
-  GltfDocument document = naming_the_scene(command, [&] { return document_of(bytes, scene); });
-  const auto layout = naming_the_scene(command, [&] { return lay_out(document, scene, options); });
-  const DisplayMesh solution = solution_for(command, scene);
-  if (counts) options.extras["alvor_probes"] = gathered_probes(*counts, scene, solution);
-  Baked result = naming_the_scene(command, [&] { return baked(options, std::move(document), scene, solution, layout); });
+  const auto layout = naming_the_scene(command, [&] { return lay_out(input.document, input.scene, options); });
+  const DisplayMesh solution = input.solution ? *std::move(input.solution) : solution_for(command, input.scene);
+  if (counts) options.extras["alvor_probes"] = gathered_probes(*counts, input.scene, solution);
+  Baked result =
+      naming_the_scene(command, [&] { return baked(options, std::move(input.document), input.scene, solution, layout); });
   if (counts)
     result.beside.push_back({command.output.path.stem().string() + "-probes.json", options.extras["alvor_probes"].dump()});
   if (result.lit_from_both > 0)
@@ -246,13 +269,15 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
 void add_bake_command(CLI::App& app) {
   const auto options = std::make_shared<BakeCommand>();
   CLI::App& command = *app.add_subcommand("bake", "Solve a scene and write it with its light in textures");
-  command.add_option("scene", options->scene, "OBJ, glTF, GLB or another scene file; - is stdin")->required()->type_name("SCENE");
+  command.add_option("scene", options->scene, scene_or_solve)->required()->type_name("SCENE");
   add_format_option(command, options->format);
   add_output_option(command, options->output, baked_kind, "Scene to write: .glb; - is stdout")
       ->required()
       ->type_name("BAKED.glb");
   add_texture_options(command, *options);
   add_solve_options(command, *options);
+  add_served_solve_option(command, options->server,
+                          {"--solution", "--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"});
   command.callback([options] { run_bake(*options); });
 }
 

@@ -6,11 +6,14 @@
 #include "client/command/commands/interrupt.h"
 #include "client/command/commands/submitted_scene.h"
 #include "client/command/options/edit_option.h"
+#include "client/command/options/light_options.h"
 #include "client/command/options/sky_options.h"
 #include "client/command/options/solve_name.h"
+#include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/notes.h"
 #include "client/command/output/numbers.h"
+#include "proto/codec.h"
 
 #include <filesystem>
 #include <memory>
@@ -28,6 +31,8 @@ struct EditCommand {
   std::string solve;
   ServerChoice server;
   std::vector<std::string> settings, dims, webs, copies, additions, moves, turns, scales, hidden, shown;
+  LightOptions added_light;  ///< of the files of `additions`
+  std::string added_up;      ///< "y" or "z"; empty: as these files say
   std::string absorption;
   SkyOptions sky;
   bool no_daylight = false;
@@ -70,7 +75,8 @@ v1::EditStep step_of(const EditCommand& command) {
 /// The scene files of a step's additions, submitted. Deletes these scenes again, unless keep() is called.
 class SubmittedAdditions {
  public:
-  explicit SubmittedAdditions(Client& client) : client_(client) {}
+  /// `import`: how all files are read.
+  SubmittedAdditions(Client& client, SceneImport import) : client_(client), import_(std::move(import)) {}
   ~SubmittedAdditions() {
     for (const std::string& scene : scenes_) {
       try {
@@ -95,8 +101,8 @@ class SubmittedAdditions {
   }
   std::string submitted(const std::filesystem::path& file) {
     RawScene bytes = scene_bytes(file, "");
-    SceneImport import;
-    import.options = import_options(bytes.file, file);
+    SceneImport import = import_;
+    import.options.MergeFrom(import_options(bytes.file, file));
     const v1::Scene scene = submit(client_, std::move(bytes), import, file);
     scenes_.push_back(scene.name());
     std::vector<std::string> warnings(scene.warnings().begin(), scene.warnings().end());
@@ -106,8 +112,16 @@ class SubmittedAdditions {
   }
 
   Client& client_;
+  const SceneImport import_;
   std::vector<std::string> scenes_;
 };
+
+SceneImport import_of_additions(const EditCommand& command) {
+  SceneImport import;
+  take_light_options(command.added_light, import);
+  if (is_axis(command.added_up)) import.options.set_up_axis(encode(command.added_up == "z" ? UpAxis::z : UpAxis::y));
+  return import;
+}
 
 void run_edit(const EditCommand& command) {
   scene_name_of(command.solve);
@@ -115,7 +129,7 @@ void run_edit(const EditCommand& command) {
   Interrupt interrupt;
   Connection connection(command.server);
   Client& client = connection.client();
-  SubmittedAdditions additions(client);
+  SubmittedAdditions additions(client, import_of_additions(command));
   additions.submit_all(step);
   const v1::EditSolveResponse edited = client.edit_solve(command.solve, step, command.base_revision);
   additions.keep();
@@ -152,10 +166,13 @@ void add_edit_command(CLI::App& app) {
       ->type_name("R,G,B");
   add_repeatable("--copy", options->copies, "COPY",
                  "NEW=NAME: add an object, a copy of another one as the scene was submitted with it");
-  add_repeatable(
-      "--add", options->additions, "ADDITION",
-      "NEW=FILE: add an object, all faces and lamps of a scene file, where the file has them; the file is submitted as a scene of "
-      "its own, which stays. Or NEW=scenes/SCENE: a scene of the server");
+  add_repeatable("--add", options->additions, "ADDITION",
+                 "NEW=FILE: add an object, all faces and lamps of a scene file, where the file has them; the file is submitted "
+                 "as a scene of "
+                 "its own, which stays. Or NEW=scenes/SCENE: a scene of the server");
+  add_file_light_options(command, options->added_light);
+  add_up_option(command, options->added_up);
+  for (const char* name : {"--light-scale", "--quantity", "--up"}) command.get_option(name)->needs("--add");
   add_repeatable("--move", options->moves, "MOVE",
                  "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it");
   add_repeatable("--turn", options->turns, "TURN",

@@ -7,7 +7,7 @@
 #include "client/command/options/false_colour_options.h"
 #include "client/command/options/input_file.h"
 #include "client/command/options/option_checks.h"
-#include "client/command/options/solve_name.h"
+#include "client/command/options/served_solve_option.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
 #include "client/command/output/notes.h"
@@ -40,8 +40,7 @@ struct RenderCommand {
 
 DisplayMesh read_from_anywhere(const RenderCommand& command) {
   if (command.server.is_given()) return read_served_solution({command.server, command.solution, command.ambient});
-  if (is_solve_name(command.solution) && !std::filesystem::exists(command.solution))
-    throw Failure(ExitStatus::usage, command.solution + " is the name of a solve: where is it? Add --server HOST:PORT");
+  require_server(command.server, command.solution);
   return read_solution(command.solution, command.format);
 }
 

@@ -1,11 +1,13 @@
 // alvor report SCENE|SOLUTION -o DIR: illuminances, glare, daylight factors and luminaires, as a page and as tables.
 
 #include "client/command/commands/commands.h"
+#include "client/command/commands/served_solution.h"
 #include "client/command/commands/solve_here.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
 #include "client/command/options/option_checks.h"
 #include "client/command/options/scene_options.h"
+#include "client/command/options/served_solve_option.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/display.h"
 #include "client/command/output/failure.h"
@@ -26,6 +28,7 @@
 #include <ctime>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace alvor {
 
@@ -36,6 +39,7 @@ constexpr double ground_reflectance = 0.2;  // outside (EN 17037)
 
 struct ReportCommand {
   std::filesystem::path input;  ///< a scene or a solution
+  ServerChoice server;          ///< given: `input` is the name of a solve
   std::string format;           ///< format of stdin
   std::filesystem::path folder;
   std::string title;
@@ -102,7 +106,15 @@ struct Solved {
   std::string unfinished;  ///< why the solve ended before its tolerance; empty if it did not
 };
 
+Solved solved_on_server(const ReportCommand& command) {
+  ServedSolve solve = read_served_solve(command.server, command.input);
+  Solved result{std::move(solve.scene), {}, std::move(solve.mesh), std::move(solve.unfinished)};
+  result.rooms = rooms_in(command, result.mesh);
+  return result;
+}
+
 Solved solved(const ReportCommand& command) {
+  if (command.server.is_given()) return solved_on_server(command);
   const RawScene bytes = scene_bytes(command.input, command.format);
   const std::string extension = lower_case_extension(bytes.file), name = name_of(command.input);
   if (!is_solution(bytes.bytes, extension)) {
@@ -220,14 +232,17 @@ std::string source_of(const std::string& input) {
 }
 
 void run_report(const ReportCommand& command) {
-  require_inputs({{InputKind::scene, command.input}}, command.format);
+  require_server(command.server, command.input);
+  if (!command.server.is_given()) require_inputs({{InputKind::scene, command.input}}, command.format);
   make_folder(command.folder, "report.html", "--output");
   const Solved result = solved(command);
   Report report = report_of(command, result);
   const std::string subject = is_stream(command.input) ? "a scene" : command.input.stem().string();
   warn(report.remarks);
   if (!result.unfinished.empty()) report.remarks.push_back(with_capital(result.unfinished) + ".");
-  report.source = source_of(is_stream(command.input) ? "a scene from a stream" : command.input.filename().string());
+  report.source = source_of(command.server.is_given()  ? command.input.string()
+                            : is_stream(command.input) ? "a scene from a stream"
+                                                       : command.input.filename().string());
   report.title = command.title.empty() ? "Lighting of " + subject : command.title;
   report.verification = verified(command, result);
   write(command, report, result);
@@ -261,7 +276,9 @@ void add_plane_options(CLI::App& command, ReportCommand& options) {
 void add_report_command(CLI::App& app) {
   const auto options = std::make_shared<ReportCommand>();
   CLI::App& command = *app.add_subcommand("report", "Report illuminance, glare and luminaires of the rooms of a scene");
-  command.add_option("input", options->input, "Scene file, or solution file that alvor solve wrote; - is stdin")
+  command
+      .add_option("input", options->input,
+                  "Scene file, or solution file that alvor solve wrote, or scenes/SCENE/solves/SOLVE on a server; - is stdin")
       ->required()
       ->type_name("SCENE|SOLUTION");
   add_format_option(command, options->format);
@@ -279,6 +296,7 @@ void add_report_command(CLI::App& app) {
   command.add_flag("--pdf", options->pdf, "Print the page to report.pdf, too, by Chromium");
   add_solve_limits(command, options->solve);
   add_scene_options(command, options->scene_options);
+  add_served_solve_option(command, options->server);
   command.callback([options, &command] {
     for (const char* name : {"--luminaire", "--light-scale", "--quantity", "--luminous-efficacy", "--sun", "--place", "--sky",
                              "--environment", "--translucent", "--tolerance"})

@@ -2,7 +2,7 @@
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
-#include "client/command/commands/edited_mesh.h"
+#include "client/command/commands/edited_scene.h"
 #include "client/command/commands/interrupt.h"
 #include "client/command/commands/outputs.h"
 #include "client/command/commands/submitted_scene.h"

@@ -37,6 +37,11 @@ void add_solve_limits(CLI::App& command, SolveOptions& options) {
   command.add_option("--seed", options.seed, "The same seed gives the same solution (1)")->check(whole_from(0));
 }
 
+std::string why_unfinished(std::string_view end_reason, double estimated_error) {
+  if (end_reason == text(StopReason::tolerance)) return {};
+  return "the solve ended before its tolerance: " + std::string(end_reason) + ", estimated error " + percent(estimated_error);
+}
+
 SolvedHere solve_here(const Scene& scene, const SolveOptions& options, const std::string& name) {
   const BaseMesh mesh(scene);
   if (mesh.roots().empty()) throw Failure(ExitStatus::bad_scene, name + ": all faces are degenerate");
@@ -53,11 +58,8 @@ SolvedHere solve_here(const Scene& scene, const SolveOptions& options, const std
   log.forget(handle);
   show(log.last_step());
   if (outcome.reason == StopReason::cancelled) throw Failure(ExitStatus::failed, "the solve was cancelled");
-  SolvedHere solved{mesh_of(mesh, log), {}};
-  if (outcome.reason == StopReason::tolerance) return solved;
-  solved.unfinished = "the solve ended before its tolerance: " + std::string(text(outcome.reason)) + ", estimated error " +
-                      percent(log.last_step().estimated_error);
-  warn(std::array{solved.unfinished});
+  SolvedHere solved{mesh_of(mesh, log), why_unfinished(text(outcome.reason), log.last_step().estimated_error)};
+  if (!solved.unfinished.empty()) warn(std::array{solved.unfinished});
   return solved;
 }
 

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace alvor {
 
@@ -18,6 +19,10 @@ struct SolvedHere {
   DisplayMesh mesh;
   std::string unfinished;  ///< one sentence, or empty
 };
+
+/// Returns the sentence that says why a solve ended before its tolerance, by the reason that it gave (text(StopReason)); nothing
+/// if it reached it.
+std::string why_unfinished(std::string_view end_reason, double estimated_error);
 
 /// Solves a scene, which messages call `name`, and shows how far it is. Warns if the solve ends before its tolerance. Throws
 /// Failure if it is cancelled or no face has an area.

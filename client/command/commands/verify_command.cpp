@@ -2,10 +2,12 @@
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
+#include "client/command/commands/served_solution.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
 #include "client/command/options/light_options.h"
 #include "client/command/options/option_checks.h"
+#include "client/command/options/served_solve_option.h"
 #include "client/command/options/translucent_option.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/failure.h"
@@ -22,6 +24,7 @@
 #include <ctime>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace alvor {
 
@@ -29,7 +32,8 @@ namespace {
 
 struct VerifyCommand {
   std::filesystem::path scene, solution;
-  std::string format;  ///< format of the file from stdin
+  ServerChoice server;  ///< given: `scene` is the name of a solve, and there is no solution file
+  std::string format;   ///< format of the file from stdin
   VerifyOptions options;
   std::string absorption;  ///< three numbers; empty: none
   LightOptions light;
@@ -49,7 +53,8 @@ Verification verify_with_progress(const VerifyCommand& command, const Scene& sce
   try {
     return verify(scene, solution, options);
   } catch (const MismatchError& error) {
-    throw Failure(ExitStatus::bad_scene, name_of(command.solution) + ": " + error.what());
+    throw Failure(ExitStatus::bad_scene,
+                  name_of(command.server.is_given() ? command.scene : command.solution) + ": " + error.what());
   }
 }
 
@@ -74,9 +79,14 @@ void require_outputs(const VerifyCommand& command) {
   reserve_stdout_for({command.csv, command.picture});
 }
 
-void run_verify(const VerifyCommand& command) {
-  require_inputs({{InputKind::scene, command.scene}, {InputKind::solution, command.solution}}, command.format);
-  require_outputs(command);
+/// A scene and its solution.
+struct Solved {
+  Scene scene;
+  DisplayMesh solution;
+  std::vector<std::string> warnings;
+};
+
+Solved read_files(const VerifyCommand& command) {
   SceneImport import;
   take_light_options(command.light, import);
   take_translucent(command.translucent, import.options);
@@ -86,12 +96,38 @@ void run_verify(const VerifyCommand& command) {
   SceneFile file = read_scene(command.scene, command.format, import);
   take_absorption(command.absorption, file.scene);
   warn(file.warnings);
+  return {std::move(file.scene), std::move(solution), std::move(file.warnings)};
+}
+
+Solved read_from_server(const VerifyCommand& command) {
+  ServedSolve solve = read_served_solve(command.server, command.scene);
+  Solved solved{std::move(solve.scene), std::move(solve.mesh), {}};
+  if (!solve.unfinished.empty()) solved.warnings.push_back(std::move(solve.unfinished));
+  return solved;
+}
+
+void require_what_is_verified(const VerifyCommand& command) {
+  require_server(command.server, command.scene);
+  if (command.server.is_given()) {
+    if (!command.solution.empty())
+      throw Failure(ExitStatus::usage,
+                    "solution: --server has the solution of a solve; " + command.solution.string() + " is one more");
+    return;
+  }
+  if (command.solution.empty()) throw CLI::RequiredError("solution");
+  require_inputs({{InputKind::scene, command.scene}, {InputKind::solution, command.solution}}, command.format);
+}
+
+void run_verify(const VerifyCommand& command) {
+  require_what_is_verified(command);
+  require_outputs(command);
+  const Solved solved = command.server.is_given() ? read_from_server(command) : read_files(command);
   VerifyTimes times;
-  const Verification verification = verify_timed(command, file.scene, solution, times);
+  const Verification verification = verify_timed(command, solved.scene, solved.solution, times);
   if (!command.csv.empty()) write_output(command.csv, verified_csv(verification.points));
-  if (!command.picture.empty()) write_picture(command.picture, error_picture(solution, verification, {}));
-  results() << (command.json ? verify_json(file.scene, verification, times, file.warnings)
-                             : verify_summary(file.scene, verification, times));
+  if (!command.picture.empty()) write_picture(command.picture, error_picture(solved.solution, verification, {}));
+  results() << (command.json ? verify_json(solved.scene, verification, times, solved.warnings)
+                             : verify_summary(solved.scene, verification, times));
   require_small_error(command, verification.errors.nrmse.value);
 }
 
@@ -128,9 +164,12 @@ void add_results(CLI::App& command, VerifyCommand& options) {
 void add_verify_command(CLI::App& app) {
   const auto options = std::make_shared<VerifyCommand>();
   CLI::App& command = *app.add_subcommand("verify", "Measure the error of a solution by unbiased path tracing");
-  command.add_option("scene", options->scene, "The scene file that was solved; - is stdin")->required()->type_name("SCENE");
-  command.add_option("solution", options->solution, "Solution file that alvor solve wrote; - is stdin")
+  command
+      .add_option("scene", options->scene, "The scene file that was solved, or scenes/SCENE/solves/SOLVE on a server; - is stdin")
       ->required()
+      ->type_name("SCENE");
+  command
+      .add_option("solution", options->solution, "Solution file that alvor solve wrote; - is stdin; none of a solve on a server")
       ->type_name("SOLUTION");
   add_format_option(command, options->format);
   add_absorption_option(command, options->absorption);
@@ -138,6 +177,7 @@ void add_verify_command(CLI::App& app) {
   add_translucent_option(command, options->translucent);
   add_effort(command, *options);
   add_results(command, *options);
+  add_served_solve_option(command, options->server);
   command.callback([options] { run_verify(*options); });
 }
 

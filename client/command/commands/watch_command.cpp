@@ -2,7 +2,7 @@
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/connection.h"
-#include "client/command/commands/edited_mesh.h"
+#include "client/command/commands/edited_scene.h"
 #include "client/command/commands/interrupt.h"
 #include "client/command/commands/outputs.h"
 #include "client/command/options/solve_name.h"
@@ -38,7 +38,7 @@ Watched join_and_follow(const WatchCommand& command, const std::string& scene_na
   Watched watched{{}, {scene.warnings().begin(), scene.warnings().end()}, {}};
   warn(watched.warnings);
   watched.followed = follow(client, client.get_solve(command.solve), options, interrupt.token());
-  watched.mesh = read_edited_mesh(client, command.solve, edits_shown(watched.followed.mirror));
+  watched.mesh = read_edited(client, command.solve, edits_shown(watched.followed.mirror)).mesh;
   return watched;
 }
 

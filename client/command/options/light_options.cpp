@@ -8,7 +8,7 @@
 
 namespace alvor {
 
-void add_light_options(CLI::App& command, LightOptions& options) {
+void add_file_light_options(CLI::App& command, LightOptions& options) {
   command
       .add_option("--light-scale", options.scale,
                   "Multiply the intensity of the lamps and suns in the scene file, not of emissive faces (1)")
@@ -17,6 +17,10 @@ void add_light_options(CLI::App& command, LightOptions& options) {
       .add_option("--quantity", options.quantity,
                   "Unit of the file's light: radiometric (W) or photometric (lm) (photometric for glTF, else radiometric)")
       ->check(CLI::IsMember({name_of(Quantity::radiometric), name_of(Quantity::photometric)}));
+}
+
+void add_light_options(CLI::App& command, LightOptions& options) {
+  add_file_light_options(command, options);
   command
       .add_option("--luminaire", options.luminaires,
                   "Hang a luminaire: FILE.ies@x,y,z or FILE.ldt@x,y,z:turn,tilt,spin (metres, degrees; down if no angles); "
