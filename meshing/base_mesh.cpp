@@ -183,7 +183,7 @@ BaseMesh::BaseMesh(const Scene& scene, const BaseMeshOptions& options)
   if (roots_.empty()) return;
   find_bounds();
   find_corner_values(scene, welded, options.stop);
-  pair_back_to_back();
+  pair_back_to_back(options.faces_are_roots);
   refuse_stopped(options.stop);
   find_neighbours(options.stop);
   add_backs();
@@ -243,7 +243,9 @@ void BaseMesh::find_corner_values(const Scene& scene, std::span<const std::uint3
 
 // Makes twins of two one-sided faces in one place that face opposite ways. A ray may hit either of them; the side that the ray
 // comes from decides which one is meant.
-void BaseMesh::pair_back_to_back() {
+/// Makes twins of faces in one place that face each other, and gives the second one the corners of the first in reverse; but if
+/// `corners_stay`, only where it has them.
+void BaseMesh::pair_back_to_back(bool corners_stay) {
   std::map<std::array<std::uint32_t, 4>, std::uint32_t> root_of;  // by sorted vertices
   for (std::uint32_t r = 0; r < roots_.size(); ++r) {
     RootPatch& root = roots_[r];
@@ -255,7 +257,10 @@ void BaseMesh::pair_back_to_back() {
     RootPatch& other = roots_[found->second];
     if (is_new || other.twin != RootPatch::no_twin || dot(root.normal, other.normal) > 0) continue;
     const auto before = root.vertex;
-    turn_round(other, root);
+    RootPatch turned = root;
+    turn_round(other, turned);
+    if (corners_stay && turned.vertex != before) continue;
+    root = turned;
     if (has_textures()) reorder(before, root, texture_points_[r]);
     if (has_colours()) reorder(before, root, corner_colours_[r]);
     root.is_behind = true;

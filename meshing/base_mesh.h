@@ -143,7 +143,7 @@ class BaseMesh {
   void add_root(const Scene& scene, const WeldedFace& face, const std::array<std::uint32_t, 4>& piece);
   void add_roots(const Scene& scene, const WeldedFace& face);
   void find_corner_values(const Scene& scene, std::span<const std::uint32_t> welded, const std::stop_token& stop);
-  void pair_back_to_back();
+  void pair_back_to_back(bool corners_stay);
   void find_neighbours(const std::stop_token& stop);
   void add_backs();
   void separate_objects(bool are_to_move);

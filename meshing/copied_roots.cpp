@@ -121,12 +121,15 @@ void BaseMesh::append_mesh(const BaseMesh& added, std::uint32_t first_face, std:
 
 /// Appends a copy of a root of a mesh, which may be this one, with its neighbours and the values of its corners.
 void BaseMesh::append_root(const BaseMesh& from, std::uint32_t root) {
-  constexpr RgbF white{1, 1, 1};
-  if (from.has_textures()) texture_points_.resize(roots_.size());
-  if (from.has_colours()) corner_colours_.resize(roots_.size(), {white, white, white, white});
-  if (has_textures()) texture_points_.push_back(from.has_textures() ? from.texture_points_[root] : std::array<TexturePoint, 4>{});
-  if (has_colours())
-    corner_colours_.push_back(from.has_colours() ? from.corner_colours_[root] : std::array{white, white, white, white});
+  constexpr std::array<RgbF, 4> white{RgbF{1, 1, 1}, RgbF{1, 1, 1}, RgbF{1, 1, 1}, RgbF{1, 1, 1}};
+  if (has_textures() || from.has_textures()) {
+    texture_points_.resize(roots_.size());
+    texture_points_.push_back(from.has_textures() ? std::array(from.texture_points_[root]) : std::array<TexturePoint, 4>{});
+  }
+  if (has_colours() || from.has_colours()) {
+    corner_colours_.resize(roots_.size(), white);
+    corner_colours_.push_back(from.has_colours() ? std::array(from.corner_colours_[root]) : white);
+  }
   neighbours_.push_back(std::array(from.neighbours_[root]));
   roots_.push_back(RootPatch(from.roots_[root]));
 }

@@ -11,7 +11,8 @@
 
 namespace alvor {
 
-/// A run of triangles that were drawn on one face of the scene, or on two triangles joined into a quad.
+/// A run of triangles that were drawn on one face of the scene, or on two triangles joined into a quad. Faces count as if objects
+/// that edits have hidden had never been in the scene (PresentObjects).
 struct FaceTriangles {
   InputFaces faces;
   std::uint32_t material = 0;  ///< of the scene
@@ -39,8 +40,8 @@ struct DisplayMesh {
   UpAxis up = UpAxis::y;
   Quantity quantity = Quantity::radiometric;  ///< photometric: lx instead of W/m2
   std::vector<Light> lights;                  ///< of the scene, those that are not faces; none that is hidden
-  std::vector<Material> materials;            ///< of the scene, as all below
-  std::vector<SceneObject> objects;
+  std::vector<Material> materials;            ///< of the scene
+  std::vector<SceneObject> objects;           ///< of the scene, those that are not hidden
 };
 
 /// Returns the told error at a point of a triangle, (1 - u - v) of its first vertex, u of its second and v of its third; squares

@@ -35,6 +35,11 @@ SolvedSurface::SolvedSurface(const DisplayMesh& solution, const Scene& scene)
   if (solution.faces.empty()) throw BakeError("solution", "does not know the faces of its scene");
   for (std::size_t o = 0; o < objects.size(); ++o)
     if (const auto fault = fault_in(objects, o, face_count)) throw BakeError("object " + std::to_string(o), *fault);
+  const auto is_same = [](const SceneObject& a, const SceneObject& b) {
+    return a.name == b.name && a.first_face == b.first_face && a.face_count == b.face_count;
+  };
+  if (!solution.objects.empty() && !std::ranges::equal(solution.objects, objects, is_same))
+    throw BakeError("solution", "has other objects than the scene: it is of another scene, or edits have hidden or added some");
   reach_ = reach_of_extent * longest_side(solution.positions);
   std::uint32_t next = 0;
   for (const FaceTriangles& run : solution.faces) {

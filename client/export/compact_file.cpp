@@ -342,6 +342,7 @@ class Reader {
 
 std::string encode_compact(const BaseMesh& mesh, std::span<const LeafValue> leaves, std::span<const float> errors) {
   const auto order = roots_in_order(mesh);
+  if (order.empty()) throw SolutionFileError("mesh: has no surface, or edits have taken all of it away");
   if (order.size() == mesh.roots().size() && std::ranges::is_sorted(order)) return Writer(mesh, leaves).write(errors);
   const LeavesOfFile of = leaves_of(order, leaves, errors);
   return Writer(mesh.with_roots(order), of.leaves).write(of.errors);

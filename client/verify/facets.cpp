@@ -54,6 +54,7 @@ std::vector<Facet> facets_of(const Scene& scene) {
 }
 
 Extent extent_of(std::span<const Vec3> points) {
+  if (points.empty()) return {};
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {
     low = lower(low, p);

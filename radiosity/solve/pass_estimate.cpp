@@ -33,11 +33,13 @@ constexpr double misfit_at_centre = 0.25;
 // deviations has a standard deviation of sqrt(2 / 16), so this is seven times that: a row that is split loses its rounds of rays.
 // Measured for rows of several rounds: with 1 the Cornell box is not told to be within 0.5 % after 30 million rays, with 1.5 it
 // is after 21 million, with 2.5 after 12 million, and with 3 its error is a tenth larger; three other scenes have the same error
-// after the same time. For rows of one round: with 1.5 errors are 10 % smaller after 20 % more rays, but below 1 % noise is taken
-// for detail; with 3.3 half of the gain in the furnished room is lost (docs/error-vs-time.md).
+// after the same time. For rows of one round, converted from margins of a noise that was told 2.5 times as large: with 1.5 errors
+// are 10 % smaller after 20 % more rays, but below 1 % noise is taken for detail; with 3.25 half of the gain in furnished_room is
+// lost.
 constexpr double chance_of_origins = 2.5;
-// Multiple of the noise of origins that the misfit of a row of one round must exceed to be part of the told error. The share of
-// the noise that stratified rays have is a mean; single rows have up to 2.5 times that. Chosen: two standard deviations above.
+// Multiple of the noise of origins that the misfit of a row of one round must exceed to be part of the told error. Rays of one
+// origin may have as much noise as independent ones, 2.5 times the mean that is told. Chosen: two standard deviations above that,
+// 2.5 (1 + 2 sqrt(2 / 16)) - 1.
 constexpr double sure_of_origins = 3.25;
 // Largest share of a patch's irradiance by which it varies over the patch if a solid's outline crosses it. Chosen; half: error +2
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).

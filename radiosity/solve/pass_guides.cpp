@@ -14,7 +14,8 @@ namespace {
 // time than they save.
 constexpr double least_gain = 2;
 // The hits of every fourth origin of a neighbouring row are used, so that eight neighbours tell as much as two whole rows. The
-// rays of an origin are spread over the hemisphere; every fourth ray of a row would lie in one quarter of it.
+// rays of an origin are spread over the hemisphere; every fourth ray of a row would lie in one quarter of it. Of a small row this
+// is one origin.
 constexpr std::size_t neighbour_stride = 4;
 // Rows whose guides are made together, so that what ranks tell each other for it stays small. Chosen.
 constexpr std::size_t rows_guided_at_once = 8192;
@@ -26,7 +27,7 @@ struct HitSeen {
   double weight;       ///< mean over bands
 };
 
-/// Calls body(HitSeen) for the hits of every n-th sampled origin of a row of this rank.
+/// Calls body(HitSeen) for the hits of every n-th sampled origin of a row of this rank, counted over all rounds of rays.
 template <class Body>
 void for_each_hit(const SolveState& state, NodeIndex row, std::size_t stride, Body&& body) {
   const TransportRow& traced = state.rows[row];
@@ -134,7 +135,8 @@ void Pass::guide_some(std::span<const NodeIndex> rows, std::span<const double> l
     HitsAround around(state_.mesh, leaving, state_.scene.root(state_.forests.rows().id(rows[n]).root_face()),
                       state_.forests.row_centres()[rows[n]], builder);
     for_each_hit(state_, rows[n], 1, [&](const HitSeen& hit) { around.add(hit, 1); });
-    // Neighbours are most of the work, and hardly ever find a guide worth having where the row's own hits do not.
+    // Neighbours are most of the work where rows are not guided. Of the rows that are guided by all hits, their own hits are
+    // enough for 95 to 99.8 % in four scenes, and for 21 of 41 in furnished_room.
     if (builder.guide(least_gain).is_none()) return;
     const auto add_of_neighbour = [&](const HitSeen& hit) { around.add(hit, neighbour_stride); };
     for_each_lit(n, [&](NodeIndex neighbour) {

@@ -11,7 +11,8 @@ namespace alvor {
 namespace {
 
 // Multiple of the noise of origins that counts where they are to tell of slabs. Slabs cannot be undone, and many rows are tested.
-// Chosen; not measured at half and double.
+// Chosen for rows of one round of rays. For rows of several rounds 3 was used before: furnished_room and slats_and_boxes have the
+// same error at 2 % with both.
 constexpr double noise_of_slabs = 7.5;
 
 double squared(double x) { return x * x; }

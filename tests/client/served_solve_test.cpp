@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using test::expect_bad_input;
 using test::line_count;
 using test::Ran;
 
@@ -28,6 +29,7 @@ using test::Ran;
 Scene room() {
   Scene scene = test::coloured_room();
   for (std::size_t n = 0; n < scene.materials.size(); ++n) scene.materials[n].name = "m" + std::to_string(n);
+  scene.objects = {{.name = "room", .first_face = 0, .face_count = static_cast<std::uint32_t>(scene.faces.size())}};
   scene.materials.push_back({.name = "board", .emission = {}, .reflectance = {0.5, 0.5, 0.5}, .two_sided = true});
   const auto board = static_cast<std::uint32_t>(scene.materials.size() - 1);
   const auto add = [&](const char* name, std::initializer_list<Vec3> polygon, std::uint32_t material) {
@@ -82,15 +84,15 @@ TEST_F(ServedSolve, IsBakedWithTheObjectsThatAreThere) {
   std::vector<std::string> names;
   const json document = gltf("baked.glb");
   for (const json& node : document.at("nodes")) names.push_back(node.at("name"));
-  EXPECT_EQ(names, (std::vector<std::string>{"lamp.1", "screen", "screen.2", "scene"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"room", "lamp.1", "screen", "screen.2"}));
 }
 
 TEST_F(ServedSolve, IsReportedAndComparedWithPathTracing) {
   const Ran ran = run("report " + solve_ + at_server() + " -o report --verify-points 100");
   ASSERT_EQ(ran.status, 0) << ran.err;
   const DisplayMesh solution = read_solution_file(file("report") / "solution.glb");
-  ASSERT_EQ(solution.objects.size(), 3u);
-  EXPECT_EQ(solution.objects[2].name, "screen.2");
+  ASSERT_EQ(solution.objects.size(), 4u);
+  EXPECT_EQ(solution.objects[3].name, "screen.2");
   EXPECT_NE(test::text_of(file("report") / "report.html").find("Made from " + solve_), std::string::npos);
 }
 
@@ -118,7 +120,39 @@ TEST_F(ServedSolve, IsNoSceneFile) {
   }
 }
 
-TEST_F(ServedSolve, WithoutAnySurfaceIsNamedInOneLine) {
+TEST_F(ServedSolve, IsReportedInItsMedium) {
+  ASSERT_EQ(edit("--absorption 0.3,0.3,0.3 --wait").status, 0);
+  ASSERT_EQ(run("watch " + solve_ + at_server() + " -o room.glb").status, 0);
+  ASSERT_EQ(run("report " + solve_ + at_server() + " -o served --verify-points 0").status, 0);
+  ASSERT_EQ(run("report room.glb -o of_file --absorption 0.3,0.3,0.3").status, 0);
+  const auto mean = [&](const char* folder) {
+    const json report = json::parse(test::text_of(file(folder) / "report.json"));
+    return report.at("rooms").at(0).at("horizontal").at("mean").at("value").get<double>();
+  };
+  EXPECT_NEAR(mean("served"), mean("of_file"), 0.01 * mean("of_file")) << "without the medium it is half as much again";
+}
+
+TEST_F(ServedSolve, SaysWhereItsNewestStateDoesNotHeedAllEdits) {
+  EXPECT_EQ(run("verify " + solve_ + at_server() + " --points 50 --paths 20").err.find("warning"), std::string::npos);
+  ASSERT_EQ(edit("--hide screen --wait").status, 0);
+  ASSERT_EQ(edit("--undo --wait").status, 0);
+  EXPECT_EQ(run("verify " + solve_ + at_server() + " --points 50 --paths 20").err.find("warning"), std::string::npos);
+}
+
+TEST_F(ServedSolve, OfWhichAllIsHiddenIsNamedInOneLine) {
+  ASSERT_EQ(edit("--sun 120,40").status, 0);
+  ASSERT_EQ(edit("--hide room --hide lamp.1 --hide screen --hide screen.2 --wait").status, 0);
+  for (const std::string command : {"verify ", "bake -o baked.glb ", "report -o report ", "render -o room.png "})
+    expect_bad_input(run(command + solve_ + at_server() + " -q"), "edits have taken all of it away");
+}
+
+TEST_F(ServedSolve, IsNotBakedOnASceneWithOtherObjects) {
+  ASSERT_EQ(run("watch " + solve_ + at_server() + " -o room.glb").status, 0);
+  write("room.obj", "v -1 0 -1\nv 5 0 -1\nv 5 3 6\nv -1 3 6\no floor\nf 1 2 3 4\n");
+  EXPECT_EQ(run("bake room.obj --solution room.glb -o baked.glb").status, 3);
+}
+
+TEST_F(ServedSolve, ThatIsNotThereIsNamedInOneLine) {
   const Ran ran = run("verify scenes/none/solves/none" + at_server());
   EXPECT_EQ(ran.status, 3);
   EXPECT_EQ(line_count(ran.err), 1) << ran.err;

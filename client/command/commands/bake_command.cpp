@@ -59,7 +59,7 @@ struct BakeCommand {
 };
 
 /// A scene, the document that is to show it, and its solution; no solution if the scene is still to be solved.
-struct Input {
+struct SceneToBake {
   Scene scene;
   GltfDocument document;
   std::optional<DisplayMesh> solution;
@@ -103,10 +103,10 @@ Baked baked(BakeOptions options, GltfDocument document, const Scene& scene, cons
   return bake(std::move(document), scene, solution, options, std::move(layout));
 }
 
-Input read_input(const BakeCommand& command) {
+SceneToBake scene_to_bake(const BakeCommand& command) {
   if (command.server.is_given()) {
     ServedSolve solve = read_served_solve(command.server, command.scene);
-    GltfDocument document = document_of(solve.scene);
+    GltfDocument document = naming_the_scene(command, [&] { return document_of(solve.scene); });
     return {std::move(solve.scene), std::move(document), std::move(solve.mesh)};
   }
   const RawScene bytes = scene_bytes(command.scene, command.format);
@@ -196,7 +196,7 @@ void run_bake(const BakeCommand& command) {
     throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
   require_other_output(command);
   reserve_stdout_for({command.output.path});
-  Input input = read_input(command);
+  SceneToBake input = scene_to_bake(command);
   BakeOptions options = options_of(command);
   const auto layout = naming_the_scene(command, [&] { return lay_out(input.document, input.scene, options); });
   const DisplayMesh solution = input.solution ? *std::move(input.solution) : solution_for(command, input.scene);
@@ -276,8 +276,9 @@ void add_bake_command(CLI::App& app) {
       ->type_name("BAKED.glb");
   add_texture_options(command, *options);
   add_solve_options(command, *options);
-  add_served_solve_option(command, options->server,
-                          {"--solution", "--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"});
+  add_served_solve_option(
+      command, options->server,
+      {"--solution", "--keep-lights", "--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"});
   command.callback([options] { run_bake(*options); });
 }
 

@@ -33,6 +33,7 @@ struct EditCommand {
   std::vector<std::string> settings, dims, webs, copies, additions, moves, turns, scales, hidden, shown;
   LightOptions added_light;  ///< of the files of `additions`
   std::string added_up;      ///< "y" or "z"; empty: as these files say
+  bool says_how_files_are_read = false;
   std::string absorption;
   SkyOptions sky;
   bool no_daylight = false;
@@ -92,6 +93,7 @@ class SubmittedAdditions {
       if (const std::string& scene = edit.copy().scene(); !scene.empty() && !is_of_server(scene))
         edit.mutable_copy()->set_scene(submitted(scene));
   }
+  bool is_any() const { return !scenes_.empty(); }
   void keep() { scenes_.clear(); }
 
  private:
@@ -131,6 +133,8 @@ void run_edit(const EditCommand& command) {
   Client& client = connection.client();
   SubmittedAdditions additions(client, import_of_additions(command));
   additions.submit_all(step);
+  if (!additions.is_any() && command.says_how_files_are_read)
+    throw Failure(ExitStatus::usage, "--light-scale, --quantity and --up are for files: the server has read its scenes already");
   const v1::EditSolveResponse edited = client.edit_solve(command.solve, step, command.base_revision);
   additions.keep();
   notes() << "edits of revision " << edited.revision() << '\n';
@@ -172,6 +176,10 @@ void add_edit_command(CLI::App& app) {
                  "its own, which stays. Or NEW=scenes/SCENE: a scene of the server");
   add_file_light_options(command, options->added_light);
   add_up_option(command, options->added_up);
+  command.get_option("--light-scale")
+      ->description("Multiply the intensity of the lamps in the files of --add, not of emissive faces (1)");
+  command.get_option("--quantity")->description("Unit of the light of these files: radiometric (W) or photometric (lm)");
+  command.get_option("--up")->description("Axis that points up in the files of --add, if not as for alvor solve");
   for (const char* name : {"--light-scale", "--quantity", "--up"}) command.get_option(name)->needs("--add");
   add_repeatable("--move", options->moves, "MOVE",
                  "NAME=X,Y,Z: put an object so many metres from where the scene as submitted has it");
@@ -193,7 +201,11 @@ void add_edit_command(CLI::App& app) {
   command.add_option("--base-revision", options->base_revision, "Refuse if there are newer edits than this revision")
       ->type_name("N");
   command.add_flag("--wait", options->wait, "Follow the solve until it has ended");
-  command.callback([options] { run_edit(*options); });
+  command.callback([options, &command] {
+    for (const char* name : {"--light-scale", "--quantity", "--up"})
+      options->says_how_files_are_read |= command.get_option(name)->count() > 0;
+    run_edit(*options);
+  });
 }
 
 }  // namespace alvor

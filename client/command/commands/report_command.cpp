@@ -8,6 +8,7 @@
 #include "client/command/options/option_checks.h"
 #include "client/command/options/scene_options.h"
 #include "client/command/options/served_solve_option.h"
+#include "client/command/options/solve_name.h"
 #include "client/command/options/up_option.h"
 #include "client/command/output/display.h"
 #include "client/command/output/failure.h"
@@ -50,6 +51,7 @@ struct ReportCommand {
   SolveOptions solve;
   SceneOptions scene_options;
   std::string only_for_scenes;  ///< an option that was given and says how a scene is read or solved; empty: none
+  std::string only_for_solves;  ///< an option that was given and says how far a scene is solved; empty: none
 };
 
 Observer observer_of(const std::string& text, UpAxis axis) {
@@ -146,7 +148,7 @@ Report report_of(const ReportCommand& command, const Solved& solved) {
   for (const std::string& text : command.observers) options.observers.push_back(observer_of(text, solved.mesh.up));
   Scene medium;
   take_absorption(command.scene_options.absorption, medium);
-  options.absorption = medium.absorption;
+  options.absorption = command.server.is_given() ? solved.scene->absorption : medium.absorption;
   std::optional<DisplayMesh> overcast;
   if (command.daylight)
     overcast =
@@ -233,7 +235,13 @@ std::string source_of(const std::string& input) {
 
 void run_report(const ReportCommand& command) {
   require_server(command.server, command.input);
-  if (!command.server.is_given()) require_inputs({{InputKind::scene, command.input}}, command.format);
+  if (command.server.is_given()) {
+    scene_name_of(command.input);  // before a folder is made
+    if (!command.only_for_solves.empty() && !command.daylight)
+      throw Failure(ExitStatus::usage, command.only_for_solves + ": with --server nothing is solved, but for --daylight-factor");
+  } else {
+    require_inputs({{InputKind::scene, command.input}}, command.format);
+  }
   make_folder(command.folder, "report.html", "--output");
   const Solved result = solved(command);
   Report report = report_of(command, result);
@@ -301,6 +309,8 @@ void add_report_command(CLI::App& app) {
     for (const char* name : {"--luminaire", "--light-scale", "--quantity", "--luminous-efficacy", "--sun", "--place", "--sky",
                              "--environment", "--translucent", "--tolerance"})
       if (command.get_option(name)->count() > 0) options->only_for_scenes = name;
+    for (const char* name : {"--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"})
+      if (command.get_option(name)->count() > 0) options->only_for_solves = name;
     run_report(*options);
   });
 }

@@ -43,12 +43,47 @@ State newest_state(Client& client, const std::string& solve) {
   return state;
 }
 
-/// Returns why a state is not within the tolerance of its solve; nothing if it is.
-std::string unfinished(const State& state) {
+/// Returns why a state is not within the tolerance of its solve, or does not heed all of its edits; nothing if it is and does.
+/// `newest`: the solve after the state was read.
+std::string unfinished(const State& state, const v1::Solve& newest) {
   const double error = state.mirror.steps().back().estimated_error;
-  if (state.solve.state() == v1::Solve::SUCCEEDED) return why_unfinished(state.solve.end_reason(), error);
-  return "the solve is " + v1::Solve::State_Name(state.solve.state()) + "; of its newest state the estimated error is " +
-         percent(error);
+  std::string reason = state.solve.state() == v1::Solve::SUCCEEDED
+                           ? why_unfinished(state.solve.end_reason(), error)
+                           : "the solve is " + v1::Solve::State_Name(state.solve.state()) +
+                                 "; of its newest state the estimated error is " + percent(error);
+  const std::uint64_t heeded = state.mirror.edits();
+  const bool heeds_all = newest.edits().empty() || newest.edits().rbegin()->revision() <= heeded;
+  if (!heeds_all)
+    reason += (reason.empty() ? "" : "; ") + std::string("edits after revision ") + std::to_string(heeded) + " are not in it yet";
+  return reason;
+}
+
+/// A state of a solve, and the scene with the edits that the state heeds.
+struct StateOfScene {
+  State state;
+  EditedScene scene;
+};
+
+/// Returns the newest state. Reads it again where a slide of edits has gone on before its scene was read.
+StateOfScene newest_of_scene(Client& client, const std::string& solve) {
+  constexpr int most_attempts = 5;
+  for (int attempt = 1;; ++attempt) {
+    State state = newest_state(client, solve);
+    try {
+      EditedScene scene = read_edited(client, solve, edits_shown(state.mirror));
+      return {std::move(state), std::move(scene)};
+    } catch (const RpcError& error) {
+      if (error.code != grpc::ABORTED) throw;
+      if (attempt == most_attempts)
+        throw Failure(ExitStatus::failed, solve + " is edited faster than it can be read: try again when the edits have ended");
+    }
+  }
+}
+
+/// Throws Failure if nothing is there to be shown.
+void require_surfaces(const DisplayMesh& mesh, const std::string& solve) {
+  if (mesh.triangles.empty())
+    throw Failure(ExitStatus::bad_scene, solve + ": has no surface, or edits have taken all of it away");
 }
 
 // Returns the mesh to draw. Only in a solve that has succeeded does exactly dark mean hidden; before, light may not have arrived
@@ -65,17 +100,19 @@ DisplayMesh read_served_solution(const ServedSolution& source) {
   scene_name_of(source.solve);  // before a server is asked
   Connection connection(source.server);
   const State state = newest_state(connection.client(), source.solve);
-  const BaseMesh base = read_edited(connection.client(), source.solve, edits_shown(state.mirror)).mesh;
-  return decode_glb(encode_glb(mesh_of(base, state, source.ambient)));
+  const BaseMesh base = read_edited_mesh(connection.client(), source.solve, edits_shown(state.mirror));
+  const DisplayMesh mesh = mesh_of(base, state, source.ambient);
+  require_surfaces(mesh, source.solve);
+  return decode_glb(encode_glb(mesh));
 }
 
 ServedSolve read_served_solve(const ServerChoice& server, const std::string& solve) {
   scene_name_of(solve);  // before a server is asked
   Connection connection(server);
-  const State state = newest_state(connection.client(), solve);
-  const EditedScene edited = read_edited(connection.client(), solve, edits_shown(state.mirror));
-  ServedSolve served{present_scene(edited.scene), mesh_of(edited.mesh, state, false), unfinished(state)};
-  if (served.scene.faces.empty()) throw Failure(ExitStatus::bad_scene, solve + ": edits have taken all objects away");
+  const auto [state, scene] = newest_of_scene(connection.client(), solve);
+  ServedSolve served{present_scene(scene.scene), mesh_of(scene.mesh, state, false),
+                     unfinished(state, connection.client().get_solve(solve))};
+  require_surfaces(served.mesh, solve);
   if (!served.unfinished.empty()) warn(std::array{served.unfinished});
   return served;
 }

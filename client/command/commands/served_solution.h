@@ -16,18 +16,19 @@ struct ServedSolution {
 };
 
 /// Returns the newest complete state that the server has, as a solution file would hold it, so that both give the same picture.
-/// Throws Failure if the name is malformed, the server cannot be reached or nothing was published yet; RpcError.
+/// Throws Failure if the name is malformed, the server cannot be reached, nothing was published yet, or nothing is there to be
+/// seen (bad_scene); RpcError.
 DisplayMesh read_served_solution(const ServedSolution& source);
 
 /// A solve on a server: what is there of its scene, as edits have made it, and its newest complete state.
 struct ServedSolve {
   Scene scene;  ///< see present_scene()
   DisplayMesh mesh;
-  std::string unfinished;  ///< one sentence if the state is not within the tolerance of the solve, or empty
+  std::string unfinished;  ///< one sentence if the state is not within the tolerance or does not heed all edits, or empty
 };
 
 /// Returns a solve for commands that go on from it as from a scene that they have solved. Warns if it is unfinished. Throws as
-/// above, and Failure (bad_scene) if edits have taken away all that was there.
+/// read_served_solution(), and Failure (failed) if the solve is edited all the time.
 ServedSolve read_served_solve(const ServerChoice& server, const std::string& solve);
 
 }  // namespace alvor

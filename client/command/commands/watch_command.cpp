@@ -38,7 +38,7 @@ Watched join_and_follow(const WatchCommand& command, const std::string& scene_na
   Watched watched{{}, {scene.warnings().begin(), scene.warnings().end()}, {}};
   warn(watched.warnings);
   watched.followed = follow(client, client.get_solve(command.solve), options, interrupt.token());
-  watched.mesh = read_edited(client, command.solve, edits_shown(watched.followed.mirror)).mesh;
+  watched.mesh = read_edited_mesh(client, command.solve, edits_shown(watched.followed.mirror));
   return watched;
 }
 

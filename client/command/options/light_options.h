@@ -24,7 +24,7 @@ struct LightOptions {
 
 /// Adds --light-scale and --quantity, for what a file itself says about light.
 void add_file_light_options(CLI::App& command, LightOptions& options);
-/// Adds these, and the options for light that is added to a scene.
+/// Adds --light-scale, --quantity, and the options for light that is added to a scene.
 void add_light_options(CLI::App& command, LightOptions& options);
 
 /// Sets what the options say about how a scene is read. Throws Failure for options that do not fit together and files of
