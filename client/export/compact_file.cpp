@@ -128,11 +128,13 @@ struct LeavesOfFile {
 LeavesOfFile leaves_of(std::span<const std::uint32_t> order, std::span<const LeafValue> leaves, std::span<const float> errors) {
   LeavesOfFile of;
   const auto root_of = [](const LeafValue& leaf) { return leaf.patch.root_face(); };
-  for (std::uint32_t n = 0; n < order.size(); ++n)
-    for (const LeafValue& leaf : std::ranges::equal_range(leaves, order[n], {}, root_of)) {
-      of.leaves.push_back({leaf.patch.of_root(n), leaf.irradiance});
-      if (!errors.empty()) of.errors.push_back(errors[static_cast<std::size_t>(&leaf - leaves.data())]);
+  for (std::uint32_t n = 0; n < order.size(); ++n) {
+    const auto first = std::ranges::lower_bound(leaves, order[n], {}, root_of);
+    for (auto leaf = first; leaf != leaves.end() && root_of(*leaf) == order[n]; ++leaf) {
+      of.leaves.push_back({leaf->patch.of_root(n), leaf->irradiance});
+      if (!errors.empty()) of.errors.push_back(errors[static_cast<std::size_t>(leaf - leaves.begin())]);
     }
+  }
   return of;
 }
 
