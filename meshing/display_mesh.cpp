@@ -88,7 +88,7 @@ class Triangulation {
   DisplayMesh build() {
     out_.up = mesh_.up();
     out_.quantity = mesh_.quantity();
-    std::ranges::remove_copy_if(mesh_.lights(), std::back_inserter(out_.lights), &Light::is_hidden);
+    out_.lights = present_lights(mesh_.lights());
     out_.materials.assign(mesh_.materials().begin(), mesh_.materials().end());
     out_.objects = present_.objects();
     for (std::size_t n = 0; n < leaves_.size(); ++n) gather(n);

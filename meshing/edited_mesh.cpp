@@ -100,7 +100,7 @@ BaseMesh BaseMesh::with_roots(std::span<const std::uint32_t> order) const {
   for (std::uint32_t n = 0; n < order.size(); ++n) number[order[n]] = n;
   BaseMesh some = *this;
   some.objects_ = present.objects();
-  std::erase_if(some.lights_, [](const Light& light) { return light.is_hidden; });
+  some.lights_ = present_lights(lights_);
   some.roots_.clear(), some.neighbours_.clear(), some.texture_points_.clear(), some.corner_colours_.clear();
   for (const std::uint32_t r : order) {
     some.append_root(*this, r);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
-#include <unordered_map>
 
 namespace alvor {
 
@@ -48,26 +47,10 @@ InputFaces PresentObjects::numbers_of(InputFaces faces) const {
   return here;
 }
 
-Scene present_scene(const Scene& edited) {
-  const PresentObjects present(edited.objects);
-  Scene here = edited;
-  here.objects = present.objects();
-  std::erase_if(here.lights, [](const Light& light) { return light.is_hidden; });
-  here.vertices.clear(), here.corners.clear(), here.faces.clear(), here.texture_points.clear(), here.corner_colours.clear();
-  std::unordered_map<std::uint32_t, std::uint32_t> number;  // of the vertices
-  std::vector<std::uint32_t> ring;
-  for (std::uint32_t f = 0; f < edited.faces.size(); ++f) {
-    if (!present.has(f)) continue;
-    ring.clear();
-    for (const std::uint32_t vertex : edited.corners_of(edited.faces[f])) {
-      const auto [own, is_new] = number.try_emplace(vertex, static_cast<std::uint32_t>(here.vertices.size()));
-      if (is_new) here.vertices.push_back(edited.vertices[vertex]);
-      ring.push_back(own->second);
-    }
-    here.add_face(ring, edited.faces[f].material, edited.texture_points_of(edited.faces[f]), edited.colours_of(edited.faces[f]));
-  }
-  if (!edited.texture_points.empty()) here.texture_points.resize(here.corners.size());
-  return here;
+std::vector<Light> present_lights(std::span<const Light> lights) {
+  std::vector<Light> present;
+  std::ranges::remove_copy_if(lights, std::back_inserter(present), &Light::is_hidden);
+  return present;
 }
 
 }  // namespace alvor

@@ -1,7 +1,7 @@
 #pragma once
-// The objects and faces of an edited scene that are there: those that no edit has taken away.
+// The objects, faces and lights of an edited scene that no edit has hidden.
 
-#include "meshing/scene.h"
+#include "meshing/light.h"
 #include "meshing/scene_object.h"
 #include "meshing/welded_faces.h"
 
@@ -37,8 +37,7 @@ class PresentObjects {
   std::vector<Gap> gaps_;  // ascending
 };
 
-/// Returns what is there of an edited scene, as a scene of its own: without hidden objects, their faces and their lamps, and with
-/// the vertices of the faces that remain. Materials keep their numbers. Requires: !find_fault(edited).
-Scene present_scene(const Scene& edited);
+/// Returns the lights that no edit has hidden.
+std::vector<Light> present_lights(std::span<const Light> lights);
 
 }  // namespace alvor

@@ -3,6 +3,7 @@
 
 #include "alvor/v1/solution_file.pb.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,11 @@ namespace alvor {
 inline constexpr std::string_view compact_magic =
     "\x89"
     "ALVOR\r\n";
+
+// Versions of the file: one without leaves that are slabs, and the newest.
+inline constexpr std::uint32_t without_slabs = 1, newest_version = 2;
+/// A file holds at most leaves_at_least + leaves_per_byte * its bytes leaves, so that a small one cannot ask for much memory.
+inline constexpr std::uint64_t leaves_at_least = 1 << 20, leaves_per_byte = 8;
 
 /// Appends a part, after its length.
 void append_part(std::string& bytes, const v1::SolutionPart& part);

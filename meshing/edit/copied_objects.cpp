@@ -1,6 +1,7 @@
 #include "meshing/edit/copied_objects.h"
 
 #include "meshing/daylight.h"
+#include "meshing/edit/face_copier.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -19,32 +20,6 @@ constexpr std::size_t corners_a_face = 8, most_materials = 10'000;
 
 /// Returns the name of a material or a light that comes with an added object.
 std::string name_of_added(const std::string& part, const std::string& object) { return part + " of " + object; }
-
-/// Appends faces to a scene, with vertices of their own. They may be faces of the same scene.
-class FaceCopier {
- public:
-  FaceCopier(Scene& scene, const Scene& from, const Placement& turn = {}) : scene_(scene), from_(from), turn_(turn) {}
-  /// `first_material`: the number that material 0 of the other scene has in this one.
-  void append(Face face, std::uint32_t first_material = 0) {
-    std::vector<std::uint32_t> ring;
-    for (std::uint32_t k = 0; k < face.corner_count; ++k) {
-      const std::uint32_t vertex = from_.corners[face.first_corner + k];
-      const auto [own, is_new] = own_.try_emplace(vertex, static_cast<std::uint32_t>(scene_.vertices.size()));
-      if (is_new) scene_.vertices.push_back(turn_.point(from_.vertices[vertex]));
-      ring.push_back(own->second);
-    }
-    const auto points = from_.texture_points_of(face);
-    const auto colours = from_.colours_of(face);
-    scene_.add_face(ring, first_material + face.material, std::vector(points.begin(), points.end()),
-                    std::vector(colours.begin(), colours.end()));
-  }
-
- private:
-  Scene& scene_;
-  const Scene& from_;
-  const Placement turn_;
-  std::unordered_map<std::uint32_t, std::uint32_t> own_;  // by vertex of the other scene
-};
 
 /// Appends an object of all faces from `first_face` on, and returns it.
 SceneObject& append_object(Scene& scene, std::string name, const Placement& placement, std::size_t first_face) {

@@ -105,6 +105,14 @@ TEST_F(RenderServed, AmbientTermIsAddedOnlyIfAskedFor) {
   EXPECT_TRUE(same("ended.png", "ambient.png"));
 }
 
+TEST_F(RenderServed, CommandsThatGoOnFromASolveSayThatItsNewestStateDoesNotHeedAnEdit) {
+  publish();
+  ASSERT_EQ(run("edit " + solve_ + at_server() + " --absorption 1,1,1").status, 0);
+  const Ran ran = run("verify " + solve_ + at_server() + " --points 10 --paths 10");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.err.find("edits after revision 0 are not in it yet"), std::string::npos) << ran.err;
+}
+
 TEST_F(RenderServed, SolvesThatAreNotThereAreNamedInOneLine) {
   const Ran ran = run("render scenes/none/solves/none" + at_server() + " -o none.png");
   EXPECT_EQ(ran.status, 3);

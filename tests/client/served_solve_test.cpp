@@ -132,7 +132,7 @@ TEST_F(ServedSolve, IsReportedInItsMedium) {
   EXPECT_NEAR(mean("served"), mean("of_file"), 0.01 * mean("of_file")) << "without the medium it is half as much again";
 }
 
-TEST_F(ServedSolve, SaysWhereItsNewestStateDoesNotHeedAllEdits) {
+TEST_F(ServedSolve, IsTakenWithoutAWarningIfItsNewestStateHeedsAllEdits) {
   EXPECT_EQ(run("verify " + solve_ + at_server() + " --points 50 --paths 20").err.find("warning"), std::string::npos);
   ASSERT_EQ(edit("--hide screen --wait").status, 0);
   ASSERT_EQ(edit("--undo --wait").status, 0);

@@ -1,7 +1,7 @@
-// What is there of an edited scene.
+// Tests of PresentObjects and present_scene(): the objects, faces and lights of an edited scene that no edit has hidden.
 
 #include "meshing/present_objects.h"
-#include "meshing/base_mesh.h"
+#include "meshing/edit/present_scene.h"
 #include "tests/scenes.h"
 
 #include <gtest/gtest.h>

@@ -276,9 +276,8 @@ void add_bake_command(CLI::App& app) {
       ->type_name("BAKED.glb");
   add_texture_options(command, *options);
   add_solve_options(command, *options);
-  add_served_solve_option(
-      command, options->server,
-      {"--solution", "--keep-lights", "--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"});
+  add_served_solve_option(command, options->server, {"--solution", "--keep-lights"});
+  for (const char* name : solve_limits) command.get_option("--server")->excludes(command.get_option(name));
   command.callback([options] { run_bake(*options); });
 }
 

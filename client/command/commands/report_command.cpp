@@ -309,7 +309,7 @@ void add_report_command(CLI::App& app) {
     for (const char* name : {"--luminaire", "--light-scale", "--quantity", "--luminous-efficacy", "--sun", "--place", "--sky",
                              "--environment", "--translucent", "--tolerance"})
       if (command.get_option(name)->count() > 0) options->only_for_scenes = name;
-    for (const char* name : {"--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"})
+    for (const char* name : solve_limits)
       if (command.get_option(name)->count() > 0) options->only_for_solves = name;
     run_report(*options);
   });

@@ -9,7 +9,7 @@
 #include "client/command/output/notes.h"
 #include "client/command/output/numbers.h"
 #include "client/export/glb_file.h"
-#include "meshing/present_objects.h"
+#include "meshing/edit/present_scene.h"
 
 #include <array>
 #include <utility>

@@ -6,11 +6,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <string>
 #include <string_view>
 
 namespace alvor {
 
+/// The options that add_solve_limits() adds.
+inline constexpr std::array solve_limits{"--tolerance", "--max-elements", "--time-limit", "--threads", "--seed"};
 /// Adds the options for how far a scene is solved.
 void add_solve_limits(CLI::App& command, SolveOptions& options);
 

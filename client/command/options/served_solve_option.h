@@ -10,7 +10,7 @@
 
 namespace alvor {
 
-/// What help says of a scene that may be a file or a solve.
+/// Help text of the argument `scene` of commands that take a scene file or a solve on a server.
 inline constexpr const char* scene_or_solve =
     "OBJ, glTF, GLB or another scene file, or scenes/SCENE/solves/SOLVE on a server; - is stdin";
 
