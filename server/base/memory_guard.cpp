@@ -20,6 +20,7 @@ namespace alvor {
 namespace {
 
 constexpr auto unlimited = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t least_free = 64 << 20;
 
 std::uint64_t page_size() { return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)); }
 
@@ -72,15 +73,10 @@ void trim_heap_soon() {
   trimmer.ask();
 }
 
-ResidentMemory resident_memory() {
-  std::uint64_t address_space = 0, all = 0, of_files = 0;
-  std::ifstream("/proc/self/statm") >> address_space >> all >> of_files;
-  return {all * page_size(), of_files * page_size()};
-}
-
-std::uint64_t held_bytes() {
-  const ResidentMemory resident = resident_memory();
-  return resident.all - std::min(resident.all, resident.of_files);
+std::uint64_t resident_bytes() {
+  std::uint64_t address_space = 0, resident = 0;  // in pages
+  std::ifstream("/proc/self/statm") >> address_space >> resident;
+  return resident * page_size();
 }
 
 std::uint64_t allowed_memory() {
@@ -127,9 +123,13 @@ struct MemoryGuard::Relief {
 MemoryGuard::MemoryGuard(std::uint64_t limit, std::uint64_t (*used)())
     : limit_(limit), used_(used), relief_(std::make_shared<Relief>()) {}
 
+std::uint64_t MemoryGuard::most_of_all() const { return limit_ - std::clamp(least_free, limit_ / 8, limit_ / 4); }
+
+std::uint64_t MemoryGuard::most_for_new_work() const { return most_of_all() / 7 * 6; }
+
 bool MemoryGuard::has_room(std::uint64_t bytes) const {
   if (limit_ == 0) return true;
-  const std::uint64_t used = used_(), most = limit_ / 4 * 3;
+  const std::uint64_t used = used_(), most = most_for_new_work();
   return used <= most && bytes <= most - used;
 }
 
@@ -161,6 +161,6 @@ std::shared_ptr<void> MemoryGuard::relieve_by(std::function<void()> give_back) c
 
 void MemoryGuard::expect_gain() const { relief_->is_gain_expected = true; }
 
-bool MemoryGuard::is_short() const { return limit_ > 0 && used_() > limit_ / 8 * 7; }
+bool MemoryGuard::is_short() const { return limit_ > 0 && used_() > most_of_all(); }
 
 }  // namespace alvor

@@ -74,7 +74,7 @@ std::vector<MetricFamily> Metrics::Collect() const {
           1e-6 * static_cast<double>(keeping_.microseconds));
   counter("alvor_checkpoint_bytes_total", "Bytes of these.", static_cast<double>(keeping_.bytes));
   counter("alvor_checkpoint_failures_total", "Checkpoints that could not be kept.", static_cast<double>(keeping_.failures));
-  gauge("process_resident_memory_bytes", "Memory that is in use.", static_cast<double>(resident_memory().all));
+  gauge("process_resident_memory_bytes", "Memory that is in use.", static_cast<double>(resident_bytes()));
   gauge("alvor_memory_limit_bytes", "Memory that may be in use; 0 is no limit.", static_cast<double>(memory_.limit()));
   counter("process_cpu_seconds_total", "Processor time.", cpu_seconds());
   return all;
@@ -136,7 +136,7 @@ std::vector<MetricFamily> RankMetrics::Collect() const {
   const std::vector<RankStatus> statuses = ranks_.statuses();
   for (std::size_t r = 0; r < statuses.size(); ++r) {
     const std::vector<ClientMetric::Label> label{{"rank", std::to_string(r)}};
-    add(memory, static_cast<double>(statuses[r].held_bytes), label);
+    add(memory, static_cast<double>(statuses[r].resident_bytes), label);
     add(limit, static_cast<double>(statuses[r].memory_limit), label);
     add(cpu, statuses[r].cpu_s, label);
     add(solving, statuses[r].is_solving, label);

@@ -193,7 +193,7 @@ void SolvingRanks::answer_questions() {
 std::vector<RankStatus> SolvingRanks::tell_statuses() {
   std::vector<RankStatus> all(size());
   share_work(asking_ ? *asking_ : Ranks::alone(), std::span(all), [&](std::size_t r) {
-    all[r] = {held_bytes(), options_.memory.limit(), cpu_seconds(), is_solving_};
+    all[r] = {resident_bytes(), options_.memory.limit(), cpu_seconds(), is_solving_};
   });
   return all;
 }

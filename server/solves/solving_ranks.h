@@ -16,7 +16,7 @@ struct SolveStoreOptions;
 
 /// The process of one rank: its memory, its processor time, and whether it is at work.
 struct RankStatus {
-  std::uint64_t held_bytes = 0;  ///< memory, as held_bytes() counts it
+  std::uint64_t resident_bytes = 0;  ///< memory, as resident_bytes() counts it
   std::uint64_t memory_limit = 0;
   double cpu_s = 0;         ///< processor time of the process so far
   bool is_solving = false;  ///< whether it shares in the work of a solve

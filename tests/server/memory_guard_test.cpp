@@ -30,20 +30,42 @@ TEST(MemoryGuard, AdmitsUpToThreeQuartersAndIsShortBeyondSevenEighths) {
   EXPECT_TRUE(guard.is_short());
 }
 
+TEST(MemoryGuard, OfSmallLimitsAsMuchStaysFreeAsAnEndingSolveTakes) {
+  const MemoryGuard guard(256 * mebibyte, used_memory);
+  used = 192 * mebibyte;
+  EXPECT_FALSE(guard.is_short());
+  used = 192 * mebibyte + 1;
+  EXPECT_TRUE(guard.is_short());
+  used = 164 * mebibyte;
+  EXPECT_TRUE(guard.has_room(0));
+  used = 165 * mebibyte;
+  EXPECT_FALSE(guard.has_room(0));
+  used = 0;
+}
+
+TEST(MemoryGuard, OfTheSmallestLimitsAQuarterStaysFree) {
+  const MemoryGuard guard(80 * mebibyte, used_memory);
+  used = 60 * mebibyte;
+  EXPECT_FALSE(guard.is_short());
+  used = 61 * mebibyte;
+  EXPECT_TRUE(guard.is_short());
+  used = 0;
+}
+
 TEST(MemoryGuard, WithoutALimitThereIsAlwaysRoom) {
   EXPECT_TRUE(MemoryGuard().has_room(~std::uint64_t{0}));
   EXPECT_FALSE(MemoryGuard().is_short());
 }
 
-TEST(MemoryGuard, SomethingIsAllowedAndLessIsHeld) {
-  EXPECT_GT(held_bytes(), 0u);
-  EXPECT_GT(allowed_memory(), held_bytes());
+TEST(MemoryGuard, SomethingIsAllowedAndLessIsResident) {
+  EXPECT_GT(resident_bytes(), 0u);
+  EXPECT_GT(allowed_memory(), resident_bytes());
 }
 
-TEST(MemoryGuard, HeldBytesAreThoseThatWereTaken) {
-  const std::uint64_t before = held_bytes();
+TEST(MemoryGuard, ResidentBytesAreThoseThatWereTaken) {
+  const std::uint64_t before = resident_bytes();
   const std::vector<char> taken(64 * mebibyte, 'x');
-  EXPECT_NEAR(static_cast<double>(held_bytes() - before), static_cast<double>(taken.size()), 8.0 * mebibyte);
+  EXPECT_NEAR(static_cast<double>(resident_bytes() - before), static_cast<double>(taken.size()), 8.0 * mebibyte);
 }
 
 /// A solver that runs until it is told to end, and then frees memory.

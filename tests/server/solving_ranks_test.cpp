@@ -91,7 +91,7 @@ TEST(SolvingRanks, TakeMoreRanksForLargeScenesUnlessTold) {
     EXPECT_EQ(solving(), 0);
     of_large = ranks.solver_for(1'000'000, how);
     EXPECT_FALSE(ranks.solver_for(100, how));
-    for (const RankStatus& status : ranks.statuses()) EXPECT_GT(status.held_bytes, 0u);
+    for (const RankStatus& status : ranks.statuses()) EXPECT_GT(status.resident_bytes, 0u);
   });
 }
 
