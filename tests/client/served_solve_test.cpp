@@ -51,7 +51,7 @@ class ServedSolve : public test::CommandLine {
     Client client(grpc::CreateChannel(address_, grpc::InsecureChannelCredentials()));
     v1::SolveSpec spec;
     spec.set_tolerance(0.05);
-    solve_ = client.create_solve(client.create_scene(room(), "").name(), spec).name();
+    solve_ = client.create_solve(client.create_scene(room(), "two_lamps.obj").name(), spec).name();
     EXPECT_EQ(edit("--copy screen.2=screen --move screen.2=0.3,0.1,0.4 --hide board --hide lamp.2 --wait").status, 0);
   }
   Ran edit(const std::string& options) const { return run("edit " + solve_ + at_server() + " " + options); }
@@ -93,7 +93,9 @@ TEST_F(ServedSolve, IsReportedAndComparedWithPathTracing) {
   const DisplayMesh solution = read_solution_file(file("report") / "solution.glb");
   ASSERT_EQ(solution.objects.size(), 4u);
   EXPECT_EQ(solution.objects[3].name, "screen.2");
-  EXPECT_NE(test::text_of(file("report") / "report.html").find("Made from " + solve_), std::string::npos);
+  const std::string page = test::text_of(file("report") / "report.html");
+  EXPECT_NE(page.find("<title>Lighting of two_lamps</title>"), std::string::npos);
+  EXPECT_NE(page.find("Made from " + solve_ + " (two_lamps.obj)"), std::string::npos);
 }
 
 TEST_F(ServedSolve, GivesTheSameSolutionInAllFiles) {

@@ -105,12 +105,13 @@ struct Solved {
   std::optional<Scene> scene;  ///< not known for a solution file
   std::vector<Room> rooms;
   DisplayMesh mesh;
-  std::string unfinished;  ///< why the solve ended before its tolerance; empty if it did not
+  std::string unfinished;   ///< why the solve ended before its tolerance; empty if it did not
+  std::string scene_title;  ///< of a solve on a server, see ServedSolve
 };
 
 Solved solved_on_server(const ReportCommand& command) {
   ServedSolve solve = read_served_solve(command.server, command.input);
-  Solved result{std::move(solve.scene), {}, std::move(solve.mesh), std::move(solve.unfinished)};
+  Solved result{std::move(solve.scene), {}, std::move(solve.mesh), std::move(solve.unfinished), std::move(solve.scene_title)};
   result.rooms = rooms_in(command, result.mesh);
   return result;
 }
@@ -123,7 +124,7 @@ Solved solved(const ReportCommand& command) {
     std::error_code is_none;
     if (!is_stream(command.input) && std::filesystem::equivalent(command.input, command.folder / "solution.glb", is_none))
       throw Failure(ExitStatus::usage, "--output: the report would replace its input " + name);
-    Solved result{read_scene(command.scene_options, bytes, name), {}, {}, {}};
+    Solved result{read_scene(command.scene_options, bytes, name), {}, {}, {}, {}};
     result.rooms = rooms_in(command, *result.scene);  // before the solve, which takes longer than a refusal should
     SolvedHere here = solve_here(*result.scene, command.solve, name);
     result.mesh = std::move(here.mesh), result.unfinished = std::move(here.unfinished);
@@ -134,7 +135,7 @@ Solved solved(const ReportCommand& command) {
     throw Failure(ExitStatus::usage,
                   command.only_for_scenes + ": is for scenes; " + name + " is a solution, which has its light");
   try {
-    Solved result{std::nullopt, {}, decode_solution(bytes.bytes, extension, name), {}};
+    Solved result{std::nullopt, {}, decode_solution(bytes.bytes, extension, name), {}, {}};
     take_up(command.scene_options.up, result.mesh.up);
     result.rooms = rooms_in(command, result.mesh);
     return result;
@@ -225,6 +226,20 @@ std::string with_capital(std::string sentence) {
   return sentence;
 }
 
+/// Returns the file or the solve that a report is of, and the file of its scene where that is known.
+std::string origin_of(const ReportCommand& command, const Solved& solved) {
+  if (is_stream(command.input)) return "a scene from a stream";
+  if (!command.server.is_given()) return command.input.filename().string();
+  return command.input.string() + (solved.scene_title.empty() ? "" : " (" + solved.scene_title + ")");
+}
+
+std::string title_of(const ReportCommand& command, const Solved& solved) {
+  if (!command.title.empty()) return command.title;
+  if (is_stream(command.input)) return "Lighting of a scene";
+  const std::filesystem::path subject = solved.scene_title.empty() ? command.input : std::filesystem::path(solved.scene_title);
+  return "Lighting of " + subject.stem().string();
+}
+
 /// Returns the line that says whence a report comes.
 std::string source_of(const std::string& input) {
   const std::time_t now = std::time(nullptr);
@@ -245,13 +260,10 @@ void run_report(const ReportCommand& command) {
   make_folder(command.folder, "report.html", "--output");
   const Solved result = solved(command);
   Report report = report_of(command, result);
-  const std::string subject = is_stream(command.input) ? "a scene" : command.input.stem().string();
   warn(report.remarks);
   if (!result.unfinished.empty()) report.remarks.push_back(with_capital(result.unfinished) + ".");
-  report.source = source_of(command.server.is_given()  ? command.input.string()
-                            : is_stream(command.input) ? "a scene from a stream"
-                                                       : command.input.filename().string());
-  report.title = command.title.empty() ? "Lighting of " + subject : command.title;
+  report.source = source_of(origin_of(command, result));
+  report.title = title_of(command, result);
   report.verification = verified(command, result);
   write(command, report, result);
   results() << summary_of(report);

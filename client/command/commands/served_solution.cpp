@@ -107,10 +107,11 @@ DisplayMesh read_served_solution(const ServedSolution& source) {
 }
 
 ServedSolve read_served_solve(const ServerChoice& server, const std::string& solve) {
-  scene_name_of(solve);  // before a server is asked
+  const std::string scene_name = scene_name_of(solve);  // before a server is asked
   Connection connection(server);
   const auto [state, scene] = newest_of_scene(connection.client(), solve);
   ServedSolve served{present_scene(scene.scene), mesh_of(scene.mesh, state, false),
+                     connection.client().get_scene(scene_name).display_name(),
                      unfinished(state, connection.client().get_solve(solve))};
   require_surfaces(served.mesh, solve);
   if (!served.unfinished.empty()) warn(std::array{served.unfinished});

@@ -24,7 +24,8 @@ DisplayMesh read_served_solution(const ServedSolution& source);
 struct ServedSolve {
   Scene scene;  ///< see present_scene()
   DisplayMesh mesh;
-  std::string unfinished;  ///< one sentence if the state is not within the tolerance or does not heed all edits, or empty
+  std::string scene_title;  ///< what who submitted the scene calls it, as a rule a file name; may be empty
+  std::string unfinished;   ///< one sentence if the state is not within the tolerance or does not heed all edits, or empty
 };
 
 /// Returns a solve for commands that go on from it as from a scene that they have solved. Warns if it is unfinished. Throws as
