@@ -138,7 +138,7 @@ class Run {
       if (is_done) return converge(StopReason::tolerance);
       if (is_stuck()) return StopReason::stalled;
       if (options_.is_by_place()) pass_->refine_only_what_is_not_within(is_.error);
-      if (const auto& made = requests_.ask(); made.break_off() || made.edited) return requests_.reason();
+      if (must_leave_pass()) return requests_.reason();
       const bool is_better = gains() && pass_->refine([this] { return requests_.made_here().break_off(); }, share_to_refine());
       if (must_stop()) return requests_.reason();
       if (!is_better) {
@@ -179,6 +179,7 @@ class Run {
     if (live_.error_before_edit) publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
     pass_->begin_exchange();
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
+    if (requests_.ask().edited) return false;  // an exchange without steps has not asked
     is_.error = pass_->estimate();
     live_.error_before_edit.reset();
     account();
@@ -233,7 +234,7 @@ class Run {
     double published = exchange.unshot_power();
     const Settling end = settle(exchange, remaining_error, [&](std::size_t steps) {
       is_.shots += steps;
-      if (const auto& made = requests_.ask(); made.break_off() || made.edited) return false;
+      if (must_leave_pass()) return false;
       if (exchange.unshot_power() >= publish_when * published) return true;
       published = exchange.unshot_power();
       pass_->show_what_came_since();
@@ -326,6 +327,11 @@ class Run {
   }
   /// Collective.
   bool must_stop() { return requests_.ask().any(); }
+  /// Collective. Returns whether to stop in the middle of a pass, where it cannot be parked.
+  bool must_leave_pass() {
+    const auto& made = requests_.ask();
+    return made.break_off() || made.edited;
+  }
 
   /// Collective. Ends the solve if ranks differ in what they found, as on machines that compute differently.
   void expect_agreement() {

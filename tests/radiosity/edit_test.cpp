@@ -332,6 +332,15 @@ TEST(EditedSolve, IsInterruptedByAnEditAndTellsIt) {
   EXPECT_EQ(live->edits, 0u);
 }
 
+TEST(EditedSolve, HeedsTheNextEditBeforeItEstimates) {
+  EditedSolve edited(room_with_two_lamps(), {.tolerance = 0.05});
+  const std::uint64_t before = edited.log().head();
+  edited.edit_twice([](Scene& scene) { scene.materials.back().emission = 0.9999 * scene.materials.back().emission; });
+  EXPECT_EQ(edited.outcome.reason, StopReason::edited);
+  EXPECT_EQ(edited.log().head(), before + 1);
+  EXPECT_TRUE(edited.last().is_provisional);
+}
+
 TEST(EditedSolve, HasNoRowsFinerThanLeavesWhereAHiddenObjectIsShownAtTheLimitOfLeaves) {
   Scene scene = test::room_with_lamps_and_sun();
   const auto first = static_cast<std::uint32_t>(scene.faces.size());

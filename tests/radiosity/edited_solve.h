@@ -36,6 +36,15 @@ class EditedSolve {
     ++edits_;
     run();
   }
+  /// Edits, and asks for another edit as soon as a state is published.
+  void edit_twice(const Change& change) {
+    SolveControl control;
+    control.is_edited = [this, before = log_.head()] { return log_.head() > before; };
+    change(scene_);
+    mesh_ = submitted_.edited_as(scene_, {});
+    ++edits_;
+    run(control);
+  }
   const Scene& scene() const { return scene_; }
   const BaseMesh& mesh() const { return mesh_; }
   SolutionLog& log() { return log_; }
@@ -43,8 +52,7 @@ class EditedSolve {
   Step last() const { return log_.last_step(); }
   std::vector<LeafValue> leaves() const { return log_.leaves(); }
 
-  void run() {
-    SolveControl control;
+  void run(SolveControl control = {}) {
     control.live = &live_;
     control.edits = edits_;
     outcome = solve_as_planned(mesh_, Plan(mesh_, options_), options_, log_, control);
