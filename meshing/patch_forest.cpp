@@ -6,19 +6,6 @@
 
 namespace alvor {
 
-namespace {
-
-/// Returns the bits of x at even positions, next to each other.
-constexpr std::uint32_t gathered_bits(std::uint32_t x) {
-  x &= 0x55555555u;
-  x = (x | (x >> 1)) & 0x33333333u;
-  x = (x | (x >> 2)) & 0x0f0f0f0fu;
-  x = (x | (x >> 4)) & 0x00ff00ffu;
-  return (x | (x >> 8)) & 0x0000ffffu;
-}
-
-}  // namespace
-
 PatchForest::PatchForest(const BaseMesh& mesh) : mesh_(&mesh), leaf_count_(mesh.roots().size()) {
   ids_.reserve(mesh.roots().size());
   for (std::uint32_t root = 0; root < mesh.roots().size(); ++root) ids_.push_back(PatchId::root(root));

@@ -149,6 +149,12 @@ std::int32_t PatchShape::size_along(int edge) const { return std::abs(corner_cou
 PatchShape shape_of(const BaseMesh& mesh, PatchId patch) {
   const RootPatch& root = mesh.roots()[patch.root_face()];
   PatchShape shape = PatchShape::whole(patch.root_face(), root.corner_count, root.strata_along_u);
+  if (root.corner_count == 4 && !patch.has_slabs()) {
+    const auto bits = static_cast<std::uint32_t>(patch.bits()), path = (bits & (bits - 1)) >> 1;  // without the lowest bit set
+    shape.first = {static_cast<std::int32_t>(gathered_bits(path)), static_cast<std::int32_t>(gathered_bits(path >> 1))};
+    shape.size_u = shape.size_v = grid_size >> patch.level();
+    return shape;
+  }
   for (int level = 1; level <= patch.level(); ++level) shape = shape.child(patch.child_index(level), patch.split_above(level));
   return shape;
 }

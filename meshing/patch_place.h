@@ -17,6 +17,15 @@ struct GridPoint {
 };
 inline constexpr std::int32_t grid_size = 1 << PatchId::max_level;
 
+/// Returns the bits of x at even positions, next to each other: u of a path in Morton order, and v of one shifted right by one.
+constexpr std::uint32_t gathered_bits(std::uint32_t x) {
+  x &= 0x55555555u;
+  x = (x | (x >> 1)) & 0x33333333u;
+  x = (x | (x >> 2)) & 0x0f0f0f0fu;
+  x = (x | (x >> 4)) & 0x00ff00ffu;
+  return (x | (x >> 8)) & 0x0000ffffu;
+}
+
 struct Uv {
   double u = 0, v = 0;
 };

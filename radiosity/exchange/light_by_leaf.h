@@ -49,15 +49,20 @@ class LightByLeaf {
   struct alignas(4 * sizeof(double)) Padded {
     double r = 0, g = 0, b = 0, mean = 0;
   };
-  /// Sums three bands, in four lanes: one load and one addition per hit. The fourth, of means, is not used.
+  /// Sums three bands, in four lanes: one load and one addition per hit, four hits at a time. The fourth lane, of means, is not
+  /// used.
   RelativeLight sum_of_three(std::span<const std::uint32_t> leaf) const {
-    double sum[4] = {};
-    for (const std::uint32_t l : leaf) {
-      const Padded& hit = three_[l];
-      const double lanes[4] = {hit.r, hit.g, hit.b, hit.mean};
-      for (int k = 0; k < 4; ++k) sum[k] += lanes[k];
-    }
-    return {sum[0], sum[1], sum[2]};
+    Lanes sum[4] = {};
+    std::size_t h = 0;
+    for (; h + 4 <= leaf.size(); h += 4)
+      for (std::size_t k = 0; k < 4; ++k) sum[k] += lanes_of(leaf[h + k]);
+    for (; h < leaf.size(); ++h) sum[0] += lanes_of(leaf[h]);
+    const Lanes all = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    return {all[0], all[1], all[2]};
+  }
+  Lanes lanes_of(std::uint32_t leaf) const {
+    const Padded& of = three_[leaf];
+    return Lanes{of.r, of.g, of.b, of.mean};
   }
   /// Sums one band, four hits at a time.
   RelativeLight sum_of_one(std::span<const std::uint32_t> leaf) const {
@@ -92,13 +97,18 @@ inline RelativeLight LightByLeaf::weighted_sum(std::span<const std::uint32_t> le
 
 inline LightByLeaf::Sums LightByLeaf::sums(std::span<const std::uint32_t> leaf, std::span<const RgbF> weight) const {
   Sums sums;
-  if (weight.empty()) {
-    sums.light = sum(leaf);
-    for (const std::uint32_t l : leaf) {
-      const double mean = has_three_ ? three_[l].mean : one_[l];
-      sums.squares += mean * mean;
-    }
+  if (weight.empty() && !has_three_) {
+    sums.light = sum_of_one(leaf);
+    for (const std::uint32_t l : leaf) sums.squares += one_[l] * one_[l];
     return sums;
+  }
+  if (weight.empty()) {
+    Lanes sum{}, squares{};
+    for (const std::uint32_t l : leaf) {
+      const Lanes hit = lanes_of(l);
+      sum += hit, squares += hit * hit;
+    }
+    return {{sum[0], sum[1], sum[2]}, squares[3]};
   }
   for (std::size_t h = 0; h < leaf.size(); ++h) {
     const Padded hit = has_three_ ? three_[leaf[h]] : Padded{one_[leaf[h]], one_[leaf[h]], one_[leaf[h]], one_[leaf[h]]};
