@@ -61,7 +61,8 @@ class Baker {
 
  private:
   void choose_sides() {
-    tbb::parallel_for(std::size_t{0}, charts_.size(), [&](std::size_t c) { sides_[c] = brighter_side(charts_[c], surface_); });
+    tbb::parallel_for(std::size_t{0}, charts_.size(),
+                      [&](std::size_t c) { sides_[c] = shown_side(charts_[c], surface_, options_.side); });
     baked_.lit_from_both = static_cast<std::size_t>(std::ranges::count_if(sides_, &ShownSide::loses_light));
   }
 
@@ -321,7 +322,7 @@ Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solutio
     if (options.form == BakeForm::vertex) {
       document.add_extra(form_key, "vertex");
       if (options.longest_edge) subdivide(document, *options.longest_edge);
-      return bake_vertices(std::move(document), scene, solution);
+      return bake_vertices(std::move(document), scene, solution, options.side);
     }
     return Baker(std::move(document), scene, solution, options, *layout).bake();
   });

@@ -27,6 +27,10 @@ enum class LightmapUnit { irradiance, irradiance_over_pi };
 /// it.
 enum class LightmapFormat { png, exr };
 
+/// Which side of a surface with two sides is shown. inner: the one that looks less out of the scene, as that of a wall to its
+/// room does, and where both do alike the brighter one.
+enum class BakedSide { inner, brighter };
+
 struct BakeOptions {
   BakeForm form = BakeForm::lightmap;
   LightmapUnit unit = LightmapUnit::irradiance;
@@ -35,10 +39,11 @@ struct BakeOptions {
   int padding = 4;                         ///< texels around each chart
   std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
   std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
-  bool keeps_lights = false;               ///< a file with lightmaps keeps its lamps, whose light viewers then add once more
-  std::optional<double> longest_edge;      ///< of triangles with colours at their vertices, metres; as they are if not given
-  nlohmann::json extras;                   ///< an object with members for the file's extras, or null
-  std::string name = "baked";              ///< of the files beside the GLB: name-0.exr, name-1.exr
+  BakedSide side = BakedSide::inner;
+  bool keeps_lights = false;           ///< a file with lightmaps keeps its lamps, whose light viewers then add once more
+  std::optional<double> longest_edge;  ///< of triangles with colours at their vertices, metres; as they are if not given
+  nlohmann::json extras;               ///< an object with members for the file's extras, or null
+  std::string name = "baked";          ///< of the files beside the GLB: name-0.exr, name-1.exr
   std::function<void(double)> on_progress = [](double) {};  ///< called with the share that is done, from any thread
 };
 
@@ -52,7 +57,7 @@ struct Baked {
   int pages = 0;
   double texels_per_metre = 0, range = 0;
   double clipped_share = 0;           ///< of the charts' texels, that are brighter than the range
-  std::size_t lit_from_both = 0;      ///< charts whose other side has more than a tenth of the light, which is lost
+  std::size_t lit_from_both = 0;      ///< charts whose other side has more than a tenth of the shown side's light, which is lost
   std::vector<std::string> warnings;  ///< a sentence each
 };
 

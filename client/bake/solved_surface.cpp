@@ -111,4 +111,27 @@ bool SolvedSurface::is_covered(Vec3 point, Vec3 normal, double dark) const {
   return mostly([](UnitPair at) { return at; }) && mostly([](UnitPair at) { return UnitPair{at.u, 1 - grazing * grazing}; });
 }
 
+double SolvedSurface::leaving_share(Vec3 point, Vec3 normal) const {
+  constexpr std::uint32_t walks = 8;
+  constexpr int steps = 3;
+  PathRandom random(0, 0, 0);
+  const EvenPairs first(random);
+  std::uint32_t left = 0;
+  for (std::uint32_t walk = 0; walk < walks; ++walk) {
+    Vec3 at = point, along = normal;
+    for (int step = 0; step < steps; ++step) {
+      const Vec3 start = at + reach_ * along, direction = cosine_direction(along, step == 0 ? first[walk] : random.pair());
+      const auto hit = everything_.cast(start, direction);
+      if (!hit) {
+        ++left;
+        break;
+      }
+      at = start + hit->distance * direction;
+      along = normalized(double_area_of(solution_, hit->triangle));
+      if (dot(along, direction) > 0) along = -along;
+    }
+  }
+  return double(left) / walks;
+}
+
 }  // namespace alvor

@@ -52,10 +52,26 @@ std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place
   return {along(share(u, chart.chart->wide), place.x, place.wide), along(1 - share(v, chart.chart->high), place.y, place.high)};
 }
 
-ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface) {
+namespace {
+
+/// What is known of a side of a chart: sums over some of its points.
+struct SideSums {
+  double light = 0, leaving = 0;  ///< irradiance, mean over bands; SolvedSurface::leaving_share()
+
+  void add(const PlacedChart& chart, const SolvedSurface& surface, const Vec3& at, const Vec3& normal, bool looks_around) {
+    if (const auto sample = surface.at(chart.object, at, normal)) light += sample->irradiance.mean();
+    if (looks_around) leaving += surface.leaving_share(at, normal);
+  }
+};
+
+}  // namespace
+
+ShownSide shown_side(const PlacedChart& chart, const SolvedSurface& surface, BakedSide wanted) {
   if (!chart.may_show_back) return {};
   constexpr std::size_t most = 64;
-  double front = 0, back = 0;
+  const bool looks_around = wanted == BakedSide::inner;
+  SideSums front, back;
+  double points = 0;
   const auto& triangles = chart.chart->triangles;
   const std::size_t step = std::max<std::size_t>(1, triangles.size() / most);
   for (std::size_t n = 0; n < triangles.size(); n += step) {
@@ -63,12 +79,16 @@ ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface) 
     // Off the middle: the middle of a rectangle is on the diagonal that cuts it.
     for (const auto& [u, v] : {std::pair(0.2, 0.2), std::pair(0.6, 0.2), std::pair(0.2, 0.6)}) {
       const Vec3 at = placed_point(chart, triangles[n], u, v);
-      if (const auto sample = surface.at(chart.object, at, normal)) front += sample->irradiance.mean();
-      if (const auto sample = surface.at(chart.object, at, -1.0 * normal)) back += sample->irradiance.mean();
+      front.add(chart, surface, at, normal, looks_around);
+      back.add(chart, surface, at, -1.0 * normal, looks_around);
+      points += 1;
     }
   }
-  constexpr double much = 0.1;
-  return {back > front, std::min(front, back) > much * std::max(front, back)};
+  // The top of a table outdoors and its lower side differ by less: what the lower side sees looks at the sky itself.
+  constexpr double clearly = 0.3, much = 0.1;
+  const double difference = front.leaving - back.leaving;
+  const bool is_back = std::abs(difference) > clearly * points ? difference > 0 : back.light > front.light;
+  return {is_back, (is_back ? front.light : back.light) > much * (is_back ? back.light : front.light)};
 }
 
 void spread(LightPage& page, const ChartPlace& within, int times) {

@@ -1,6 +1,7 @@
 #pragma once
 // The texels of charts: which point of a surface each stands for, and what was solved there.
 
+#include "client/bake/bake.h"
 #include "client/bake/chart_pages.h"
 #include "client/bake/charts.h"
 #include "client/bake/solved_surface.h"
@@ -57,8 +58,8 @@ struct ShownSide {
   bool is_back = false;
   bool loses_light = false;  ///< the other side has more than a tenth of this one's light
 };
-/// Returns the side of a chart with more light, which is the front if the material has one side.
-ShownSide brighter_side(const PlacedChart& chart, const SolvedSurface& surface);
+/// Returns the side of a chart that `wanted` says, which is the front if the material has one side.
+ShownSide shown_side(const PlacedChart& chart, const SolvedSurface& surface, BakedSide wanted);
 
 /// Sets the texels of a chart's rectangle: those within the chart to the mean of four points, those at its edge to the point that
 /// they stand for, those around it to the nearest point of the chart. Points that something covers, as a table's legs do on a

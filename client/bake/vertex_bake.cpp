@@ -46,13 +46,14 @@ double mean_irradiance(const DisplayMesh& solution) {
 
 class VertexBaker {
  public:
-  VertexBaker(GltfDocument document, const Scene& scene, const DisplayMesh& solution)
+  VertexBaker(GltfDocument document, const Scene& scene, const DisplayMesh& solution, BakedSide side)
       : document_(std::move(document)),
         scene_(scene),
         exposure_(automatic_exposure(solution)),
         surface_(solution, scene),
         dark_(darkness * mean_irradiance(solution)),
-        meshes_(placed_meshes(document_, Cutting::none)) {}
+        meshes_(placed_meshes(document_, Cutting::none)),
+        side_(side) {}
 
   Baked bake() {
     check_objects(meshes_, scene_);
@@ -73,7 +74,7 @@ class VertexBaker {
     std::iota(all.triangles.begin(), all.triangles.end(), 0u);
     const PlacedChart placed{
         mesh.positions, &mesh.charts, &all, to_scene(scene_) * node.placement, node.object, is_two_sided(primitive, document_)};
-    const ShownSide side = brighter_side(placed, surface_);
+    const ShownSide side = shown_side(placed, surface_, side_);
     baked_.lit_from_both += side.loses_light;
     ++baked_.charts;
     std::vector<std::array<float, 4>> colours(mesh.positions.size(), {1, 1, 1, 1});
@@ -183,14 +184,15 @@ class VertexBaker {
   SolvedSurface surface_;
   double dark_;  // W/m2
   PlacedMeshes meshes_;
+  BakedSide side_;
   std::map<std::size_t, std::size_t> materials_;
   Baked baked_;
 };
 
 }  // namespace
 
-Baked bake_vertices(GltfDocument document, const Scene& scene, const DisplayMesh& solution) {
-  return VertexBaker(std::move(document), scene, solution).bake();
+Baked bake_vertices(GltfDocument document, const Scene& scene, const DisplayMesh& solution, BakedSide side) {
+  return VertexBaker(std::move(document), scene, solution, side).bake();
 }
 
 }  // namespace alvor

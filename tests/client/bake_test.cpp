@@ -284,6 +284,37 @@ TEST(Bake, NoDarknessLeaksFromBelowABox) { expect_no_darkness_leaks(room_with_a_
 // Blender's exporter makes all materials two-sided unless it is told otherwise.
 TEST(Bake, NoDarknessLeaksFromBelowABoxOfTwoSides) { expect_no_darkness_leaks(room_with_a_box_on_its_floor(true)); }
 
+// Walls of Blender's rooms often have no thickness, and two sides.
+TEST(Bake, WallsBetweenARoomAndTheSunShowTheRoom) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5), test::grey(1, 0)};
+  scene.materials[0].two_sided = true;
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, false, {0, 0, 0, 1, 0, 0});
+  scene.faces.erase(scene.faces.begin());  // a wall is missing
+  scene.materials[1].two_sided = true;
+  Light sun{"sun", LightKind::directional, {60, 60, 60}};
+  sun.direction = normalized(Vec3{-1, -1, -1});
+  scene.lights = {sun};
+  const DisplayMesh solution = solved(scene);
+  const SolvedSurface surface(solution, scene);
+  const auto light_on_wall = [&](BakedSide side) {
+    const BakedFile baked(scene, solution, {.side = side});
+    double inner = 0, outer = 0, shown = 0;
+    for_each_triangle(baked, [&](const BakedTriangle& triangle) {
+      const auto& [a, b, c] = triangle.corner;
+      if (a.x != 2 || b.x != 2 || c.x != 2) return;
+      inner += surface.at(0, triangle.point(0.3, 0.3), {-1, 0, 0})->irradiance.mean();
+      outer += surface.at(0, triangle.point(0.3, 0.3), {1, 0, 0})->irradiance.mean();
+      shown += baked.light(triangle.primitive, triangle.place(0.3, 0.3, 0), triangle.place(0.3, 0.3, 1));
+    });
+    EXPECT_GT(outer, 5 * inner);
+    EXPECT_GT(inner, 0);
+    return std::pair(shown / inner, shown / outer);
+  };
+  EXPECT_NEAR(light_on_wall(BakedSide::inner).first, 1, 0.1);
+  EXPECT_NEAR(light_on_wall(BakedSide::brighter).second, 1, 0.1);
+}
+
 TEST(Bake, TwoSmallerMipLevelsMixNoCharts) {
   // The inside of the box is dark, its outside bright; each chart lies on texels of its own in images of half and a quarter of
   // the size.

@@ -45,13 +45,14 @@ const std::map<std::string, LightmapFormat> formats{{"png", LightmapFormat::png}
 const std::map<std::string, LightmapUnit> conventions{{"three", LightmapUnit::irradiance},
                                                       {"godot", LightmapUnit::irradiance_over_pi},
                                                       {"unity", LightmapUnit::irradiance_over_pi}};
+const std::map<std::string, BakedSide> sides{{"inner", BakedSide::inner}, {"brighter", BakedSide::brighter}};
 
 struct BakeCommand {
   std::filesystem::path scene, solution;  ///< an empty solution: the scene is solved
   ServerChoice server;                    ///< given: `scene` is the name of a solve
   std::string format;                     ///< format of a scene from stdin
   OutputFile output;
-  std::string form = "lightmap", lightmap_format = "png", convention = "three";
+  std::string form = "lightmap", lightmap_format = "png", convention = "three", side = "inner";
   BakeOptions bake;
   std::string probes;  ///< NX,NY,NZ; empty: none
   SolveOptions solve;
@@ -76,6 +77,7 @@ BakeOptions options_of(const BakeCommand& command) {
   options.form = forms.at(command.form);
   options.format = formats.at(command.lightmap_format);
   options.unit = conventions.at(command.convention);
+  options.side = sides.at(command.side);
   options.name = command.output.path.stem().string();
   return options;
 }
@@ -207,7 +209,8 @@ void run_bake(const BakeCommand& command) {
     result.beside.push_back({command.output.path.stem().string() + "-probes.json", options.extras["alvor_probes"].dump()});
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
-                    (result.pages > 0 ? " charts" : " primitives") + " are lit from both sides; the brighter one is shown"});
+                    (result.pages > 0 ? " charts" : " primitives") +
+                    " with two sides have light on the one that is not shown (--side)"});
   write(command, result);
   notes() << summary_of(command, result);
 }
@@ -238,6 +241,12 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
           "What a texel holds. three: irradiance E, as lightMap of three.js; godot, unity: E / pi, the radiance of a white "
           "surface, as those engines multiply by the colour (three)")
       ->check(CLI::IsMember(conventions));
+  command
+      .add_option(
+          "--side", options.side,
+          "Which side is shown of surfaces with two sides. inner: the one that looks less out of the scene, and where both "
+          "do alike the brighter one; brighter (inner)")
+      ->check(CLI::IsMember(sides));
   command.add_flag("--keep-lights", options.bake.keeps_lights,
                    "Keep the file's lamps beside the lightmap, for things that move; viewers add their light once more");
   command.add_option("--size", options.bake.size, "Columns and rows of each texture (1024)")->check(CLI::Range(16, 8192));
