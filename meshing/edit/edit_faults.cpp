@@ -3,6 +3,7 @@
 #include "meshing/edit/named_parts.h"
 #include "meshing/edit/object_boxes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -28,7 +29,7 @@ class Check {
 
   std::optional<EditFault> operator()(const MaterialEdit& edit) {
     const Material* material = materials_.find(edit.name);
-    if (!material) return unknown("material", edit.name);
+    if (!material) return unknown<Material>("material", edit.name, scene_.materials);
     if (!edit.emission && !edit.reflectance && !edit.diffuse_transmittance) return EditFault{0, "material", "sets nothing"};
     if (edit.emission && !is_within(*edit.emission, most_emission))
       return EditFault{0, "material.emission", "must be in [0, 1e30]"};
@@ -44,7 +45,7 @@ class Check {
 
   std::optional<EditFault> operator()(const LightEdit& edit) {
     const Light* light = lights_.find(edit.name);
-    if (!light || light->is_hidden) return unknown("light", edit.name);
+    if (!light || light->is_hidden) return unknown<Light>("light", edit.name, scene_.lights);
     if (!edit.dim && !edit.intensity && !edit.position && !edit.direction && !edit.cone && !edit.web)
       return EditFault{0, "light", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "light.dim", "must be in [0, 1e6]"};
@@ -64,7 +65,7 @@ class Check {
 
   std::optional<EditFault> operator()(const ObjectEdit& edit) {
     const SceneObject* object = objects_.find(edit.name);
-    if (!object || is_taken_back(*object)) return unknown("object", edit.name);
+    if (!object || is_taken_back(*object)) return unknown<SceneObject>("object", edit.name, scene_.objects);
     if (!edit.dim && !edit.move && !edit.turn && !edit.turn_axis && !edit.scale && !edit.hidden)
       return EditFault{0, "object", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
@@ -74,6 +75,7 @@ class Check {
       return EditFault{0, "object.turn_axis", "must not be zero"};
     if (edit.scale && !(*edit.scale >= least_scale && *edit.scale <= most_scale))
       return EditFault{0, "object.scale", "must be in [0.01, 100]"};
+    if (!has_parts(*object)) return EditFault{0, edit.move ? "object.move" : "object", nothing_to_edit(*object)};
     return edit.move ? fault_of_move(*object, edit) : std::nullopt;
   }
 
@@ -104,15 +106,47 @@ class Check {
   std::optional<EditFault> fault_of_move(const SceneObject& object, const ObjectEdit& edit) {
     if (!boxes_) boxes_.emplace(scene_);
     BoundingBox box = boxes_->of_object[static_cast<std::size_t>(&object - scene_.objects.data())];
-    if (box.is_empty()) return EditFault{0, "object.move", "'" + object.name + "' has no faces"};
+    if (box.is_empty()) return EditFault{0, "object.move", nothing_to_edit(object)};
     const BoundingBox most = about(boxes_->of_scene);
-    const Vec3 move = *edit.move, middle = lerp(box.low, box.high, 0.5);
+    const Vec3 move = *edit.move;
+    if (!std::isfinite(length(move))) return EditFault{0, "object.move", "must be finite"};
+    const Vec3 middle = lerp(box.low, box.high, 0.5);
     box.low = lerp(middle, box.low, edit.scale.value_or(1)), box.high = lerp(middle, box.high, edit.scale.value_or(1));
-    if (std::isfinite(length(move)) && most.holds(box.low + move) && most.holds(box.high + move)) return {};
+    if (most.holds(box.low + move) && most.holds(box.high + move)) return {};
     return EditFault{0, "object.move", "'" + object.name + "' would lie farther from the scene than the scene is long"};
   }
-  static EditFault unknown(const std::string& kind, const std::string& name) {
-    return {0, kind + ".name", "'" + name + "' is no " + kind + " of the scene"};
+  /// Returns whether an object, or one that hangs from it, has faces, or lights that were added with it.
+  bool has_parts(const SceneObject& object) const {
+    const auto place = static_cast<std::size_t>(&object - scene_.objects.data());
+    return std::ranges::any_of(scene_.objects, [&](const SceneObject& other) {
+      if (other.face_count == 0 && other.added_lights == 0) return false;
+      auto at = static_cast<std::size_t>(&other - scene_.objects.data());
+      while (at != place && scene_.objects[at].parent) at = *scene_.objects[at].parent;
+      return at == place;
+    });
+  }
+  std::string nothing_to_edit(const SceneObject& object) {
+    const std::string has_no_faces = "'" + object.name + "' has no faces";
+    return lights_.find(object.name) ? has_no_faces + ": edit it as a light" : has_no_faces;
+  }
+  /// Tells some names that there are: of parts that are shown.
+  template <class Part>
+  static EditFault unknown(const std::string& kind, const std::string& name, std::span<const Part> parts) {
+    constexpr std::size_t most_names = 8, longest_name = 64;
+    std::string names;
+    std::size_t told = 0, left = 0;
+    for (const Part& part : parts) {
+      if constexpr (requires { part.is_hidden; })
+        if (part.is_hidden) continue;
+      if (part.name.empty()) continue;
+      const bool is_told = told < most_names && part.name.size() <= longest_name;
+      if (is_told) names += (told++ == 0 ? "'" : ", '") + part.name + "'";
+      else ++left;
+    }
+    std::string text = "'" + name + "' is no " + kind + " of the scene";
+    if (told > 0) text += "; there " + std::string(told + left == 1 ? "is " : "are ") + names;
+    if (told > 0 && left > 0) text += " and " + std::to_string(left) + " more";
+    return {0, kind + ".name", text};
   }
   static bool is_within(const Rgb& value, double most) { return value.is_finite() && value.min() >= 0 && value.max() <= most; }
   static bool is_share(const Rgb& value) { return value.is_finite() && value.min() >= 0 && value.max() < 1; }

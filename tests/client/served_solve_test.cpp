@@ -98,6 +98,18 @@ TEST_F(ServedSolve, IsReportedAndComparedWithPathTracing) {
   EXPECT_NE(page.find("Made from " + solve_ + " (two_lamps.obj)"), std::string::npos);
 }
 
+TEST_F(ServedSolve, IsProbedAsItsSolutionFileIs) {
+  std::ofstream(file("points.csv")) << "0.7,0,0.9,0,1,0\n1.1,0,1.3,0,1,0\n";
+  ASSERT_EQ(run("watch " + solve_ + at_server() + " -o room.glb").status, 0);
+  const Ran of_file = run("probe room.glb --points points.csv"),
+            served = run("probe " + solve_ + at_server() + " --points points.csv");
+  ASSERT_EQ(served.status, 0) << served.err;
+  EXPECT_EQ(std::ranges::count(served.out, '\n'), 3);
+  EXPECT_EQ(served.out, of_file.out);
+  EXPECT_EQ(run("probe " + solve_ + " --points points.csv").status, 2);
+  EXPECT_EQ(run("probe " + solve_ + at_server() + " --points points.csv --absorption 1,1,1").status, 2);
+}
+
 TEST_F(ServedSolve, GivesTheSameSolutionInAllFiles) {
   ASSERT_EQ(run("watch " + solve_ + at_server() + " -o room.glb").status, 0);
   ASSERT_EQ(run("watch " + solve_ + at_server() + " -o room.alvor").status, 0);

@@ -85,6 +85,18 @@ TEST(ErrorStatistics, LessErrorThanNoiseIsNone) {
   EXPECT_EQ(error_statistics({}).nrmse.high, 0);
 }
 
+TEST(ErrorStatistics, ErrorsThatAreLostInNoiseAreNotToldToBeNone) {
+  constexpr double error = 0.001;
+  NoisyPoints points(error, 0.05);
+  int without_error = 0;
+  for (int n = 0; n < 200; ++n) {
+    const ErrorStatistics statistics = error_statistics(points.draw(300));
+    without_error += statistics.nrmse.value == 0;
+    EXPECT_GE(statistics.nrmse.high, error);
+  }
+  EXPECT_GT(without_error, 20);
+}
+
 TEST(ErrorStatistics, AValueThatIsNotANumberIsNoSmallError) {
   const ComparedPoint points[] = {{.solution = 1, .truth = 1},
                                   {.solution = std::numeric_limits<double>::quiet_NaN(), .truth = 1}};

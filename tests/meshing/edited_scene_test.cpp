@@ -361,5 +361,37 @@ TEST(EditedScene, FaultsNameTheFirstEditThatCannotBe) {
   }
 }
 
+TEST(EditedScene, WhatHasNoFacesCannotBeHiddenOrDimmedAsAnObject) {
+  Scene scene = lamps();
+  const auto at = static_cast<std::uint32_t>(scene.objects.size());
+  scene.objects.push_back({.name = "bulb"});
+  scene.objects.push_back({.name = "group"});
+  scene.objects.push_back({.name = "box", .parent = at + 1, .first_face = 0, .face_count = 1});
+  scene.objects[0].face_count = 0;
+  scene.lights = {{"bulb", LightKind::point, {1, 1, 1}, {1, 2, 1}}};
+  const auto reason = [&](const SceneEdit& edit) {
+    const auto fault = fault_in(std::vector{edit}, scene);
+    return fault ? fault->reason : "";
+  };
+  EXPECT_EQ(reason(ObjectEdit{.name = "bulb", .hidden = true}), "'bulb' has no faces: edit it as a light");
+  EXPECT_EQ(reason(ObjectEdit{.name = "bulb", .dim = 0}), "'bulb' has no faces: edit it as a light");
+  EXPECT_EQ(reason(ObjectEdit{.name = "group", .hidden = true}), "") << "what hangs from it has faces";
+}
+
+TEST(EditedScene, UnknownNamesAreAnsweredWithThoseThatThereAre) {
+  Scene scene = lamps();
+  const auto reason = [&](const SceneEdit& edit) { return fault_in(std::vector{edit}, scene)->reason; };
+  EXPECT_EQ(reason(LightEdit{.name = "bulp", .dim = 1}), "'bulp' is no light of the scene");
+  scene.lights = {{"bulb", LightKind::point, {1, 1, 1}, {1, 2, 1}}};
+  EXPECT_EQ(reason(LightEdit{.name = "bulp", .dim = 1}), "'bulp' is no light of the scene; there is 'bulb'");
+  for (int n = 1; n < 10; ++n) scene.lights.push_back({"lamp " + std::to_string(n), LightKind::point, {1, 1, 1}, {1, 2, 1}});
+  scene.lights[1].is_hidden = true;
+  scene.lights[2].name = std::string(1000, 'x');
+  const std::string text = reason(LightEdit{.name = "bulp", .dim = 1});
+  EXPECT_NE(text.find("'bulb', 'lamp 3'"), std::string::npos) << text;
+  EXPECT_LT(text.size(), 200u);
+  EXPECT_NE(text.find("and 1 more"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace alvor

@@ -138,11 +138,13 @@ void run_edit(const EditCommand& command) {
   const v1::EditSolveResponse edited = client.edit_solve(command.solve, step, command.base_revision);
   additions.keep();
   notes() << "edits of revision " << edited.revision() << '\n';
+  if (edited.state() == v1::Solve::PAUSED) notes() << "the solve is paused: it heeds them when it is resumed\n";
   if (!command.wait || edited.state() == v1::Solve::PAUSED) return;
   const FollowOptions options{std::chrono::steady_clock::now(), false};
   const Followed followed = follow(client, client.get_solve(command.solve), options, interrupt.token());
   if (followed.solve.state() == v1::Solve::FAILED)
     throw Failure(ExitStatus::failed, "the solve failed: " + followed.solve.end_reason());
+  if (followed.solve.state() == v1::Solve::CANCELLED) throw Failure(ExitStatus::failed, "the solve was cancelled");
   const Step last = followed.mirror.steps().empty() ? Step{} : followed.mirror.steps().back();
   notes() << "estimated error " << percent(last.estimated_error) << ", " << compact(static_cast<double>(last.rays))
           << " rays: " << (followed.solve.end_reason().empty() ? "still running" : followed.solve.end_reason()) << '\n';

@@ -2,8 +2,11 @@
 
 #include "client/command/commands/commands.h"
 #include "client/command/commands/outputs.h"
+#include "client/command/commands/served_solution.h"
 #include "client/command/options/absorption_option.h"
 #include "client/command/options/input_file.h"
+#include "client/command/options/served_solve_option.h"
+#include "client/command/options/solve_name.h"
 #include "client/command/output/notes.h"
 #include "client/command/output/output_file.h"
 #include "client/verify/probe.h"
@@ -18,6 +21,7 @@ namespace {
 
 struct ProbeCommand {
   std::filesystem::path solution;
+  ServerChoice server;  ///< given: `solution` is the name of a solve
   std::filesystem::path points;
   OutputFile output;       ///< stdout if not asked for
   std::string format;      ///< format of a solution from stdin
@@ -34,13 +38,29 @@ void warn_of_enclosed(std::span<const ProbeSample> samples) {
       std::to_string(first + 1)});
 }
 
-void run_probe(const ProbeCommand& command) {
+void require_what_is_read(const ProbeCommand& command) {
+  if (command.server.is_given()) {
+    scene_name_of(command.solution);  // before a server is asked
+    return require_inputs({{InputKind::points, command.points}}, "");
+  }
+  require_server(command.server, command.solution);
   require_inputs({{InputKind::solution, command.solution}, {InputKind::points, command.points}}, command.format);
-  require_output(command.output, table_kind, "--output");
-  const std::vector<ProbePoint> points = read_asked_points(command.points);
+}
+
+std::vector<ProbeSample> samples_of(const ProbeCommand& command, std::span<const ProbePoint> points) {
+  if (command.server.is_given()) {
+    const ServedSolve solve = read_served_solve(command.server, command.solution);
+    return probe(solve.mesh, points, solve.scene.absorption);
+  }
   Scene medium;
   take_absorption(command.absorption, medium);
-  const std::vector<ProbeSample> samples = probe(read_solution(command.solution, command.format), points, medium.absorption);
+  return probe(read_solution(command.solution, command.format), points, medium.absorption);
+}
+
+void run_probe(const ProbeCommand& command) {
+  require_what_is_read(command);
+  require_output(command.output, table_kind, "--output");
+  const std::vector<ProbeSample> samples = samples_of(command, read_asked_points(command.points));
   warn_of_enclosed(samples);
   write_output(command.output.path.empty() ? "-" : command.output.path, samples_csv(samples));
 }
@@ -50,7 +70,9 @@ void run_probe(const ProbeCommand& command) {
 void add_probe_command(CLI::App& app) {
   const auto options = std::make_shared<ProbeCommand>();
   CLI::App& command = *app.add_subcommand("probe", "Read irradiance and radiosity of a solution at points");
-  command.add_option("solution", options->solution, "Solution file that alvor solve wrote; - is stdin")
+  command
+      .add_option("solution", options->solution,
+                  "Solution file that alvor solve wrote, or scenes/SCENE/solves/SOLVE on a server; - is stdin")
       ->required()
       ->type_name("SOLUTION");
   add_format_option(command, options->format);
@@ -60,6 +82,7 @@ void add_probe_command(CLI::App& app) {
   add_absorption_option(command, options->absorption);
   add_output_option(command, options->output, table_kind, "Table to write instead of printing it: .csv or .txt")
       ->type_name("OUT.csv");
+  add_served_solve_option(command, options->server);
   command.callback([options] { run_probe(*options); });
 }
 

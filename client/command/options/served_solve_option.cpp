@@ -11,7 +11,8 @@ void add_served_solve_option(CLI::App& command, ServerChoice& server, std::initi
   CLI::Option& option =
       add_server_option(command, server, "Server of the solve; its newest state is taken, with the scene as edits have made it");
   const auto exclude = [&](std::initializer_list<const char*> names) {
-    for (const char* name : names) option.excludes(command.get_option(name));
+    for (const char* name : names)
+      if (CLI::Option* const other = command.get_option_no_throw(name)) option.excludes(other);
   };
   exclude({"--format", "--absorption", "--translucent", "--up", "--light-scale", "--quantity", "--luminaire",
            "--luminous-efficacy", "--sun", "--place", "--time", "--sun-light", "--sky", "--sky-light", "--ground", "--north",

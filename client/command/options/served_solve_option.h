@@ -14,8 +14,8 @@ namespace alvor {
 inline constexpr const char* scene_or_solve =
     "OBJ, glTF, GLB or another scene file, or scenes/SCENE/solves/SOLVE on a server; - is stdin";
 
-/// Adds --server and what belongs to it. With it none of the options can be given that say how a scene file is read, nor
-/// `others`. Requires: the command has `others` already, and the options of add_scene_options() and add_format_option().
+/// Adds --server and what belongs to it. With it none of the options can be given that say how a scene or solution file is read,
+/// nor `others`, of those that the command has already.
 void add_served_solve_option(CLI::App& command, ServerChoice& server, std::initializer_list<const char*> others = {});
 
 /// Throws Failure (usage) if a file that is to be read is not there and has the name of a solve, but no server was chosen.

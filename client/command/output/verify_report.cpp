@@ -62,6 +62,9 @@ std::string interval(const Confidence& confidence) {
   return "95 %: " + percent(confidence.low) + " to " + percent(confidence.high);
 }
 
+/// Returns whether the truth's noise is all that was seen.
+bool is_lost_in_noise(const ErrorStatistics& errors) { return errors.nrmse.value == 0 && errors.truth_error > 0; }
+
 Json json_of(const Confidence& confidence) {
   return {{"value", confidence.value}, {"low", confidence.low}, {"high", confidence.high}};
 }
@@ -85,7 +88,8 @@ Json json_of(const Scene& scene, const VerifiedPoint& point) {
 std::string verify_summary(const Scene& scene, const Verification& verification, const VerifyTimes& times) {
   const ErrorStatistics& errors = verification.errors;
   std::vector<std::vector<std::string>> rows{
-      {"nRMSE", percent(errors.nrmse.value), interval(errors.nrmse)},
+      {"nRMSE", percent(errors.nrmse.value),
+       interval(errors.nrmse) + (is_lost_in_noise(errors) ? "; less than so many paths can tell" : "")},
       {"bias", percent(errors.bias.value), interval(errors.bias)},
       {"relative RMS", percent(errors.relative_rms), "over points; nRMSE is relative to the mean"},
       {"truth", percent(errors.truth_error), "its standard error, already taken out of the errors above"},
