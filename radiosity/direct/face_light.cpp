@@ -57,12 +57,19 @@ class EvenInAngle {
 
 }  // namespace
 
+bool is_before(Vec3 at, std::span<const Vec3> face, Vec3 normal) {
+  constexpr double in_plane = 1e-9;  // height, in edges
+  const Vec3 along = face[1] - face[0], other = face.back() - face[0];
+  const double height = dot(at - face[0], normal);
+  return height > 0 && height * height > in_plane * in_plane * (dot(along, along) + dot(other, other));
+}
+
 FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission, double cover)
     : LightSource(root, emission, cover * emission.sum() * scene.mesh().roots()[root].area), scene_(scene) {}
 
 double FaceLight::unblocked(Vec3 at, Vec3 normal) const {
   const auto corners = scene_.corners(root());
-  return dot(at - corners[0], scene_.mesh().roots()[root()].normal) > 0 ? point_to_polygon(at, normal, corners) : 0;
+  return is_before(at, corners, scene_.mesh().roots()[root()].normal) ? point_to_polygon(at, normal, corners) : 0;
 }
 
 void FaceLight::aim(const ShadowAim& aim, std::size_t first, std::size_t last) const {

@@ -2,6 +2,7 @@
 
 #include "meshing/disjoint_sets.h"
 #include "meshing/patch_reflectance.h"
+#include "radiosity/direct/face_light.h"
 #include "radiosity/form_factors/form_factor.h"
 
 #include <algorithm>
@@ -59,7 +60,7 @@ double MeshLight::brings(const LitFace& face, Vec3 at, Vec3 normal) const {
     return here > 0 && there > 0 ? here * there * face.area / (std::numbers::pi * squared * squared) : 0;
   }
   const auto corners = scene_.corners(face.root);
-  return dot(at - corners[0], face.normal) > 0 ? point_to_polygon(at, normal, corners) : 0;
+  return is_before(at, corners, face.normal) ? point_to_polygon(at, normal, corners) : 0;
 }
 
 double MeshLight::unblocked(Vec3 at, Vec3 normal) const {

@@ -272,6 +272,28 @@ TEST(MeshLight, BringsWhatItsFacesBring) {
   }
 }
 
+// Blender's exporter makes all materials two-sided unless it is told otherwise. The back of each face lies in the plane of its
+// front.
+TEST(MeshLight, OfTwoSidesShinesOnItsInsideAsAClosedSurfaceDoesAndNotOnItsOutside) {
+  Scene scene = test::coloured_room();
+  scene.materials.push_back(test::grey(20, 0));
+  scene.materials.back().two_sided = true;
+  test::add_globe(scene, {3.013, 2.017, 2.031}, 0.25, 1, 3);
+  const BaseMesh mesh(scene);
+  const LocalScene local(mesh);
+  const OwnedLights lights = lights_of_faces(local, EmissionUnit(mesh));
+  const LightSource& globe = *lights.back();
+  for (std::uint32_t root = globe.number(); root < mesh.roots().size(); ++root) {
+    const RootPatch& patch = mesh.roots()[root];
+    const PatchShape shape = PatchShape::whole(root, patch.corner_count);
+    const bool is_inside = dot(patch.normal, Vec3{3.013, 2.017, 2.031} - patch.at(0.3, 0.3)) > 0;
+    for (int k = 0; k < 4; ++k) {
+      const Uv at = shape.quarter_centre(k);
+      EXPECT_NEAR(globe.unblocked(local.frame().to_local(patch.at(at.u, at.v)), patch.normal), is_inside, 1e-9);
+    }
+  }
+}
+
 // As one light the globe casts shadows without the noise of drawing its faces.
 TEST(MeshLight, OfManyFacesIsAsEasyAsASphere) {
   const auto outcome_of = [](const Scene& scene) {
