@@ -27,8 +27,8 @@ enum class LightmapUnit { irradiance, irradiance_over_pi };
 /// it.
 enum class LightmapFormat { png, exr };
 
-/// Which side of a surface with two sides is shown. inner: the one that looks less out of the scene, as that of a wall to its
-/// room does, and where both do alike the brighter one.
+/// Which side of a surface with two sides is shown. inner: the one from which fewer diffuse paths leave the scene, as that of a
+/// wall to its room; the brighter one where both are alike, or where one has next to no light, as the inside of a solid.
 enum class BakedSide { inner, brighter };
 
 struct BakeOptions {

@@ -111,10 +111,10 @@ bool SolvedSurface::is_covered(Vec3 point, Vec3 normal, double dark) const {
   return mostly([](UnitPair at) { return at; }) && mostly([](UnitPair at) { return UnitPair{at.u, 1 - grazing * grazing}; });
 }
 
-double SolvedSurface::leaving_share(Vec3 point, Vec3 normal) const {
-  constexpr std::uint32_t walks = 8;
+double SolvedSurface::leaving_share(Vec3 point, Vec3 normal, std::uint64_t seed) const {
+  constexpr std::uint32_t walks = 8;  // chosen, as is the next
   constexpr int steps = 3;
-  PathRandom random(0, 0, 0);
+  PathRandom random(0, seed, 0);
   const EvenPairs first(random);
   std::uint32_t left = 0;
   for (std::uint32_t walk = 0; walk < walks; ++walk) {

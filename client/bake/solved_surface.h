@@ -36,9 +36,10 @@ class SolvedSurface {
   /// light comes and nobody looks: most of eight rays above the surface, and most of eight along it, meet sides with no more than
   /// `dark`, W/m2, or backs. What is in a shadow of the room sees lit surfaces.
   bool is_covered(Vec3 point, Vec3 normal, double dark) const;
-  /// Returns the share of walks from the side of a surface that faces along `normal` (unit) that leave the scene within three
-  /// diffuse reflections: near 0 in a room, also with a window, and near 1 on the outside of its walls. Of few walks.
-  double leaving_share(Vec3 point, Vec3 normal) const;
+  /// Returns the share of diffuse paths from the side of a surface that faces along `normal` (unit) that leave the scene before
+  /// they have met three surfaces, of eight paths: small in a room with windows, and near 1 on the outside of its walls. All
+  /// surfaces count as opaque. `seed`: another number gives other paths.
+  double leaving_share(Vec3 point, Vec3 normal, std::uint64_t seed) const;
 
  private:
   struct Part {

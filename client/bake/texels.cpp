@@ -54,41 +54,58 @@ std::array<double, 2> texel_of(const PlacedChart& chart, const ChartPlace& place
 
 namespace {
 
-/// What is known of a side of a chart: sums over some of its points.
-struct SideSums {
-  double light = 0, leaving = 0;  ///< irradiance, mean over bands; SolvedSurface::leaving_share()
-
-  void add(const PlacedChart& chart, const SolvedSurface& surface, const Vec3& at, const Vec3& normal, bool looks_around) {
-    if (const auto sample = surface.at(chart.object, at, normal)) light += sample->irradiance.mean();
-    if (looks_around) leaving += surface.leaving_share(at, normal);
-  }
+/// A place on a chart, and the normal of its front there.
+struct FrontPoint {
+  Vec3 at, normal;
 };
+
+/// Returns some points of a chart, of at most `most` triangles, off their middles: the middle of a rectangle is on the diagonal
+/// that cuts it.
+std::vector<FrontPoint> some_points(const PlacedChart& chart, std::size_t most) {
+  std::vector<FrontPoint> points;
+  const auto& triangles = chart.chart->triangles;
+  const std::size_t step = (triangles.size() + most - 1) / most;
+  for (std::size_t n = 0; n < triangles.size(); n += step) {
+    const Vec3 normal = placed_normal(chart, triangles[n]);
+    if (normal == Vec3{}) continue;
+    for (const auto& [u, v] : {std::pair(0.2, 0.2), std::pair(0.6, 0.2), std::pair(0.2, 0.6)})
+      points.push_back({placed_point(chart, triangles[n], u, v), normal});
+  }
+  return points;
+}
+
+/// Returns the sum of the irradiance, mean over bands, at points of a chart's front (`side` 1) or back (-1).
+double light_on(const PlacedChart& chart, const SolvedSurface& surface, double side) {
+  constexpr std::size_t most = 64;
+  double sum = 0;
+  for (const auto& [at, normal] : some_points(chart, most))
+    if (const auto sample = surface.at(chart.object, at, side * normal)) sum += sample->irradiance.mean();
+  return sum;
+}
+
+/// Returns by how much more of what leaves the front leaves the scene (SolvedSurface::leaving_share) than of what leaves the
+/// back.
+double leaves_front_more(const PlacedChart& chart, const SolvedSurface& surface) {
+  constexpr std::size_t most = 8;
+  double sum = 0;
+  const auto points = some_points(chart, most);
+  for (std::size_t n = 0; n < points.size(); ++n)
+    sum += surface.leaving_share(points[n].at, points[n].normal, n) - surface.leaving_share(points[n].at, -points[n].normal, n);
+  return points.empty() ? 0 : sum / static_cast<double>(points.size());
+}
 
 }  // namespace
 
 ShownSide shown_side(const PlacedChart& chart, const SolvedSurface& surface, BakedSide wanted) {
   if (!chart.may_show_back) return {};
-  constexpr std::size_t most = 64;
-  const bool looks_around = wanted == BakedSide::inner;
-  SideSums front, back;
-  double points = 0;
-  const auto& triangles = chart.chart->triangles;
-  const std::size_t step = std::max<std::size_t>(1, triangles.size() / most);
-  for (std::size_t n = 0; n < triangles.size(); n += step) {
-    const Vec3 normal = placed_normal(chart, triangles[n]);
-    // Off the middle: the middle of a rectangle is on the diagonal that cuts it.
-    for (const auto& [u, v] : {std::pair(0.2, 0.2), std::pair(0.6, 0.2), std::pair(0.2, 0.6)}) {
-      const Vec3 at = placed_point(chart, triangles[n], u, v);
-      front.add(chart, surface, at, normal, looks_around);
-      back.add(chart, surface, at, -1.0 * normal, looks_around);
-      points += 1;
-    }
-  }
-  // The top of a table outdoors and its lower side differ by less: what the lower side sees looks at the sky itself.
-  constexpr double clearly = 0.3, much = 0.1;
-  const double difference = front.leaving - back.leaving;
-  const bool is_back = std::abs(difference) > clearly * points ? difference > 0 : back.light > front.light;
-  return {is_back, (is_back ? front.light : back.light) > much * (is_back ? back.light : front.light)};
+  // Chosen. A side with less than `lit` of the other's light is the inside of a solid, and not of a room. `clearly` is half of
+  // what a wall of a room with windows has; between the sides of a table top outdoors it is less.
+  constexpr double lit = 1e-3, clearly = 0.3, much = 0.1;
+  const double front = light_on(chart, surface, 1), back = light_on(chart, surface, -1);
+  bool is_back = back > front;
+  if (wanted == BakedSide::inner && std::min(front, back) > lit * std::max(front, back))
+    if (const double more = leaves_front_more(chart, surface); std::abs(more) > clearly) is_back = more > 0;
+  return {is_back, (is_back ? front : back) > much * (is_back ? back : front)};
 }
 
 void spread(LightPage& page, const ChartPlace& within, int times) {

@@ -3,7 +3,6 @@
 #include "meshing/edit/named_parts.h"
 #include "meshing/edit/object_boxes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,7 +28,7 @@ class Check {
 
   std::optional<EditFault> operator()(const MaterialEdit& edit) {
     const Material* material = materials_.find(edit.name);
-    if (!material) return unknown<Material>("material", edit.name, scene_.materials);
+    if (!material) return unknown("material", edit.name, scene_.materials, [](std::size_t) { return true; });
     if (!edit.emission && !edit.reflectance && !edit.diffuse_transmittance) return EditFault{0, "material", "sets nothing"};
     if (edit.emission && !is_within(*edit.emission, most_emission))
       return EditFault{0, "material.emission", "must be in [0, 1e30]"};
@@ -45,7 +44,8 @@ class Check {
 
   std::optional<EditFault> operator()(const LightEdit& edit) {
     const Light* light = lights_.find(edit.name);
-    if (!light || light->is_hidden) return unknown<Light>("light", edit.name, scene_.lights);
+    if (!light || light->is_hidden)
+      return unknown("light", edit.name, scene_.lights, [this](std::size_t n) { return !scene_.lights[n].is_hidden; });
     if (!edit.dim && !edit.intensity && !edit.position && !edit.direction && !edit.cone && !edit.web)
       return EditFault{0, "light", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "light.dim", "must be in [0, 1e6]"};
@@ -65,7 +65,8 @@ class Check {
 
   std::optional<EditFault> operator()(const ObjectEdit& edit) {
     const SceneObject* object = objects_.find(edit.name);
-    if (!object || is_taken_back(*object)) return unknown<SceneObject>("object", edit.name, scene_.objects);
+    if (!object || is_taken_back(*object))
+      return unknown("object", edit.name, scene_.objects, [this](std::size_t n) { return has_faces(n); });
     if (!edit.dim && !edit.move && !edit.turn && !edit.turn_axis && !edit.scale && !edit.hidden)
       return EditFault{0, "object", "sets nothing"};
     if (edit.dim && !is_dim(*edit.dim)) return EditFault{0, "object.dim", "must be in [0, 1e6]"};
@@ -75,7 +76,7 @@ class Check {
       return EditFault{0, "object.turn_axis", "must not be zero"};
     if (edit.scale && !(*edit.scale >= least_scale && *edit.scale <= most_scale))
       return EditFault{0, "object.scale", "must be in [0.01, 100]"};
-    if (!has_parts(*object)) return EditFault{0, edit.move ? "object.move" : "object", nothing_to_edit(*object)};
+    if (!has_faces(place_of(*object))) return no_faces(*object, edit.move ? "object.move" : "object");
     return edit.move ? fault_of_move(*object, edit) : std::nullopt;
   }
 
@@ -105,8 +106,7 @@ class Check {
   /// The object must stay within a box about the scene that is longer than the scene by its length on each side.
   std::optional<EditFault> fault_of_move(const SceneObject& object, const ObjectEdit& edit) {
     if (!boxes_) boxes_.emplace(scene_);
-    BoundingBox box = boxes_->of_object[static_cast<std::size_t>(&object - scene_.objects.data())];
-    if (box.is_empty()) return EditFault{0, "object.move", nothing_to_edit(object)};
+    BoundingBox box = boxes_->of_object[place_of(object)];
     const BoundingBox most = about(boxes_->of_scene);
     const Vec3 move = *edit.move;
     if (!std::isfinite(length(move))) return EditFault{0, "object.move", "must be finite"};
@@ -115,37 +115,39 @@ class Check {
     if (most.holds(box.low + move) && most.holds(box.high + move)) return {};
     return EditFault{0, "object.move", "'" + object.name + "' would lie farther from the scene than the scene is long"};
   }
-  /// Returns whether an object, or one that hangs from it, has faces, or lights that were added with it.
-  bool has_parts(const SceneObject& object) const {
-    const auto place = static_cast<std::size_t>(&object - scene_.objects.data());
-    return std::ranges::any_of(scene_.objects, [&](const SceneObject& other) {
-      if (other.face_count == 0 && other.added_lights == 0) return false;
-      auto at = static_cast<std::size_t>(&other - scene_.objects.data());
-      while (at != place && scene_.objects[at].parent) at = *scene_.objects[at].parent;
-      return at == place;
-    });
+  std::size_t place_of(const SceneObject& object) const { return static_cast<std::size_t>(&object - scene_.objects.data()); }
+  /// Returns whether an object that is there, or one that hangs from it, has faces.
+  bool has_faces(std::size_t object) {
+    if (have_faces_.empty()) {
+      have_faces_.resize(scene_.objects.size());
+      for (std::size_t n = scene_.objects.size(); n-- > 0;) {  // parents come first
+        const SceneObject& of = scene_.objects[n];
+        have_faces_[n] = have_faces_[n] || (of.face_count > 0 && !is_taken_back(of));
+        if (of.parent && have_faces_[n]) have_faces_[*of.parent] = true;
+      }
+    }
+    return have_faces_[object];
   }
-  std::string nothing_to_edit(const SceneObject& object) {
-    const std::string has_no_faces = "'" + object.name + "' has no faces";
-    return lights_.find(object.name) ? has_no_faces + ": edit it as a light" : has_no_faces;
+  EditFault no_faces(const SceneObject& object, const std::string& field) {
+    const std::string hint = lights_.find(object.name) ? ": edit it as a light" : "";
+    return {0, field, "'" + object.name + "' has no faces" + hint};
   }
-  /// Tells some names that there are: of parts that are shown.
-  template <class Part>
-  static EditFault unknown(const std::string& kind, const std::string& name, std::span<const Part> parts) {
+  /// Tells some of the names that there are, of the parts that `counts`.
+  template <class Part, class Counts>
+  static EditFault unknown(const std::string& kind, const std::string& name, const std::vector<Part>& parts, Counts&& counts) {
     constexpr std::size_t most_names = 8, longest_name = 64;
     std::string names;
-    std::size_t told = 0, left = 0;
-    for (const Part& part : parts) {
-      if constexpr (requires { part.is_hidden; })
-        if (part.is_hidden) continue;
-      if (part.name.empty()) continue;
-      const bool is_told = told < most_names && part.name.size() <= longest_name;
-      if (is_told) names += (told++ == 0 ? "'" : ", '") + part.name + "'";
-      else ++left;
+    std::size_t told = 0, all = 0;
+    for (std::size_t n = 0; n < parts.size(); ++n) {
+      const std::string& there = parts[n].name;
+      if (there.empty() || !counts(n)) continue;
+      ++all;
+      if (told < most_names && there.size() <= longest_name) names += (told++ == 0 ? "'" : ", '") + there + "'";
     }
-    std::string text = "'" + name + "' is no " + kind + " of the scene";
-    if (told > 0) text += "; there " + std::string(told + left == 1 ? "is " : "are ") + names;
-    if (told > 0 && left > 0) text += " and " + std::to_string(left) + " more";
+    std::string text = (name.size() <= longest_name ? "'" + name + "'" : "a name of " + std::to_string(name.size()) + " bytes") +
+                       " is no " + kind + " of the scene";
+    if (told > 0) text += (all == 1 ? "; there is " : "; there are ") + names;
+    if (told > 0 && all > told) text += " and " + std::to_string(all - told) + " more";
     return {0, kind + ".name", text};
   }
   static bool is_within(const Rgb& value, double most) { return value.is_finite() && value.min() >= 0 && value.max() <= most; }
@@ -154,6 +156,7 @@ class Check {
 
   const Scene& scene_;
   std::optional<ObjectBoxes> boxes_;  // when an object is to be moved
+  std::vector<bool> have_faces_;      // by object, when asked for
   NamedParts<const Material> materials_;
   NamedParts<const Light> lights_;
   NamedParts<const SceneObject> objects_;

@@ -58,10 +58,13 @@ class EvenInAngle {
 }  // namespace
 
 bool is_before(Vec3 at, std::span<const Vec3> face, Vec3 normal) {
-  constexpr double in_plane = 1e-9;  // height, in edges
+  // Heights, in edges, up to which a point lies in the plane of a triangle but for rounding, and of a quad, which may be bent by
+  // 4e-6 (meshing/polygon.h); and in lengths of the scene, whose coordinates are rounded, too.
+  constexpr double of_triangle = 1e-9, of_quad = 4e-6, of_scene = 1e-12;
+  const double height = dot(at - face[0], normal), in_plane = face.size() == 4 ? of_quad : of_triangle;
+  if (height <= of_scene) return false;
   const Vec3 along = face[1] - face[0], other = face.back() - face[0];
-  const double height = dot(at - face[0], normal);
-  return height > 0 && height * height > in_plane * in_plane * (dot(along, along) + dot(other, other));
+  return height * height > in_plane * in_plane * (dot(along, along) + dot(other, other));
 }
 
 FaceLight::FaceLight(const LocalScene& scene, std::uint32_t root, const RelativeLight& emission, double cover)

@@ -8,7 +8,7 @@ namespace alvor {
 
 /// Returns whether a point lies before a face whose front is where `normal` (unit) points, and not in its plane but for rounding:
 /// seen from the back of a lamp with two sides, the form factor of its front would be 0 or 1, as rounding falls. `face` has three
-/// corners or four.
+/// corners or four, in local units.
 bool is_before(Vec3 at, std::span<const Vec3> face, Vec3 normal);
 
 /// A root patch that emits diffusely from its front. Unblocked irradiance is Lambert's contour formula; shadow rays go to points

@@ -179,7 +179,8 @@ class Run {
     if (live_.error_before_edit) publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
     pass_->begin_exchange();
     if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
-    if (requests_.ask().edited) return false;  // an exchange without steps has not asked
+    // An exchange without steps has not asked. A pass that is to be parked goes on to its estimate.
+    if (const auto& made = requests_.ask(); made.edited && !made.parked) return false;
     is_.error = pass_->estimate();
     live_.error_before_edit.reset();
     account();

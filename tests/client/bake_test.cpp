@@ -315,6 +315,26 @@ TEST(Bake, WallsBetweenARoomAndTheSunShowTheRoom) {
   EXPECT_NEAR(light_on_wall(BakedSide::brighter).second, 1, 0.1);
 }
 
+TEST(Bake, ACrateInTheSunShowsItsOutside) {
+  Scene scene;
+  scene.materials = {test::grey(0, 0.5)};
+  scene.materials[0].two_sided = true;
+  test::add_polygon(scene, {{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}});
+  test::add_box(scene, {0, 0.5, 0}, {1, 1.5, 1}, false);
+  Light sun{"sun", LightKind::directional, {60, 60, 60}};
+  sun.direction = normalized(Vec3{-1, -1, -1});
+  scene.lights = {sun};
+  const BakedFile baked(scene, solved(scene));
+  std::size_t looked_at = 0;
+  for_each_triangle(baked, [&](const BakedTriangle& triangle) {
+    const auto& [a, b, c] = triangle.corner;
+    if (a.x != 1 || b.x != 1 || c.x != 1) return;
+    ++looked_at;
+    EXPECT_GT(baked.light(triangle.primitive, triangle.place(0.3, 0.3, 0), triangle.place(0.3, 0.3, 1)), 30);
+  });
+  EXPECT_EQ(looked_at, 2u);
+}
+
 TEST(Bake, TwoSmallerMipLevelsMixNoCharts) {
   // The inside of the box is dark, its outside bright; each chart lies on texels of its own in images of half and a quarter of
   // the size.

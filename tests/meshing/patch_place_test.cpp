@@ -40,6 +40,23 @@ TEST(PatchPlace, ChildrenTileTheirParent) {
   }
 }
 
+TEST(PatchPlace, AQuadIsWhereWalkingDownFromItsRootLeads) {
+  const BaseMesh mesh(quad_and_triangle());
+  for (unsigned path = 0; path < 64; ++path) {
+    PatchId patch = PatchId::root(0);
+    PatchShape shape = PatchShape::whole(0, 4, mesh.roots()[0].strata_along_u);
+    for (int level = 0; level < PatchId::max_level; ++level) {
+      const int k = static_cast<int>((path * 0x9e3779b1u >> (2 * level)) & 3);
+      patch = patch.child(k), shape = shape.child(k);
+      const PatchShape found = shape_of(mesh, patch);
+      EXPECT_EQ(found.first, shape.first);
+      EXPECT_EQ(found.size_u, shape.size_u);
+      EXPECT_EQ(found.size_v, shape.size_v);
+    }
+  }
+  EXPECT_EQ(shape_of(mesh, PatchId::root(0)).size_u, grid_size);
+}
+
 TEST(PatchPlace, SlabsTileTheirParentSideBySide) {
   const BaseMesh mesh(quad_and_triangle());
   for (const Split how : {Split::slabs_along_u, Split::slabs_along_v})

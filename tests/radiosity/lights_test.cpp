@@ -275,22 +275,42 @@ TEST(MeshLight, BringsWhatItsFacesBring) {
 // Blender's exporter makes all materials two-sided unless it is told otherwise. The back of each face lies in the plane of its
 // front.
 TEST(MeshLight, OfTwoSidesShinesOnItsInsideAsAClosedSurfaceDoesAndNotOnItsOutside) {
-  Scene scene = test::coloured_room();
-  scene.materials.push_back(test::grey(20, 0));
-  scene.materials.back().two_sided = true;
-  test::add_globe(scene, {3.013, 2.017, 2.031}, 0.25, 1, 3);
-  const BaseMesh mesh(scene);
-  const LocalScene local(mesh);
-  const OwnedLights lights = lights_of_faces(local, EmissionUnit(mesh));
-  const LightSource& globe = *lights.back();
-  for (std::uint32_t root = globe.number(); root < mesh.roots().size(); ++root) {
-    const RootPatch& patch = mesh.roots()[root];
-    const PatchShape shape = PatchShape::whole(root, patch.corner_count);
-    const bool is_inside = dot(patch.normal, Vec3{3.013, 2.017, 2.031} - patch.at(0.3, 0.3)) > 0;
-    for (int k = 0; k < 4; ++k) {
-      const Uv at = shape.quarter_centre(k);
-      EXPECT_NEAR(globe.unblocked(local.frame().to_local(patch.at(at.u, at.v)), patch.normal), is_inside, 1e-9);
+  for (const auto& [offset, radius] : {std::pair{Vec3{}, 0.25}, {Vec3{}, 0.002}, {Vec3{1e6, 0, -1e6}, 0.25}}) {
+    Scene scene = test::coloured_room();
+    for (Vec3& vertex : scene.vertices) vertex = vertex + offset;
+    scene.materials.push_back(test::grey(20, 0));
+    scene.materials.back().two_sided = true;
+    const Vec3 middle = Vec3{3.013, 2.017, 2.031} + offset;
+    test::add_globe(scene, middle, radius, 1, 3);
+    const BaseMesh mesh(scene);
+    const LocalScene local(mesh);
+    const OwnedLights lights = lights_of_faces(local, EmissionUnit(mesh));
+    const LightSource& globe = *lights.back();
+    const double rounding = 1e-9 + 1e-15 * length(offset) / radius;
+    for (std::uint32_t root = globe.number(); root < mesh.roots().size(); ++root) {
+      const RootPatch& patch = mesh.roots()[root];
+      const bool is_inside = dot(patch.normal, middle - patch.at(0.3, 0.3)) > 0;
+      for (int k = 0; k < 4; ++k) {
+        const Uv at = PatchShape::whole(root, patch.corner_count).quarter_centre(k);
+        EXPECT_NEAR(globe.unblocked(local.frame().to_local(patch.at(at.u, at.v)), patch.normal), is_inside, 10 * rounding);
+      }
     }
+  }
+}
+
+TEST(FaceLight, ShinesOnWhatIsJustBeforeItAndNotOnItsBack) {
+  Scene scene;
+  scene.materials = {test::grey(5, 0)};
+  scene.materials[0].two_sided = true;
+  test::add_polygon(scene, {{0, 0, 0}, {1, 0.3, 0}, {1, 1.3, 0.2 + 1e-6}, {0, 1, 0.2}});  // bent, as float coordinates are
+  const BaseMesh mesh(scene);
+  ASSERT_EQ(mesh.roots().size(), 2u);
+  const LocalScene local(mesh);
+  const FaceLight front(local, 0, {1, 1, 1});
+  const RootPatch& patch = mesh.roots()[0];
+  for (const Uv at : {Uv{0.2, 0.2}, Uv{0.7, 0.3}, Uv{0.5, 0.9}}) {
+    EXPECT_EQ(front.unblocked(local.frame().to_local(patch.at(at.u, at.v)), -patch.normal), 0);
+    EXPECT_NEAR(front.unblocked(local.frame().to_local(patch.at(at.u, at.v) + 1e-4 * patch.normal), -patch.normal), 1, 1e-3);
   }
 }
 

@@ -210,7 +210,7 @@ void run_bake(const BakeCommand& command) {
   if (result.lit_from_both > 0)
     warn(std::array{std::to_string(result.lit_from_both) + " of " + std::to_string(result.charts) +
                     (result.pages > 0 ? " charts" : " primitives") +
-                    " with two sides have light on the one that is not shown (--side)"});
+                    " with two sides have light on the one that is not shown (see --side)"});
   write(command, result);
   notes() << summary_of(command, result);
 }
@@ -242,10 +242,10 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
           "surface, as those engines multiply by the colour (three)")
       ->check(CLI::IsMember(conventions));
   command
-      .add_option(
-          "--side", options.side,
-          "Which side is shown of surfaces with two sides. inner: the one that looks less out of the scene, and where both "
-          "do alike the brighter one; brighter (inner)")
+      .add_option("--side", options.side,
+                  "Which side is shown of surfaces with two sides. inner: that of a wall to its room, from which fewer diffuse "
+                  "paths leave the scene, and where both "
+                  "do alike the brighter one; brighter (inner)")
       ->check(CLI::IsMember(sides));
   command.add_flag("--keep-lights", options.bake.keeps_lights,
                    "Keep the file's lamps beside the lightmap, for things that move; viewers add their light once more");

@@ -237,7 +237,8 @@ std::string title_of(const ReportCommand& command, const Solved& solved) {
   if (!command.title.empty()) return command.title;
   if (is_stream(command.input)) return "Lighting of a scene";
   const std::filesystem::path subject = solved.scene_title.empty() ? command.input : std::filesystem::path(solved.scene_title);
-  return "Lighting of " + subject.stem().string();
+  const bool is_file = solved.scene_title.empty() || is_scene_extension(lower_case_extension(subject));
+  return "Lighting of " + (is_file ? subject.stem() : subject).string();
 }
 
 /// Returns the line that says whence a report comes.

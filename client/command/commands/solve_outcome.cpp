@@ -48,6 +48,16 @@ std::string text_of(const MeanLight& light) {
   return text;
 }
 
+/// Returns a hint where an error that is small beside the mean light may be large in a room: by day the outside of its walls
+/// makes the mean.
+std::string dim_area(const MeanLight& light) {
+  constexpr double much = 0.2;
+  if (light.dim_share < much) return {};
+  return percent(light.dim_share) +
+         " of the area has less than a tenth of the mean light, to which the error is relative: --area-share 0.95 keeps the "
+         "tolerance there, too\n";
+}
+
 }  // namespace
 
 std::string step_table(std::span<const Step> steps) {
@@ -58,11 +68,17 @@ std::string step_table(std::span<const Step> steps) {
 
 MeanLight mean_light(const BaseMesh& mesh, std::span<const LeafValue> leaves) {
   MeanLight light{.quantity = mesh.quantity()};
-  double power = 0;
-  for (const LeafValue& leaf : leaves)
-    power += area_of(mesh, shape_of(mesh, leaf.patch)) * one_number(widen(leaf.irradiance), light.quantity);
+  const auto irradiance_of = [&](const LeafValue& leaf) { return one_number(widen(leaf.irradiance), light.quantity); };
+  double power = 0, dim = 0;
+  for (const LeafValue& leaf : leaves) power += area_of(mesh, shape_of(mesh, leaf.patch)) * irradiance_of(leaf);
   for (const RootPatch& root : mesh.roots()) light.area += root.is_hidden ? 0 : root.area;
-  if (light.area > 0) light.irradiance = power / light.area;
+  if (!(light.area > 0)) return light;
+  light.irradiance = power / light.area;
+  constexpr double far_less = 0.1;
+  for (const LeafValue& leaf : leaves)
+    if (const double here = irradiance_of(leaf); here > 0 && here < far_less * light.irradiance)
+      dim += area_of(mesh, shape_of(mesh, leaf.patch));
+  light.dim_share = dim / light.area;
   return light;
 }
 
@@ -105,7 +121,8 @@ std::string summary(const Followed& followed, const MeanLight& light, std::span<
                                    : "";
   return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
          seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + by_place + ": " +
-         (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + (is_reached ? "" : text_of(errors)) + text_of(light);
+         (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + (is_reached ? "" : text_of(errors)) + text_of(light) +
+         (is_by_place ? "" : dim_area(light));
 }
 
 }  // namespace alvor

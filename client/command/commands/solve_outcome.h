@@ -18,6 +18,7 @@ std::string step_table(std::span<const Step> steps);
 struct MeanLight {
   double irradiance = 0;  ///< mean by area of one number for all bands (see one_number()), W/m2 or lx
   double area = 0;        ///< m2: fronts, and backs of two-sided faces
+  double dim_share = 0;   ///< share of the area that has light, but less than a tenth of the mean
   Quantity quantity = Quantity::radiometric;
 };
 
@@ -29,7 +30,7 @@ std::string outcome_json(const Followed& followed, const MeanLight& light, std::
                          std::span<const std::string> warnings);
 
 /// Returns lines for people: leaves, rays, seconds, estimated error, why it ended; where the error lies, if that was before the
-/// tolerance; mean light.
+/// tolerance; mean light, and whether much of the area has far less.
 std::string summary(const Followed& followed, const MeanLight& light, std::span<const ObjectError> errors);
 
 }  // namespace alvor
