@@ -280,7 +280,7 @@ void add_bake_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("bake", "Solve a scene and write it with its light in textures");
   command.add_option("scene", options->scene, scene_or_solve)->required()->type_name("SCENE");
   add_format_option(command, options->format);
-  add_output_option(command, options->output, baked_kind, "Scene to write: .glb; - is stdout")
+  add_output_option(command, options->output, baked_kind, "Scene to write: .glb")
       ->required()
       ->type_name("BAKED.glb");
   add_texture_options(command, *options);

@@ -27,11 +27,10 @@ struct Named {
   throw Failure(ExitStatus::usage, option + " '" + text + "': " + reason);
 }
 
-/// Names may contain colons, dots and signs of equality: the first colon and the last '=' count.
-Named split(const std::string& option, const std::string& text) {
+/// Names may contain colons, dots and signs of equality: the first colon and the last '=' count. `form`: how the text must be.
+Named split(const std::string& option, const std::string& text, const std::string& form) {
   const auto colon = text.find(':'), equals = text.rfind('=');
-  if (colon == std::string::npos || equals == std::string::npos || equals < colon)
-    refuse(option, text, "must be PART:NAME...=VALUE, with a part of material, light, object");
+  if (colon == std::string::npos || equals == std::string::npos || equals < colon) refuse(option, text, "must be " + form);
   return {text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
 }
 
@@ -77,7 +76,7 @@ void set_vector(std::span<const double> numbers, v1::Vector3& vector) {
 
 v1::Edit edit_of_setting(const std::string& setting) {
   const std::string option = "--set";
-  Named named = split(option, setting);
+  Named named = split(option, setting, "material:NAME.FIELD=VALUE or light:NAME.FIELD=VALUE");
   const auto dot = named.name.rfind('.');
   if (dot == std::string::npos) refuse(option, setting, "names no field: PART:NAME.FIELD=VALUE");
   const std::string field = named.name.substr(dot + 1);
@@ -116,7 +115,7 @@ v1::Edit edit_of_setting(const std::string& setting) {
 
 v1::Edit edit_of_dim(const std::string& dim) {
   const std::string option = "--dim";
-  const Named named = split(option, dim);
+  const Named named = split(option, dim, "light:NAME=FACTOR or object:NAME=FACTOR");
   const double factor = numbers_of(option, dim, named.value, 1)[0];
   v1::Edit edit;
   if (named.part == "light") {
