@@ -83,8 +83,7 @@ double light_on(const PlacedChart& chart, const SolvedSurface& surface, double s
   return sum;
 }
 
-/// Returns by how much more of what leaves the front leaves the scene (SolvedSurface::leaving_share) than of what leaves the
-/// back.
+/// Returns the leaving share of a chart's front (SolvedSurface::leaving_share) less that of its back, mean over some points.
 double leaves_front_more(const PlacedChart& chart, const SolvedSurface& surface) {
   constexpr std::size_t most = 8;
   double sum = 0;
@@ -98,8 +97,8 @@ double leaves_front_more(const PlacedChart& chart, const SolvedSurface& surface)
 
 ShownSide shown_side(const PlacedChart& chart, const SolvedSurface& surface, BakedSide wanted) {
   if (!chart.may_show_back) return {};
-  // Chosen. A side with less than `lit` of the other's light is the inside of a solid, and not of a room. `clearly` is half of
-  // what a wall of a room with windows has; between the sides of a table top outdoors it is less.
+  // All chosen. A side with less than `lit` of the other's light is taken for the inside of a solid, not of a room; a difference
+  // of leaving shares up to `clearly` for that of two sides in one room, or outdoors.
   constexpr double lit = 1e-3, clearly = 0.3, much = 0.1;
   const double front = light_on(chart, surface, 1), back = light_on(chart, surface, -1);
   bool is_back = back > front;
