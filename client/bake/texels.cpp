@@ -74,12 +74,11 @@ std::vector<FrontPoint> some_points(const PlacedChart& chart, std::size_t most) 
   return points;
 }
 
-/// Returns the sum of the irradiance, mean over bands, at points of a chart's front (`side` 1) or back (-1).
-double light_on(const PlacedChart& chart, const SolvedSurface& surface, double side) {
-  constexpr std::size_t most = 64;
+/// Returns the sum of the irradiance, mean over bands, at points of an object's front (`side` 1) or back (-1).
+double light_on(std::span<const FrontPoint> points, double side, std::size_t object, const SolvedSurface& surface) {
   double sum = 0;
-  for (const auto& [at, normal] : some_points(chart, most))
-    if (const auto sample = surface.at(chart.object, at, side * normal)) sum += sample->irradiance.mean();
+  for (const auto& [at, normal] : points)
+    if (const auto sample = surface.at(object, at, side * normal)) sum += sample->irradiance.mean();
   return sum;
 }
 
@@ -100,7 +99,9 @@ ShownSide shown_side(const PlacedChart& chart, const SolvedSurface& surface, Bak
   // All chosen. A side with less than `lit` of the other's light is taken for the inside of a solid, not of a room; a difference
   // of leaving shares up to `clearly` for that of two sides in one room, or outdoors.
   constexpr double lit = 1e-3, clearly = 0.3, much = 0.1;
-  const double front = light_on(chart, surface, 1), back = light_on(chart, surface, -1);
+  constexpr std::size_t most = 64;
+  const std::vector<FrontPoint> points = some_points(chart, most);
+  const double front = light_on(points, 1, chart.object, surface), back = light_on(points, -1, chart.object, surface);
   bool is_back = back > front;
   if (wanted == BakedSide::inner && std::min(front, back) > lit * std::max(front, back))
     if (const double more = leaves_front_more(chart, surface); std::abs(more) > clearly) is_back = more > 0;

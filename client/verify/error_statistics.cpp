@@ -39,7 +39,8 @@ Confidence nrmse_of(std::span<const ComparedPoint> points, double mean_truth) {
                           return scale * (squared_error(p) - mean_square - 2 * mean_square * (p.truth / mean_truth - 1));
                         });
   const double square = scale * mean_square;
-  // Where noise of the truth makes it negative, the true one is still 0 or more: the interval begins there.
+  // The estimate of the squared error is negative where the noise of the truth exceeds it. A squared error never is, so the upper
+  // end of its interval lies at least one spread above 0.
   return {positive_root(square), positive_root(square - spread), positive_root(std::max(square, 0.0) + spread)};
 }
 

@@ -20,7 +20,7 @@ namespace alvor {
 namespace {
 
 constexpr auto unlimited = std::numeric_limits<std::uint64_t>::max();
-constexpr std::uint64_t least_free = 64 << 20;
+constexpr std::uint64_t least_free = 64 << 20;  // for a solve that is ending, which was seen to take 52 MB more
 
 std::uint64_t page_size() { return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)); }
 

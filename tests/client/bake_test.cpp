@@ -284,6 +284,12 @@ TEST(Bake, NoDarknessLeaksFromBelowABox) { expect_no_darkness_leaks(room_with_a_
 // Blender's exporter makes all materials two-sided unless it is told otherwise.
 TEST(Bake, NoDarknessLeaksFromBelowABoxOfTwoSides) { expect_no_darkness_leaks(room_with_a_box_on_its_floor(true)); }
 
+Light sun_from_a_corner() {
+  Light sun{"sun", LightKind::directional, {60, 60, 60}};
+  sun.direction = normalized(Vec3{-1, -1, -1});
+  return sun;
+}
+
 // Walls of Blender's rooms often have no thickness, and two sides.
 TEST(Bake, WallsBetweenARoomAndTheSunShowTheRoom) {
   Scene scene;
@@ -292,9 +298,7 @@ TEST(Bake, WallsBetweenARoomAndTheSunShowTheRoom) {
   test::add_box(scene, {0, 0, 0}, {2, 2, 2}, false, {0, 0, 0, 1, 0, 0});
   scene.faces.erase(scene.faces.begin());  // a wall is missing
   scene.materials[1].two_sided = true;
-  Light sun{"sun", LightKind::directional, {60, 60, 60}};
-  sun.direction = normalized(Vec3{-1, -1, -1});
-  scene.lights = {sun};
+  scene.lights = {sun_from_a_corner()};
   const DisplayMesh solution = solved(scene);
   const SolvedSurface surface(solution, scene);
   const auto light_on_wall = [&](BakedSide side) {
@@ -321,9 +325,7 @@ TEST(Bake, ACrateInTheSunShowsItsOutside) {
   scene.materials[0].two_sided = true;
   test::add_polygon(scene, {{-3, 0, -3}, {-3, 0, 3}, {3, 0, 3}, {3, 0, -3}});
   test::add_box(scene, {0, 0.5, 0}, {1, 1.5, 1}, false);
-  Light sun{"sun", LightKind::directional, {60, 60, 60}};
-  sun.direction = normalized(Vec3{-1, -1, -1});
-  scene.lights = {sun};
+  scene.lights = {sun_from_a_corner()};
   const BakedFile baked(scene, solved(scene));
   std::size_t looked_at = 0;
   for_each_triangle(baked, [&](const BakedTriangle& triangle) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace alvor::test {
@@ -30,20 +31,17 @@ class EditedSolve {
     run();
   }
 
-  void edit(const Change& change, const AddedMeshes& added = {}) {
+  void edit(const Change& change, const AddedMeshes& added = {}, SolveControl control = {}) {
     change(scene_);
     mesh_ = submitted_.edited_as(scene_, added);
     ++edits_;
-    run();
+    run(std::move(control));
   }
   /// Edits, and asks for another edit as soon as a state is published.
   void edit_twice(const Change& change) {
     SolveControl control;
     control.is_edited = [this, before = log_.head()] { return log_.head() > before; };
-    change(scene_);
-    mesh_ = submitted_.edited_as(scene_, {});
-    ++edits_;
-    run(control);
+    edit(change, {}, std::move(control));
   }
   const Scene& scene() const { return scene_; }
   const BaseMesh& mesh() const { return mesh_; }
