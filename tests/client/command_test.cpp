@@ -43,6 +43,24 @@ TEST_F(Command, ImpossibleOptionValuesAreUsageErrors) {
     EXPECT_EQ(run("solve " + cornell_box + " " + option).status, 2) << option;
 }
 
+TEST_F(Command, FaultsOfAScriptOfEditsAreToldInPlainWords) {
+  const auto fault_of = [&](const std::string& script) {
+    write("edits.json", script);
+    const Ran ran = run("edit scenes/a/solves/b --server localhost:1 --script edits.json");
+    EXPECT_EQ(ran.status, 2);
+    return ran.err;
+  };
+  const std::pair<std::string, std::string> faults[]{
+      {R"({"edits": [{"light": {"name": "a", "dim": "half"}}]})", "edits[0].light.dim: \"half\" is no number"},
+      {R"({"edits": [{"object": {"name": "a", "hidden": 7}}]})", "edits[0].object.hidden: 7 is neither true nor false"},
+      {R"({"edits": [{"light": {"name": "a"}, "object": {"name": "b"}}]})", "edits[0]: 'object' is a second part"},
+      {R"({"edits": [{"light": {"nam": "a"}}]})", "edits[0].light: there is no field 'nam'"},
+      {R"({"edits": [{"object": {"name": "a", "move": [1, 2, 3]}}]})", "edits[0].object: 'move' is no list"},
+      {R"({"kind": "REPEAT"})", "kind: \"REPEAT\" is none of its values"}};
+  for (const auto& [script, told] : faults) EXPECT_NE(fault_of(script).find("edits.json: " + told), std::string::npos) << script;
+  EXPECT_LT(fault_of(R"({"edits": [{"light": {"dim": ")" + std::string(100'000, 'x') + R"("}}]})").size(), 400u);
+}
+
 TEST_F(Command, OutputsThatCannotBeWrittenAreFoundBeforeTheSolve) {
   for (const std::string option : {"-o room.obj", "-o nowhere/room.glb", "--report nowhere/r.csv"}) {
     const Ran ran = run("solve missing.obj " + option);

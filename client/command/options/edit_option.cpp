@@ -9,9 +9,11 @@
 #include <charconv>
 #include <fstream>
 #include <numbers>
+#include <regex>
 #include <span>
 #include <sstream>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace alvor {
@@ -194,6 +196,29 @@ v1::Edit edit_of_hidden(const std::string& name, bool hidden) {
   return edit;
 }
 
+namespace {
+
+/// Returns what the parser of JSON says of a script, in words for those who do not know protobuf. Long texts are cut off.
+std::string plain_words(std::string message) {
+  constexpr std::size_t longest = 300;
+  static const std::pair<std::regex, const char*> wordings[]{
+      {std::regex(R"(\((.*)\): invalid value (.*) for type TYPE_(DOUBLE|FLOAT))"), "$1: $2 is no number"},
+      {std::regex(R"(\((.*)\): invalid value (.*) for type TYPE_U?INT(32|64))"), "$1: $2 is no whole number"},
+      {std::regex(R"(\((.*)\): invalid value (.*) for type TYPE_BOOL)"), "$1: $2 is neither true nor false"},
+      {std::regex(R"(\((.*)\): invalid value (.*) for type TYPE_STRING)"), "$1: $2 is no text"},
+      {std::regex(R"(\((.*)\): invalid value (.*) for type type\.googleapis\.com/.*)"), "$1: $2 is none of its values"},
+      {std::regex(R"(\((.*)\): invalid value oneof .* Cannot set '(.*)' for type oneof)"),
+       "$1: '$2' is a second part; an edit has one"},
+      {std::regex(R"(\((.*)\) (.*): Cannot find field\.)"), "$1: there is no field '$2'"},
+      {std::regex(R"(\((.*)\) (.*): Proto field is not repeating, cannot start list\.)"), "$1: '$2' is no list"}};
+  if (message.size() > longest) return message.substr(0, longest) + "...";
+  for (const auto& [pattern, words] : wordings)
+    if (std::regex_match(message, pattern)) return std::regex_replace(message, pattern, words);
+  return message;
+}
+
+}  // namespace
+
 v1::EditStep step_of_script(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
@@ -201,7 +226,7 @@ v1::EditStep step_of_script(const std::string& path) {
   if (!file) throw Failure(ExitStatus::usage, "--script " + path + ": cannot be read");
   v1::EditStep step;
   const auto status = google::protobuf::util::JsonStringToMessage(text.str(), &step);
-  if (!status.ok()) throw Failure(ExitStatus::usage, "--script " + path + ": " + std::string(status.message()));
+  if (!status.ok()) throw Failure(ExitStatus::usage, "--script " + path + ": " + plain_words(std::string(status.message())));
   return step;
 }
 
