@@ -48,6 +48,9 @@ const click = async (page: Page, [x, y]: readonly [number, number]) => {
 };
 /** Clicks at a part of the room, and waits until the page has read it and chosen it: the list may name a part that nobody has chosen yet. */
 const choose = async (page: Page, at: readonly [number, number], part: string) => {
+  await page.focus("#room");
+  await page.keyboard.press("Escape"); // so that no reading is shown
+  await page.locator(`#edit-part option[value="${part}"]`).waitFor({ state: "attached" });
   await click(page, at);
   await page.locator("#reading").waitFor();
   expect(await page.inputValue("#edit-part")).toBe(part);
