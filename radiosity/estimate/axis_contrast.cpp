@@ -18,7 +18,8 @@ constexpr double sure = 2.6;
 AxisContrast::AxisContrast(const PatchShape& patch)
     : cells_(patch.corner_count == 4 ? &cells_of(patch.strata_along_u) : nullptr) {}
 
-AxisContrast::Cells::Cells(int strata_along_u) {
+AxisContrast::Cells::Cells(int strata_along_u)
+    : columns(static_cast<std::size_t>(strata_along_u)), rows(strata_per_patch / columns) {
   const PatchShape whole = PatchShape::whole(0, 4, strata_along_u);
   for (int o = 0; o < strata_per_patch; ++o) {
     const Uv at = whole.stratum_centre(o);
@@ -38,7 +39,7 @@ void AxisContrast::add(int stratum, double value) {
   for (Line* line : {&columns_[cells_->column[o]], &rows_[cells_->row[o]]}) line->sum += value, line->count += 1;
 }
 
-AxisContrast::Variance AxisContrast::variance_between(const Lines& lines) {
+AxisContrast::Variance AxisContrast::variance_between(std::span<const Line> lines) {
   double sum = 0, squares = 0, used = 0, shares = 0;
   for (const Line& line : lines) {
     if (line.count == 0) continue;
@@ -51,7 +52,8 @@ AxisContrast::Variance AxisContrast::variance_between(const Lines& lines) {
 
 Split AxisContrast::best_split(double noise) const {
   if (!cells_) return Split::quarters;
-  const Variance u = variance_between(columns_), v = variance_between(rows_);
+  const Variance u = variance_between(std::span(columns_).first(cells_->columns));
+  const Variance v = variance_between(std::span(rows_).first(cells_->rows));
   if (u.of_means - sure * noise * u.share_of_noise > worth_slabs * v.of_means) return Split::slabs_along_u;
   if (v.of_means - sure * noise * v.share_of_noise > worth_slabs * u.of_means) return Split::slabs_along_v;
   return Split::quarters;

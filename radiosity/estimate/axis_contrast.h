@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace alvor {
 
@@ -30,13 +31,14 @@ class AxisContrast {
   struct Cells {
     explicit Cells(int strata_along_u);
     std::array<std::uint8_t, strata_per_patch> column, row;
+    std::size_t columns, rows;  ///< their numbers
   };
   static const Cells& cells_of(int strata_along_u);
   struct Variance {
     double of_means = 0;        ///< of the means of lines
     double share_of_noise = 0;  ///< of the noise of a value, that the mean of a line has on average
   };
-  static Variance variance_between(const Lines& lines);
+  static Variance variance_between(std::span<const Line> lines);
 
   const Cells* cells_;  // null: a triangle, which has no slabs
   Lines columns_, rows_;

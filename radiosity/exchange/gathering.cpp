@@ -172,15 +172,17 @@ void Gathering::find_unshot() {
   unshot_rms_ = {std::sqrt(squares.r / area_), std::sqrt(squares.g / area_), std::sqrt(squares.b / area_)};
 }
 
-void Gathering::make_conjugate(Direction& next) const {
+std::vector<Rgb> Gathering::make_conjugate(Direction& next) const {
+  std::vector<Rgb> overlaps;
   for (const Direction& other : directions_) {
-    const Rgb overlap = ratio(product(next.change, other.change), other.norm);
+    const Rgb overlap = overlaps.emplace_back(ratio(product(next.change, other.change), other.norm));
     tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) {
       next.change[p] -= overlap * other.change[p];
       next.step[p] -= overlap * other.step[p];
     });
   }
   next.norm = product(next.change, next.change);
+  return overlaps;
 }
 
 std::size_t Gathering::sweep() {
@@ -204,14 +206,13 @@ void Gathering::conjugate_step() {
   spread(next.step);
   gather(next.change);
   tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t p) { next.change[p] = next.step[p] - next.change[p]; });
-  std::optional<Direction> plain;
-  if (!directions_.empty()) plain = next;
-  make_conjugate(next);
+  const std::vector<Rgb> overlaps = make_conjugate(next);
   const Rgb overlap = product(residual_, next.change), length = ratio(overlap, next.norm);
-  const Rgb taken = helps(length, overlap), left = Rgb{1, 1, 1} - taken;
-  advance(taken * length, next.step, next.change);
-  const Direction& uncombined = plain ? *plain : next;
-  if (!left.is_zero()) advance(left, uncombined.step, uncombined.change);
+  const Rgb taken = helps(length, overlap), uncombined = Rgb{1, 1, 1} - taken;
+  advance(taken * length + uncombined, next.step, next.change);
+  if (!uncombined.is_zero())
+    for (std::size_t n = 0; n < overlaps.size(); ++n)
+      advance(uncombined * overlaps[n], directions_[n].step, directions_[n].change);
   remember(std::move(next), taken);
 }
 

@@ -71,7 +71,8 @@ class Gathering : public Exchange {
   RelativeLight row_times_radiosity(std::size_t patch) const;
   void plain_step();
   void conjugate_step();
-  void make_conjugate(Direction& next) const;
+  /// Takes from `next` its part along each of the remembered directions. Returns these parts, as multiples of the directions.
+  std::vector<Rgb> make_conjugate(Direction& next) const;
   /// Returns 1 for each band in which the step reduces the squared residual by more than 1 %, else 0.
   Rgb helps(const Rgb& length, const Rgb& overlap) const;
   void advance(const Rgb& length, std::span<const RelativeLight> step, std::span<const RelativeLight> change);

@@ -4,6 +4,7 @@
 #include "radiosity/exchange/field_equations.h"
 #include "radiosity/ranks/deal.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -13,8 +14,8 @@ namespace alvor {
 
 namespace {
 
-// Fits that are made before they are taken: a few MB. Chosen.
-constexpr std::size_t fits_at_a_time = 1 << 15;
+// Fits that each rank makes before they are taken: 1 MB. Chosen.
+constexpr std::size_t fits_at_a_time = 1 << 12;
 
 // Radii of the windows of a plane and of a quadratic, in edges of the row's patch. Measured for wide_window: 5 or 6.5 gave an
 // error of 1.1 % where 3.5 gives 0.9 % (Cornell box, a million rays, docs/error-vs-time/tried.md). narrow_window is chosen; half:
@@ -43,27 +44,34 @@ struct Sample {
   double rays = 0;
 };
 
-/// The rows of a window, each once, in the order in which they were added; at most most_rows. By row node.
-class RowSet {
+/// The rows of the window that is being filled, each once, in the order in which they were added; at most most_rows. By place.
+/// It is reused for the next window without being cleared.
+class WindowRows {
  public:
-  /// Returns whether the row is met for the first time.
-  bool meet(NodeIndex row) {
+  /// Begins a window. Requires: windows have different numbers, and none is 0.
+  void begin(std::uint32_t window) { window_ = window, count_ = 0; }
+  /// Returns whether the window meets the row for the first time.
+  bool meet(std::uint32_t row) {
     std::size_t slot = (row * 0x9e3779b1u >> 22) % slots;
-    for (; table_[slot] != 0; slot = (slot + 1) % slots)
-      if (table_[slot] == row + 1) return false;
-    table_[slot] = row + 1;
+    for (; met_[slot].window == window_; slot = (slot + 1) % slots)
+      if (met_[slot].row == row) return false;
+    met_[slot] = {row, window_};
     return true;
   }
-  void add(NodeIndex row) { rows_[count_++] = row; }
+  void add(std::uint32_t row) { rows_[count_++] = row; }
   bool is_full() const { return count_ == most_rows; }
   std::size_t size() const { return count_; }
-  NodeIndex operator[](std::size_t n) const { return rows_[n]; }
+  std::uint32_t operator[](std::size_t n) const { return rows_[n]; }
 
  private:
   static constexpr std::size_t slots = 1024, most_neighbours = 8;  // of SmoothNeighbours
   static_assert(slots > 1 + most_rows * most_neighbours, "rows that are met must all have a slot");
-  std::array<NodeIndex, slots> table_{};
-  std::array<NodeIndex, most_rows> rows_;
+  struct Met {
+    std::uint32_t row = 0, window = 0;  ///< of another window: the slot is free
+  };
+  std::array<Met, slots> met_{};
+  std::uint32_t window_ = 0;
+  std::array<std::uint32_t, most_rows> rows_;
   std::size_t count_ = 0;
 };
 
@@ -81,40 +89,43 @@ class Fitter {
         rows_(rows),
         neighbours_(neighbours),
         samples_(samples),
-        spot_(forest.node_count()),
+        place_of_(forest.node_count(), no_place),
+        spot_(rows.size()),
         known_(rows.size()) {
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
       const PatchShape shape = forest.shape(rows[n]);
       learn(shape, samples[n], known_[n]);
       const Vec3 normal = forest.mesh().roots()[shape.root].normal;
-      spot_[rows[n]] = {centre[rows[n]], normal, static_cast<std::uint32_t>(n), known_[n].is_dark};
+      spot_[n] = {centre[rows[n]], normal, known_[n].whole.irradiance.is_zero()};
+      place_of_[rows[n]] = static_cast<std::uint32_t>(n);
     });
   }
 
   FieldFit fit_at(std::size_t n) const {
-    FieldFit field = frame_of(n);
-    if (known_[n].is_dark) return field;
+    const std::array<Vec3, 3> axes = axes_of(forest_.shape(rows_[n]));
+    FieldFit field;
+    field.centre = spot_[n].centre;
+    field.s = axes[0];
+    field.t = axes[1];
+    if (spot_[n].is_dark) return field;
     Window window;
-    look_around(n, field, window);
+    look_around(n, axes, field, window);
     choose_fit(n, window, field);
     field.squared_misfit = misfit_of(n, window, field);
     return field;
   }
 
  private:
-  /// The place of a row and whether any of its rays met light, which decide whether a fit around another row uses it.
+  /// Where a row lies and whether any of its rays met light, which decide whether a fit around another row uses it.
   struct Spot {
     Vec3 centre, normal;
-    std::uint32_t place = 0;  ///< in rows_
     bool is_dark = true;
   };
   /// Properties of a row that do not depend on its neighbours.
   struct Known {
     std::array<Vec3, 4> quarter_at;
     Sample whole;
-    std::array<Vec3, 3> axes;  ///< two along its edges and its normal, each divided by the patch's length along it
-    double noise = -1;         ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
-    bool is_dark = true;
+    double noise = -1;  ///< variance of one ray, estimated from the quarters' deviation from a plane; negative: not known
   };
 
   Sample quarter_of(std::size_t row, std::size_t k) const {
@@ -123,7 +134,6 @@ class Fitter {
 
   void learn(const PatchShape& shape, const RowSamples& samples, Known& known) const {
     const RootPatch& root = forest_.mesh().roots()[shape.root];
-    known.axes = axes_of(shape);
     RelativeLight sum;
     for (int k = 0; k < 4; ++k) {
       const Uv c = shape.quarter_centre(k);
@@ -135,12 +145,11 @@ class Fitter {
     if (known.whole.rays == 0) return;
     known.whole.at = known.whole.at / known.whole.rays;
     known.whole.irradiance = (1 / known.whole.rays) * sum;
-    known.is_dark = sum.is_zero();
     if (std::ranges::all_of(samples, [](const QuarterSample& q) { return q.rays > 0; }))
       known.noise = squared_bend(samples, shape.corner_count == 4) * known.whole.rays / 4;
   }
-  /// Returns axes whose dot product with a distance counts patches: slabs by their length and width, because light changes across
-  /// them, others by the root of their area.
+  /// Returns two axes along a patch's edges and its normal, whose dot product with a distance counts patches: slabs by their
+  /// length and width, because light changes across them, others by the root of their area.
   std::array<Vec3, 3> axes_of(const PatchShape& shape) const {
     const Vec3 normal = forest_.mesh().roots()[shape.root].normal;
     const double area = area_of(forest_.mesh(), shape), edge = std::sqrt(area);
@@ -164,36 +173,29 @@ class Fitter {
     return bend * bend;
   }
 
-  FieldFit frame_of(std::size_t n) const {
-    FieldFit field;
-    field.centre = spot_[rows_[n]].centre;
-    field.s = known_[n].axes[0];
-    field.t = known_[n].axes[1];
-    return field;
-  }
-
   /// Fills the window with the samples of rows around row `n`, breadth first over smooth neighbours, and sets the range of
-  /// `field`.
-  void look_around(std::size_t n, FieldFit& field, Window& window) const {
-    const Known& own = known_[n];
-    const Vec3 normal = spot_[rows_[n]].normal;
-    RowSet rows;
-    rows.meet(rows_[n]);
-    rows.add(rows_[n]);
-    field.low = field.high = own.whole.irradiance;
+  /// `field`. `axes` are those of the row's patch.
+  void look_around(std::size_t n, const std::array<Vec3, 3>& axes, FieldFit& field, Window& window) const {
+    const Vec3 normal = spot_[n].normal;
+    WindowRows& rows = window_rows_.local();
+    rows.begin(static_cast<std::uint32_t>(n + 1));
+    rows.meet(static_cast<std::uint32_t>(n));
+    rows.add(static_cast<std::uint32_t>(n));
+    field.low = field.high = known_[n].whole.irradiance;
     double noise = 0, noisy = 0;
     for (std::size_t next = 0; next < rows.size(); ++next) {
-      const std::size_t place = spot_[rows[next]].place;
+      const std::uint32_t place = rows[next];
       const Known& row = known_[place];
-      const bool is_near = squared_distance(row.whole.at - field.centre, own.axes) < near_rows * near_rows;
+      const bool is_near = squared_distance(row.whole.at - field.centre, axes) < near_rows * near_rows;
       add_samples(place, is_near, field, window);
       if (row.noise >= 0) noise += row.noise, noisy += 1;
       for (const NodeIndex other : neighbours_[place]) {
         if (rows.is_full()) break;
-        if (!rows.meet(other)) continue;
-        const Spot& spot = spot_[other];
-        const bool is_within = squared_distance(spot.centre - field.centre, own.axes) < wide_window * wide_window;
-        if (is_within && !spot.is_dark && dot(spot.normal, normal) >= same_surface) rows.add(other);
+        const std::uint32_t beside = place_of_[other];
+        if (beside == no_place || !rows.meet(beside)) continue;
+        const Spot& spot = spot_[beside];
+        const bool is_within = squared_distance(spot.centre - field.centre, axes) < wide_window * wide_window;
+        if (is_within && !spot.is_dark && dot(spot.normal, normal) >= same_surface) rows.add(beside);
       }
     }
     if (noisy > 0) window.noise = noise / noisy;
@@ -252,8 +254,11 @@ class Fitter {
   std::span<const NodeIndex> rows_;
   std::span<const SmoothNeighbours> neighbours_;
   std::span<const RowSamples> samples_;
-  std::vector<Spot> spot_;    // by node
-  std::vector<Known> known_;  // by place
+  static constexpr std::uint32_t no_place = ~0u;
+  std::vector<std::uint32_t> place_of_;  // by node; no_place: not in rows_
+  std::vector<Spot> spot_;               // by place
+  std::vector<Known> known_;             // by place
+  mutable tbb::enumerable_thread_specific<WindowRows> window_rows_;
 };
 
 }  // namespace
@@ -274,7 +279,7 @@ void fit_field(const PatchForest& forest, std::span<const NodeIndex> rows, std::
   const Fitter fitter(forest, rows, neighbours, samples, centre);
   std::vector<FieldFit> fits;
   for (; !wanted.empty(); wanted = wanted.subspan(fits.size())) {
-    fits.resize(std::min(fits_at_a_time, wanted.size()));
+    fits.resize(std::min(fits_at_a_time * ranks.workers(), wanted.size()));
     share_work(ranks, std::span(fits), [&](std::size_t n) { fits[n] = fitter.fit_at(wanted[n]); });
     take(wanted.first(fits.size()), fits);
   }

@@ -71,6 +71,7 @@ void TracedRows::make_exact() {
       }
     hit_leaves_[rows[n]].clear();
   });
+  all_found_among_ = 0;
 }
 
 }  // namespace alvor

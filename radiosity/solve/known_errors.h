@@ -12,7 +12,8 @@ namespace alvor {
 struct OriginMisfit {
   double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
   double noise = 0;   ///< variance of a stratum's value, mean over them
-  Split split = Split::quarters;  ///< the split that follows the difference best
+  Split split = Split::quarters;    ///< the split that follows the difference best
+  bool has_several_rounds = false;  ///< most strata have several rounds of rays, and their noise is found from how these differ
 };
 
 /// The error of a patch that splitting it would remove, squared and integrated over it, in emission units squared times m2, and

@@ -69,7 +69,9 @@ class LiveSolve {
   std::optional<StopReason> ended_with;  ///< the tolerance or a limit of the mesh; nothing if the solve has not ended by one
   /// The last edit multiplied all light by one factor, and nothing was published since. Only if ended_with has a value.
   bool is_scaled = false;
-  double publishing_s = 0;     ///< wall seconds that publishing took last; not saved
+  double publishing_s = 0;  ///< wall seconds that publishing the values of all leaves took last; not saved
+  std::uint64_t published_revision = 0,
+                published_leaves = 0;  ///< of the last step that was published, and how many leaves; not saved
   bool is_refreshing = false;  ///< the log shows an older solution, and nothing is published before the first pass is done
 };
 

@@ -77,6 +77,7 @@ Exchange& Pass::prepare() {
 bool Pass::refine(const std::function<bool()>& gives_up, double share) {
   find_candidates();
   stage_ = Stage::refined;
+  shows_irradiance_ = false;
   const Forests& forests = state_.forests;
   const std::size_t leaves_before = forests.leaves().leaf_count(), rows_before = forests.rows().leaf_count();
   const std::vector<Candidate> marked = mark(std::move(candidates_), share);
@@ -111,7 +112,14 @@ Shooting Pass::unshot_system() {
   return system_->shooting();
 }
 
-void Pass::show(std::span<const RelativeLight> irradiance) { state_.field.set(system_->rows(), irradiance); }
+std::vector<LeafValue> Pass::leaf_values() const {
+  return state_.leaf_values(shows_irradiance_ ? std::span(irradiance_) : std::span<const RelativeLight>());
+}
+
+void Pass::show(std::span<const RelativeLight> irradiance) {
+  shows_irradiance_ = false;
+  state_.field.set(system_->rows(), irradiance);
+}
 
 void Pass::show_what_came_since() {
   if (stage_ == Stage::estimated && knows_errors()) {
@@ -127,6 +135,7 @@ void Pass::show_what_came_since() {
 
 /// Adds to the field of each row what its irradiance has changed since it was set.
 void Pass::move_field() {
+  shows_irradiance_ = false;
   if (state_.rows.carry_light()) state_.field.move_to(system_->rows(), exchange_->irradiance());
 }
 

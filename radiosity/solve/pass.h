@@ -62,7 +62,9 @@ class Pass {
   /// Takes the first three steps at once, for callers who do not show what comes in between.
   Exchange& prepare();
 
-  /// Returns the estimated error of each leaf, in the order of SolveState::leaf_values(): one standard deviation of the mean of
+  /// Returns SolveState::leaf_values(), and finds nothing again that estimate() has found.
+  std::vector<LeafValue> leaf_values() const;
+  /// Returns the estimated error of each leaf, in the order of leaf_values(): one standard deviation of the mean of
   /// the bands of the irradiance, W/m2. The squares of the local parts of `error`, the estimate, add up over the area to those of
   /// the leaves; `unshot` and `balance` count as shares of each leaf's irradiance. Nothing before estimate() and after refine().
   std::vector<float> leaf_errors(const ErrorEstimate& error) const;
@@ -91,6 +93,8 @@ class Pass {
 
   // At any time before refine():
 
+  /// Returns whether begin_exchange() was called.
+  bool is_exchanging() const { return exchange_ != nullptr; }
   /// Returns the unshot power as a share of the emitted power; 0 in the dark.
   double unshot_fraction() const;
   /// Returns the ambient irradiance for display (see Exchange::ambient_irradiance), W/m2. Zero before the exchange has begun.
@@ -173,6 +177,7 @@ class Pass {
   std::vector<StrataSamples> strata_;
   std::vector<OriginMisfit> misfits_;      ///< by patch
   std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
+  bool shows_irradiance_ = false;          ///< the field that is shown is still that of `irradiance_`
   ErrorEstimate told_;                     ///< what estimate() returned
   double told_scale_ = 0;                  ///< squared error, integrated over the scene, of which the relative error is 1
   std::vector<SplitError> row_errors_;     ///< by patch

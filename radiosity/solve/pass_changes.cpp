@@ -1,11 +1,15 @@
 // Finds the rows and leaves whose errors an estimate finds again. After an edit that leaves most of the scene as it was, these
 // are few.
 
+#include "radiosity/exchange/parallel_sum.h"
 #include "radiosity/solve/pass.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace alvor {
@@ -40,6 +44,13 @@ class Marked {
   void mark(std::uint32_t place) {
     if (!is_marked_[place]) places_.push_back(place), is_marked_[place] = 1;
   }
+  /// Marks the places where `is_wanted` returns true, which is called in parallel.
+  void mark_where(const std::function<bool(std::size_t)>& is_wanted) {
+    std::vector<std::uint8_t> wanted(is_marked_.size());
+    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t n) { wanted[n] = is_wanted(n); });
+    for (std::uint32_t n = 0; n < wanted.size(); ++n)
+      if (wanted[n]) mark(n);
+  }
   /// Marks the neighbours of all places that are marked, and their neighbours, in `rings` rings.
   void grow(int rings) {
     std::size_t first = 0;
@@ -71,13 +82,20 @@ bool Pass::knows_errors() const { return !state_.options.is_by_place() && !state
 /// Returns by how much the irradiance at a place may have changed, mean over bands, where errors are not found again.
 /// `irradiance` is by patch, of rows.
 double Pass::unnoticed_change(std::span<const RelativeLight> irradiance) const {
-  double power = 0, area = 0;
-  for (std::size_t p = 0; p < irradiance.size(); ++p) {
+  struct Sums {
+    double power = 0, area = 0;
+    Sums& operator+=(const Sums& other) {
+      power += other.power, area += other.area;
+      return *this;
+    }
+  };
+  const auto all = parallel_sum<Sums>(irradiance.size(), [&](std::size_t p) {
+    Sums of{0, system_->patches()[p].area};
     for (const NodeIndex leaf : system_->leaves_of(p))
-      power += state_.forests.leaf_area(leaf) * (irradiance[p] + state_.direct[leaf].irradiance).mean();
-    area += system_->patches()[p].area;
-  }
-  return unnoticed * state_.options.tolerance * power / area;
+      of.power += state_.forests.leaf_area(leaf) * (irradiance[p] + state_.direct[leaf].irradiance).mean();
+    return of;
+  });
+  return unnoticed * state_.options.tolerance * all.power / all.area;
 }
 
 /// Sets `changed_rows_`, whose field and errors are found again, and `sampled_rows_`, those in their windows.
@@ -88,10 +106,10 @@ void Pass::find_changed_rows(std::span<const SmoothNeighbours> neighbours) {
   const std::vector<RelativeLight> irradiance = exchange_->irradiance();
   unnoticed_change_ = unnoticed_change(irradiance);
   Marked marked(rows, neighbours, state_.forests.rows().node_count());
-  for (std::uint32_t p = 0; p < rows.size(); ++p) {
+  marked.mark_where([&](std::size_t p) {
     const auto& known = state_.known_errors.of_row(rows[p]);
-    if (!known.is_known || std::abs(irradiance[p].mean() - known.irradiance) > unnoticed_change_) marked.mark(p);
-  }
+    return !known.is_known || std::abs(irradiance[p].mean() - known.irradiance) > unnoticed_change_;
+  });
   marked.grow(rings_of_window);
   changed_rows_ = marked.sorted();
   marked.grow(rings_of_samples);
@@ -105,10 +123,10 @@ Pass::ChangedLeaves Pass::changed_leaves(std::span<const SmoothNeighbours> neigh
   Marked marked(leaves, neighbours, state_.forests.leaves().node_count());
   for (const std::uint32_t p : changed_rows_)
     for (std::uint32_t k = 0; k < system_->patches()[p].leaf_count; ++k) marked.mark(system_->patches()[p].first_leaf + k);
-  for (std::uint32_t n = 0; n < leaves.size(); ++n) {
+  marked.mark_where([&](std::size_t n) {
     const auto& known = state_.known_errors.of_leaf(leaves[n]);
-    if (!known.is_known || std::abs(irradiance_[n].mean() - known.irradiance) > unnoticed_change_) marked.mark(n);
-  }
+    return !known.is_known || std::abs(irradiance_[n].mean() - known.irradiance) > unnoticed_change_;
+  });
   marked.grow(rings_of_slopes);
   ChangedLeaves changed{marked.sorted(), {}};
   marked.grow(1);

@@ -14,6 +14,24 @@ constexpr double rounding = 1e-12;
 
 double squared(double x) { return x * x; }
 
+/// dot(slope, point - origin) for the points of a root: places on it are linear in its corners.
+class SlopeOnRoot {
+ public:
+  SlopeOnRoot(const RootPatch& root, Vec3 slope, Vec3 origin) {
+    const auto at_corner = [&](std::size_t n) { return dot(slope, root.corners[n] - origin); };
+    const std::size_t across = root.corner_count == 3 ? 2 : 3;
+    first_ = at_corner(0);
+    by_u_ = at_corner(1) - first_;
+    by_v_ = at_corner(across) - first_;
+    if (root.corner_count == 4) by_both_ = at_corner(2) - first_ - by_u_ - by_v_;
+  }
+  /// Returns the value at RootPatch::at().
+  double at(Uv at) const { return first_ + at.u * by_u_ + at.v * (by_v_ + at.u * by_both_); }
+
+ private:
+  double first_ = 0, by_u_ = 0, by_v_ = 0, by_both_ = 0;
+};
+
 }  // namespace
 
 /// Returns the mean square deviation of the irradiance at a leaf's visible origins from a plane with the leaf's slope through
@@ -24,16 +42,17 @@ Pass::Contrast Pass::squared_contrast(std::size_t place_of_leaf, Vec3 slope) con
   const DirectLight& direct = state_.direct[leaf];
   const std::uint16_t hidden = state_.hidden_origins(leaf, row);
   const PatchShape shape = forests.leaves().shape(leaf);
-  const auto place = [&](Uv at) { return state_.mesh.roots()[shape.root].at(at.u, at.v); };
+  const RootPatch& root = state_.mesh.roots()[shape.root];
+  const SlopeOnRoot plane(root, slope, forests.leaf_centres()[leaf]);
   double sum = 0, squares = 0;
   AxisContrast by_axis(shape);
   for (int k = 0; k < 4; ++k) {
     if ((hidden >> 4 * k & 0xf) == 0xf) continue;
-    const double by_rows = state_.field.at(row, place(shape.quarter_centre(k))).mean();
+    const Uv middle = shape.quarter_centre(k);
+    const double by_rows = state_.field.at(row, root.at(middle.u, middle.v)).mean();
     for (int o = 0; o < 4; ++o) {
       if (hidden >> (4 * k + o) & 1) continue;
-      const Vec3 offset = place(shape.stratum_centre(4 * k + o)) - forests.leaf_centres()[leaf];
-      const double above_plane = direct.at_origin[4 * k + o] + by_rows - dot(slope, offset);
+      const double above_plane = direct.at_origin[4 * k + o] + by_rows - plane.at(shape.stratum_centre(4 * k + o));
       sum += above_plane, squares += squared(above_plane);
       by_axis.add(4 * k + o, above_plane);
     }

@@ -61,16 +61,6 @@ struct ErrorSums {
   }
 };
 
-/// Returns whether most strata of a row have several rounds of rays, so that their noise is found from how the rounds differ.
-bool has_rounds_in_most(const TransportRow& row) {
-  std::array<std::size_t, origins_per_patch> rounds{};
-  for (std::size_t o = 0; o < row.origin_hits.size(); ++o)
-    rounds[o % origins_per_patch] += row.origin_hits[o] != TransportRow::not_sampled;
-  const auto any = std::ranges::count_if(rounds, [](std::size_t n) { return n > 0; });
-  const auto several = std::ranges::count_if(rounds, [](std::size_t n) { return n > 1; });
-  return 2 * several > any;
-}
-
 /// Some leaves of a forest, each with its neighbours, and their centres and values, by node.
 struct Field {
   const PatchForest& forest;
@@ -157,7 +147,7 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
     const OriginMisfit& at_origins = misfits_[p];
     const double area = visible_area(p);
     const bool is_seen =
-        has_rounds_in_most(row) || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
+        at_origins.has_several_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
     const double seen = std::max(0.0, at_origins.square - chance_of_origins * at_origins.noise);
@@ -180,6 +170,7 @@ void Pass::find_irradiance() {
     const NodeIndex leaf = system_->leaves()[n];
     irradiance_[n] = state_.direct[leaf].irradiance + state_.indirect(leaf, system_->row_of(n));
   });
+  shows_irradiance_ = true;
 }
 
 /// Adds the errors of leaves to `error`, as estimate_rows() does for rows. Returns the power that arrives at all leaves, mean

@@ -64,10 +64,11 @@ void Pass::show_smoothly() {
 
 /// Fits the field of the rows that have changed; that of the others is shifted with the irradiance of the row.
 void Pass::fit_field_smoothly(std::span<const SmoothNeighbours> neighbours) {
+  shows_irradiance_ = false;
   find_changed_rows(neighbours);
   const auto rows = system_->rows();
-  if (knows_errors()) move_field();
-  else show(exchange_->irradiance());
+  if (changed_rows_.size() < rows.size()) move_field();
+  else state_.field.set_irradiance(rows, exchange_->irradiance());
   std::vector<NodeIndex> sampled;
   std::vector<SmoothNeighbours> beside;
   std::vector<std::uint32_t> wanted, place_among_changed(sampled_rows_.size(), not_changed);

@@ -17,6 +17,16 @@ constexpr double noise_of_slabs = 7.5;
 
 double squared(double x) { return x * x; }
 
+/// Returns whether most strata of a row have several rounds of rays, so that their noise is found from how the rounds differ.
+bool has_rounds_in_most(const TransportRow& row) {
+  std::array<std::size_t, origins_per_patch> rounds{};
+  for (std::size_t o = 0; o < row.origin_hits.size(); ++o)
+    rounds[o % origins_per_patch] += row.origin_hits[o] != TransportRow::not_sampled;
+  const auto any = std::ranges::count_if(rounds, [](std::size_t n) { return n > 0; });
+  const auto several = std::ranges::count_if(rounds, [](std::size_t n) { return n > 1; });
+  return 2 * several > any;
+}
+
 }  // namespace
 
 /// Returns by how much the irradiance at a row's origins differs from the field that is shown. It sees a strip of light as narrow
@@ -25,7 +35,7 @@ OriginMisfit Pass::misfit_at_origins(NodeIndex node, const StrataSamples& strata
   const TransportRow& row = state_.rows[node];
   if (row.origin_hits.size() < origins_per_patch) return {};
   const auto places = places_of_origins(node, row.origin_hits.size() > origins_per_patch);
-  OriginMisfit misfit;
+  OriginMisfit misfit{.has_several_rounds = has_rounds_in_most(row)};
   AxisContrast by_axis(state_.forests.rows().shape(node));
   double count = 0;
   for (std::size_t k = 0; k < strata.size(); ++k) {

@@ -21,8 +21,7 @@ PassSystem::PassSystem(SolveState& state)
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) { describe_patch(p); });
   find_patches_behind();
   describe_places();
-  if (state.rows.carry_light())
-    deal_.for_each_own(state.ranks, rows_.size(), [this](std::size_t p) { state_.rows.find_hit_leaves(rows_[p]); });
+  if (state.rows.carry_light()) state.rows.find_hit_leaves(rows_, deal_);
 }
 
 /// Gives each patch its leaves. Rows and leaves are both sorted by id, and each leaf lies within a row.

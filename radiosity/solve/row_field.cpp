@@ -34,6 +34,11 @@ void RowField::set(std::span<const NodeIndex> rows, std::span<const RelativeLigh
   }
 }
 
+void RowField::set_irradiance(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance) {
+  assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) { irradiance_[rows[n]] = irradiance[n]; });
+}
+
 void RowField::move_to(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance) {
   assert(irradiance.size() == rows.size() && (has_rows_ || rows.empty()));
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {

@@ -22,6 +22,8 @@ class RowField {
 
   /// Makes the field constant over each of `rows`. Requires: as many values as rows; rows carry light.
   void set(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance);
+  /// Sets what irradiance() returns. Until set_fits() the fields are what they were. Requires: as for set().
+  void set_irradiance(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance);
   /// Adds to the field of each row the difference between `irradiance` and the irradiance that the row had received before.
   /// Requires: as many values as rows; rows carry light.
   void move_to(std::span<const NodeIndex> rows, std::span<const RelativeLight> irradiance);

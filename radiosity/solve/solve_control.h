@@ -41,8 +41,9 @@ struct SolveControl {
   /// Ends the solve at the next place from which it can go on as if it had not been interrupted, after one more call of `save`.
   std::stop_token park;
 
-  /// Returns whether the scene was edited since the solve began; ends the solve as `park` does, with the reason
-  /// StopReason::edited and without a call of `save`. Called from any thread; quick. Null: never.
+  /// Returns whether the scene was edited since the solve began; ends the solve within one batch of rays or sweep, with the
+  /// reason StopReason::edited and without a call of `save`. If the solve is to be parked, that is done first; at its end, too,
+  /// it is then saved and parked. Called from any thread; quick. Null: never.
   std::function<bool()> is_edited;
 
   /// Called at such places; returns whether `save` is to be called. Null: never.

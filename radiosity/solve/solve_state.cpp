@@ -88,15 +88,17 @@ void SolveState::fit_to_nodes() {
   known_errors.fit_to_nodes(forests);
 }
 
-std::vector<LeafValue> SolveState::leaf_values() const {
+std::vector<LeafValue> SolveState::leaf_values(std::span<const RelativeLight> irradiance) const {
   const auto leaves = forests.all_leaves();
+  assert(irradiance.empty() || irradiance.size() == leaves.size());
   std::vector<LeafValue> values(leaves.size());
   const auto find_part = [&](const tbb::blocked_range<std::size_t>& part) {
     RowFinder finder(forests);
     for (std::size_t n = part.begin(); n < part.end(); ++n) {
       const NodeIndex leaf = leaves[n];
-      const Rgb irradiance = in_watts_per_m2(direct[leaf].irradiance + indirect(leaf, finder.row_of(leaf)));
-      values[n] = {forests.leaves().id(leaf), narrow(lower(upper(irradiance, {}), largest_irradiance_))};
+      const RelativeLight light =
+          irradiance.empty() ? direct[leaf].irradiance + indirect(leaf, finder.row_of(leaf)) : irradiance[n];
+      values[n] = {forests.leaves().id(leaf), narrow(lower(upper(in_watts_per_m2(light), {}), largest_irradiance_))};
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, leaves.size()), find_part);

@@ -64,8 +64,9 @@ class SolveState {
   /// Returns the irradiance that rows bring to the centre of a leaf.
   RelativeLight indirect(NodeIndex leaf, NodeIndex row) const { return field.at(row, forests.leaf_centres()[leaf]); }
   /// Returns the irradiance of every leaf, W/m2, in the order of the leaf forest. Before the first exchange this is direct light
-  /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest.
-  std::vector<LeafValue> leaf_values() const;
+  /// alone. Values are never negative, and never more than if all surfaces emitted and reflected like the brightest. `irradiance`
+  /// is what would be found, direct and indirect, in emission units and the order of the leaves, if it is known.
+  std::vector<LeafValue> leaf_values(std::span<const RelativeLight> irradiance = {}) const;
   /// Returns the power that the scene emits, and what of that of lamps is lost on the way: see DirectField.
   double emitted_power() const {
     return direct.emitted_power([this] { return arrived_power(); });

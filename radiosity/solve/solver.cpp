@@ -26,6 +26,9 @@ namespace {
 // Exchange::remaining_error() that ends a pass, as a share of the tolerance. Squares add, so the light that is still to come adds
 // 0.5 % to the error: sqrt(1 + 0.1^2) = 1.005.
 constexpr double pass_remaining = 0.1;
+// The largest after an edit of a solve whose error was well within the tolerance: it adds 4 %, until converge() goes on. Chosen;
+// half and double are not measured.
+constexpr double remaining_after_edit = 0.3;
 // Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; half: the same, double: the same
 // (docs/design/constants.md).
 constexpr double final_remaining = 1e-6;
@@ -94,7 +97,7 @@ class Run {
   SolveOutcome run() {
     if (log_.head() == 0) publish();
     if (state_.has_unmended_move()) {  // objects are seen where they are, in the light of before
-      publish();
+      publish(has_published_leaves() ? Values::as_published : Values::of_state);
       requests_.heed_edits(false);
       state_.mend_moved();
     }
@@ -106,7 +109,8 @@ class Run {
       live_.leaves_at_first_end = state_.leaf_count();
       live_.error_at_first_end = is_.error.total();
     }
-    if (reason == StopReason::parked) save();
+    const bool waits = is_as_fine_as_may_be && has_edit_to_wait();
+    if (reason == StopReason::parked || waits) save();
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
     // instead of 1.8 %).
@@ -117,7 +121,8 @@ class Run {
     const double cpu = cpu_s_of_all();
     note_time();
     is_.cpu_s = cpu;
-    return {reason, is_.elapsed_s, cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0, is_.balance};
+    return {waits ? StopReason::parked : reason, is_.elapsed_s, cpu, cpu > 0 ? std::min(1.0, budget_.traversal_s() / cpu) : 0,
+            is_.balance};
   }
 
  private:
@@ -178,12 +183,15 @@ class Run {
     if (!light()) return false;
     if (live_.error_before_edit) publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
     pass_->begin_exchange();
-    if (!exchange_down_to(may_be_last() ? final_remaining : pass_remaining * options_.tolerance)) return false;
-    // An exchange without steps has not asked. A pass that is to be parked goes on to its estimate.
-    if (const auto& made = requests_.ask(); made.edited && !made.parked) return false;
+    if (!exchange_down_to(remaining_at_estimate())) return false;
+    if (must_leave_pass()) return false;  // an exchange without steps has not asked
     is_.error = pass_->estimate();
-    live_.error_before_edit.reset();
     account();
+    // If that is stopped, the estimate stands as it is; an edit comes first.
+    if (is_left_unshot() && !exchange_after_estimate(pass_remaining * options_.tolerance) &&
+        requests_.reason() == StopReason::edited)
+      return false;
+    live_.error_before_edit.reset();
     expect_agreement();
     by_place_ = pass_->error_by_place(is_.error);
     live_.is_refreshing = false;
@@ -213,10 +221,7 @@ class Run {
   /// Exchanges light down to final_remaining, publishes, and returns why the solve ends: `reason`, or that the exchange was
   /// stopped or has stalled.
   StopReason converge(StopReason reason) {
-    if (!exchange_down_to(final_remaining)) return requests_.reason();
-    pass_->show_what_came_since();
-    is_.error.unshot = pass_->exchange().remaining_error();
-    account();
+    if (!exchange_after_estimate(final_remaining)) return requests_.reason();
     publish();
     return is_stuck() ? StopReason::stalled : reason;
   }
@@ -238,12 +243,21 @@ class Run {
       if (must_leave_pass()) return false;
       if (exchange.unshot_power() >= publish_when * published) return true;
       published = exchange.unshot_power();
-      pass_->show_what_came_since();
+      pass_->show_what_came_since();  // also where it is not published: the sums must not depend on the time
       publish_if_due();
       return true;
     });
     has_stalled_ = end == Settling::stalled;
     return end != Settling::stopped;
+  }
+
+  /// As exchange_down_to(), between the estimate and the publication of a pass.
+  bool exchange_after_estimate(double remaining_error) {
+    if (!exchange_down_to(remaining_error)) return false;
+    pass_->show_what_came_since();
+    is_.error.unshot = pass_->exchange().remaining_error();
+    account();
+    return true;
   }
 
   /// Publishes a step that only shows progress, if it is one of the first twelve or publishing takes less than a tenth of the
@@ -254,7 +268,14 @@ class Run {
     if (is_early || clock_.elapsed_s() - published_at_ > live_.publishing_s / publishing_share) publish();
   }
 
-  void publish() {
+  /// Returns whether the log has the leaves of this state, with the values that were published last.
+  bool has_published_leaves() const {
+    return live_.published_revision == log_.head() && live_.published_leaves == state_.leaf_count();
+  }
+
+  /// Which values of leaves a step has: those of the state, or none, where the log keeps those that it has.
+  enum class Values { of_state, as_published };
+  void publish(Values values = Values::of_state) {
     if (!ranks_.is_first() || live_.is_refreshing) return;
     const double before = clock_.elapsed_s();
     Step step;
@@ -262,7 +283,8 @@ class Run {
     step.shots = is_.shots;
     step.rays = budget_.rays();
     step.leaves = state_.leaf_count();
-    step.unshot_fraction = live_.is_scaled ? log_.last_step().unshot_fraction : pass_->unshot_fraction();
+    if (live_.is_scaled) step.unshot_fraction = log_.last_step().unshot_fraction;
+    else if (!live_.error_before_edit || pass_->is_exchanging()) step.unshot_fraction = pass_->unshot_fraction();
     step.estimated_error = is_.error.total();
     step.unlit_fraction = state_.direct.unlit_fraction();
     step.area_within = by_place_.area_within;
@@ -270,10 +292,12 @@ class Run {
     step.is_provisional = live_.error_before_edit.has_value();
     step.displayed_error = displayed_error * std::min(1.0, live_.error_before_edit.value_or(is_.error.total()));
     if (state_.plan.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
-    log_.publish(state_.leaf_values(), step, leaf_errors());
+    log_.publish(values == Values::of_state ? pass_->leaf_values() : std::vector<LeafValue>(), step, leaf_errors());
+    live_.published_revision = log_.head();
+    live_.published_leaves = step.leaves;
     requests_.heed_edits(true);
     published_at_ = clock_.elapsed_s();
-    live_.publishing_s = published_at_ - before;
+    if (values == Values::of_state) live_.publishing_s = published_at_ - before;
     if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return requests_.made_here().any(); });
   }
 
@@ -326,6 +350,23 @@ class Run {
     if (live_.error_before_edit || has_ended_before()) return false;
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
+  /// Returns the remaining error at which a pass makes its estimate.
+  double remaining_at_estimate() const {
+    if (may_be_last()) return final_remaining;
+    const double tolerance = options_.tolerance, before = live_.error_before_edit.value_or(tolerance);
+    if (options_.is_by_place() || before >= tolerance) return pass_remaining * tolerance;
+    // Half of what the error had to spare.
+    const double spare = std::sqrt(tolerance * tolerance - before * before) / 2;
+    return std::clamp(spare, pass_remaining * tolerance, remaining_after_edit * tolerance);
+  }
+  /// Returns whether a pass that made its estimate early, after an edit, is to be refined, for which more light must be
+  /// exchanged.
+  bool is_left_unshot() const {
+    const ErrorEstimate& error = is_.error;
+    return !has_stalled_ && error.unshot > pass_remaining * options_.tolerance && error.total() > options_.tolerance;
+  }
+  /// Collective. Returns whether an edit came that must wait until the solve is resumed, because it is to be parked.
+  bool has_edit_to_wait() { return ranks_.any_of(control_.park.stop_requested() && control_.is_edited && control_.is_edited()); }
   /// Collective.
   bool must_stop() { return requests_.ask().any(); }
   /// Collective. Returns whether to stop in the middle of a pass, where it cannot be parked.

@@ -16,7 +16,7 @@ class StopRequests {
   StopRequests(const SolveControl& control, const SolveClock& clock, double time_limit_s)
       : control_(control), clock_(clock), time_limit_s_(time_limit_s) {}
 
-  /// Some requests. One that was made stays made.
+  /// Some requests. One that was made stays made, but for an edit when a request to park comes.
   struct Made {
     bool cancelled = false, memory = false, time_limit = false, parked = false, edited = false;
 
@@ -25,18 +25,20 @@ class StopRequests {
     bool break_off() const { return cancelled || memory || time_limit; }
     bool any() const { return break_off() || parked || edited; }
   };
-  /// Returns the requests that this rank knows of. Safe from any thread.
+  /// Returns the requests that this rank knows of. An edit that comes with a request to park waits until the solve is resumed:
+  /// it would break off the exchange in which the solve cannot be parked. Safe from any thread.
   Made made_here() const {
+    const bool is_parked = control_.park.stop_requested();
     return {control_.stop.stop_requested(), control_.short_of_memory.stop_requested(),
-            control_.ranks->is_first() && clock_.elapsed_s() > time_limit_s_, control_.park.stop_requested(),
-            heeds_edits_ && control_.is_edited && control_.is_edited()};
+            control_.ranks->is_first() && clock_.elapsed_s() > time_limit_s_, is_parked,
+            !is_parked && heeds_edits_ && control_.is_edited && control_.is_edited()};
   }
   /// Collective. Returns the requests that any rank knows of.
   const Made& ask() {
     const Made here = made_here();
     std::array<std::uint64_t, 5> counts{here.cancelled, here.memory, here.time_limit, here.parked, here.edited};
     control_.ranks->sum(counts);
-    return made_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0, counts[4] > 0};
+    return made_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0, counts[4] > 0 && counts[3] == 0};
   }
   /// Makes edits count or not. A solve that has just taken one does not heed another before it has shown something, else a stream
   /// of edits would never be seen.

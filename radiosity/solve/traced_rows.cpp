@@ -99,6 +99,7 @@ void TracedRows::append(const AppendedRoots& roots) {
   for (auto& leaves : hit_leaves_)
     for (NodeIndex& leaf : leaves) leaf = roots.moved(leaf);
   for (std::size_t& nodes : found_among_) nodes += nodes > 0 ? roots.count : 0;
+  all_found_among_ += all_found_among_ > 0 ? roots.count : 0;
   roots.make_room(hit_leaves_);
   roots.make_room(found_among_);
   if (hit_boxes_) hit_boxes_->append(roots), hit_boxes_->heed(forests_.mesh());
@@ -110,6 +111,7 @@ void TracedRows::append(const AppendedRoots& roots) {
 
 void TracedRows::forget(NodeIndex row) {
   rows_[row] = {};
+  all_found_among_ = 0;
   if (carry_light()) hit_leaves_[row] = {};
 }
 
@@ -134,7 +136,9 @@ bool TracedRows::trace(std::span<const NodeIndex> rows) {
   return true;
 }
 
+/// Heeds that rows have other hits than before.
 void TracedRows::note_hits(std::span<const NodeIndex> rows) {
+  if (!rows.empty()) all_found_among_ = 0;
   if (!hit_boxes_) return;
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     hit_boxes_->note(rows[n], box_of(scene_.mesh(), forests_.rows().shape(rows[n])), rows_[rows[n]].hits);
@@ -225,8 +229,15 @@ bool TracedRows::add_wanted_rays() {
   return true;
 }
 
+void TracedRows::find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal) {
+  const std::size_t nodes = forests_.leaves().node_count();
+  if (all_found_among_ == nodes) return;
+  deal.for_each_own(ranks_, rows.size(), [&](std::size_t n) { find_hit_leaves_of(rows[n]); });
+  all_found_among_ = nodes;
+}
+
 // Leaves are only ever split, so the look-up of each hit starts at the leaf that it found last.
-void TracedRows::find_hit_leaves(NodeIndex row) {
+void TracedRows::find_hit_leaves_of(NodeIndex row) {
   if (!is_own(row)) return;
   const auto& hits = rows_[row].hits;
   auto& found = hit_leaves_[row];

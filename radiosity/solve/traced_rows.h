@@ -68,9 +68,9 @@ class TracedRows {
   /// out.
   bool add_wanted_rays();
 
-  /// Finds the leaves on which the hits of the row lie now, for leaves_hit(). Different threads may call it for different rows.
-  /// Does nothing for rows of other ranks.
-  void find_hit_leaves(NodeIndex row);
+  /// Finds the leaves on which the hits of rows lie now, for leaves_hit(). Does nothing where no leaf was split and no row has
+  /// other hits since. Requires: all leaves of the row forest, and their deal().
+  void find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal);
 
   /// Keeps a box around the hits of each row from now on, so that note_moved() passes over most rows at once. Requires: one rank;
   /// nothing is traced.
@@ -115,6 +115,7 @@ class TracedRows {
                                                   std::uint64_t seed);
   std::vector<TransportRow> traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
   bool may_hide_otherwise(const MovedRoots& moved, NodeIndex row) const;
+  void find_hit_leaves_of(NodeIndex row);
   bool is_far_from(const MovedRoots& moved, NodeIndex row) const;
   void note_hits(std::span<const NodeIndex> rows);
   void save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const;
@@ -131,6 +132,8 @@ class TracedRows {
   std::vector<bool> is_traced_;
   std::vector<std::vector<NodeIndex>> hit_leaves_;
   std::vector<std::size_t> found_among_;  ///< by row: the number of leaf nodes when find_hit_leaves() was called last
+  /// The number of leaf nodes when the leaves of all rows' hits were found last; 0 if hits have changed since.
+  std::size_t all_found_among_ = 0;
   std::optional<HitBoxes> hit_boxes_;
   std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
   std::uint64_t rounds_of_rays_ = 0;            ///< each adds independent rays

@@ -28,7 +28,10 @@ struct Interrupted {
   Step last;
 };
 
-Interrupted solve_until(int n, const BaseMesh& mesh, const SolveOptions& options, const Saved& from = {}) {
+enum class Places { between_batches, publications_with_an_edit };
+
+Interrupted solve_until(int n, const BaseMesh& mesh, const SolveOptions& options, const Saved& from = {},
+                        Places places = Places::between_batches) {
   auto log = std::make_unique<SolutionLog>();
   if (!from.log.empty()) {
     PlainReader in(from.log);
@@ -38,8 +41,15 @@ Interrupted solve_until(int n, const BaseMesh& mesh, const SolveOptions& options
   std::stop_source park;
   SolveControl control;
   control.park = park.get_token();
-  control.is_checkpoint_due = [&] {
+  const auto pass_place = [&] {
     if (n-- == 0) park.request_stop();
+  };
+  if (places == Places::publications_with_an_edit) {
+    log->listen(pass_place);
+    control.is_edited = [&] { return park.stop_requested(); };
+  }
+  control.is_checkpoint_due = [&] {
+    if (places == Places::between_batches) pass_place();
     return false;
   };
   control.save = [&](const SolveControl::Write& write) {
@@ -107,6 +117,29 @@ TEST_P(Checkpoint, ASolveGoesOnFromItAsIfItHadNotBeenInterrupted) {
     ASSERT_EQ(rest.leaves, whole.leaves) << n;
   }
   EXPECT_GE(interruptions, 2);
+}
+
+TEST(CheckpointOfARun, IsNotOfTheMiddleOfAnExchangeWhereAnEditComesWithTheRequestToPark) {
+  const BaseMesh mesh(test::room_with_contacts());
+  const SolveOptions options{.tolerance = 0.02, .max_leaves = 6000};
+  const Interrupted whole = solve_until(-1, mesh, options);
+  for (int n = 0; n < 10; ++n) {
+    const Interrupted half = solve_until(n, mesh, options, {}, Places::publications_with_an_edit);
+    ASSERT_EQ(half.outcome.reason, StopReason::parked) << n;
+    const Interrupted rest = solve_until(-1, mesh, options, half.saved);
+    EXPECT_EQ(rest.last.estimated_error, whole.last.estimated_error) << n;
+    ASSERT_EQ(rest.leaves, whole.leaves) << n;
+  }
+}
+
+TEST(CheckpointOfARun, IsMadeAtTheEndOfTheSolveWhereAnEditWaits) {
+  const BaseMesh mesh(test::room_with_contacts());
+  const SolveOptions options{.tolerance = 0.1, .max_leaves = 6000};
+  const auto last = static_cast<int>(solve_until(-1, mesh, options).last.step);
+  const Interrupted ended = solve_until(last, mesh, options, {}, Places::publications_with_an_edit);
+  EXPECT_EQ(ended.outcome.reason, StopReason::parked);
+  EXPECT_EQ(ended.last.step, last);
+  EXPECT_EQ(solve_until(-1, mesh, options, ended.saved).outcome.reason, StopReason::tolerance);
 }
 
 TEST(CheckpointOfARun, CountsWhatWasSpentBefore) {

@@ -341,6 +341,27 @@ TEST(EditedSolve, HeedsTheNextEditBeforeItEstimates) {
   EXPECT_TRUE(edited.last().is_provisional);
 }
 
+TEST(EditedSolve, LeavesMoreLightForLaterWhereItsErrorHasItToSpare) {
+  constexpr double tolerance = 0.1;
+  EditedSolve edited(test::coloured_room(), {.tolerance = tolerance});
+  double most_spared = 0;
+  for (const double reflectance : {0.2, 0.3, 0.4, 0.5, 0.6, 0.7}) {
+    const Step before = edited.last();
+    ASSERT_LT(before.estimated_error, 0.8 * tolerance);
+    edited.edit([&](Scene& scene) { scene.materials[0].reflectance = {reflectance, 0.5, 0.2}; });
+    ASSERT_EQ(edited.outcome.reason, StopReason::tolerance);
+    const auto steps = edited.log().steps();
+    const auto first = std::find_if(steps.begin() + static_cast<std::ptrdiff_t>(before.revision), steps.end(),
+                                    [](const Step& step) { return !step.is_provisional; });
+    ASSERT_NE(first, steps.end());
+    EXPECT_LE(first->estimated_error, tolerance);
+    const double spared = std::sqrt(std::pow(first->estimated_error, 2) - std::pow(steps.back().estimated_error, 2));
+    EXPECT_LE(spared, 0.3 * tolerance);
+    most_spared = std::max(most_spared, spared);
+  }
+  EXPECT_GT(most_spared, 0.1 * tolerance);
+}
+
 TEST(EditedSolve, HasNoRowsFinerThanLeavesWhereAHiddenObjectIsShownAtTheLimitOfLeaves) {
   Scene scene = test::room_with_lamps_and_sun();
   const auto first = static_cast<std::uint32_t>(scene.faces.size());

@@ -137,6 +137,51 @@ TEST(SolveState, AnObjectMayMoveRightAfterRowsGotMoreRays) {
       EXPECT_EQ(state.forests.leaves().id(state.rows.leaves_hit(row)[h]).root_face(), state.rows[row].hits[h].root_face());
 }
 
+TEST(SolveState, PassesShowWhatTheStateHas) {
+  const BaseMesh mesh(test::room_with_contacts());
+  RayBudget budget([] { return false; });
+  SolveState state(mesh, {.max_leaves = 20'000}, budget);
+  for (int n = 0; n < 2; ++n) {
+    Pass pass(state);
+    pass.prepare();
+    pass.exchange().sweep();
+    EXPECT_EQ(pass.leaf_values(), state.leaf_values());
+    pass.estimate();
+    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "after the estimate";
+    pass.exchange().sweep();
+    pass.show_what_came_since();
+    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "more light came";
+    pass.show_smoothly();
+    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "fitted again";
+    ASSERT_TRUE(pass.refine());
+    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "refined";
+  }
+}
+
+TEST(SolveState, LeavesOfHitsAreFoundAgainWhereALeafWasSplitOrARowHasOtherHits) {
+  const BaseMesh mesh(test::room_with_contacts());
+  RayBudget budget([] { return false; });
+  SolveState state(mesh, {.max_leaves = 20'000}, budget);
+  const auto expect_found = [&](const char* when) {
+    Pass(state).begin_exchange();
+    for (const NodeIndex row : state.forests.all_rows()) {
+      const auto& hits = state.rows[row].hits;
+      const auto leaves = state.rows.leaves_hit(row);
+      ASSERT_EQ(leaves.size(), hits.size()) << when;
+      for (std::size_t h = 0; h < hits.size(); ++h) ASSERT_EQ(leaves[h], state.forests.leaves().leaf_at(hits[h])) << when;
+    }
+  };
+  run_pass(state);
+  Pass(state).trace_rows();
+  expect_found("traced");
+  expect_found("as before");
+  for (const NodeIndex leaf : std::vector(state.forests.all_leaves())) ASSERT_TRUE(state.split_leaf(leaf));
+  expect_found("leaves split");
+  state.rows.want_rays(state.forests.all_rows());
+  Pass(state).trace_rows();
+  expect_found("rays added");
+}
+
 TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {
   const BaseMesh mesh(test::room_with_contacts());
   RayBudget budget([] { return false; });
