@@ -24,7 +24,7 @@ struct Step {
   std::uint64_t shots = 0;     ///< shots so far
   std::uint64_t rays = 0;      ///< rays so far, shadow rays included
   std::uint64_t leaves = 0;    ///< leaves now
-  /// Sum |unshot power| / emitted power. 1 while it is not known, as soon after an edit.
+  /// Sum |unshot power| / emitted power. 1 while it is not known: right after an edit.
   double unshot_fraction = 1;
   double estimated_error = 1;  ///< estimate of nRMSE of the irradiance against truth
   /// The displayed irradiance of a leaf may differ from the solution by this fraction of the leaf's irradiance, or of an eighth

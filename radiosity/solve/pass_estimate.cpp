@@ -252,7 +252,7 @@ std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
 ErrorEstimate Pass::estimate() {
   assert(stage_ == Stage::exchanging);
   stage_ = Stage::estimated;
-  exchange_->forget_directions();  // memory is highest from here on, and only the last pass goes on exchanging
+  exchange_->forget_directions();  // memory is highest from here on, and few passes go on exchanging
   const auto neighbours = state_.forests.row_neighbours(system_->rows());
   if (state_.rows.carry_light()) fit_field_smoothly(neighbours);
   else find_changed_rows(neighbours);

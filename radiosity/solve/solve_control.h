@@ -42,8 +42,8 @@ struct SolveControl {
   std::stop_token park;
 
   /// Returns whether the scene was edited since the solve began; ends the solve within one batch of rays or sweep, with the
-  /// reason StopReason::edited and without a call of `save`. If the solve is to be parked, that is done first; at its end, too,
-  /// it is then saved and parked. Called from any thread; quick. Null: never.
+  /// reason StopReason::edited and without a call of `save`. If the solve is to be parked, that is done first; if it comes to its
+  /// end meanwhile, and is whole, it is saved and parked there. Called from any thread; quick. Null: never.
   std::function<bool()> is_edited;
 
   /// Called at such places; returns whether `save` is to be called. Null: never.

@@ -109,7 +109,7 @@ class Run {
       live_.leaves_at_first_end = state_.leaf_count();
       live_.error_at_first_end = is_.error.total();
     }
-    const bool waits = is_as_fine_as_may_be && has_edit_to_wait();
+    const bool waits = (is_as_fine_as_may_be || reason == StopReason::stalled) && has_edit_to_wait();
     if (reason == StopReason::parked || waits) save();
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
@@ -187,11 +187,12 @@ class Run {
     if (must_leave_pass()) return false;  // an exchange without steps has not asked
     is_.error = pass_->estimate();
     account();
-    // If that is stopped, the estimate stands as it is; an edit comes first.
-    if (is_left_unshot() && !exchange_after_estimate(pass_remaining * options_.tolerance) &&
-        requests_.reason() == StopReason::edited)
+    const auto error_before_edit = std::exchange(live_.error_before_edit, std::nullopt);
+    const bool is_stopped = is_left_unshot() && !exchange_after_estimate(pass_remaining * options_.tolerance);
+    if (is_stopped && requests_.reason() == StopReason::edited) {
+      live_.error_before_edit = error_before_edit;
       return false;
-    live_.error_before_edit.reset();
+    }  // else the estimate stands as it is
     expect_agreement();
     by_place_ = pass_->error_by_place(is_.error);
     live_.is_refreshing = false;
@@ -251,7 +252,7 @@ class Run {
     return end != Settling::stopped;
   }
 
-  /// As exchange_down_to(), between the estimate and the publication of a pass.
+  /// As exchange_down_to(), after an estimate, which then has what is still unshot. Shows what came; does not publish that.
   bool exchange_after_estimate(double remaining_error) {
     if (!exchange_down_to(remaining_error)) return false;
     pass_->show_what_came_since();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 
@@ -141,20 +142,18 @@ TEST(SolveState, PassesShowWhatTheStateHas) {
   const BaseMesh mesh(test::room_with_contacts());
   RayBudget budget([] { return false; });
   SolveState state(mesh, {.max_leaves = 20'000}, budget);
-  for (int n = 0; n < 2; ++n) {
+  const std::function<void(Pass&)> nothing = [](Pass&) {}, more_light = [](Pass&pass) { pass.show_what_came_since(); },
+                                   another_fit = [](Pass&pass) { pass.show_smoothly(); },
+                                   finer_mesh = [](Pass&pass) { ASSERT_TRUE(pass.refine()); };
+  for (const auto& then : {nothing, more_light, another_fit, finer_mesh}) {
     Pass pass(state);
     pass.prepare();
     pass.exchange().sweep();
     EXPECT_EQ(pass.leaf_values(), state.leaf_values());
     pass.estimate();
-    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "after the estimate";
     pass.exchange().sweep();
-    pass.show_what_came_since();
-    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "more light came";
-    pass.show_smoothly();
-    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "fitted again";
-    ASSERT_TRUE(pass.refine());
-    EXPECT_EQ(pass.leaf_values(), state.leaf_values()) << "refined";
+    then(pass);
+    EXPECT_EQ(pass.leaf_values(), state.leaf_values());
   }
 }
 
