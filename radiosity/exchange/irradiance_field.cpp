@@ -116,7 +116,8 @@ class Fitter {
   }
 
  private:
-  /// Where a row lies and whether any of its rays met light, which decide whether a fit around another row uses it.
+  /// What decides whether the fit around a row uses the samples of another one: where that row lies, and whether any of its rays
+  /// met light.
   struct Spot {
     Vec3 centre, normal;
     bool is_dark = true;

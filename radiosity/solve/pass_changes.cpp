@@ -27,6 +27,13 @@ constexpr int rings_of_samples = 14;
 // Rings of neighbours around a leaf whose values its interpolation error depends on: slopes of neighbours.
 constexpr int rings_of_slopes = 2;
 
+/// Returns whether the light of a row or a leaf has changed by more than `unnoticed_change` since its error was found, or that is
+/// not known.
+template <class Error>
+bool has_changed(const KnownErrors::Known<Error>& known, const RelativeLight& irradiance, double unnoticed_change) {
+  return !known.is_known || std::abs(irradiance.mean() - known.irradiance) > unnoticed_change;
+}
+
 std::vector<std::uint32_t> all_places(std::size_t count) {
   std::vector<std::uint32_t> all(count);
   std::iota(all.begin(), all.end(), 0);
@@ -106,10 +113,8 @@ void Pass::find_changed_rows(std::span<const SmoothNeighbours> neighbours) {
   const std::vector<RelativeLight> irradiance = exchange_->irradiance();
   unnoticed_change_ = unnoticed_change(irradiance);
   Marked marked(rows, neighbours, state_.forests.rows().node_count());
-  marked.mark_where([&](std::size_t p) {
-    const auto& known = state_.known_errors.of_row(rows[p]);
-    return !known.is_known || std::abs(irradiance[p].mean() - known.irradiance) > unnoticed_change_;
-  });
+  marked.mark_where(
+      [&](std::size_t p) { return has_changed(state_.known_errors.of_row(rows[p]), irradiance[p], unnoticed_change_); });
   marked.grow(rings_of_window);
   changed_rows_ = marked.sorted();
   marked.grow(rings_of_samples);
@@ -123,10 +128,8 @@ Pass::ChangedLeaves Pass::changed_leaves(std::span<const SmoothNeighbours> neigh
   Marked marked(leaves, neighbours, state_.forests.leaves().node_count());
   for (const std::uint32_t p : changed_rows_)
     for (std::uint32_t k = 0; k < system_->patches()[p].leaf_count; ++k) marked.mark(system_->patches()[p].first_leaf + k);
-  marked.mark_where([&](std::size_t n) {
-    const auto& known = state_.known_errors.of_leaf(leaves[n]);
-    return !known.is_known || std::abs(irradiance_[n].mean() - known.irradiance) > unnoticed_change_;
-  });
+  marked.mark_where(
+      [&](std::size_t n) { return has_changed(state_.known_errors.of_leaf(leaves[n]), irradiance_[n], unnoticed_change_); });
   marked.grow(rings_of_slopes);
   ChangedLeaves changed{marked.sorted(), {}};
   marked.grow(1);

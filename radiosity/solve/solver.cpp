@@ -109,7 +109,7 @@ class Run {
       live_.leaves_at_first_end = state_.leaf_count();
       live_.error_at_first_end = is_.error.total();
     }
-    const bool waits = (is_as_fine_as_may_be || reason == StopReason::stalled) && has_edit_to_wait();
+    const bool waits = (is_as_fine_as_may_be || reason == StopReason::stalled) && requests_.has_edit_to_wait();
     if (reason == StopReason::parked || waits) save();
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
@@ -366,8 +366,6 @@ class Run {
     const ErrorEstimate& error = is_.error;
     return !has_stalled_ && error.unshot > pass_remaining * options_.tolerance && error.total() > options_.tolerance;
   }
-  /// Collective. Returns whether an edit came that must wait until the solve is resumed, because it is to be parked.
-  bool has_edit_to_wait() { return ranks_.any_of(control_.park.stop_requested() && control_.is_edited && control_.is_edited()); }
   /// Collective.
   bool must_stop() { return requests_.ask().any(); }
   /// Collective. Returns whether to stop in the middle of a pass, where it cannot be parked.

@@ -31,7 +31,7 @@ class StopRequests {
     const bool is_parked = control_.park.stop_requested();
     return {control_.stop.stop_requested(), control_.short_of_memory.stop_requested(),
             control_.ranks->is_first() && clock_.elapsed_s() > time_limit_s_, is_parked,
-            !is_parked && heeds_edits_ && control_.is_edited && control_.is_edited()};
+            !is_parked && heeds_edits_ && is_edited()};
   }
   /// Collective. Returns the requests that any rank knows of.
   const Made& ask() {
@@ -40,6 +40,8 @@ class StopRequests {
     control_.ranks->sum(counts);
     return made_ = {counts[0] > 0, counts[1] > 0, counts[2] > 0, counts[3] > 0, counts[4] > 0 && counts[3] == 0};
   }
+  /// Collective. Returns whether there is an edit that must wait until the solve is resumed.
+  bool has_edit_to_wait() const { return control_.ranks->any_of(control_.park.stop_requested() && is_edited()); }
   /// Makes edits count or not. A solve that has just taken one does not heed another before it has shown something, else a stream
   /// of edits would never be seen.
   void heed_edits(bool heeds) { heeds_edits_ = heeds; }
@@ -52,6 +54,8 @@ class StopRequests {
   }
 
  private:
+  bool is_edited() const { return control_.is_edited && control_.is_edited(); }
+
   const SolveControl& control_;
   const SolveClock& clock_;
   const double time_limit_s_;
