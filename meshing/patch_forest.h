@@ -52,6 +52,8 @@ class PatchForest {
   /// Returns how a node is split. Requires: !is_leaf(node).
   Split split_of(NodeIndex node) const { return static_cast<Split>(first_child_[node] >> split_shift); }
   PatchShape shape(NodeIndex node) const { return shape_of(*mesh_, ids_[node]); }
+  /// Loads a node's id, which will soon be asked for.
+  void prefetch(NodeIndex node) const { __builtin_prefetch(&ids_[node]); }
   /// Returns all leaves in the order of their ids.
   std::vector<NodeIndex> leaves() const;
   /// Appends the leaves below `node` in the order of their ids, or `node` itself if it is a leaf.

@@ -197,18 +197,27 @@ void DirectField::add_new(const TracedRows& rows, const std::function<void()>& a
 std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
   const auto is_kept = [this](const LightSource* light) { return shares_.keeps(*light); };
   if (light_tree_ || lights_.empty() || !std::ranges::all_of(lights_, is_kept)) return 0;
+  std::vector<LightShares::Brought> shares;
+  std::vector<bool> counts_arrivals;
+  for (const LightSource* light : lights_) {
+    shares.push_back(shares_.brought(*light));
+    counts_arrivals.push_back(!is_face(*light));
+  }
   std::vector<std::uint8_t> is_recalled(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    DirectLight light;
-    float arrived = 0;
-    for (const LightSource* next : lights_) {
-      const auto brought = shares_.brought(*next, leaves[n]);
-      if (!brought) return;
-      light += *brought;
-      if (!is_face(*next)) arrived += stopped_by(leaves[n], brought->irradiance);
+    constexpr std::size_t ahead = 8;  // leaves; those that follow each other lie apart in memory
+    if (n + ahead < leaves.size())
+      for (const auto& share : shares) share.prefetch(leaves[n + ahead]);
+    const NodeIndex leaf = leaves[n];
+    if (!std::ranges::all_of(shares, [&](const auto& share) { return share.is_known(leaf); })) return;
+    DirectLight& light = light_[leaf];
+    light = {};
+    for (const auto& share : shares) share.add_to(light, leaf);
+    if (counts_arrivals_) {
+      arrived_[leaf] = 0;
+      for (std::size_t l = 0; l < shares.size(); ++l)
+        if (counts_arrivals[l]) arrived_[leaf] += stopped_by(leaf, shares[l].irradiance(leaf));
     }
-    light_[leaves[n]] = light;
-    if (counts_arrivals_) arrived_[leaves[n]] = arrived;
     is_recalled[n] = 1;
   });
   std::vector<NodeIndex> left, newly_lit;
@@ -267,10 +276,10 @@ std::vector<DirectLight> DirectField::trace_unknown(const LightSource& next, std
                                                     std::span<const NodeIndex> leaves) {
   std::vector<DirectLight> brought(leaves.size());
   std::vector<std::uint8_t> is_missing(leaves.size());
+  const LightShares::Brought shares = shares_.brought(next);
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    const auto known = shares_.brought(next, leaves[n]);
-    is_missing[n] = !known;
-    if (known) brought[n] = *known;
+    is_missing[n] = !shares.is_known(leaves[n]);
+    if (!is_missing[n]) shares.add_to(brought[n], leaves[n]);
   });
   std::vector<std::size_t> missing;
   std::vector<Receiver> missing_receivers;

@@ -43,6 +43,8 @@ class DirectField {
 
   /// Returns the direct light that the leaf shows: its own, or another leaf's until its own is found.
   const DirectLight& operator[](NodeIndex leaf) const { return light_[leaf]; }
+  /// Loads the irradiance of a leaf that will soon be asked for.
+  void prefetch(NodeIndex leaf) const { __builtin_prefetch(&light_[leaf].irradiance); }
   /// Returns the share of the area of faces that light may reach which shows no direct light yet.
   double unlit_fraction() const;
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <tuple>
 
 namespace alvor {
@@ -87,9 +88,13 @@ void Forests::split_as_at_start(const Plan& plan) {
 }
 
 void Forests::split_to_start(const Plan& plan) {
+  const auto roots = std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(mesh_.roots().size()));
+  is_at_start_.resize(roots.size());
+  const auto is_to_begin = [&](std::uint32_t root) { return !is_at_start_[root] && plan.may_be_lit(root); };
+  if (std::ranges::none_of(roots, is_to_begin)) return;
   const auto is_coarse = [&](NodeIndex node) {
     const PatchId id = rows_.id(node);
-    if (!plan.may_be_lit(id.root_face())) return false;
+    if (!is_to_begin(id.root_face())) return false;
     const bool shows_no_curvature = id.level() < 2 && mesh_.roots()[id.root_face()].area > start_area * area_;
     return shows_no_curvature || longest_edge(mesh_, rows_.shape(node)) > start_edge * mesh_.extent();
   };
@@ -98,13 +103,18 @@ void Forests::split_to_start(const Plan& plan) {
   std::vector<std::uint8_t> is_to_split(old_nodes);
   tbb::parallel_for(NodeIndex{0}, old_nodes, [&](NodeIndex node) { is_to_split[node] = rows_.is_leaf(node) && is_coarse(node); });
   std::vector<NodeIndex> split;
+  bool is_complete = true;
   for (NodeIndex node = 0; node < rows_.node_count(); ++node) {
     const bool may_be_coarse = node >= old_nodes || is_to_split[node];
     if (!may_be_coarse || !rows_.is_leaf(node) || !is_coarse(node)) continue;
     const NodeIndex leaf = leaf_node_of(node);
-    if (leaves_.is_leaf(leaf) && !leaves_.split(leaf, limits_, split)) continue;  // after an edit at the limit of leaves
-    rows_.split_as(leaves_, node, limits_, split);
+    const bool is_split = !leaves_.is_leaf(leaf) || leaves_.split(leaf, limits_, split);
+    if (is_split) rows_.split_as(leaves_, node, limits_, split);
+    else is_complete = false;  // after an edit at the limit of leaves
   }
+  if (!is_complete) return;
+  for (const std::uint32_t root : roots)
+    if (plan.may_be_lit(root)) is_at_start_[root] = true;
 }
 
 /// Splits leaves on textures where the reflectance of their quarters differs. Rows need not be as fine: irradiance is smoother.
@@ -184,6 +194,7 @@ void Forests::append(const AppendedRoots& roots) {
   row_list_ = leaf_list_ = {};
   for (std::vector<Vec3>* centres : {&row_centre_, &leaf_centre_}) roots.make_room(*centres);
   roots.make_room(leaf_area_);
+  roots.make_room(is_at_start_);
   for (NodeIndex root = roots.first; root < roots.first + roots.count; ++root) {
     row_centre_[root] = leaf_centre_[root] = centre_of(mesh_, leaves_.shape(root));
     leaf_area_[root] = area_of(mesh_, leaves_.shape(root));
@@ -217,6 +228,7 @@ void Forests::save(PlainWriter& out) const {
 void Forests::load(PlainReader& in) {
   rows_ = leaves_ = PatchForest(mesh_);
   row_list_ = leaf_list_ = {};
+  is_at_start_.clear();
   row_centre_.clear(), leaf_centre_.clear(), leaf_area_.clear(), leaf_surface_.clear();
   load_leaves(rows_, in);
   load_leaves(leaves_, in);

@@ -40,6 +40,11 @@ class Forests {
 
   std::span<const Vec3> row_centres() const { return row_centre_; }    ///< by row node
   std::span<const Vec3> leaf_centres() const { return leaf_centre_; }  ///< by leaf node
+  /// Loads the id and the area of a leaf that will soon be asked for.
+  void prefetch(NodeIndex leaf) const {
+    leaves_.prefetch(leaf);
+    __builtin_prefetch(&leaf_area_[leaf]);
+  }
   double leaf_area(NodeIndex leaf) const { return leaf_area_[leaf]; }  ///< m2
   /// Returns the mean reflectance of what is there of a leaf node.
   Rgb reflectance(NodeIndex leaf) const {
@@ -101,6 +106,7 @@ class Forests {
   double area_ = 0;
   PatchForest rows_, leaves_;
   mutable LeafList row_list_, leaf_list_;
+  std::vector<std::uint8_t> is_at_start_;  // by root: split_to_start() has left no coarse patch of it
   NeighbourTable row_neighbours_{rows_}, leaf_neighbours_{leaves_};
   std::vector<Vec3> row_centre_, leaf_centre_;
   std::vector<double> leaf_area_;

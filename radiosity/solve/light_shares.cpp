@@ -49,21 +49,18 @@ void LightShares::forget(const LightSource& light, NodeIndex leaf) {
   if (const auto kept = by_light_.find(light.number()); kept != by_light_.end()) kept->second.shares[leaf] = {};
 }
 
-std::optional<DirectLight> LightShares::brought(const LightSource& light, NodeIndex leaf) const {
-  const auto kept = by_light_.find(light.number());
-  if (kept == by_light_.end()) return std::nullopt;
-  const Share& share = kept->second.shares[leaf];
-  const RelativeLight& colour = light.colour();
-  const auto is_missing = [](float part, double band) { return part < 0 && band > 0; };
-  if (is_missing(share.irradiance.r, colour.r) || is_missing(share.irradiance.g, colour.g) ||
-      is_missing(share.irradiance.b, colour.b))
-    return std::nullopt;
-  const auto mean = static_cast<float>(colour.mean());
-  DirectLight brought{.irradiance = {colour.r * share.irradiance.r, colour.g * share.irradiance.g, colour.b * share.irradiance.b},
-                      .variance = mean * mean * share.variance,
-                      .origin_variance = mean * mean * share.origin_variance};
-  std::ranges::transform(share.at_origin, brought.at_origin.begin(), [&](float at) { return mean * at; });
-  return brought;
+void LightShares::Brought::add_to(DirectLight& sum, NodeIndex leaf) const {
+  const Share& share = shares_[leaf];
+  sum.irradiance += irradiance(leaf);
+  for (std::size_t o = 0; o < share.at_origin.size(); ++o) sum.at_origin[o] += mean_ * share.at_origin[o];
+  sum.variance += mean_ * mean_ * share.variance;
+  sum.origin_variance += mean_ * mean_ * share.origin_variance;
+}
+
+void LightShares::Brought::prefetch(NodeIndex leaf) const {
+  const auto* first = reinterpret_cast<const char*>(&shares_[leaf]);
+  __builtin_prefetch(first);
+  __builtin_prefetch(first + sizeof(Share) - 1);
 }
 
 }  // namespace alvor

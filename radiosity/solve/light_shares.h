@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace alvor {
@@ -22,7 +23,7 @@ struct LightForm {
 };
 
 /// The direct light of leaves by light, as multiples of the light's colour: 84 bytes for each node of the leaf forest and light.
-/// Lights are known by their numbers; indices are by leaf node. Used by one thread at a time, but for brought().
+/// Lights are known by their numbers; indices are by leaf node. Used by one thread at a time, but for what brought() returns.
 class LightShares {
  public:
   /// Scenes of more lights than this keep no shares.
@@ -46,8 +47,6 @@ class LightShares {
   void forget(NodeIndex leaf);
   /// Forgets what one light brings to a leaf.
   void forget(const LightSource& light, NodeIndex leaf);
-  /// Returns what the light brings to a leaf at its present colour; nothing where its share is not known.
-  std::optional<DirectLight> brought(const LightSource& light, NodeIndex leaf) const;
 
  private:
   static constexpr float unknown = -1;
@@ -57,6 +56,38 @@ class LightShares {
     std::array<float, origins_per_patch> at_origin{};  ///< of the mean of the bands
     float variance = 0, origin_variance = 0;           ///< of its square
   };
+
+ public:
+  /// What one light brings to leaves at its present colour. Borrows the shares, until they are changed. Safe from any thread.
+  class Brought {
+   public:
+    bool is_known(NodeIndex leaf) const {
+      const RgbF& part = shares_[leaf].irradiance;
+      const auto is_missing = [](float of_band, double colour) { return of_band < 0 && colour > 0; };
+      return !is_missing(part.r, colour_.r) && !is_missing(part.g, colour_.g) && !is_missing(part.b, colour_.b);
+    }
+    /// Requires, as add_to() does: is_known(leaf).
+    RelativeLight irradiance(NodeIndex leaf) const {
+      const RgbF& part = shares_[leaf].irradiance;
+      return {colour_.r * part.r, colour_.g * part.g, colour_.b * part.b};
+    }
+    void add_to(DirectLight& sum, NodeIndex leaf) const;
+    /// Loads the share of a leaf that will soon be asked for: leaves in the order of their ids lie apart in memory.
+    void prefetch(NodeIndex leaf) const;
+
+   private:
+    friend class LightShares;
+    Brought(std::span<const Share> shares, const RelativeLight& colour)
+        : shares_(shares), colour_(colour), mean_(static_cast<float>(colour.mean())) {}
+
+    std::span<const Share> shares_;
+    RelativeLight colour_;
+    float mean_;
+  };
+  /// Requires: keeps(light).
+  Brought brought(const LightSource& light) const { return {by_light_.at(light.number()).shares, light.colour()}; }
+
+ private:
   struct Kept {
     LightForm form;
     std::vector<Share> shares;

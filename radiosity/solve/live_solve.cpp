@@ -123,6 +123,7 @@ bool LiveSolve::take_edit(const BaseMesh& edited, const Plan& plan) {
     return true;
   }
   ended_with.reset();
+  follows_closely = error_before_edit.has_value();
   if (!error_before_edit) error_before_edit = progress.error.total();
   progress.error.unshot = 1;
   progress.leaves_before = progress.idle_passes = 0;

@@ -64,6 +64,7 @@ class LiveSolve {
   double error_at_first_end = 0;
   /// Until the first estimate after an edit: the estimated error of before.
   std::optional<double> error_before_edit;
+  bool follows_closely = false;  ///< the last edit came before the first estimate after the one before; not saved
   /// The errors told last, W/m2, in the order of the leaves; of other leaves where there are more or fewer. Kept for edits only.
   std::vector<float> told_errors;
   std::optional<StopReason> ended_with;  ///< the tolerance or a limit of the mesh; nothing if the solve has not ended by one

@@ -140,6 +140,7 @@ class SolveState {
   std::optional<RelativeLight> scattered_before_;  ///< see note_scattered_light(); nothing where no edit is pending
   Rgb largest_irradiance_;                         ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
+  void fetch_ahead(std::span<const NodeIndex> leaves, std::size_t n) const;
   std::optional<double> relight(Plan new_plan, bool reflects_as_before);
   double arrived_power() const;
   RelativeLight scattered_power() const;

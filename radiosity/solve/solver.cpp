@@ -67,6 +67,9 @@ constexpr double spare_of_new_solve = 1.5;
 // of it are published only while finding it takes longer than so many times publishing a state. Chosen; half and double are not
 // measured.
 constexpr double worth_waiting = 3;
+// While each edit comes before light was exchanged for the one before, as when a slider is moved, the exchange waits so long for
+// a next one, in wall seconds. Chosen: longer than between two edits of 30 a second.
+constexpr double wait_for_next_edit_s = 0.05;
 
 /// Publishes one step: every face, and no light on any.
 SolveOutcome show_darkness(const BaseMesh& mesh, const CpuClock& cpu, SolutionLog& log, std::uint64_t edits) {
@@ -181,7 +184,10 @@ class Run {
   /// Makes a pass up to its estimate and publishes it. Returns false if it was stopped: then the last published step stands.
   bool pass() {
     if (!light()) return false;
-    if (live_.error_before_edit) publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
+    if (live_.error_before_edit) {
+      publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
+      if (live_.follows_closely && is_edited_soon()) return false;
+    }
     pass_->begin_exchange();
     if (!exchange_down_to(remaining_at_estimate())) return false;
     if (must_leave_pass()) return false;  // an exchange without steps has not asked
@@ -372,6 +378,11 @@ class Run {
   bool must_leave_pass() {
     const auto& made = requests_.ask();
     return made.break_off() || made.edited;
+  }
+  /// Collective. Waits for an edit, not for long. Returns whether to leave the pass for it, or for another request.
+  bool is_edited_soon() {
+    clock_.pause(wait_for_next_edit_s, [this] { return requests_.made_here().any(); });
+    return must_leave_pass();
   }
 
   /// Collective. Ends the solve if ranks differ in what they found, as on machines that compute differently.

@@ -341,6 +341,26 @@ TEST(EditedSolve, HeedsTheNextEditBeforeItEstimates) {
   EXPECT_TRUE(edited.last().is_provisional);
 }
 
+TEST(EditedSolve, ExchangesNoLightWhileEachEditComesBeforeThatOfTheOneBefore) {
+  EditedSolve edited(room_with_two_lamps(), {.tolerance = 0.05});
+  const auto dim = [](Scene& scene) { scene.materials.back().emission = 0.9 * scene.materials.back().emission; };
+  const auto shots_until_edited = [&](int asks) {
+    const std::uint64_t before = edited.last().revision, shots = edited.live()->progress.shots;
+    SolveControl control;
+    control.is_edited = [&, before, asked = 0]() mutable { return edited.log().head() > before && ++asked >= asks; };
+    edited.edit(dim, {}, std::move(control));
+    EXPECT_EQ(edited.outcome.reason, StopReason::edited);
+    EXPECT_EQ(edited.last().revision, before + 1);
+    EXPECT_TRUE(edited.last().is_provisional);
+    return edited.live()->progress.shots - shots;
+  };
+  const std::uint64_t of_direct_light = shots_until_edited(1);
+  EXPECT_EQ(shots_until_edited(2), of_direct_light);
+  EXPECT_EQ(shots_until_edited(2), of_direct_light);
+  edited.edit(dim);
+  EXPECT_EQ(edited.outcome.reason, StopReason::tolerance);
+}
+
 TEST(EditedSolve, LeavesMoreLightForLaterWhereItsErrorHasItToSpare) {
   constexpr double tolerance = 0.1;
   EditedSolve edited(test::coloured_room(), {.tolerance = tolerance});
