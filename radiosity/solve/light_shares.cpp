@@ -27,7 +27,7 @@ void LightShares::resize(std::size_t nodes) {
 
 void LightShares::set(const LightSource& light, NodeIndex leaf, const DirectLight& brought) {
   const auto part = [](double whole, double colour) {
-    return colour > 0 ? static_cast<float>(std::max(0.0, whole) / colour) : unknown;
+    return colour > 0 ? std::max(0.0, whole) / colour : unknown;
   };
   const RelativeLight& colour = light.colour();
   const double mean = colour.mean();

@@ -22,7 +22,7 @@ struct LightForm {
   friend bool operator==(const LightForm&, const LightForm&) = default;
 };
 
-/// The direct light of leaves by light, as multiples of the light's colour: 84 bytes for each node of the leaf forest and light.
+/// The direct light of leaves by light, as multiples of the light's colour: 96 bytes for each node of the leaf forest and light.
 /// Lights are known by their numbers; indices are by leaf node. Used by one thread at a time, but for what brought() returns.
 class LightShares {
  public:
@@ -49,10 +49,10 @@ class LightShares {
   void forget(const LightSource& light, NodeIndex leaf);
 
  private:
-  static constexpr float unknown = -1;
+  static constexpr double unknown = -1;
   /// Multiples of the colour; `unknown` in a band of which the colour had nothing.
   struct Share {
-    RgbF irradiance{unknown, unknown, unknown};
+    Rgb irradiance{unknown, unknown, unknown};
     std::array<float, origins_per_patch> at_origin{};  ///< of the mean of the bands
     float variance = 0, origin_variance = 0;           ///< of its square
   };
@@ -62,13 +62,13 @@ class LightShares {
   class Brought {
    public:
     bool is_known(NodeIndex leaf) const {
-      const RgbF& part = shares_[leaf].irradiance;
-      const auto is_missing = [](float of_band, double colour) { return of_band < 0 && colour > 0; };
+      const Rgb& part = shares_[leaf].irradiance;
+      const auto is_missing = [](double of_band, double colour) { return of_band < 0 && colour > 0; };
       return !is_missing(part.r, colour_.r) && !is_missing(part.g, colour_.g) && !is_missing(part.b, colour_.b);
     }
     /// Requires, as add_to() does: is_known(leaf).
     RelativeLight irradiance(NodeIndex leaf) const {
-      const RgbF& part = shares_[leaf].irradiance;
+      const Rgb& part = shares_[leaf].irradiance;
       return {colour_.r * part.r, colour_.g * part.g, colour_.b * part.b};
     }
     void add_to(DirectLight& sum, NodeIndex leaf) const;

@@ -29,8 +29,8 @@ constexpr double pass_remaining = 0.1;
 // The largest after an edit of a solve whose error was well within the tolerance: it adds 4 %, until converge() goes on. Chosen;
 // half and double are not measured.
 constexpr double remaining_after_edit = 0.3;
-// Remaining error (not a share of the tolerance) that ends a pass that may be the last. Chosen; half: the same, double: the same
-// (docs/design/constants.md).
+// Remaining error (not a share of the tolerance) that ends a pass that may be the last, where pass_remaining demands no less.
+// Chosen; half: the same, double: the same (docs/design/constants.md).
 constexpr double final_remaining = 1e-6;
 // Multiple of the tolerance: after an estimated error below it the next pass is taken to be the last. Chosen; half: the same,
 // double: the same (docs/design/constants.md).
@@ -225,10 +225,10 @@ class Run {
     return !must_stop();
   }
 
-  /// Exchanges light down to final_remaining, publishes, and returns why the solve ends: `reason`, or that the exchange was
+  /// Exchanges light down to remaining_at_end(), publishes, and returns why the solve ends: `reason`, or that the exchange was
   /// stopped or has stalled.
   StopReason converge(StopReason reason) {
-    if (!exchange_after_estimate(final_remaining)) return requests_.reason();
+    if (!exchange_after_estimate(remaining_at_end())) return requests_.reason();
     publish();
     return is_stuck() ? StopReason::stalled : reason;
   }
@@ -357,9 +357,11 @@ class Run {
     if (live_.error_before_edit || has_ended_before()) return false;
     return options_.strategy == Strategy::automatic && (is_.passes == 0 || error_to_keep() < near_the_end * options_.tolerance);
   }
+  /// Returns the remaining error at which the solve ends.
+  double remaining_at_end() const { return std::min(final_remaining, pass_remaining * options_.tolerance); }
   /// Returns the remaining error at which a pass makes its estimate.
   double remaining_at_estimate() const {
-    if (may_be_last()) return final_remaining;
+    if (may_be_last()) return remaining_at_end();
     const double tolerance = options_.tolerance, before = live_.error_before_edit.value_or(tolerance);
     if (options_.is_by_place() || before >= tolerance) return pass_remaining * tolerance;
     // Half of what the error had to spare.

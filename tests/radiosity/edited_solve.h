@@ -8,8 +8,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -36,6 +39,16 @@ class EditedSolve {
     mesh_ = submitted_.edited_as(scene_, added);
     ++edits_;
     run(std::move(control));
+  }
+  /// Edits, as a server does that was started again since its last checkpoint.
+  void edit_from_checkpoint(const Change& change, const AddedMeshes& added = {}) {
+    const std::vector<std::byte> state = plain_bytes([this](PlainWriter& out) { live_->save(out); });
+    const BaseMesh of_state = mesh_;
+    live_.reset();
+    SolveControl control;
+    control.checkpoint = state;
+    control.checkpoint_mesh = &of_state;
+    edit(change, added, std::move(control));
   }
   /// Edits, and asks for another edit as soon as a state is published.
   void edit_twice(const Change& change) {
@@ -91,23 +104,45 @@ inline double difference(const std::vector<LeafValue>& a, const std::vector<Leaf
   return std::sqrt(squares / static_cast<double>(a.size())) / (sum / static_cast<double>(a.size()));
 }
 
-/// Returns the root mean square, weighted by area, of the differences of the means over roots, as a share of the mean.
-inline double difference_of_roots(const EditedSolve& a, const EditedSolve& b) {
-  const auto powers = [](const EditedSolve& solve) {
-    std::vector<double> power(solve.mesh().roots().size());
-    for (const LeafValue& leaf : solve.leaves())
-      power[leaf.patch.root_face()] += area_of(solve.mesh(), shape_of(solve.mesh(), leaf.patch)) * leaf.irradiance.mean();
-    return power;
+/// Returns the root mean square, weighted by area, of the differences of the means over parts of roots, as a share of the mean.
+/// Parts are what a grid of `cells` along the scene cuts roots into.
+inline double difference_of_parts(const EditedSolve& a, const EditedSolve& b, int cells) {
+  using Part = std::array<std::int64_t, 4>;  // root, cell
+  struct Sum {
+    double area = 0, power = 0;
   };
-  const auto one = powers(a), other = powers(b);
-  double squares = 0, area = 0, sum = 0;
-  for (std::size_t root = 0; root < one.size(); ++root) {
-    const double own = a.mesh().roots()[root].area;
-    squares += std::pow(one[root] - other[root], 2) / own;
-    sum += other[root];
-    area += own;
+  const auto sums_of = [cells](const EditedSolve& solve) {
+    constexpr int even_level = 4;  // leaves that are coarser are cut, so that both solves are cut alike
+    std::map<Part, Sum> sums;
+    const BaseMesh& mesh = solve.mesh();
+    const std::function<void(const PatchShape&, int, std::uint32_t, double)> add = [&](const PatchShape& shape, int level,
+                                                                                       std::uint32_t root, double irradiance) {
+      if (cells > 1 && level < even_level) {
+        for (int k = 0; k < 4; ++k) add(shape.child(k), level + 1, root, irradiance);
+        return;
+      }
+      const Vec3 place = (cells / mesh.extent()) * (centre_of(mesh, shape) - mesh.centre());
+      const auto cell = [&](double along) { return cells > 1 ? static_cast<std::int64_t>(std::floor(along)) : 0; };
+      Sum& sum = sums[{root, cell(place.x), cell(place.y), cell(place.z)}];
+      const double area = area_of(mesh, shape);
+      sum.area += area;
+      sum.power += area * irradiance;
+    };
+    for (const LeafValue& leaf : solve.leaves())
+      add(shape_of(mesh, leaf.patch), leaf.patch.level(), leaf.patch.root_face(), leaf.irradiance.mean());
+    return sums;
+  };
+  const auto one = sums_of(a), other = sums_of(b);
+  double squares = 0, area = 0, power = 0;
+  for (const auto& [part, sum] : other) {
+    const auto same = one.find(part);
+    if (same == one.end() || sum.area <= 0) continue;  // a sliver of which the other solve has no middle of a patch
+    squares += sum.area * std::pow(sum.power / sum.area - same->second.power / same->second.area, 2);
+    power += sum.power;
+    area += sum.area;
   }
-  return std::sqrt(squares / area) / (sum / area);
+  return std::sqrt(squares / area) / (power / area);
 }
+inline double difference_of_roots(const EditedSolve& a, const EditedSolve& b) { return difference_of_parts(a, b, 1); }
 
 }  // namespace alvor::test
