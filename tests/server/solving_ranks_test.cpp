@@ -109,6 +109,39 @@ TEST(SolvingRanks, EndASolveWhenTheMemoryOfOneIsShort) {
   });
 }
 
+/// Solves a room, edits its materials and moves and copies objects, and returns the leaves after each step.
+Solutions solve_and_edit(const SolveStoreOptions& options) {
+  SceneStore scenes;
+  SolveStore solves(options, scenes);
+  const auto solve = solves.create(scenes.use(scenes.add(test::room_of_objects(), "")->facts.name), spec);
+  Solutions leaves;
+  const auto end = [&](std::uint64_t edits) {
+    while (!solve->ended()) std::this_thread::yield();
+    EXPECT_EQ(solve->describe().status, SolveStatus::succeeded) << solve->describe().end_reason;
+    EXPECT_EQ(solve->log()->last_step().edits, edits);
+    leaves.push_back(solve->log()->leaves());
+  };
+  end(0);
+  const std::vector<std::vector<SceneEdit>> steps{
+      {MaterialEdit{.name = "m0", .reflectance = Rgb{0.2, 0.3, 0.4}}},
+      {ObjectEdit{.name = "box", .move = Vec3{0.3, 0.2, 1.5}}, ObjectEdit{.name = "lamp", .dim = 0.5}},
+      {ObjectCopy{"second lamp", "lamp"}, ObjectEdit{.name = "second lamp", .move = Vec3{-1, -0.2, -1}}}};
+  for (std::uint64_t n = 0; n < steps.size(); ++n) {
+    EXPECT_EQ(solves.edit(solve->name, {.step = {EditStep::Kind::edit, steps[n]}}), n + 1);
+    end(n + 1);
+  }
+  return leaves;
+}
+
+TEST(SolvingRanks, FindAfterEditsWhatOneRankFinds) {
+  const Solutions alone = solve_and_edit({});
+  for (const std::size_t size : {2, 3}) {
+    Solutions together;
+    run_on(size, size, [&](SolvingRanks& ranks) { together = solve_and_edit(store_of(ranks)); });
+    EXPECT_TRUE(together == alone) << size;
+  }
+}
+
 TEST(SolvingRanks, LeaveTextbookStrategiesToTheFirst) {
   SolveSpec sorted = spec;
   sorted.strategy = Strategy::sorted;

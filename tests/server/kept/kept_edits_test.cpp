@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <functional>
+#include <mutex>
 #include <thread>
 
 namespace alvor {
@@ -46,6 +50,68 @@ TEST_F(KeptEditsTest, KilledInTheMiddleOfEditsEveryAcknowledgedOneIsThereAndNone
   EXPECT_EQ(ended.state(), v1::Solve::SUCCEEDED);
   EXPECT_EQ(ended.last_step().edits(), acknowledged.size());
   EXPECT_EQ(client.read_scene(solve).materials[0].reflectance.r, acknowledged.back());
+}
+
+/// Makes an edit until it is answered, on whatever server is there, always under one request id.
+void insist(const std::function<std::string()>& address, v1::EditSolveRequest request) {
+  for (grpc::Status status(grpc::UNKNOWN, ""); !status.ok();) {
+    const auto stub = v1::SolveService::NewStub(grpc::CreateChannel(address(), grpc::InsecureChannelCredentials()));
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(5));
+    v1::EditSolveResponse response;
+    status = stub->EditSolve(&context, request, &response);
+    ASSERT_TRUE(status.ok() || status.error_code() == grpc::UNAVAILABLE || status.error_code() == grpc::DEADLINE_EXCEEDED)
+        << status.error_message();
+  }
+}
+
+// The server is killed while a call is under way: whether that edit was kept is not known, so it is asked for again.
+TEST_F(KeptEditsTest, AnEditThatIsAskedForAgainAfterAKillIsMadeOnce) {
+  constexpr int count = 150;
+  std::mutex lock;
+  std::string address, solve;
+  std::atomic<int> made = 0;
+  std::thread editing;
+  const auto begin = [&](Alvord& alvord) {
+    const std::string listening = alvord.address();
+    if (solve.empty()) {
+      Client client(grpc::CreateChannel(listening, grpc::InsecureChannelCredentials()));
+      v1::SolveSpec spec = coarse();
+      spec.set_tolerance(0.03);
+      solve = client.create_solve(client.create_scene(room(), "").name(), spec).name();
+    }
+    const std::lock_guard hold(lock);
+    address = listening;
+  };
+  for (int kills = 0; made < count; ++kills) {
+    Alvord alvord(arguments());
+    begin(alvord);
+    if (kills == 0)
+      editing = std::thread([&] {
+        for (int n = 1; n <= count; ++n) {
+          v1::EditSolveRequest request;
+          request.set_name(solve);
+          *request.mutable_step() = recolour("m0", 0.005 * n, 0.1, 0.1);
+          request.set_request_id("edit-" + std::to_string(n));
+          insist(
+              [&] {
+                const std::lock_guard hold(lock);
+                return address;
+              },
+              request);
+          ++made;
+        }
+      });
+    const int enough = std::min(count, made + 7 + 5 * kills);
+    while (made < enough) std::this_thread::yield();
+    alvord.kill();
+  }
+  editing.join();
+  Alvord alvord(arguments());
+  Client client = client_of(alvord);
+  const v1::Solve now = client.get_solve(solve);
+  ASSERT_EQ(now.edits_size(), count);
+  for (int n = 0; n < count; ++n) EXPECT_EQ(now.edits(n).edits(0).material().reflectance().r(), 0.005 * (n + 1)) << n;
 }
 
 TEST_F(KeptEditsTest, AFinishedSolveIsEditedAfterARestart) {
