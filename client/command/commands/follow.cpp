@@ -16,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 /// Records every frame.
 class Observer {
  public:
-  Observer(const FollowOptions& options, double tolerance) : options_(options), progress_(tolerance) {}
+  Observer(const FollowOptions& options, const ProgressGoal& goal) : options_(options), progress_(goal) {}
 
   void see(const SolutionMirror& mirror) {
     if (first_frame_s_ < 0) first_frame_s_ = std::chrono::duration<double>(Clock::now() - options_.begin).count();
@@ -63,7 +63,9 @@ void try_to_cancel(Client& client, const std::string& name) {
 /// Follows a solve. `stop_waiting` ends the wait for a lost server.
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop,
                 std::stop_token stop_waiting) {
-  Observer observer(options, solve.effective_spec().tolerance());
+  const v1::SolveSpec& spec = solve.effective_spec();
+  const bool is_by_place = spec.area_share() < 1 || !spec.objects().empty();
+  Observer observer(options, {spec.tolerance(), is_by_place ? spec.area_share() : 0});
   Client::Watch watch;
   const auto on_frame = [&](const Client::Watch& now) { observer.see(now.mirror); };
   v1::Solve ended = watch_through(client, solve.name(), watch, on_frame, std::move(stop), std::move(stop_waiting));

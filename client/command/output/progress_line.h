@@ -1,8 +1,8 @@
 #pragma once
 // Shows the progress of a running solve on stderr.
 
+#include "client/command/output/done_share.h"
 #include "client/command/output/status_line.h"
-#include "solution/leaf_value.h"
 
 #include <string>
 
@@ -10,17 +10,16 @@ namespace alvor {
 
 class ProgressLine {
  public:
-  /// `tolerance` is the estimated error at which the bar is full.
-  explicit ProgressLine(double tolerance) : tolerance_(tolerance) {}
+  explicit ProgressLine(const ProgressGoal& goal) : done_(goal) {}
 
   void show(const Step& step);
 
  private:
-  double tolerance_;
+  DoneShare done_;
   StatusLine line_;
 };
 
 /// Returns a line such as "[####----] unshot 12.0 %, 4153 leaves, 1.65 M rays, 6.35 M rays/s, 0.26 s".
-std::string progress_text(const Step& step, double tolerance);
+std::string progress_text(const Step& step, double done_share);
 
 }  // namespace alvor
