@@ -3,6 +3,8 @@
 #include "proto/codec.h"
 #include "proto/light_codec.h"
 
+#include <utility>
+
 namespace alvor {
 
 namespace {
@@ -15,6 +17,7 @@ v1::Edit message_of(const SceneEdit& edit) {
     if (material->emission) *part.mutable_emission() = encode(*material->emission);
     if (material->reflectance) *part.mutable_reflectance() = encode(*material->reflectance);
     if (material->diffuse_transmittance) *part.mutable_diffuse_transmittance() = encode(*material->diffuse_transmittance);
+    if (material->regular_transmittance) *part.mutable_regular_transmittance() = encode(*material->regular_transmittance);
   } else if (const auto* light = std::get_if<LightEdit>(&edit)) {
     v1::LightEdit& part = *message.mutable_light();
     part.set_name(light->name);
@@ -47,10 +50,11 @@ v1::Edit message_of(const SceneEdit& edit) {
 }
 
 MaterialEdit material_of(const v1::MaterialEdit& message) {
-  MaterialEdit edit{.name = message.name(), .emission = {}, .reflectance = {}, .diffuse_transmittance = {}};
+  MaterialEdit edit{.name = message.name(), .emission = {}, .reflectance = {}, .diffuse_transmittance = {}, .regular_transmittance = {}};
   if (message.has_emission()) edit.emission = decode(message.emission());
   if (message.has_reflectance()) edit.reflectance = decode(message.reflectance());
   if (message.has_diffuse_transmittance()) edit.diffuse_transmittance = decode(message.diffuse_transmittance());
+  if (message.has_regular_transmittance()) edit.regular_transmittance = decode(message.regular_transmittance());
   return edit;
 }
 
@@ -86,6 +90,17 @@ void encode(const EditStep& step, v1::EditStep& message) {
   for (const SceneEdit& edit : step.edits) *message.add_edits() = message_of(edit);
 }
 
+std::optional<SceneEdit> decode(const v1::Edit& message) {
+  if (message.has_material()) return material_of(message.material());
+  if (message.has_light()) return light_of(message.light());
+  if (message.has_object()) return object_of(message.object());
+  if (message.has_medium()) return MediumEdit{decode(message.medium().absorption_per_meter())};
+  if (message.has_copy()) return ObjectCopy{message.copy().name(), message.copy().of(), false, message.copy().scene()};
+  if (!message.has_daylight()) return std::nullopt;
+  const auto daylight = decode_daylight(message.daylight());
+  return daylight ? std::optional<SceneEdit>(DaylightEdit{*daylight}) : std::nullopt;
+}
+
 std::optional<EditStep> decode(const v1::EditStep& message) {
   EditStep step;
   switch (message.kind()) {
@@ -96,15 +111,9 @@ std::optional<EditStep> decode(const v1::EditStep& message) {
     default: return std::nullopt;
   }
   for (const v1::Edit& edit : message.edits()) {
-    if (edit.has_material()) step.edits.emplace_back(material_of(edit.material()));
-    else if (edit.has_light()) step.edits.emplace_back(light_of(edit.light()));
-    else if (edit.has_object()) step.edits.emplace_back(object_of(edit.object()));
-    else if (edit.has_medium()) step.edits.emplace_back(MediumEdit{decode(edit.medium().absorption_per_meter())});
-    else if (edit.has_copy())
-      step.edits.emplace_back(ObjectCopy{edit.copy().name(), edit.copy().of(), false, edit.copy().scene()});
-    else if (const auto daylight = decode_daylight(edit.daylight()); daylight && edit.has_daylight())
-      step.edits.emplace_back(DaylightEdit{*daylight});
-    else return std::nullopt;
+    auto decoded = decode(edit);
+    if (!decoded) return std::nullopt;
+    step.edits.push_back(std::move(*decoded));
   }
   return step;
 }

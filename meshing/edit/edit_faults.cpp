@@ -29,12 +29,15 @@ class Check {
   std::optional<EditFault> operator()(const MaterialEdit& edit) {
     const Material* material = materials_.find(edit.name);
     if (!material) return unknown("material", edit.name, scene_.materials, [](std::size_t) { return true; });
-    if (!edit.emission && !edit.reflectance && !edit.diffuse_transmittance) return EditFault{0, "material", "sets nothing"};
+    if (!edit.emission && !edit.reflectance && !edit.diffuse_transmittance && !edit.regular_transmittance)
+      return EditFault{0, "material", "sets nothing"};
     if (edit.emission && !is_within(*edit.emission, most_emission))
       return EditFault{0, "material.emission", "must be in [0, 1e30]"};
     if (edit.reflectance && material->texture)
       return EditFault{0, "material.reflectance", "'" + edit.name + "' has a texture, which says how much is reflected"};
     if (edit.reflectance && !is_share(*edit.reflectance)) return EditFault{0, "material.reflectance", "must be in [0, 1)"};
+    if (edit.regular_transmittance && !is_within(*edit.regular_transmittance, 1))
+      return EditFault{0, "material.regular_transmittance", "must be in [0, 1]"};
     if (!edit.diffuse_transmittance) return {};
     if (!is_share(*edit.diffuse_transmittance)) return EditFault{0, "material.diffuse_transmittance", "must be in [0, 1)"};
     if (!material->two_sided && !edit.diffuse_transmittance->is_zero())

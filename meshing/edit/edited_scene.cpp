@@ -56,6 +56,7 @@ class Editor {
     if (edit.emission) material.emission = *edit.emission;
     if (edit.reflectance) material.reflectance = *edit.reflectance;
     if (edit.diffuse_transmittance) material.diffuse_transmittance = *edit.diffuse_transmittance;
+    if (edit.regular_transmittance) material.regular_transmittance = *edit.regular_transmittance;
   }
   void operator()(const LightEdit& edit) {
     Light* const light = lights_.find(edit.name);

@@ -18,7 +18,7 @@ namespace alvor {
 /// Sets what is given of a material; see Material.
 struct MaterialEdit {
   std::string name;
-  std::optional<Rgb> emission, reflectance, diffuse_transmittance;
+  std::optional<Rgb> emission, reflectance, diffuse_transmittance, regular_transmittance;
   friend bool operator==(const MaterialEdit&, const MaterialEdit&) = default;
 };
 

@@ -28,6 +28,13 @@ void check_objects(const std::vector<std::string>& names, const StoredScene& sce
       throw invalid_field("solve.spec.objects[" + std::to_string(n) + "]", "'" + names[n] + "'", "is no object of the scene");
 }
 
+/// Returns why a step cannot be decoded.
+std::string fault_in(const v1::EditStep& step) {
+  for (int n = 0; n < step.edits_size(); ++n)
+    if (!decode(step.edits(n))) return "step.edits[" + std::to_string(n) + "]: has no part that this server knows";
+  return "step.kind: " + std::to_string(step.kind()) + " is none that this server knows";
+}
+
 }  // namespace
 
 template <class Body>
@@ -86,7 +93,7 @@ SolveService::Reactor* SolveService::EditSolve(Context* context, const v1::EditS
                                                v1::EditSolveResponse* response) {
   return keep(context, "EditSolve", [this, request, response](const std::string& tenant) {
     auto step = decode(request->step());
-    if (!step) throw invalid_argument("step: an edit has no part, or the step is of a kind that this server does not know");
+    if (!step) throw invalid_argument(fault_in(request->step()));
     EditRequest edit{std::move(*step), request->step().author(), request->request_id(), request->step().continues(), {}, {}};
     for (const std::string& scene : scenes_added_by(edit.step))
       if (auto use = scenes_.use_if_there(scene, tenant)) edit.added.emplace(scene, std::move(*use));

@@ -26,6 +26,7 @@ SceneEdit without_values(SceneEdit edit) {
   };
   if (auto* material = std::get_if<MaterialEdit>(&edit)) {
     clear(material->emission), clear(material->reflectance), clear(material->diffuse_transmittance);
+    clear(material->regular_transmittance);
   } else if (auto* light = std::get_if<LightEdit>(&edit)) {
     clear(light->dim), clear(light->intensity), clear(light->position), clear(light->direction);
     clear(light->cone), clear(light->web);

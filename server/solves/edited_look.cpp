@@ -50,7 +50,8 @@ void add_objects(std::span<const SceneObject> objects, std::size_t materials, co
 }
 
 bool look_alike(const Material& a, const Material& b) {
-  return a.emission == b.emission && a.reflectance == b.reflectance && a.diffuse_transmittance == b.diffuse_transmittance;
+  return a.emission == b.emission && a.reflectance == b.reflectance && a.diffuse_transmittance == b.diffuse_transmittance &&
+         a.regular_transmittance == b.regular_transmittance;
 }
 
 }  // namespace

@@ -103,6 +103,9 @@ TEST(Verdict, OnToldErrorsBoundsTheShareFromBothSides) {
   EXPECT_EQ(judge_told_errors(std::vector{0.9, 0.95, 0.99}).verdict, Verdict::met);
   EXPECT_EQ(judge_told_errors(std::vector{0.85, 0.95}).verdict, Verdict::missed);
   EXPECT_EQ(judge_told_errors(std::vector{0.95, 1.0}).verdict, Verdict::missed);
+  EXPECT_EQ(judge_rises(4, 100).verdict, Verdict::met);
+  EXPECT_EQ(judge_rises(5, 100).verdict, Verdict::missed);
+  EXPECT_EQ(judge_rises(0, 0).verdict, Verdict::not_measured);
 }
 
 TEST(Verdict, IsNotGivenOnWhatWasNotMeasured) {

@@ -353,7 +353,8 @@ TEST(EditedScene, FaultsNameTheFirstEditThatCannotBe) {
            ObjectEdit{.name = "left", .move = Vec3{1e12, 0, 0}}, ObjectEdit{.name = "left", .move = Vec3{0, NAN, 0}},
            ObjectEdit{.name = "left", .move = Vec3{0, 0, -11}}, MaterialEdit{.name = "m0", .emission = Rgb{-1, 0, 0}},
            MaterialEdit{.name = "m0", .reflectance = Rgb{1, 0, 0}},
-           MaterialEdit{.name = "m0", .diffuse_transmittance = Rgb{0.1, 0, 0}}, LightEdit{.name = "sun", .dim = 1},
+           MaterialEdit{.name = "m0", .diffuse_transmittance = Rgb{0.1, 0, 0}},
+           MaterialEdit{.name = "m0", .regular_transmittance = Rgb{0.1, 0, 1.1}}, LightEdit{.name = "sun", .dim = 1},
            DaylightEdit{{.sun = SunPosition{0, 100}}}}) {
     const auto fault = fault_in(std::vector{good, bad}, scene);
     ASSERT_TRUE(fault);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 namespace alvor {
 namespace {
@@ -76,6 +77,33 @@ Scene closed_room_under_a_black_sky() {
   return scene;
 }
 
+/// A luminaire hangs from the ceiling and shines down, the more the wider `spread` is.
+Scene room_with_luminaire(double spread) {
+  Scene scene = test::coloured_room();
+  auto web = std::make_shared<PhotometricWeb>();
+  web->planes = {0};
+  web->angles = {0, spread, 2 * spread};
+  web->intensities = {90, 60, 0};
+  Light luminaire{"luminaire", LightKind::luminaire, {0.1, 0.1, 0.1}, {1, 2.5, 1}, {0, -1, 0}};
+  luminaire.across = {1, 0, 0};
+  luminaire.opening = {LuminousOpening::Shape::rectangle, 0.3, 0.3, 0};
+  luminaire.web = web;
+  scene.lights = {luminaire};
+  return scene;
+}
+
+/// A pane stands across the room.
+Scene room_with_pane() {
+  Scene scene = test::coloured_room();
+  Material glass = test::grey(0, 0.05);
+  glass.two_sided = true;
+  glass.regular_transmittance = {0.8, 0.8, 0.7};
+  scene.materials.push_back(glass);
+  test::add_polygon(scene, {{0.2, 0.2, 3.5}, {3.8, 0.2, 3.5}, {3.8, 2.5, 3.5}, {0.2, 2.5, 3.5}},
+                    static_cast<std::uint32_t>(scene.materials.size() - 1));
+  return scene;
+}
+
 struct Case {
   std::string name;
   Scene (*scene)();
@@ -114,6 +142,32 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"ABulbMoves", test::room_with_lamps_and_sun,
                          [](Scene& s) {
                            s.lights[0].position = {1, 1.5, 1};
+                         }},
+                    Case{"ASpotTurns", test::room_with_lamps_and_sun,
+                         [](Scene& s) {
+                           s.lights[1].direction = normalized(Vec3{0.5, -1, 0.7});
+                         }},
+                    Case{"ASpotGetsAnotherCone", test::room_with_lamps_and_sun,
+                         [](Scene& s) { s.lights[1].inner_cone = 0.2, s.lights[1].outer_cone = 0.5; }},
+                    Case{"ALuminaireGetsAnotherWeb", [] { return room_with_luminaire(30); },
+                         [](Scene& s) { s.lights = room_with_luminaire(20).lights; }},
+                    Case{"AirTurnsHazy", test::room_with_lamps_and_sun,
+                         [](Scene& s) {
+                           s.absorption = {0.1, 0.05, 0.02};
+                         }},
+                    Case{"GlassDarkens", room_with_pane,
+                         [](Scene& s) {
+                           s.materials.back().regular_transmittance = {0.3, 0.4, 0.2};
+                         }},
+                    Case{"GlassIsPainted", room_with_pane, [](Scene& s) { s.materials.back().regular_transmittance = {}; }},
+                    Case{"AWallBecomesGlass",
+                         [] {
+                           Scene scene = room_with_pane();
+                           scene.materials.back().regular_transmittance = {};
+                           return scene;
+                         },
+                         [](Scene& s) {
+                           s.materials.back().regular_transmittance = {0.5, 0.6, 0.7};
                          }},
                     Case{"TheSunTurnsRed",
                          [] {

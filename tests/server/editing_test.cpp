@@ -138,9 +138,14 @@ TEST_F(EditingTest, RefusesWhatCannotBeAndNamesTheEditAndItsField) {
   v1::EditStep many;
   for (int n = 0; n < 10'000; ++n) *many.add_edits() = dim_light("bulb", 0.5).edits(0);
   says(many, "step.edits: 10000, at most 1000 are allowed");
-  v1::EditStep nothing;
+  v1::EditStep nothing = dim_light("bulb", 0.5);
   nothing.add_edits();
-  says(nothing, "step: an edit has no part");
+  says(nothing, "step.edits[1]: has no part that this server knows");
+  nothing.mutable_edits(1)->mutable_daylight()->set_sky(static_cast<v1::Daylight::Sky>(77));
+  says(nothing, "step.edits[1]: has no part that this server knows");
+  nothing.mutable_edits()->RemoveLast();
+  nothing.set_kind(static_cast<v1::EditStep::Kind>(77));
+  says(nothing, "step.kind: 77 is none that this server knows");
   v1::EditStep high;
   high.add_edits()->mutable_daylight()->set_sun_azimuth_degrees(10);
   high.mutable_edits(0)->mutable_daylight()->set_sun_elevation_degrees(100);

@@ -6,6 +6,8 @@
 #include "radiosity/solve/solver.h"
 #include "solution/solution_mirror.h"
 
+#include <cstdint>
+#include <span>
 #include <stdexcept>
 
 namespace alvor::bench {
@@ -37,6 +39,13 @@ DisplayMesh display_of(const BaseMesh& mesh, const SolutionLog& log) {
   return build_display_mesh(mesh, mirror.leaves(), mirror.errors());
 }
 
+/// Counts the steps of a solve whose estimate is far above that of the step before.
+void count_rises(MeasuredRun& run, std::span<const Step> steps) {
+  constexpr double far = 1.5;
+  run.steps = steps.size();
+  for (std::size_t n = 1; n < steps.size(); ++n) run.rises += steps[n].estimated_error > far * steps[n - 1].estimated_error;
+}
+
 }  // namespace
 
 MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance, int threads, std::uint64_t seed) {
@@ -53,6 +62,7 @@ MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance
   run.rays = last.rays, run.leaves = last.leaves, run.estimated = last.estimated_error;
   judge(run, arena, display_of(arena.mesh, log));
   run.is_done = outcome.reason == StopReason::tolerance;
+  count_rises(run, log.steps());
   return run;
 }
 

@@ -30,7 +30,9 @@ std::string csv_line(const MeasuredRun& run) {
   for (const double number :
        {run.estimated, run.nrmse.value, run.nrmse.low, run.nrmse.high, run.relative_rms, run.within_two})
     line += cell(number);
-  return line + (run.is_done ? ",yes\n" : ",no\n");
+  line += run.is_done ? ",yes" : ",no";
+  for (const std::uint64_t count : {run.steps, run.rises}) line += run.steps > 0 ? ',' + std::to_string(count) : ",";
+  return line + '\n';
 }
 
 }  // namespace
@@ -50,7 +52,7 @@ std::string_view text(Contender contender) {
 
 std::string runs_csv(std::span<const MeasuredRun> runs) {
   std::string csv =
-      "scene,contender,setting,threads,seed,cpu_s,wall_s,rays,leaves,estimated_nrmse,nrmse,nrmse_low,nrmse_high,relative_rms,within_two_told,done\n";
+      "scene,contender,setting,threads,seed,cpu_s,wall_s,rays,leaves,estimated_nrmse,nrmse,nrmse_low,nrmse_high,relative_rms,within_two_told,done,steps,rises\n";
   for (const MeasuredRun& run : runs) csv += csv_line(run);
   return csv;
 }

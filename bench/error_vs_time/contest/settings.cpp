@@ -22,10 +22,10 @@ std::vector<SceneSettings> all_scenes() {
            more_paths,
            4000,
            32'000},
-          {"furnished_room", few, others, {8, 16}, paths, 10'000, 3200},
+          {"furnished_room", more, others, {8, 16}, paths, 10'000, 3200},
           {"slats_and_boxes", more, others, {4, 8}, paths, 10'000, 3200},
           {"vault", more, others, {8, 16}, paths, 10'000, 3200},
-          {"enfilade", few, others, {8, 16, 32, 64}, more_paths, 4000, 32'000},
+          {"enfilade", more, others, {8, 16, 32, 64}, more_paths, 4000, 32'000},
           {"louvred_room", few, others, {8, 16}, paths, 10'000, 12'800},
           {"gap_panels", gaps, {}, {}, {}, 4000, 8000},
           {"gap_ceiling", gaps, {}, {}, {}, 4000, 8000},
@@ -70,7 +70,7 @@ void add_options(CLI::App& app, Settings& settings, Wishes& wishes) {
   app.add_option("--points", wishes.points, "Surface points where the truth is found (per scene)")->check(from_one);
   app.add_option("--truth-paths", wishes.truth_paths, "Paths from each of them (per scene)")->check(from_one);
   app.add_option("--seeds", settings.seeds, "Repetitions of each solve (3)")->check(CLI::Range(1, 1000));
-  app.add_option("--time-limit", settings.time_limit_s, "Seconds that one solve may take (20)")->check(CLI::PositiveNumber);
+  app.add_option("--time-limit", settings.time_limit_s, "Seconds that one solve may take (25)")->check(CLI::PositiveNumber);
   app.add_option("--long-run", settings.long_run_s, "Runs of more seconds are not repeated (6)")->check(CLI::PositiveNumber);
   app.add_option("--truth", settings.truth_folder, "Where truths are kept for the next run (out/error_vs_time/truth)");
   app.add_option("--tolerances", wishes.tolerances, "Only solves by auto at these tolerances on one thread; writes nothing")

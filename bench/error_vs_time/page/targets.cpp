@@ -34,6 +34,9 @@ constexpr TimeTarget time_targets[]{
     {"vault", ErrorKind::nrmse, 0.02, 2}};
 constexpr const char* tolerance_scenes[]{"slats_and_boxes", "vault", "enfilade"};
 constexpr const char* slope_scene = "furnished_room";
+constexpr double slope_from = 0.05;         // the largest error of the curve's part that is judged
+constexpr double most_rises = 0.05;         // of the published steps
+constexpr double most_leaves_at = 0.02, most_leaves = 80'000;  // at this tolerance, in slope_scene
 
 const SceneContest* find(std::span<const SceneContest> contests, std::string_view name) {
   const auto found =
@@ -101,6 +104,22 @@ Judgement judge_tolerance(const SceneContest* held, std::string_view name) {
   return judgement;
 }
 
+Judgement judge_leaves(const SceneContest* held) {
+  Judgement judgement{std::string(slope_scene) + ": at most " + plain(most_leaves) + " leaves at " + tolerance_percent(most_leaves_at)};
+  if (!held) return judgement;
+  const auto ours = of(held->groups, Contender::alvor);
+  const auto group = std::ranges::find(ours, most_leaves_at, &RunGroup::setting);
+  if (group == ours.end()) return judgement;
+  judgement.measured = plain(group->leaves().median);
+  judgement.verdict = group->leaves().median <= most_leaves ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+std::vector<CurvePoint> part_for_slope(std::vector<CurvePoint> curve) {
+  std::erase_if(curve, [](const CurvePoint& point) { return point.error > slope_from; });
+  return curve;
+}
+
 ThreadGain gain_over_all(std::span<const SceneContest> contests) {
   ThreadGain sum;
   for (const SceneContest& held : contests) {
@@ -136,6 +155,15 @@ Judgement judge_estimates(std::span<const double> ratios) {
                        figure(estimate_limit) + " times";
   const bool is_met = static_cast<double>(close) >= most_close * count && static_cast<std::size_t>(allowed) == ratios.size();
   judgement.verdict = is_met ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+Judgement judge_rises(std::uint64_t rises, std::uint64_t steps) {
+  Judgement judgement{"The estimate of a published step is more than 1.5 times that of the step before in less than " +
+                      tolerance_percent(most_rises) + " of the steps"};
+  if (steps == 0) return judgement;
+  judgement.measured = std::to_string(rises) + " of " + std::to_string(steps);
+  judgement.verdict = static_cast<double>(rises) < most_rises * static_cast<double>(steps) ? Verdict::met : Verdict::missed;
   return judgement;
 }
 
@@ -207,16 +235,21 @@ std::vector<Judgement> judge(std::span<const SceneContest> contests, double yard
   judgements.push_back(judge_fixed_mesh(cornell));
   for (const char* name : tolerance_scenes) judgements.push_back(judge_tolerance(find(contests, name), name));
   const SceneContest* sloped = find(contests, slope_scene);
-  judgements.push_back(judge_slope(sloped ? error_by_cpu(of(sloped->groups, Contender::alvor)) : std::vector<CurvePoint>{}));
+  judgements.push_back(
+      judge_slope(sloped ? part_for_slope(error_by_cpu(of(sloped->groups, Contender::alvor))) : std::vector<CurvePoint>{}));
+  judgements.push_back(judge_leaves(sloped));
   std::vector<double> ratios, within_two;
+  std::uint64_t rises = 0, steps = 0;
   for (const SceneContest& held : contests) {
     std::ranges::copy(estimate_ratios(held.runs), std::back_inserter(ratios));
+    for (const MeasuredRun& run : held.runs) rises += run.rises, steps += run.steps;
     for (const MeasuredRun& run : held.runs)
       if (run.contender == Contender::alvor && run.threads == 1 && run.within_two == run.within_two)
         within_two.push_back(run.within_two);
   }
   judgements.push_back(judge_estimates(ratios));
   judgements.push_back(judge_told_errors(within_two));
+  judgements.push_back(judge_rises(rises, steps));
   const ThreadGain gain = gain_over_all(contests);
   judgements.push_back(judge_thread_gain(gain.one_s, gain.two_s, machine_gain));
   return judgements;

@@ -3,6 +3,7 @@
 
 #include "bench/error_vs_time/contest/contest.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ Judgement judge_slope(std::span<const CurvePoint> curve);
 /// Judges ratios of estimated over true error, by solve.
 Judgement judge_estimates(std::span<const double> ratios);
 /// Judges which share of the points had errors within two of the told ones, by solve.
+/// Judges how often the estimate of a published step is far above that of the step before.
+Judgement judge_rises(std::uint64_t rises, std::uint64_t steps);
 Judgement judge_told_errors(std::span<const double> within_two);
 
 /// Returns the judgements of all targets, in order. `machine_gain` is the median of Measurements::two_threads_faster.

@@ -100,7 +100,8 @@ v1::Edit edit_of_setting(const std::string& setting) {
     if (field == "emission") set_colour(*material.mutable_emission());
     else if (field == "reflectance") set_colour(*material.mutable_reflectance());
     else if (field == "diffuse_transmittance") set_colour(*material.mutable_diffuse_transmittance());
-    else refuse(option, setting, "a material has the fields emission, reflectance, diffuse_transmittance");
+    else if (field == "regular_transmittance") set_colour(*material.mutable_regular_transmittance());
+    else refuse(option, setting, "a material has the fields emission, reflectance, diffuse_transmittance, regular_transmittance");
   } else if (named.part == "light") {
     v1::LightEdit& light = *edit.mutable_light();
     light.set_name(named.name);

@@ -32,7 +32,7 @@ interface Present {
   position?: Bands;
   turn?: number;
   hidden: boolean;
-  emission?: Bands;
+  brightest?: number; // the largest band of what a material emits as submitted
 }
 
 // The option that stands for sun and sky.
@@ -202,10 +202,11 @@ export class Editing {
     }
     const shines = material && largest(material.emission) > 0;
     if (shines) dim = largest(emission!) / largest(material.emission);
-    const tint = intensity && largest(intensity) > 0 ? scaled(intensity, 1 / largest(intensity)) : undefined;
-    const colour = light ? tint : shines ? undefined : reflectance;
+    const shone = shines ? (dim > 0 ? emission : material.emission) : intensity;
+    const tint = shone && largest(shone) > 0 ? scaled(shone, 1 / largest(shone)) : undefined;
+    const colour = light || shines ? tint : reflectance;
     const isLamp = light !== undefined || shines === true || object?.shines === true;
-    return { isLamp, dim, colour, position, turn, hidden, emission: shines ? material.emission : undefined };
+    return { isLamp, dim, colour, position, turn, hidden, brightest: shines ? largest(material.emission) : undefined };
   }
 
   /** The daylight that edits have set; undefined if none has. */
@@ -253,9 +254,9 @@ export class Editing {
   private dimmed(dim: number): Edit {
     this.tellDim();
     const { kind, name } = this.chosen;
-    const { emission } = this.present();
+    const { colour, brightest } = this.present();
     if (kind === "material")
-      return create(EditSchema, { part: { case: "material", value: { name, emission: rgb(scaled(emission!, dim)) } } });
+      return create(EditSchema, { part: { case: "material", value: { name, emission: rgb(scaled(colour!, dim * brightest!)) } } });
     return create(EditSchema, { part: { case: kind === "light" ? "light" : "object", value: { name, dim } } });
   }
 
@@ -265,6 +266,11 @@ export class Editing {
       const brightest = largest(this.parts.lights.find((light) => light.name === name)!.intensity);
       const tint = scaled(colour, brightest / (largest(colour) || 1));
       return create(EditSchema, { part: { case: "light", value: { name, intensity: rgb(tint) } } });
+    }
+    const { dim, brightest } = this.present();
+    if (brightest) {
+      const emission = rgb(scaled(colour, (dim * brightest) / (largest(colour) || 1)));
+      return create(EditSchema, { part: { case: "material", value: { name, emission } } });
     }
     const reflectance = rgb(colour.map((band) => Math.min(0.95, band)) as Bands);
     return create(EditSchema, { part: { case: "material", value: { name, reflectance } } });

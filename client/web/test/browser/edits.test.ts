@@ -2,7 +2,7 @@ import { readFile } from "node:fs/promises";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Server } from "./server";
-import { openBrowser, openPage, pixelAt, waitForEnd, waitForState, type Page } from "./viewer";
+import { obstacles, openBrowser, openPage, pixelAt, waitForEnd, waitForState, type Page } from "./viewer";
 
 const SCENES = new URL("../../../../scenes/", import.meta.url);
 const CORNELL = ["cornell_box.obj", "cornell_box.mtl"].map((name) => new URL(name, SCENES).pathname);
@@ -97,6 +97,51 @@ describe("edits on the page", () => {
     expect((await server.api.solves.getSolve({ name })).edits).toHaveLength(1);
     await ann.click("#undo");
     await expect.poll(async () => (await pixelAt(ben, ...BACK_WALL))[1]).toBeGreaterThan(0.95 * before);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
+  it("give a lamp of faces another colour, which keeps its brightness, and is made again", async () => {
+    const { name, ann, ben } = await two();
+    await ben.uncheck("#automatic");
+    const blueness = async () => {
+      const [r, , b] = await pixelAt(ben, ...BACK_WALL);
+      return b - r;
+    };
+    await ann.selectOption("#edit-part", "material:light");
+    await slide(ann, "#edit-dim", "0.5");
+    const emission = async () => {
+      const last = (await server.api.solves.getSolve({ name })).edits.at(-1)?.edits[0].part;
+      return last?.case === "material" ? last.value.emission : undefined;
+    };
+    await expect.poll(emission).toBeDefined();
+    const { r, g, b } = (await emission())!;
+    const brightest = Math.max(r, g, b);
+    await slide(ann, "#edit-colour", "#3050e0");
+    await expect.poll(blueness).toBeGreaterThan(30);
+    const blue = (await emission())!;
+    expect(blue.b).toBeCloseTo(brightest, 3);
+    expect(blue.r).toBeLessThan(0.1 * brightest);
+    expect(await ann.inputValue("#edit-dim")).toBe("0.5");
+    await slide(ann, "#edit-dim", "1");
+    await expect.poll(async () => (await emission())!.b).toBeCloseTo(2 * brightest, 3);
+    await waitForState(ann, "Done");
+    while ((await ann.isEnabled("#undo")) && (await blueness()) > 0) {
+      await ann.click("#undo");
+      await waitForState(ann, "Done");
+    }
+    await expect.poll(blueness).toBeLessThan(0);
+    await ben.focus("#redo");
+    await ben.keyboard.press("Enter");
+    await expect.poll(blueness).toBeGreaterThan(30);
+    await Promise.all([ann.close(), ben.close()]);
+  });
+
+  it("can be made by everyone: of objects, lamps, sun and sky", async () => {
+    const { ann, ben } = await two(await withBlocks());
+    for (const part of ["object:blocks", "material:light", "material:red", "daylight:"]) {
+      await ann.selectOption("#edit-part", part);
+      expect(await obstacles(ann), part).toEqual([]);
+    }
     await Promise.all([ann.close(), ben.close()]);
   });
 

@@ -1,4 +1,3 @@
-import { createRequire } from "node:module";
 import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -7,7 +6,7 @@ import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Light_Kind, type Material } from "../../src/gen/alvor/v1/scene_service_pb";
 import { Solve_State } from "../../src/gen/alvor/v1/solve_service_pb";
 import { createScene, Server } from "./server";
-import { meanBrightness, measuredBy, openBrowser, openPage, pauseSeenBy, pixelAt, stateOf, waitForEnd, waitForFrames, waitForState, watchPause, type Page } from "./viewer";
+import { meanBrightness, measuredBy, obstacles, openBrowser, openPage, pauseSeenBy, pixelAt, stateOf, waitForEnd, waitForFrames, waitForState, watchPause, type Page } from "./viewer";
 
 const SCENES = new URL("../../../../scenes/", import.meta.url);
 const scene = (name: string) => new URL(name, SCENES).pathname;
@@ -423,13 +422,7 @@ describe("the page", () => {
     await page.emulateMedia({ colorScheme });
     await page.setInputFiles("#files", CORNELL);
     await waitForState(page, "Done");
-    const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-    await page.evaluate(axe);
-    const { violations } = await page.evaluate(() =>
-      (window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { html: string }[] }[] }> } }).axe.run(),
-    );
-    const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-    expect(serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("; ")}`)).toEqual([]);
+    expect(await obstacles(page)).toEqual([]);
     await page.close();
   });
 

@@ -1,5 +1,7 @@
 // A tab of a real browser, and what can be seen in it.
 
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { chromium, type Browser, type Page } from "playwright-core";
 
 export type { Page } from "playwright-core";
@@ -68,6 +70,16 @@ export async function waitForEnd(page: Page, solve: string): Promise<void> {
     const { alvor } = window as unknown as { alvor: Measured };
     return alvor.solve === name && alvor.hasEnded && alvor.frames > 0 && !alvor.isWaiting;
   }, solve);
+}
+
+/** What keeps people from using the page as it is now, by axe's rules: what it calls serious or critical. */
+export async function obstacles(page: Page): Promise<string[]> {
+  await page.evaluate(readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8"));
+  const { violations } = await page.evaluate(() =>
+    (window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { html: string }[] }[] }> } }).axe.run(),
+  );
+  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  return serious.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("; ")}`);
 }
 
 /** Runs in the page: when it says what after the click, ms. */
