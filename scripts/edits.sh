@@ -12,6 +12,7 @@ figures=$work/figures
 build/release/bin/office_block --faces 50000 -o "$work/office.obj"
 build/release/bin/edits --scene scenes/furnished_room.obj --window docs/lights/window.obj --office "$work/office.obj" --tolerance 0.02 > "$figures"
 cat "$figures"
+(cd client/web && ALVOR_FIGURES=$figures npx vitest run --config vitest.browser.config.ts test/measure/edits.test.ts)
 python3 - "$figures" <<'PYTHON'
 import pathlib, sys
 page = pathlib.Path("docs/edits.md")
@@ -21,5 +22,3 @@ page.write_text(head + "## Figures\n\nWritten by `scripts/edits.sh`: the furnish
                 "A light that is switched off needs rays because shadows of the other are seen then. Below the first table: a slider that dims\none of the lamps, a desk that is moved in an office of 50 000 faces and 600 lamps at 10 %, and the sun that goes on before the window of a bare room\n(docs/lights/window.obj), under a clear sky, at 10 %.\n\n"
                 + pathlib.Path(sys.argv[1]).read_text())
 PYTHON
-cd client/web
-npx vitest run --config vitest.browser.config.ts test/measure/edits.test.ts
