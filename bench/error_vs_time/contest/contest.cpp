@@ -7,6 +7,7 @@
 #include "client/verify/surface_points.h"
 #include "import/apart/scene_file.h"
 
+#include <filesystem>
 #include <utility>
 
 namespace alvor::bench {
@@ -17,7 +18,8 @@ constexpr std::size_t yardstick_points = 300;
 constexpr std::uint64_t yardstick_paths = 2000;
 
 SceneFile read_scene(const Settings& settings, const std::string& name) {
-  return read_scene_file(settings.scene_folder / (name + ".obj"));
+  const auto made = settings.made_scene_folder / (name + ".obj");
+  return read_scene_file(std::filesystem::exists(made) ? made : settings.scene_folder / (name + ".obj"));
 }
 
 TruthSummary summary_of(const Truth& truth) {
@@ -88,7 +90,8 @@ SceneContest contest(const SceneSettings& scene, const Settings& settings, const
   announce(scene.name + ": truth of " + std::to_string(held.truth.drawn) + " points, " + std::to_string(truth.paths) +
            " paths each, standard error " + percent(held.truth.error) + ", " + plain(truth.cpu_s) + " CPU s" +
            (truth.was_kept ? ", kept from an earlier run" : ""));
-  const Arena arena{scene, file.scene, mesh, truth, settings.time_limit_s, settings.fixed_mesh_limit_s};
+  const double time_limit_s = scene.time_limit_s > 0 ? scene.time_limit_s : settings.time_limit_s;
+  const Arena arena{scene, file.scene, mesh, truth, time_limit_s, settings.fixed_mesh_limit_s};
   Rounds(arena, settings, announce, held.runs).run();
   held.groups = grouped(held.runs);
   return held;

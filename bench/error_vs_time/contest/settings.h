@@ -16,11 +16,13 @@ struct SceneSettings {
   std::vector<std::uint64_t> traced_paths;  ///< paths per point, for path tracing as a contender
   std::size_t truth_points = 10'000;
   std::uint64_t truth_paths = 3200;  ///< paths per point
+  double time_limit_s = 0;           ///< limit for one solve; 0: that of Settings
 };
 
 struct Settings {
   std::vector<SceneSettings> scenes;
-  std::filesystem::path scene_folder = "scenes", truth_folder = "out/error_vs_time/truth", curve_folder = "out/error_vs_time";
+  std::filesystem::path scene_folder = "scenes", made_scene_folder = "out/error_vs_time/scenes";  ///< made by the script
+  std::filesystem::path truth_folder = "out/error_vs_time/truth", curve_folder = "out/error_vs_time";
   std::filesystem::path page = "docs/error-vs-time.md", figure_folder = "docs/error-vs-time";
   int seeds = 3;
   double time_limit_s = 25;        ///< limit for one solve: more than the 30 yardsticks that a target allows

@@ -31,6 +31,14 @@ std::string head(const Measurements& measured) {
          plain(measured.two_threads_faster()) + " times faster than one: a second thread cannot bring more on this machine.\n\n";
 }
 
+/// Returns the limits of scenes that have their own, to be put after the limit of the others.
+std::string own_limits(const Settings& settings) {
+  std::string limits;
+  for (const SceneSettings& scene : settings.scenes)
+    if (scene.time_limit_s > 0) limits += " (" + scene.name + ": " + plain(scene.time_limit_s) + " s)";
+  return limits;
+}
+
 std::string method(const Settings& settings) {
   return "## How it is measured\n\n"
          "- **Error** is the nRMSE of irradiance at random surface points, uniform by area: the RMS difference from the truth, "
@@ -43,8 +51,8 @@ std::string method(const Settings& settings) {
          "new solve from the beginning: the median of " +
          std::to_string(settings.seeds) + (settings.seeds == 1 ? " seed" : " seeds") +
          ", and in brackets the least and the most. A solve that takes more than " + plain(settings.long_run_s) +
-         " s is run with one seed. After " + plain(settings.time_limit_s) +
-         " s it is stopped; the tables mark that by \\*, and no tighter tolerance is tried. Leaves are limited to a million.\n"
+         " s is run with one seed. After " + plain(settings.time_limit_s) + " s" + own_limits(settings) +
+         " it is stopped; the tables mark that by \\*, and no tighter tolerance is tried. Leaves are limited to a million.\n"
          "- **Textbook strategies**: `gather`, `shoot`, `sorted` and `overshoot` distribute light in another order than `auto`. "
          "Rows "
          "and refinement are the same ([strategies](strategies.md)).\n"

@@ -46,9 +46,11 @@ std::string row_of(const RunGroup& group, double yardstick_s) {
 }
 
 std::string others_table(const SceneContest& held, double yardstick_s) {
-  std::string table = table_head({"program", "setting", "true nRMSE", "estimated", "rays", "leaves", "CPU s", "yardsticks"});
+  const auto is_other = [](const RunGroup& group) { return group.contender != Contender::alvor; };
+  if (std::ranges::none_of(held.groups, is_other)) return "";
+  std::string table = "\nThe others. Path tracing at " + std::to_string(held.truth.drawn) + " points:\n\n" + table_head({"program", "setting", "true nRMSE", "estimated", "rays", "leaves", "CPU s", "yardsticks"});
   for (const RunGroup& group : held.groups)
-    if (group.contender != Contender::alvor) table += row_of(group, yardstick_s);
+    if (is_other(group)) table += row_of(group, yardstick_s);
   return table;
 }
 
@@ -57,8 +59,7 @@ std::string others_table(const SceneContest& held, double yardstick_s) {
 std::string scene_section(const SceneContest& held, double yardstick_s) {
   const std::string& name = held.settings.name;
   return "## " + name + "\n\n![" + name + ": error against CPU seconds and rays](error-vs-time/" + name + ".png)\n\n" +
-         tolerance_table(held, yardstick_s) + "\nThe others. Path tracing at " + std::to_string(held.truth.drawn) +
-         " points:\n\n" + others_table(held, yardstick_s) + "\n";
+         tolerance_table(held, yardstick_s) + others_table(held, yardstick_s) + "\n";
 }
 
 }  // namespace alvor::bench

@@ -31,7 +31,8 @@ constexpr TimeTarget time_targets[]{
     {"furnished_room", ErrorKind::nrmse, 0.02, 2},        {"furnished_room", ErrorKind::nrmse, 0.01, 8},
     {"louvred_room", ErrorKind::nrmse, 0.05, 6},          {"louvred_room", ErrorKind::nrmse, 0.02, 30},
     {"slats_and_boxes", ErrorKind::nrmse, 0.02, 4},       {"enfilade", ErrorKind::nrmse, 0.02, 6},
-    {"vault", ErrorKind::nrmse, 0.02, 2}};
+    {"vault", ErrorKind::nrmse, 0.02, 2},               {"office_5000", ErrorKind::nrmse, 0.05, 6},
+    {"office_50000", ErrorKind::nrmse, 0.1, 20}};
 constexpr const char* tolerance_scenes[]{"slats_and_boxes", "vault", "enfilade"};
 constexpr const char* slope_scene = "furnished_room";
 constexpr double slope_from = 0.05;         // the largest error of the curve's part that is judged
