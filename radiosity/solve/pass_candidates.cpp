@@ -3,9 +3,12 @@
 #include "radiosity/rays/ray_source.h"
 #include "radiosity/solve/pass.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 
 namespace alvor {
@@ -45,43 +48,52 @@ void Pass::find_row_candidates() {
     if (noise > 0 && rays < most_rays_per_row)
       candidates_.push_back({Candidate::Kind::add_rays, row, noise * rays_per_row / (rays + rays_per_row), rays_per_row});
   }
-  for (std::size_t p = 0; p < patches.size(); ++p) {
+  const auto error_of = [&](std::size_t p) {
     const auto& [square, by_origins] = row_errors_[p];
     // Direct light tells the direction of a line more surely than the noisy rays of a row.
     const Split by_light = patches[p].leaf_count == 1 ? leaf_errors_[patches[p].first_leaf].split : Split::quarters;
-    add_split(Candidate::Kind::split_row, system_->rows()[p], {square, by_light == Split::quarters ? by_origins : by_light});
-  }
+    return SplitError{square, by_light == Split::quarters ? by_origins : by_light};
+  };
+  std::vector<std::uint8_t> may_split(patches.size());
+  tbb::parallel_for(std::size_t{0}, patches.size(),
+                    [&](std::size_t p) { may_split[p] = state_.forests.may_split_row(system_->rows()[p], error_of(p).split); });
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    add_split(Candidate::Kind::split_row, system_->rows()[p], error_of(p), may_split[p]);
 }
 
 void Pass::find_leaf_candidates() {
   const auto leaves = system_->leaves();
+  std::vector<std::uint8_t> may_split(leaves.size());
+  std::vector<double> noise(leaves.size());
+  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+    may_split[n] = state_.forests.may_split_leaf(leaves[n], leaf_errors_[n].split);
+    noise[n] = shown_noise(n);
+  });
   std::vector<SplitError> errors(leaf_errors_);
-  for (std::size_t n = 0; n < leaves.size(); ++n) errors[n].square = heed_noise(n);
-  for (std::size_t n = 0; n < leaves.size(); ++n) add_split(Candidate::Kind::split_leaf, leaves[n], errors[n]);
+  for (std::size_t n = 0; n < leaves.size(); ++n) errors[n].square = heed_noise(n, may_split[n], noise[n]);
+  for (std::size_t n = 0; n < leaves.size(); ++n) add_split(Candidate::Kind::split_leaf, leaves[n], errors[n], may_split[n]);
 }
 
 /// Adds a candidate that splits a patch, where limits allow it.
-void Pass::add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error) {
+void Pass::add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error, bool may_split) {
   if (!state_.plan.needs(Feature::refinement) || error.square <= 0) return;
-  const Forests& forests = state_.forests;
-  const bool is_leaf = kind == Candidate::Kind::split_leaf;
-  if (!(is_leaf ? forests.may_split_leaf(patch, error.split) : forests.may_split_row(patch, error.split))) {
+  if (!may_split) {
     lasting_error_ += error.square;
     return;
   }
+  const bool is_leaf = kind == Candidate::Kind::split_leaf;
   const double rays = is_leaf ? rays_per_leaf_split * state_.direct.ray_share(patch) : rays_per_row_split;
   candidates_.push_back({kind, patch, error.square, rays, error.split});
 }
 
-/// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove. Both parts of the error,
-/// what interpolation misses and the noise of shadow rays, go where the edge of a shadow leaves the smaller leaves. Where noise
-/// is the larger part, there is no edge to find, and smaller leaves are as noisy: then this adds a candidate that gives the leaf
-/// more shadow rays instead. So it does where a leaf cannot be split, and noise of its origins may be part of what is taken for
-/// missed.
-double Pass::heed_noise(std::size_t place) {
+/// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove; `noise` is its
+/// shown_noise(). Both parts of the error, what interpolation misses and the noise of shadow rays, go where the edge of a shadow
+/// leaves the smaller leaves. Where noise is the larger part, there is no edge to find, and smaller leaves are as noisy: then
+/// this adds a candidate that gives the leaf more shadow rays instead. So it does where a leaf cannot be split, and noise of its
+/// origins may be part of what is taken for missed.
+double Pass::heed_noise(std::size_t place, bool may_split, double noise) {
   const NodeIndex leaf = system_->leaves()[place];
-  const double missed = std::max(0.0, leaf_errors_[place].square), noise = shown_noise(place);
-  const bool may_split = state_.forests.may_split_leaf(leaf, leaf_errors_[place].split);
+  const double missed = std::max(0.0, leaf_errors_[place].square);
   const double doubtful = may_split ? 0 : system_->visible_area(place) * noise_of_origins * state_.direct[leaf].origin_variance;
   if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
     const double in_doubt = std::min(missed, doubtful) / 2, removed = removed_by_rays * noise + in_doubt;
