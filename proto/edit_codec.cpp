@@ -50,7 +50,8 @@ v1::Edit message_of(const SceneEdit& edit) {
 }
 
 MaterialEdit material_of(const v1::MaterialEdit& message) {
-  MaterialEdit edit{.name = message.name(), .emission = {}, .reflectance = {}, .diffuse_transmittance = {}, .regular_transmittance = {}};
+  MaterialEdit edit{
+      .name = message.name(), .emission = {}, .reflectance = {}, .diffuse_transmittance = {}, .regular_transmittance = {}};
   if (message.has_emission()) edit.emission = decode(message.emission());
   if (message.has_reflectance()) edit.reflectance = decode(message.reflectance());
   if (message.has_diffuse_transmittance()) edit.diffuse_transmittance = decode(message.diffuse_transmittance());

@@ -108,9 +108,8 @@ void Forests::split_to_start(const Plan& plan) {
     const bool may_be_coarse = node >= old_nodes || is_to_split[node];
     if (!may_be_coarse || !rows_.is_leaf(node) || !is_coarse(node)) continue;
     const NodeIndex leaf = leaf_node_of(node);
-    const bool is_split = !leaves_.is_leaf(leaf) || leaves_.split(leaf, limits_, split);
-    if (is_split) rows_.split_as(leaves_, node, limits_, split);
-    else is_complete = false;  // after an edit at the limit of leaves
+    const bool may_split = !leaves_.is_leaf(leaf) || leaves_.split(leaf, limits_, split);
+    is_complete = may_split && rows_.split_as(leaves_, node, limits_, split) && is_complete;  // a limit may forbid it
   }
   if (!is_complete) return;
   for (const std::uint32_t root : roots)

@@ -1,6 +1,7 @@
 #include "radiosity/solve/light_shares.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace alvor {
 
@@ -26,9 +27,7 @@ void LightShares::resize(std::size_t nodes) {
 }
 
 void LightShares::set(const LightSource& light, NodeIndex leaf, const DirectLight& brought) {
-  const auto part = [](double whole, double colour) {
-    return colour > 0 ? std::max(0.0, whole) / colour : unknown;
-  };
+  const auto part = [](double whole, double colour) { return colour > 0 ? std::max(0.0, whole) / colour : unknown; };
   const RelativeLight& colour = light.colour();
   const double mean = colour.mean();
   constexpr double darkest = 1e-12;  // of the emission unit: of less, squares are not within the range of float32
@@ -59,7 +58,8 @@ void LightShares::Brought::add_to(DirectLight& sum, NodeIndex leaf) const {
 
 void LightShares::Brought::prefetch(NodeIndex leaf) const {
   const auto* first = reinterpret_cast<const char*>(&shares_[leaf]);
-  __builtin_prefetch(first);
+  constexpr std::size_t cache_line = 64;
+  for (std::size_t at = 0; at < sizeof(Share); at += cache_line) __builtin_prefetch(first + at);
   __builtin_prefetch(first + sizeof(Share) - 1);
 }
 

@@ -61,6 +61,7 @@ void PassSystem::describe_places() {
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) {
     const RelativeLight emission = state_.direct.emission_by_rows(state_.forests.rows().id(rows_[p]).root_face());
     for (std::size_t n = patches_[p].first_leaf; n < patches_[p].first_leaf + patches_[p].leaf_count; ++n) {
+      state_.fetch_ahead(leaves_, n);
       patch_of_place_[n] = static_cast<std::uint32_t>(p);
       visible_area_[n] = state_.visible_area(leaves_[n], rows_[p]);
       own_radiosity_[n] = emission + state_.scattered_direct_light(leaves_[n]);

@@ -23,7 +23,7 @@ class SolveClock {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds most_nap{2};
+  static constexpr std::chrono::milliseconds most_nap{2};  // so soon is heeded what ends a pause
   static Clock::duration of(double s) { return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s)); }
   static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
   Clock::time_point start_ = Clock::now();

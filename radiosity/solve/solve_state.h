@@ -74,6 +74,9 @@ class SolveState {
   double power_lost_on_the_way() const {
     return direct.power_lost_on_the_way([this] { return arrived_power(); });
   }
+  /// Loads what is known of the leaf that comes some places after `leaves[n]`: leaves in the order of their ids lie apart in
+  /// memory.
+  void fetch_ahead(std::span<const NodeIndex> leaves, std::size_t n) const;
   /// Returns light in W/m2, such as an ambient irradiance that is displayed with leaf_values().
   Rgb in_watts_per_m2(const RelativeLight& light) const { return unit_.to_watts_per_m2(light); }
   /// Returns W for a power in emission units times m2.
@@ -140,7 +143,6 @@ class SolveState {
   std::optional<RelativeLight> scattered_before_;  ///< see note_scattered_light(); nothing where no edit is pending
   Rgb largest_irradiance_;                         ///< upper bound on the irradiance of the solution, W/m2
   void fit_to_nodes();
-  void fetch_ahead(std::span<const NodeIndex> leaves, std::size_t n) const;
   std::optional<double> relight(Plan new_plan, bool reflects_as_before);
   double arrived_power() const;
   RelativeLight scattered_power() const;

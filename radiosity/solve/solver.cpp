@@ -68,7 +68,7 @@ constexpr double spare_of_new_solve = 1.5;
 // measured.
 constexpr double worth_waiting = 3;
 // While each edit comes before light was exchanged for the one before, as when a slider is moved, the exchange waits so long for
-// a next one, in wall seconds. Chosen: longer than between two edits of 30 a second.
+// a next one, in wall seconds. Chosen: longer than between two edits of 30 a second; half and double are not measured.
 constexpr double wait_for_next_edit_s = 0.05;
 
 /// Publishes one step: every face, and no light on any.
@@ -294,7 +294,7 @@ class Run {
     else if (!live_.error_before_edit || pass_->is_exchanging()) step.unshot_fraction = pass_->unshot_fraction();
     step.estimated_error = is_.error.total();
     step.unlit_fraction = state_.direct.unlit_fraction();
-    step.area_within = by_place_.area_within;
+    step.area_within = live_.error_before_edit ? 0 : by_place_.area_within;  // not known yet
     step.edits = control_.edits;
     step.is_provisional = live_.error_before_edit.has_value();
     step.displayed_error = displayed_error * std::min(1.0, live_.error_before_edit.value_or(is_.error.total()));

@@ -30,8 +30,13 @@ void check_objects(const std::vector<std::string>& names, const StoredScene& sce
 
 /// Returns why a step cannot be decoded.
 std::string fault_in(const v1::EditStep& step) {
-  for (int n = 0; n < step.edits_size(); ++n)
-    if (!decode(step.edits(n))) return "step.edits[" + std::to_string(n) + "]: has no part that this server knows";
+  for (int n = 0; n < step.edits_size(); ++n) {
+    const v1::Edit& edit = step.edits(n);
+    if (decode(edit)) continue;
+    const std::string field = "step.edits[" + std::to_string(n) + "]";
+    if (!edit.has_daylight()) return field + ": has no part that this server knows";
+    return field + ".daylight.sky: " + std::to_string(edit.daylight().sky()) + " is none that this server knows";
+  }
   return "step.kind: " + std::to_string(step.kind()) + " is none that this server knows";
 }
 

@@ -255,9 +255,11 @@ void SolveStore::remove(const std::string& name, const std::string& tenant) {
       throw StatusError(grpc::FAILED_PRECONDITION, name + " has not ended: cancel it first");
   };
   refuse_active();
-  // It is just ending, or being edited.
-  changed_.wait(hold,
-                [&]() ALVOR_REQUIRES(lock_) { return !entry(name, tenant).is_running && entry(name, tenant).editors == 0; });
+  // It is just ending, or being edited; it may go on then.
+  changed_.wait(hold, [&]() ALVOR_REQUIRES(lock_) {
+    const Entry& old = entry(name, tenant);
+    return !old.solve->ended() || (!old.is_running && old.editors == 0);
+  });
   refuse_active();
   const StoredSolve& old = *entry(name, tenant).solve;
   if (options_.keeping.archive) options_.keeping.archive->remove_solve(old.number);

@@ -23,6 +23,14 @@ TEST(DoneShare, BeginsAnewAfterAnEdit) {
   EXPECT_NEAR(share.after({.estimated_error = 0.1, .edits = 1}), 0.5, 1e-12);
 }
 
+TEST(DoneShare, IsNothingWhileAnEditIsOnlyShown) {
+  for (const ProgressGoal goal : {ProgressGoal{0.05, 0.8}, ProgressGoal{0.05, 0}}) {
+    DoneShare share(goal);
+    share.after({.estimated_error = 0.01, .area_within = 0.9});
+    EXPECT_EQ(share.after({.estimated_error = 0.01, .area_within = 0.9, .edits = 1, .is_provisional = true}), 0);
+  }
+}
+
 TEST(DoneShare, IsOfTheAreaWhereATolerancePerPlaceIsAskedFor) {
   DoneShare share({.tolerance = 0.05, .area_share = 0.8});
   EXPECT_EQ(share.after({.estimated_error = 0.01, .area_within = 0}), 0);

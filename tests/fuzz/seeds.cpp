@@ -129,6 +129,7 @@ void write_edit_seeds(const fs::path& directory) {
   step.mutable_edits(1)->mutable_object()->set_hidden(true);
   step.add_edits()->mutable_material()->set_name("m0");
   step.mutable_edits(2)->mutable_material()->mutable_reflectance()->set_r(0.5);
+  step.mutable_edits(2)->mutable_material()->mutable_regular_transmittance()->set_r(0.2);
   step.add_edits()->mutable_light()->set_name("bulb");
   step.mutable_edits(3)->mutable_light()->set_dim(0.5);
   step.add_edits()->mutable_copy()->set_name("second lamp");

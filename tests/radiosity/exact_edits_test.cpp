@@ -116,16 +116,5 @@ TEST(ExactEdits, ManyLeadToWhatANewSolveFindsAndTakenBackToTheFirstState) {
   EXPECT_LT(largest_difference(irradiance(edited), before), tolerance);
 }
 
-TEST(EditedSolve, RecoloursWithoutARayUpToTheFirstCompleteState) {
-  EditedSolve edited(room_with_two_lamps(), {.tolerance = 0.05});
-  const Step before = edited.last();
-  edited.edit([](Scene& scene) { scene.materials[0].reflectance = {0.3, 0.2, 0.6}; });
-  const auto steps = edited.log().steps();
-  const auto first = std::find_if(steps.begin() + static_cast<std::ptrdiff_t>(before.revision), steps.end(),
-                                  [](const Step& step) { return !step.is_provisional; });
-  ASSERT_NE(first, steps.end());
-  EXPECT_EQ(first->rays, before.rays);
-}
-
 }  // namespace
 }  // namespace alvor

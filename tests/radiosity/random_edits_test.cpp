@@ -75,7 +75,7 @@ Daylight any_daylight(test::Dice& dice) {
 /// Returns an edit of any part of room_to_be_edited().
 SceneEdit any_edit(test::Dice& dice) {
   const char* const solid = dice.one_of({"box", "block"});
-  switch (dice.below(16)) {
+  switch (dice.below(17)) {
     case 0: return ObjectEdit{.name = solid, .move = any_place(dice, {-0.6, 0, -1}, {0.6, 0.5, 2})};
     case 1: return ObjectEdit{.name = solid, .turn = dice.between(-180, 180)};
     case 2: return ObjectEdit{.name = dice.one_of({"box", "block", "blind"}), .hidden = dice.happens(0.5)};
@@ -97,6 +97,7 @@ SceneEdit any_edit(test::Dice& dice) {
                         .turn = dice.between(-40, 40),
                         .turn_axis = Vec3{1, 0, dice.between(-1, 1)},
                         .scale = dice.between(0.7, 1.3)};
+    case 15: return MaterialEdit{.name = "curtain", .regular_transmittance = any_colour(dice, 0.05)};
     default: return DaylightEdit{any_daylight(dice)};
   }
 }
@@ -110,7 +111,8 @@ class AnySteps {
   std::vector<SceneEdit> next() {
     const EditStep before = steps_.empty() ? EditStep{} : steps_.back();
     if (const auto holds = dice_.happens(0.2) ? try_step({EditStep::Kind::undo}) : std::nullopt) return *holds;
-    if (const auto holds = before.kind == EditStep::Kind::undo ? try_step({EditStep::Kind::redo}) : std::nullopt) return *holds;
+    const bool makes_again = before.kind == EditStep::Kind::undo && dice_.happens(0.5);
+    if (const auto holds = makes_again ? try_step({EditStep::Kind::redo}) : std::nullopt) return *holds;
     EditStep step;
     if (copies_ < 4 && dice_.happens(0.05)) {
       const std::string name = "block " + std::to_string(++copies_);

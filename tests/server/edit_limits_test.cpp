@@ -30,6 +30,7 @@ class EditLimitsTest : public testing::Test {
     const auto solve = create(solves);
     stage.finish();
     while (!solve->ended()) std::this_thread::yield();
+    stage.begin_again();
     return solve;
   }
   SolveStore solves_with(const Quota& quota, int max_waiting = 8) {
@@ -116,6 +117,7 @@ TEST_F(EditLimitsTest, EditsAndADeletionAtOnceAreEachMadeOrRefused) {
       EXPECT_EQ(solve->describe().edits.size(), static_cast<std::size_t>(made));
       stage.finish();
       while (!solve->ended()) std::this_thread::yield();
+      stage.begin_again();
     }
   }
 }

@@ -33,6 +33,18 @@ TEST_F(EditingTest, AFinishedSolveGoesOnAndItsSceneStays) {
   EXPECT_EQ(client.read_scene(solve).materials[0].reflectance, (Rgb{0.1, 0.1, 0.1}));
 }
 
+TEST_F(EditingTest, GlassIsMadeAndTold) {
+  end();
+  v1::EditStep step = recolour("m0", 0.2, 0.2, 0.2);
+  *step.mutable_edits(0)->mutable_material()->mutable_regular_transmittance() = encode(Rgb{0.5, 0.6, 0.7});
+  client.edit_solve(solve, step);
+  end();
+  EXPECT_EQ(last.state(), v1::Solve::SUCCEEDED);
+  EXPECT_EQ(client.read_scene(solve).materials[0].regular_transmittance, (Rgb{0.5, 0.6, 0.7}));
+  *step.mutable_edits(0)->mutable_material()->mutable_regular_transmittance() = encode(Rgb{0.9, 0.1, 0.1});
+  EXPECT_NE(refusal(step).find("reflectance and transmittance are"), std::string::npos) << refusal(step);
+}
+
 TEST_F(EditingTest, UndoAndRedoAreEdits) {
   const auto before = end();
   client.edit_solve(solve, recolour("m0", 0.1, 0.1, 0.1));
@@ -142,7 +154,7 @@ TEST_F(EditingTest, RefusesWhatCannotBeAndNamesTheEditAndItsField) {
   nothing.add_edits();
   says(nothing, "step.edits[1]: has no part that this server knows");
   nothing.mutable_edits(1)->mutable_daylight()->set_sky(static_cast<v1::Daylight::Sky>(77));
-  says(nothing, "step.edits[1]: has no part that this server knows");
+  says(nothing, "step.edits[1].daylight.sky: 77 is none that this server knows");
   nothing.mutable_edits()->RemoveLast();
   nothing.set_kind(static_cast<v1::EditStep::Kind>(77));
   says(nothing, "step.kind: 77 is none that this server knows");

@@ -46,6 +46,11 @@ void StagedSolver::finish() {
   changed_.notify_all();
 }
 
+void StagedSolver::begin_again() {
+  std::scoped_lock hold(lock_);
+  finished_ = false;
+}
+
 void StagedSolver::fail(const std::string& reason) {
   std::scoped_lock hold(lock_);
   failure_ = reason;

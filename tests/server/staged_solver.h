@@ -16,7 +16,10 @@ class StagedSolver {
   SolutionLog& log();
   /// Returns the size of the checkpoint from which the running solve continues; waits for the solve to start.
   std::size_t resumed_from();
+  /// Ends the running solve, and those that begin later.
   void finish();
+  /// Makes solves that begin later wait for finish() again. Requires: none runs.
+  void begin_again();
   void fail(const std::string& reason);
 
  private:

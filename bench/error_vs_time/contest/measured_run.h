@@ -33,7 +33,9 @@ struct MeasuredRun {
   double relative_rms = unknown;       ///< RMS over points of error / truth
   double within_two = unknown;         ///< share of the points whose error is within two of the told errors
   bool is_done = true;                 ///< false: the time limit ended it
-  std::uint64_t steps = 0, rises = 0;  ///< published steps, and those whose estimate is more than 1.5 times that of the one before
+  static constexpr double far_above = 1.5;
+  /// Published steps, and those whose estimate is more than far_above times that of the step before.
+  std::uint64_t steps = 0, rises = 0;
 };
 
 /// Returns a CSV text with a header and a line for each run.

@@ -160,7 +160,8 @@ Judgement judge_estimates(std::span<const double> ratios) {
 }
 
 Judgement judge_rises(std::uint64_t rises, std::uint64_t steps) {
-  Judgement judgement{"The estimate of a published step is more than 1.5 times that of the step before in less than " +
+  Judgement judgement{"The estimate of a published step is more than " + figure(MeasuredRun::far_above) +
+                      " times that of the step before in less than " +
                       tolerance_percent(most_rises) + " of the steps"};
   if (steps == 0) return judgement;
   judgement.measured = std::to_string(rises) + " of " + std::to_string(steps);
@@ -243,7 +244,8 @@ std::vector<Judgement> judge(std::span<const SceneContest> contests, double yard
   std::uint64_t rises = 0, steps = 0;
   for (const SceneContest& held : contests) {
     std::ranges::copy(estimate_ratios(held.runs), std::back_inserter(ratios));
-    for (const MeasuredRun& run : held.runs) rises += run.rises, steps += run.steps;
+    for (const MeasuredRun& run : held.runs)
+      if (run.contender == Contender::alvor) rises += run.rises, steps += run.steps;
     for (const MeasuredRun& run : held.runs)
       if (run.contender == Contender::alvor && run.threads == 1 && run.within_two == run.within_two)
         within_two.push_back(run.within_two);

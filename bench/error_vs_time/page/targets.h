@@ -32,9 +32,9 @@ Judgement judge_slope(std::span<const CurvePoint> curve);
 /// Judges ratios of estimated over true error, by solve.
 Judgement judge_estimates(std::span<const double> ratios);
 /// Judges which share of the points had errors within two of the told ones, by solve.
+Judgement judge_told_errors(std::span<const double> within_two);
 /// Judges how often the estimate of a published step is far above that of the step before.
 Judgement judge_rises(std::uint64_t rises, std::uint64_t steps);
-Judgement judge_told_errors(std::span<const double> within_two);
 
 /// Returns the judgements of all targets, in order. `machine_gain` is the median of Measurements::two_threads_faster.
 std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain);

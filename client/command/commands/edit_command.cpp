@@ -162,7 +162,8 @@ void add_edit_command(CLI::App& app) {
     command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
   };
   add_repeatable("--set", options->settings, "SETTING",
-                 "material:NAME.FIELD=R,G,B with emission, reflectance, diffuse_transmittance or regular_transmittance, or light:NAME.FIELD=X,Y,Z with "
+                 "material:NAME.FIELD=R,G,B with emission, reflectance, diffuse_transmittance or regular_transmittance, or "
+                 "light:NAME.FIELD=X,Y,Z with "
                  "intensity, position or direction, or light:NAME.cone=INNER,OUTER in degrees");
   add_repeatable("--dim", options->dims, "DIM",
                  "light:NAME=FACTOR or object:NAME=FACTOR: multiply what a light, or the faces of an object, send out; 0 is off");

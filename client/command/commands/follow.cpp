@@ -64,8 +64,7 @@ void try_to_cancel(Client& client, const std::string& name) {
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop,
                 std::stop_token stop_waiting) {
   const v1::SolveSpec& spec = solve.effective_spec();
-  const bool is_by_place = spec.area_share() < 1 || !spec.objects().empty();
-  Observer observer(options, {spec.tolerance(), is_by_place ? spec.area_share() : 0});
+  Observer observer(options, {spec.tolerance(), is_by_place(spec) ? spec.area_share() : 0});
   Client::Watch watch;
   const auto on_frame = [&](const Client::Watch& now) { observer.see(now.mirror); };
   v1::Solve ended = watch_through(client, solve.name(), watch, on_frame, std::move(stop), std::move(stop_waiting));
@@ -77,6 +76,8 @@ Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& opt
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop) {
   return follow(client, solve, options, stop, stop);
 }
+
+bool is_by_place(const v1::SolveSpec& spec) { return spec.area_share() < 1 || !spec.objects().empty(); }
 
 Followed follow_own(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop) {
   const std::stop_callback cancel(stop, [&] { try_to_cancel(client, solve.name()); });

@@ -27,6 +27,9 @@ struct Followed {
 /// continues. Reconnects when the connection is lost. Throws RpcError if the server stays away.
 Followed follow(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop);
 
+/// Returns whether a solve is to keep its tolerance on a share of the area, or on named objects. Requires: an effective spec.
+bool is_by_place(const v1::SolveSpec& spec);
+
 /// Follows a solve as follow() does, but a stop request cancels the solve, and its end is awaited.
 Followed follow_own(Client& client, const v1::Solve& solve, const FollowOptions& options, std::stop_token stop);
 

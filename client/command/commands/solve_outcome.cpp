@@ -113,16 +113,15 @@ std::string summary(const Followed& followed, const MeanLight& light, std::span<
   const Step last = last_step(followed);
   const std::string& reason = followed.solve.end_reason();
   const v1::SolveSpec& spec = followed.solve.effective_spec();
-  const bool is_by_place = (spec.area_share() > 0 && spec.area_share() < 1) || spec.objects_size() > 0;
-  const bool is_reached = is_by_place ? last.area_within >= spec.area_share() : last.estimated_error <= spec.tolerance();
-  const std::string by_place = is_by_place
+  const bool is_reached = is_by_place(spec) ? last.area_within >= spec.area_share() : last.estimated_error <= spec.tolerance();
+  const std::string by_place = is_by_place(spec)
                                    ? " (" + percent(spec.tolerance()) + " kept on " + percent(last.area_within) +
                                          (spec.objects_size() > 0 ? " of the area of the named objects)" : " of the area)")
                                    : "";
   return compact(static_cast<double>(last.leaves)) + " leaves, " + compact(static_cast<double>(last.rays)) + " rays, " +
          seconds(last.elapsed_s) + ", estimated error " + percent(last.estimated_error) + by_place + ": " +
          (reason.empty() ? "still running" : reason) + '\n' + unlit(last) + (is_reached ? "" : text_of(errors)) + text_of(light) +
-         (is_by_place ? "" : dim_area(light));
+         (is_by_place(spec) ? "" : dim_area(light));
 }
 
 }  // namespace alvor

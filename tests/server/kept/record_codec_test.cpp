@@ -1,5 +1,6 @@
 // Records of scenes and solves have a member for each field of their messages, and keep which fields are set.
 
+#include "proto/edit_codec.h"
 #include "server/archive/record_codec.h"
 
 #include "tests/server/refusal.h"
@@ -69,6 +70,24 @@ TEST(RecordCodec, EveryFieldOfASolveIsKept) {
   v1::Daylight& daylight = *solve.mutable_edits(0)->mutable_edits(0)->mutable_daylight();
   daylight.clear_sun_azimuth_degrees(), daylight.clear_sun_elevation_degrees();  // sun_time takes their place
   EXPECT_EQ(encode(decode(solve)).DebugString(), solve.DebugString());
+}
+
+TEST(RecordCodec, EveryFieldOfEachKindOfEditIsKept) {
+  v1::EditStep step;
+  step.set_kind(v1::EditStep::EDIT);
+  int number = 0;
+  for (int n = 0; n < v1::Edit::descriptor()->field_count(); ++n) {
+    v1::Edit& edit = *step.add_edits();
+    fill(*edit.GetReflection()->MutableMessage(&edit, v1::Edit::descriptor()->field(n)), number);
+    if (!edit.has_daylight()) continue;
+    edit.mutable_daylight()->clear_sun_azimuth_degrees();  // sun_time takes their place
+    edit.mutable_daylight()->clear_sun_elevation_degrees();
+  }
+  const auto decoded = decode(step);
+  ASSERT_TRUE(decoded);
+  v1::EditStep again;
+  encode(*decoded, again);
+  EXPECT_EQ(again.DebugString(), step.DebugString());
 }
 
 TEST(RecordCodec, FieldsThatAreNotSetStayUnset) {

@@ -45,6 +45,12 @@ export class Editing {
   private steps: EditStep[] = [];
   /** Newest edits of slides that have not been sent, because what was sent before has not been answered. */
   private waiting: { edit: Edit; continues: boolean }[] = [];
+  /** The edit of a slide that was sent and is not answered yet. */
+  private sending?: Edit;
+  /** The control that slid last, and the part that it changed. */
+  private slid?: { part: string; control: string };
+  /** The colour that a person gave a part that shines, its largest band 1. */
+  private tint?: { part: string; bands: Bands };
   /** The option of a part that was asked for and is not there yet. */
   private wanted = "";
   /** A person has chosen the part; at first the page has. */
@@ -65,8 +71,10 @@ export class Editing {
     private readonly showPlace: ShowPlace,
   ) {
     select("edit-part").addEventListener("change", () => this.showChosen());
-    input("edit-dim").addEventListener("input", () => this.slide(this.dimmed(input("edit-dim").valueAsNumber)));
-    input("edit-colour").addEventListener("input", () => this.slide(this.coloured(linearOf(input("edit-colour").value))));
+    input("edit-dim").addEventListener("input", () => this.slideBy("edit-dim", () => this.dimmed(input("edit-dim").valueAsNumber)));
+    input("edit-colour").addEventListener("input", () =>
+      this.slideBy("edit-colour", () => this.coloured(linearOf(input("edit-colour").value))),
+    );
     for (const id of ["edit-x", "edit-y", "edit-z"]) input(id).addEventListener("input", () => this.move());
     input("edit-turn").addEventListener("input", () => this.slide(this.objectEdit({ turn: input("edit-turn").valueAsNumber })));
     input("edit-hidden").addEventListener("change", () => this.hide(input("edit-hidden").checked));
@@ -167,6 +175,11 @@ export class Editing {
     this.showPart();
   }
 
+  /** Edits of slides that the server has not answered yet, the newest last. */
+  private get unanswered(): Edit[] {
+    return [...(this.sending ? [this.sending] : []), ...this.waiting.map(({ edit }) => edit)];
+  }
+
   private get chosen(): { kind: string; name: string } {
     const { value } = select("edit-part");
     const colon = value.indexOf(":");
@@ -181,7 +194,7 @@ export class Editing {
     const material = this.parts.materials.find((one) => kind === "material" && one.name === name);
     let dim = 1;
     let intensity = light?.intensity;
-    const edits = editsThatHold(this.steps);
+    const edits = [...editsThatHold(this.steps), ...this.unanswered];
     const own = object && ownMotion(name, edits);
     let position: Bands | undefined = own ? [own.move.x, own.move.y, own.move.z] : light?.position;
     const turn = own && (isTipped(own.turnAxis, this.up) ? 0 : own.turn); // sliding it turns the object about the vertical instead
@@ -202,7 +215,8 @@ export class Editing {
     }
     const shines = material && largest(material.emission) > 0;
     if (shines) dim = largest(emission!) / largest(material.emission);
-    const shone = shines ? (dim > 0 ? emission : material.emission) : intensity;
+    const remembered = this.tint?.part === select("edit-part").value ? this.tint.bands : undefined;
+    const shone = shines ? (dim > 0 ? emission : (remembered ?? material.emission)) : intensity;
     const tint = shone && largest(shone) > 0 ? scaled(shone, 1 / largest(shone)) : undefined;
     const colour = light || shines ? tint : reflectance;
     const isLamp = light !== undefined || shines === true || object?.shines === true;
@@ -255,6 +269,7 @@ export class Editing {
     this.tellDim();
     const { kind, name } = this.chosen;
     const { colour, brightest } = this.present();
+    if (brightest) this.remember(colour!);
     if (kind === "material")
       return create(EditSchema, { part: { case: "material", value: { name, emission: rgb(scaled(colour!, dim * brightest!)) } } });
     return create(EditSchema, { part: { case: kind === "light" ? "light" : "object", value: { name, dim } } });
@@ -269,11 +284,17 @@ export class Editing {
     }
     const { dim, brightest } = this.present();
     if (brightest) {
+      this.remember(colour);
       const emission = rgb(scaled(colour, (dim * brightest) / (largest(colour) || 1)));
       return create(EditSchema, { part: { case: "material", value: { name, emission } } });
     }
     const reflectance = rgb(colour.map((band) => Math.min(0.95, band)) as Bands);
     return create(EditSchema, { part: { case: "material", value: { name, reflectance } } });
+  }
+
+  /** Remembers the colour of the chosen material, which its emission does not tell while it is off. */
+  private remember(colour: Bands): void {
+    if (largest(colour) > 0) this.tint = { part: select("edit-part").value, bands: scaled(colour, 1 / largest(colour)) };
   }
 
   /** Moves the part to where the fields say. */
@@ -292,6 +313,14 @@ export class Editing {
     return create(EditSchema, { part: { case: "object", value: { name: this.chosen.name, ...change } } });
   }
 
+  /** As slide(), by one of the controls of the chosen part. Brightness and colour of a material set one field, but are steps of their own. */
+  private slideBy(control: string, edit: () => Edit): void {
+    const part = select("edit-part").value;
+    const begins = this.slid?.part === part && this.slid.control !== control;
+    this.slid = { part, control };
+    this.slide(edit(), begins);
+  }
+
   /** Sends the newest of the edits of a slide as soon as the one before was answered; `begins` another slide. */
   private slide(edit: Edit, begins = false): void {
     const last = this.waiting.at(-1);
@@ -306,11 +335,14 @@ export class Editing {
       let isTaken = true;
       for (let next = this.waiting.shift(); next; next = this.waiting.shift()) {
         const { edit, continues } = next;
+        this.sending = edit;
         isTaken = await this.send(create(EditStepSchema, { kind: EditStep_Kind.EDIT, edits: [edit], author: this.author, continues }));
       }
+      this.sending = undefined;
       if (!isTaken || this.isDragged) this.showPart();
     } finally {
       this.waiting = [];
+      this.sending = undefined;
       this.isSending = this.isDragged = false;
     }
   }

@@ -83,27 +83,30 @@ it("shows edits of the furnished room", async () => {
   await page.close();
 });
 
-/** Runs in the page: resolves to the times when the first frame of an edit came, when the page named who made it, and when it had drawn the frame. */
+/** Makes the page note when the first frame of the next edit comes, when it names who made it, and when it has drawn the frame. */
+const awaitNews = (page: Page) =>
+  page.evaluate(() => {
+    const news = new Promise((resolve) => {
+      const { alvor } = window as unknown as { alvor: { frames: number; latency: number } };
+      const before = alvor.frames;
+      let named = 0;
+      new MutationObserver((_, observer) => {
+        named = Date.now();
+        observer.disconnect();
+      }).observe(document.getElementById("edit-news")!, { childList: true });
+      let first: { arrived: number; drawn: number } | undefined;
+      const look = () => {
+        if (!first && alvor.frames > before) first = { arrived: Date.now() - alvor.latency, drawn: Date.now() };
+        if (first && named) resolve({ ...first, named });
+        else requestAnimationFrame(look);
+      };
+      look();
+    });
+    Object.assign(window, { news });
+  });
+/** Returns the times that the page has noted, ms of Date.now(). */
 const timesOfNews = (page: Page) =>
-  page.evaluate(
-    () =>
-      new Promise<{ arrived: number; named: number; drawn: number }>((resolve) => {
-        const { alvor } = window as unknown as { alvor: { frames: number; latency: number } };
-        const before = alvor.frames;
-        let named = 0;
-        new MutationObserver((_, observer) => {
-          named = Date.now();
-          observer.disconnect();
-        }).observe(document.getElementById("edit-news")!, { childList: true });
-        let first: { arrived: number; drawn: number } | undefined;
-        const look = () => {
-          if (!first && alvor.frames > before) first = { arrived: Date.now() - alvor.latency, drawn: Date.now() };
-          if (first && named) resolve({ ...first, named });
-          else requestAnimationFrame(look);
-        };
-        look();
-      }),
-  );
+  page.evaluate(() => (window as unknown as { news: Promise<{ arrived: number; named: number; drawn: number }> }).news);
 
 it("tells how soon another page shows an edit", async () => {
   const page = await solved();
@@ -114,23 +117,22 @@ it("tells how soon another page shows an edit", async () => {
   const times: Record<"arrived" | "named" | "drawn", number[]> = { arrived: [], named: [], drawn: [] };
   for (let n = 0; n < 10; ++n) {
     await page.fill("#edit-author", `Ann ${n}`);
-    const news = timesOfNews(other);
+    await awaitNews(other);
     const begin = await page.locator("#edit-colour").evaluate((control, to) => {
       (control as HTMLInputElement).value = to;
       control.dispatchEvent(new Event("input", { bubbles: true }));
       return Date.now();
     }, n % 2 ? "#c0b0a0" : "#a0b0c0");
-    for (const [event, at] of Object.entries(await news)) times[event as keyof typeof times].push(at - begin);
+    for (const [event, at] of Object.entries(await timesOfNews(other))) times[event as keyof typeof times].push(at - begin);
     await settled(page);
     await waitForState(other, "Done");
   }
-  const summary = (all: number[]) => {
-    all.sort((a, b) => a - b);
-    return `${Math.round(all[all.length / 2])} ms (median; most ${Math.round(all.at(-1)!)} ms)`;
-  };
+  for (const all of Object.values(times)) all.sort((a, b) => a - b);
+  const median = (all: number[]) => Math.round(all[all.length / 2]);
+  const summary = (all: number[]) => `${median(all)} ms (median; most ${Math.round(all.at(-1)!)} ms)`;
   const line =
     `The walls are recoloured on one page of a browser, the room at 4 %: another page has the first frame with the edit after ${summary(times.arrived)}, names who made it after ` +
-    `${summary(times.named)} and has drawn it after ${summary(times.drawn)}; aim: half a second. Both pages are drawn without a graphics card, which takes most of that time.`;
+    `${summary(times.named)} and has drawn it after ${summary(times.drawn)}. Aim: half a second: ${median(times.drawn) <= 500 ? "met" : "**missed**"} by the median, without a graphics card.`;
   if (process.env.ALVOR_FIGURES) appendFileSync(process.env.ALVOR_FIGURES, `\n${line}\n`);
   console.log(line);
   expect(times.drawn).toHaveLength(10);
