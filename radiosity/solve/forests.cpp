@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <tuple>
 
 namespace alvor {
@@ -88,10 +87,12 @@ void Forests::split_as_at_start(const Plan& plan) {
 }
 
 void Forests::split_to_start(const Plan& plan) {
-  const auto roots = std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(mesh_.roots().size()));
-  is_at_start_.resize(roots.size());
+  is_at_start_.resize(mesh_.roots().size());
   const auto is_to_begin = [&](std::uint32_t root) { return !is_at_start_[root] && plan.may_be_lit(root); };
-  if (std::ranges::none_of(roots, is_to_begin)) return;
+  std::vector<std::uint32_t> beginning;
+  for (std::uint32_t root = 0; root < is_at_start_.size(); ++root)
+    if (is_to_begin(root)) beginning.push_back(root);
+  if (beginning.empty()) return;
   const auto is_coarse = [&](NodeIndex node) {
     const PatchId id = rows_.id(node);
     if (!is_to_begin(id.root_face())) return false;
@@ -112,8 +113,7 @@ void Forests::split_to_start(const Plan& plan) {
     is_complete = may_split && rows_.split_as(leaves_, node, limits_, split) && is_complete;  // a limit may forbid it
   }
   if (!is_complete) return;
-  for (const std::uint32_t root : roots)
-    if (plan.may_be_lit(root)) is_at_start_[root] = true;
+  for (const std::uint32_t root : beginning) is_at_start_[root] = true;
 }
 
 /// Splits leaves on textures where the reflectance of their quarters differs. Rows need not be as fine: irradiance is smoother.
