@@ -116,8 +116,8 @@ class Fitter {
   }
 
  private:
-  /// What decides whether the fit around a row uses the samples of another one: where that row lies, and whether any of its rays
-  /// met light.
+  /// A row as fits around other rows see it: where it lies, and whether any of its rays met light. Whether these fits use the row's
+  /// samples depends on nothing else.
   struct Spot {
     Vec3 centre, normal;
     bool is_dark = true;

@@ -205,9 +205,8 @@ std::size_t DirectField::recall(std::vector<NodeIndex>& leaves) {
   }
   std::vector<std::uint8_t> is_recalled(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-    constexpr std::size_t ahead = 8;  // leaves; those that follow each other lie apart in memory
-    if (n + ahead < leaves.size())
-      for (const auto& share : shares) share.prefetch(leaves[n + ahead]);
+    if (n + Forests::leaves_ahead < leaves.size())
+      for (const auto& share : shares) share.prefetch(leaves[n + Forests::leaves_ahead]);
     const NodeIndex leaf = leaves[n];
     if (!std::ranges::all_of(shares, [&](const auto& share) { return share.is_known(leaf); })) return;
     DirectLight& light = light_[leaf];

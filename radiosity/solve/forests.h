@@ -40,6 +40,9 @@ class Forests {
 
   std::span<const Vec3> row_centres() const { return row_centre_; }    ///< by row node
   std::span<const Vec3> leaf_centres() const { return leaf_centre_; }  ///< by leaf node
+  /// How many leaves ahead of the one at hand a loop over all leaves, in the order of their ids, loads what is known of a leaf:
+  /// leaves that follow each other lie apart in memory. Measured: 4 to 16 are as good.
+  static constexpr std::size_t leaves_ahead = 8;
   /// Loads the id and the area of a leaf that will soon be asked for.
   void prefetch(NodeIndex leaf) const {
     leaves_.prefetch(leaf);

@@ -58,7 +58,8 @@ class LightShares {
   };
 
  public:
-  /// What one light brings to leaves at its present colour. Borrows the shares, until they are changed. Safe from any thread.
+  /// The direct light that one light brings to each leaf at the light's present colour. Borrows the shares, until they are
+  /// changed. Safe from any thread.
   class Brought {
    public:
     bool is_known(NodeIndex leaf) const {
@@ -72,7 +73,7 @@ class LightShares {
       return {colour_.r * part.r, colour_.g * part.g, colour_.b * part.b};
     }
     void add_to(DirectLight& sum, NodeIndex leaf) const;
-    /// Loads the share of a leaf that will soon be asked for: leaves in the order of their ids lie apart in memory.
+    /// Loads the share of a leaf that will soon be asked for, see Forests::leaves_ahead.
     void prefetch(NodeIndex leaf) const;
 
    private:

@@ -91,10 +91,9 @@ void SolveState::fit_to_nodes() {
 /// Loads what is known of the leaf that comes some places after `leaves[n]`: leaves in the order of their ids lie apart in
 /// memory.
 void SolveState::fetch_ahead(std::span<const NodeIndex> leaves, std::size_t n) const {
-  constexpr std::size_t ahead = 8;  // 4 to 16 are as good
-  if (n + ahead >= leaves.size()) return;
-  forests.prefetch(leaves[n + ahead]);
-  direct.prefetch(leaves[n + ahead]);
+  if (n + Forests::leaves_ahead >= leaves.size()) return;
+  forests.prefetch(leaves[n + Forests::leaves_ahead]);
+  direct.prefetch(leaves[n + Forests::leaves_ahead]);
 }
 
 std::vector<LeafValue> SolveState::leaf_values(std::span<const RelativeLight> irradiance) const {

@@ -74,8 +74,7 @@ class SolveState {
   double power_lost_on_the_way() const {
     return direct.power_lost_on_the_way([this] { return arrived_power(); });
   }
-  /// Loads what is known of the leaf that comes some places after `leaves[n]`: leaves in the order of their ids lie apart in
-  /// memory.
+  /// Loads what is known of the leaf that comes Forests::leaves_ahead places after `leaves[n]`.
   void fetch_ahead(std::span<const NodeIndex> leaves, std::size_t n) const;
   /// Returns light in W/m2, such as an ambient irradiance that is displayed with leaf_values().
   Rgb in_watts_per_m2(const RelativeLight& light) const { return unit_.to_watts_per_m2(light); }

@@ -42,7 +42,8 @@ DisplayMesh display_of(const BaseMesh& mesh, const SolutionLog& log) {
 /// Counts the steps of a solve whose estimate is far above that of the step before.
 void count_rises(MeasuredRun& run, std::span<const Step> steps) {
   run.steps = steps.size();
-  for (std::size_t n = 1; n < steps.size(); ++n) run.rises += steps[n].estimated_error > MeasuredRun::far_above * steps[n - 1].estimated_error;
+  for (std::size_t n = 1; n < steps.size(); ++n)
+    run.rises += steps[n].estimated_error > MeasuredRun::far_above * steps[n - 1].estimated_error;
 }
 
 }  // namespace

@@ -244,11 +244,11 @@ std::vector<Judgement> judge(std::span<const SceneContest> contests, double yard
   std::uint64_t rises = 0, steps = 0;
   for (const SceneContest& held : contests) {
     std::ranges::copy(estimate_ratios(held.runs), std::back_inserter(ratios));
-    for (const MeasuredRun& run : held.runs)
-      if (run.contender == Contender::alvor) rises += run.rises, steps += run.steps;
-    for (const MeasuredRun& run : held.runs)
-      if (run.contender == Contender::alvor && run.threads == 1 && run.within_two == run.within_two)
-        within_two.push_back(run.within_two);
+    for (const MeasuredRun& run : held.runs) {
+      if (run.contender != Contender::alvor) continue;
+      rises += run.rises, steps += run.steps;
+      if (run.threads == 1 && run.within_two == run.within_two) within_two.push_back(run.within_two);
+    }
   }
   judgements.push_back(judge_estimates(ratios));
   judgements.push_back(judge_told_errors(within_two));
