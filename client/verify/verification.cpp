@@ -34,12 +34,20 @@ std::vector<ProbeSample> solution_at(const DisplayMesh& solution, std::span<cons
                       text_of(missed->point));
 }
 
-/// Returns how a point counts. Only where no path brought light is it necessary to look whether the point is enclosed.
-Standing standing_of(const PathTracer& tracer, const VerifiedPoint& point, PathRandom random) {
+/// Returns how a point counts. Only where it is not sure that paths bring light is it necessary to look whether the point is
+/// enclosed.
+Standing standing_of(const PathTracer& tracer, const VerifiedPoint& point, double mean_truth, PathRandom random) {
   constexpr std::uint32_t rays = 256;
-  if (!point.truth.mean().is_zero()) return Standing::counts;
+  const double surely = point.truth.mean().mean() - 2 * std::sqrt(point.truth.variance_of_band_mean());
+  if (surely > slipped_light * mean_truth) return Standing::counts;
   if (tracer.is_enclosed(point.at, rays, random)) return Standing::hidden;
-  return point.solution.is_zero() ? Standing::dark : Standing::counts;
+  return point.truth.mean().is_zero() && point.solution.is_zero() ? Standing::dark : Standing::counts;
+}
+
+double mean_of(std::span<const IrradianceEstimate> truths) {
+  double sum = 0;
+  for (const IrradianceEstimate& truth : truths) sum += truth.mean().mean();
+  return sum / static_cast<double>(truths.size());
 }
 
 std::optional<ToldErrors> told_errors_of(const Verification& verification) {
@@ -100,10 +108,11 @@ Verification verify(const Scene& scene, const DisplayMesh& solution, const Verif
   const std::vector<ProbeSample> samples = solution_at(solution, points);
   const PathTracer tracer(scene);
   const std::vector<IrradianceEstimate> truths = trace_irradiance(tracer, points, options.trace);
+  const double mean_truth = mean_of(truths);
   Verification verification;
   for (std::size_t n = 0; n < points.size(); ++n) {
     VerifiedPoint point{points[n], truths[n], widen(samples[n].irradiance), samples[n].error};
-    point.standing = standing_of(tracer, point, PathRandom(options.trace.seed, n, look_around_stream));
+    point.standing = standing_of(tracer, point, mean_truth, PathRandom(options.trace.seed, n, look_around_stream));
     verification.points.push_back(point);
   }
   verification.paths = std::uint64_t{truths.front().rounds()} * RoundPlan(options.trace.paths).paths_per_round;

@@ -8,14 +8,6 @@
 
 namespace alvor {
 
-/// By how much the irradiance at the origins of a row differs from the field that is shown.
-struct OriginMisfit {
-  double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
-  double noise = 0;   ///< variance of a stratum's value, mean over them
-  Split split = Split::quarters;    ///< the split that follows the difference best
-  bool has_several_rounds = false;  ///< most strata have several rounds of rays, and their noise is found from how these differ
-};
-
 /// The error of a patch that splitting it would remove, squared and integrated over it, in emission units squared times m2, and
 /// the split that follows it best.
 struct SplitError {
@@ -23,7 +15,16 @@ struct SplitError {
   Split split = Split::quarters;
 };
 
-/// The errors of the last estimate, 40 bytes for each node of the row forest and 32 of the leaf forest. After an edit that leaves
+/// By how much the irradiance at the origins of a row differs from the field that is shown.
+struct OriginMisfit {
+  double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
+  double noise = 0;   ///< variance of a stratum's value, mean over them
+  SplitError unseen;  ///< of parts of the row that its origins do not see
+  Split split = Split::quarters;    ///< the split that follows the difference best
+  bool has_several_rounds = false;  ///< most strata have several rounds of rays, and their noise is found from how these differ
+};
+
+/// The errors of the last estimate, 56 bytes for each node of the row forest and 32 of the leaf forest. After an edit that leaves
 /// most of a scene as it was, only those are found again whose light has changed. Empty unless they are kept.
 class KnownErrors {
  public:

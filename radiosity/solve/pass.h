@@ -113,7 +113,10 @@ class Pass {
   ChangedLeaves changed_leaves(std::span<const SmoothNeighbours> neighbours) const;
   void move_field();
   void fit_field_smoothly(std::span<const SmoothNeighbours> neighbours);
-  void find_misfits();
+  void find_misfits(std::span<const double> irradiance);
+  void find_slivers(std::span<const double> irradiance);
+  SplitError error_at_openings(NodeIndex row, std::span<const double> irradiance) const;
+  double gap_before(NodeIndex row) const;
   void note_errors();
   void estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours> neighbours);
   double estimate_leaves(ErrorEstimate& error);

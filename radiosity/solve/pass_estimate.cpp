@@ -118,42 +118,52 @@ double Pass::contact_variation(NodeIndex row, const SmoothNeighbours& neighbours
   return is_bounded ? std::min(most, difference) : most;
 }
 
-/// Sets `misfits_`, those of rows that have not changed to what they were.
-void Pass::find_misfits() {
+/// Sets `misfits_`, those of rows that have not changed to what they were. `irradiance` is by row node.
+void Pass::find_misfits(std::span<const double> irradiance) {
   const auto rows = system_->rows();
   std::vector<OriginMisfit> found(changed_rows_.size());
   if (state_.rows.carry_light())
-    system_->deal().for_each(state_.ranks, std::span(found),
-                             [&](std::size_t n) { found[n] = misfit_at_origins(rows[changed_rows_[n]], strata_[n]); });
+    system_->deal().for_each(state_.ranks, std::span(found), [&](std::size_t n) {
+      const NodeIndex row = rows[changed_rows_[n]];
+      found[n] = misfit_at_origins(row, strata_[n]);
+      found[n].unseen = error_at_openings(row, irradiance);
+    });
   strata_ = std::vector<StrataSamples>();  // frees the memory
   misfits_.resize(rows.size());
   if (knows_errors())
     tbb::parallel_for(std::size_t{0}, rows.size(),
                       [&](std::size_t p) { misfits_[p] = state_.known_errors.of_row(rows[p]).error; });
-  for (std::size_t n = 0; n < found.size(); ++n) misfits_[changed_rows_[n]] = found[n];
+  for (std::size_t n = 0; n < found.size(); ++n)
+    if (!state_.rows[rows[changed_rows_[n]]].is_hidden()) misfits_[changed_rows_[n]] = found[n];
+  const auto is_known = [&](NodeIndex row) { return state_.known_errors.of_row(row).is_known; };
+  const bool rays_are_known = knows_errors() && std::ranges::all_of(rows, is_known);
+  if (state_.rows.carry_light() && !rays_are_known) find_slivers(irradiance);
 }
 
 /// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2.
 void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours> neighbours) {
   const auto patches = system_->patches();
-  find_misfits();
+  const std::vector<double> irradiance = irradiance_of_rows();
+  find_misfits(irradiance);
   row_errors_.resize(patches.size());
   row_squares_.resize(patches.size());
-  const std::vector<double> irradiance = irradiance_of_rows();
   const auto squares = parallel_sum<ErrorSums>(patches.size(), [&](std::size_t p) {
     const NodeIndex node = system_->rows()[p];
     const TransportRow& row = state_.rows[node];
     const FieldFit& fit = state_.field.fit(node);
     const OriginMisfit& at_origins = misfits_[p];
-    const double area = visible_area(p);
+    const double area = visible_area(p), unseen = at_origins.unseen.square;
     const bool is_seen =
         at_origins.has_several_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
-    const double seen = std::max(0.0, at_origins.square - chance_of_origins * at_origins.noise);
-    row_errors_[p] = {area * (std::max(seen, misfit_at_centre * fit.window_misfit) + by_contact), at_origins.split};
-    row_squares_[p] = std::max(0.0, misfit) + by_contact;
-    return ErrorSums{area * (misfit + by_contact), area * row_squares_[p], area * fit.variance};
+    const double told = std::max(0.0, misfit) + by_contact;
+    const double seen =
+        area * (std::max({0.0, at_origins.square - chance_of_origins * at_origins.noise, misfit_at_centre * fit.window_misfit}) +
+                by_contact);
+    row_errors_[p] = {seen + unseen, unseen > seen ? at_origins.unseen.split : at_origins.split};
+    row_squares_[p] = told + unseen / patches[p].area;
+    return ErrorSums{area * (misfit + by_contact) + unseen, area * told + unseen, area * fit.variance};
   });
   error.misfit += squares.all;
   error.sampling += squares.noise;

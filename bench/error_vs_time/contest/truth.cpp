@@ -22,10 +22,10 @@ constexpr std::uint32_t look_around_rays = 256;
 // too small a variance. So it is in the dark rooms of the enfilade, where few of 32 000 paths find light.
 constexpr double known_to = 0.2;
 
-TruePoint true_point(const PathTracer& tracer, const SurfacePoint& at, const IrradianceEstimate& found, PathRandom random) {
-  TruePoint point{at, found.mean().mean(), found.variance_of_band_mean()};
-  point.is_hidden = found.mean().is_zero() && tracer.is_enclosed(at, look_around_rays, random);
-  return point;
+double mean_of(std::span<const TruePoint> points) {
+  double sum = 0;
+  for (const TruePoint& point : points) sum += point.irradiance;
+  return sum / static_cast<double>(points.size());
 }
 
 Truth traced(const Scene& scene, const SceneSettings& wanted, std::uint64_t seed) {
@@ -35,7 +35,14 @@ Truth traced(const Scene& scene, const SceneSettings& wanted, std::uint64_t seed
   const auto found = trace_irradiance(tracer, points, {.paths = wanted.truth_paths, .seed = seed});
   Truth truth;
   for (std::size_t n = 0; n < points.size(); ++n)
-    truth.points.push_back(true_point(tracer, points[n], found[n], PathRandom(seed, n, look_around_stream)));
+    truth.points.push_back({points[n], found[n].mean().mean(), found[n].variance_of_band_mean()});
+  const double hardly_any = slipped_light * mean_of(truth.points);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    TruePoint& point = truth.points[n];
+    const double surely = point.irradiance - 2 * std::sqrt(point.variance);
+    point.is_hidden =
+        surely <= hardly_any && tracer.is_enclosed(point.at, look_around_rays, PathRandom(seed, n, look_around_stream));
+  }
   truth.paths = std::uint64_t{found.front().rounds()} * RoundPlan(wanted.truth_paths).paths_per_round;
   truth.cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   return truth;

@@ -1,5 +1,6 @@
 #include "bench/error_vs_time/contest/truth_file.h"
 
+#include "client/verify/path_tracer.h"
 #include "import/base/whole_file.h"
 #include "solution/patch_id.h"
 
@@ -56,7 +57,7 @@ bool read_point(std::istream& in, TruePoint& point) {
 std::string truth_question(const Scene& scene, const SceneSettings& settings, std::uint64_t seed) {
   std::ostringstream line;
   line << "irradiance: scene " << std::hex << mixed(scene) << std::dec << ", points " << settings.truth_points << ", paths "
-       << settings.truth_paths << ", seed " << seed;
+       << settings.truth_paths << ", hidden up to " << slipped_light << " of the mean, seed " << seed;
   return line.str();
 }
 
