@@ -84,7 +84,8 @@ void DirectField::heed_error(double error_so_far) {
   };
   const bool may_be_exact = plan_.needs(Feature::occlusion) && !plan_.needs(Feature::medium);
   const bool is_fine = options_.tolerance < exact_below_tolerance && error_so_far < exact_below_error;
-  exact_faces_ = may_be_exact && is_fine && any_has([](const LightSource& light) { return light.polygon(); });
+  exact_faces_ = may_be_exact && is_fine && options_.parts.exact_shadows &&
+                 any_has([](const LightSource& light) { return light.polygon(); });
   exact_exits_ = may_be_exact && any_has([](const LightSource& light) { return light.aperture(); });
   if ((exact_faces_ || exact_exits_) && !blockers_) blockers_ = std::make_unique<BlockerTree>(scene_);
 }

@@ -126,7 +126,7 @@ void Pass::find_misfits(std::span<const double> irradiance) {
     system_->deal().for_each(state_.ranks, std::span(found), [&](std::size_t n) {
       const NodeIndex row = rows[changed_rows_[n]];
       found[n] = misfit_at_origins(row, strata_[n]);
-      found[n].unseen = error_at_openings(row, irradiance);
+      if (state_.options.parts.unseen_places) found[n].unseen = error_at_openings(row, irradiance);
     });
   strata_ = std::vector<StrataSamples>();  // frees the memory
   misfits_.resize(rows.size());
@@ -137,7 +137,7 @@ void Pass::find_misfits(std::span<const double> irradiance) {
     if (!state_.rows[rows[changed_rows_[n]]].is_hidden()) misfits_[changed_rows_[n]] = found[n];
   const auto is_known = [&](NodeIndex row) { return state_.known_errors.of_row(row).is_known; };
   const bool rays_are_known = knows_errors() && std::ranges::all_of(rows, is_known);
-  if (state_.rows.carry_light() && !rays_are_known) find_slivers(irradiance);
+  if (state_.rows.carry_light() && state_.options.parts.unseen_places && !rays_are_known) find_slivers(irradiance);
 }
 
 /// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2.

@@ -99,7 +99,7 @@ class HitsAround {
 }  // namespace
 
 void Pass::guide_rows(std::span<const Candidate> marked, const std::function<bool()>& gives_up) {
-  if (!state_.rows.carry_light() || !state_.rows.may_be_guided()) return;
+  if (!state_.rows.carry_light() || !state_.rows.may_be_guided() || !state_.options.parts.guided_rays) return;
   std::vector<NodeIndex> rows;
   for (const Candidate& candidate : marked)
     if (!candidate.refines_leaf() && state_.rows.is_traced(candidate.patch)) rows.push_back(candidate.patch);

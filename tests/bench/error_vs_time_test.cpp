@@ -5,6 +5,7 @@
 #include "bench/error_vs_time/contest/truth.h"
 #include "bench/error_vs_time/contest/truth_file.h"
 #include "bench/error_vs_time/page/comparisons.h"
+#include "bench/error_vs_time/page/page_sections.h"
 #include "bench/error_vs_time/page/targets.h"
 #include "import/apart/scene_file.h"
 
@@ -159,6 +160,23 @@ TEST(EstimateRatios, LeaveOutWhatRanOutOfTime) {
   std::vector<MeasuredRun> runs{run_of(Contender::alvor, 0.1, 1, 0.1), run_of(Contender::alvor, 0.01, 1, 0.1)};
   runs.back().is_done = false;
   EXPECT_EQ(estimate_ratios(runs), std::vector<double>{2});
+}
+
+TEST(PartsSection, ComparesSolvesAtTheToleranceAtWhichPartsAreLeftOut) {
+  SceneContest held;
+  held.settings.name = "room";
+  held.settings.parts_tolerance = 0.02;
+  held.runs = {run_of(Contender::alvor, 0.05, 1, 0.04), run_of(Contender::alvor, 0.02, 4, 0.02),
+               run_of(Contender::no_slabs, 0.02, 8, 0.01)};
+  held.groups = grouped(held.runs);
+  Measurements measured;
+  measured.contests = {held};
+  const std::string section = parts_section(measured);
+  EXPECT_NE(section.find("| all | 2.00 % in 4.00 s; 16.0 |"), std::string::npos) << section;
+  EXPECT_NE(section.find("| all but slabs | 1.00 % in 8.00 s; 8.00 |"), std::string::npos) << section;
+  EXPECT_NE(section.find("| no part | - |"), std::string::npos) << section;
+  measured.contests[0].settings.parts_tolerance = 0;
+  EXPECT_EQ(parts_section(measured), "");
 }
 
 TEST(Figures, HaveThreeDigits) {

@@ -24,6 +24,23 @@ Strategy strategy_of(Contender contender) {
   }
 }
 
+MethodParts parts_of(Contender contender) {
+  constexpr MethodParts none{false, false, false, false};
+  MethodParts parts = lacks_parts(contender) ? none : MethodParts{};
+  switch (contender) {
+    case Contender::exact_shadows_alone: parts.exact_shadows = true; break;
+    case Contender::guided_rays_alone: parts.guided_rays = true; break;
+    case Contender::slabs_alone: parts.slabs = true; break;
+    case Contender::unseen_places_alone: parts.unseen_places = true; break;
+    case Contender::no_exact_shadows: parts = {.exact_shadows = false}; break;
+    case Contender::no_guided_rays: parts = {.guided_rays = false}; break;
+    case Contender::no_slabs: parts = {.slabs = false}; break;
+    case Contender::no_unseen_places: parts = {.unseen_places = false}; break;
+    default: break;
+  }
+  return parts;
+}
+
 /// Writes down what the solution's errors are, and whether those that it tells are true.
 void judge(MeasuredRun& run, const Arena& arena, const DisplayMesh& solution) {
   const ErrorStatistics errors = errors_of(solution, arena.truth);
@@ -55,7 +72,8 @@ MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance
                              .time_limit_s = arena.time_limit_s,
                              .threads = threads,
                              .seed = seed,
-                             .strategy = strategy_of(contender)};
+                             .strategy = strategy_of(contender),
+                             .parts = parts_of(contender)};
   const SolveOutcome outcome = solve(arena.mesh, options, log, {});
   const Step last = log.last_step();
   MeasuredRun run{arena.settings.name, contender, tolerance, threads, seed, outcome.cpu_s, outcome.solve_s};

@@ -16,7 +16,7 @@ struct Arena {
   double time_limit_s, fixed_mesh_limit_s;
 };
 
-/// Solves the scene with Alvor. Requires: contender is auto or a strategy.
+/// Solves the scene with Alvor. Requires: contender is auto, a strategy, or one of with_parts_left_out.
 MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance, int threads, std::uint64_t seed);
 
 /// Solves the scene by textbook shooting, `cells` elements on the longest side.

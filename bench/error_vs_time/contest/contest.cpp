@@ -47,6 +47,8 @@ class Rounds {
     if (settings_.is_trial) return solve_by_tolerance(Contender::alvor, arena_.settings.tolerances, 1);
     for (const int threads : {1, 2}) solve_by_tolerance(Contender::alvor, arena_.settings.tolerances, threads);
     for (const Contender strategy : strategies) solve_by_tolerance(strategy, arena_.settings.strategy_tolerances, 1);
+    if (arena_.settings.parts_tolerance > 0)
+      for (const Contender without : with_parts_left_out) repeat(without, arena_.settings.parts_tolerance, 1);
     for (const int cells : arena_.settings.fixed_mesh_cells)
       if (!keep(shoot_with(arena_, cells)).is_done) break;
     for (const std::uint64_t paths : arena_.settings.traced_paths) keep(trace_with(arena_, paths));

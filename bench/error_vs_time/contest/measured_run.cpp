@@ -27,8 +27,7 @@ std::string csv_line(const MeasuredRun& run) {
                      std::to_string(run.threads) + ',' + std::to_string(run.seed);
   for (const double number : {run.cpu_s, run.wall_s}) line += ',' + figure(number);
   for (const std::uint64_t count : {run.rays, run.leaves}) line += ',' + (count ? std::to_string(count) : std::string());
-  for (const double number :
-       {run.estimated, run.nrmse.value, run.nrmse.low, run.nrmse.high, run.relative_rms, run.within_two})
+  for (const double number : {run.estimated, run.nrmse.value, run.nrmse.low, run.nrmse.high, run.relative_rms, run.within_two})
     line += cell(number);
   line += run.is_done ? ",yes" : ",no";
   for (const std::uint64_t count : {run.steps, run.rises}) line += run.steps > 0 ? ',' + std::to_string(count) : ",";
@@ -46,13 +45,25 @@ std::string_view text(Contender contender) {
     case Contender::overshoot: return "overshoot";
     case Contender::fixed_mesh: return "fixed mesh";
     case Contender::path_tracing: return "path tracing";
+    case Contender::no_part: return "no part";
+    case Contender::exact_shadows_alone: return "exact shadows alone";
+    case Contender::guided_rays_alone: return "guided rays alone";
+    case Contender::slabs_alone: return "slabs alone";
+    case Contender::unseen_places_alone: return "unseen places alone";
+    case Contender::no_exact_shadows: return "all but exact shadows";
+    case Contender::no_guided_rays: return "all but guided rays";
+    case Contender::no_slabs: return "all but slabs";
+    case Contender::no_unseen_places: return "all but unseen places";
   }
   return "unknown";
 }
 
+bool lacks_parts(Contender contender) { return std::ranges::count(with_parts_left_out, contender) > 0; }
+
 std::string runs_csv(std::span<const MeasuredRun> runs) {
   std::string csv =
-      "scene,contender,setting,threads,seed,cpu_s,wall_s,rays,leaves,estimated_nrmse,nrmse,nrmse_low,nrmse_high,relative_rms,within_two_told,done,steps,rises\n";
+      "scene,contender,setting,threads,seed,cpu_s,wall_s,rays,leaves,estimated_nrmse,nrmse,nrmse_low,nrmse_high,relative_rms,"
+      "within_two_told,done,steps,rises\n";
   for (const MeasuredRun& run : runs) csv += csv_line(run);
   return csv;
 }

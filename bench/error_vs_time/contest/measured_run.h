@@ -13,10 +13,39 @@
 
 namespace alvor::bench {
 
-enum class Contender { alvor, gather, shoot, sorted, overshoot, fixed_mesh, path_tracing };
+/// Alvor by its own choice, or by another strategy; textbook shooting; path tracing; and Alvor with some MethodParts left out.
+enum class Contender {
+  alvor,
+  gather,
+  shoot,
+  sorted,
+  overshoot,
+  fixed_mesh,
+  path_tracing,
+  no_part,
+  exact_shadows_alone,
+  guided_rays_alone,
+  slabs_alone,
+  unseen_places_alone,
+  no_exact_shadows,
+  no_guided_rays,
+  no_slabs,
+  no_unseen_places
+};
 inline constexpr Contender strategies[]{Contender::gather, Contender::shoot, Contender::sorted, Contender::overshoot};
+inline constexpr Contender with_parts_left_out[]{Contender::no_part,
+                                                 Contender::exact_shadows_alone,
+                                                 Contender::guided_rays_alone,
+                                                 Contender::slabs_alone,
+                                                 Contender::unseen_places_alone,
+                                                 Contender::no_exact_shadows,
+                                                 Contender::no_guided_rays,
+                                                 Contender::no_slabs,
+                                                 Contender::no_unseen_places};
 
 std::string_view text(Contender contender);
+/// Returns whether it is one of with_parts_left_out.
+bool lacks_parts(Contender contender);
 
 struct MeasuredRun {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

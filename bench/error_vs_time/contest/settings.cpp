@@ -21,15 +21,17 @@ std::vector<SceneSettings> all_scenes() {
            {8, 16, 32},
            more_paths,
            4000,
-           32'000},
-          {"furnished_room", more, others, {8, 16}, paths, 10'000, 3200},
-          {"slats_and_boxes", more, others, {4, 8}, paths, 10'000, 3200},
-          {"vault", more, others, {8, 16}, paths, 10'000, 3200},
-          {"enfilade", more, others, {8, 16, 32, 64}, more_paths, 4000, 32'000},
+           32'000,
+           0,
+           0.01},
+          {"furnished_room", more, others, {8, 16}, paths, 10'000, 3200, 0, 0.02},
+          {"slats_and_boxes", more, others, {4, 8}, paths, 10'000, 3200, 0, 0.02},
+          {"vault", more, others, {8, 16}, paths, 10'000, 3200, 0, 0.02},
+          {"enfilade", more, others, {8, 16, 32, 64}, more_paths, 4000, 32'000, 0, 0.02},
           {"louvred_room", few, others, {8, 16}, paths, 10'000, 12'800},
           {"office_5000", {0.1, 0.05}, {}, {}, {}, 4000, 3200},
           {"office_50000", {0.15, 0.1}, {}, {}, {}, 4000, 3200, 120},
-          {"gap_panels", gaps, {}, {}, {}, 4000, 8000},
+          {"gap_panels", gaps, {}, {}, {}, 4000, 8000, 0, 0.02},
           {"gap_ceiling", gaps, {}, {}, {}, 4000, 8000},
           {"gap_lamp", gaps, {}, {}, {}, 4000, 8000}};
 }
@@ -46,6 +48,7 @@ void make_quick(Settings& settings) {
   settings.seeds = 1, settings.time_limit_s = 3, settings.fixed_mesh_limit_s = 5;
   for (SceneSettings& scene : settings.scenes) {
     scene.truth_points = 500, scene.truth_paths /= 8, scene.time_limit_s = 0;
+    scene.parts_tolerance = std::max(scene.parts_tolerance, scene.parts_tolerance > 0 ? 0.02 : 0.0);
     std::erase_if(scene.tolerances, [](double tolerance) { return tolerance < 0.015; });
     std::erase_if(scene.strategy_tolerances, [](double tolerance) { return tolerance < 0.015; });
     std::erase_if(scene.fixed_mesh_cells, [](int cells) { return cells > 16; });

@@ -17,6 +17,7 @@ struct SceneSettings {
   std::size_t truth_points = 10'000;
   std::uint64_t truth_paths = 3200;  ///< paths per point
   double time_limit_s = 0;           ///< limit for one solve; 0: that of Settings
+  double parts_tolerance = 0;        ///< one of `tolerances`, at which solves leave out parts; 0: none does
 };
 
 struct Settings {

@@ -46,7 +46,7 @@ std::string row_of(const RunGroup& group, double yardstick_s) {
 }
 
 std::string others_table(const SceneContest& held, double yardstick_s) {
-  const auto is_other = [](const RunGroup& group) { return group.contender != Contender::alvor; };
+  const auto is_other = [](const RunGroup& group) { return group.contender != Contender::alvor && !lacks_parts(group.contender); };
   if (std::ranges::none_of(held.groups, is_other)) return "";
   std::string table = "\nThe others. Path tracing at " + std::to_string(held.truth.drawn) + " points:\n\n" + table_head({"program", "setting", "true nRMSE", "estimated", "rays", "leaves", "CPU s", "yardsticks"});
   for (const RunGroup& group : held.groups)
