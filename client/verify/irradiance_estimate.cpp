@@ -30,6 +30,10 @@ RoundPlan::RoundPlan(std::uint64_t paths) {
   rounds = std::max(2u, static_cast<std::uint32_t>(needed));
 }
 
+bool is_surely_lit(double irradiance, double variance, double mean_of_all) {
+  return irradiance - 2 * std::sqrt(variance) > slipped_light * mean_of_all;
+}
+
 std::vector<IrradianceEstimate> trace_irradiance(const PathTracer& tracer, std::span<const SurfacePoint> points,
                                                  const TraceOptions& options) {
   using Clock = std::chrono::steady_clock;

@@ -48,6 +48,13 @@ struct RoundPlan {
   std::uint32_t rounds;  ///< >= 2
 };
 
+/// Share of the mean irradiance of a scene's surfaces that paths may bring to a place inside a solid: few slip through the seams
+/// between faces, where float32 traversal is not watertight. Chosen.
+inline constexpr double slipped_light = 1e-3;
+/// Returns whether more light arrives at a point than may slip into a solid: its irradiance, less two standard deviations, is
+/// above that share of `mean_of_all`.
+bool is_surely_lit(double irradiance, double variance, double mean_of_all);
+
 /// Returns one estimate per point, in order. The result depends only on the scene, the points, the paths and the seed, not on the
 /// number of threads. All points have the same number of rounds; fewer than planned only if time ran out.
 std::vector<IrradianceEstimate> trace_irradiance(const PathTracer& tracer, std::span<const SurfacePoint> points,

@@ -19,10 +19,6 @@ namespace alvor {
 
 class TriangleCaster;
 
-/// Share of the mean irradiance of a scene's surfaces that paths may bring to a place inside a solid: few slip through the seams
-/// between faces, where float32 traversal is not watertight. Chosen.
-inline constexpr double slipped_light = 1e-3;
-
 /// A point of a surface of the scene, on the side that `normal` points to.
 struct SurfacePoint {
   Vec3 position;           ///< metres

@@ -38,8 +38,7 @@ std::vector<ProbeSample> solution_at(const DisplayMesh& solution, std::span<cons
 /// enclosed.
 Standing standing_of(const PathTracer& tracer, const VerifiedPoint& point, double mean_truth, PathRandom random) {
   constexpr std::uint32_t rays = 256;
-  const double surely = point.truth.mean().mean() - 2 * std::sqrt(point.truth.variance_of_band_mean());
-  if (surely > slipped_light * mean_truth) return Standing::counts;
+  if (is_surely_lit(point.truth.mean().mean(), point.truth.variance_of_band_mean(), mean_truth)) return Standing::counts;
   if (tracer.is_enclosed(point.at, rays, random)) return Standing::hidden;
   return point.truth.mean().is_zero() && point.solution.is_zero() ? Standing::dark : Standing::counts;
 }

@@ -25,7 +25,7 @@ struct MethodParts {
   bool exact_shadows = true;  ///< of flat lights, past a few faces (ExactShadow)
   bool guided_rays = true;    ///< rays of later rounds go where a row has found light (DirectionGuide)
   bool slabs = true;          ///< patches may be split into slabs
-  bool unseen_places = true;  ///< light is looked for where the origins of rows do not see it (Pass::find_slivers)
+  bool unseen_places = true;  ///< errors where the origins of rows see no light are told (pass_unseen.cpp)
 };
 
 /// The options of a solve. One mesh with one set of options gives the same bytes each time, for any number of threads.

@@ -71,7 +71,7 @@ void TracedRows::make_exact() {
       }
     hit_leaves_[rows[n]].clear();
   });
-  all_found_among_ = 0;
+  forget_hit_leaves();
 }
 
 }  // namespace alvor

@@ -69,8 +69,8 @@ void load_leaves(PatchForest& forest, PlainReader& in) {
 
 }  // namespace
 
-Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits, bool slabs)
-    : mesh_(mesh), limits_(limits), slabs_(slabs), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
+Forests::Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits, const MethodParts& parts)
+    : mesh_(mesh), limits_(limits), may_have_slabs_(parts.slabs), rows_(mesh), leaves_(mesh), reflectance_(mesh) {
   find_area();
   split_as_at_start(plan);
 }
@@ -160,7 +160,7 @@ void Forests::append_leaves_of_row(NodeIndex row, std::vector<NodeIndex>& leaves
 }
 
 Split Forests::allowed(NodeIndex leaf, Split wanted) const {
-  if (!slabs_ || wanted == Split::quarters || longest_edge(mesh_, leaves_.shape(leaf)) > longest_slab * mesh_.extent())
+  if (!may_have_slabs_ || wanted == Split::quarters || longest_edge(mesh_, leaves_.shape(leaf)) > longest_slab * mesh_.extent())
     return Split::quarters;
   return leaves_.may_split(leaf, limits_, wanted) ? wanted : Split::quarters;
 }

@@ -19,8 +19,8 @@ namespace alvor {
 /// place if their ids are equal. Used by one thread at a time.
 class Forests {
  public:
-  /// As after split_as_at_start(). Without `slabs`, patches are split into quarters only.
-  Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits, bool slabs = true);
+  /// As after split_as_at_start().
+  Forests(const BaseMesh& mesh, const Plan& plan, const RefinementLimits& limits, const MethodParts& parts = {});
 
   const BaseMesh& mesh() const { return mesh_; }
   const PatchForest& rows() const { return rows_; }
@@ -106,7 +106,7 @@ class Forests {
 
   const BaseMesh& mesh_;
   const RefinementLimits limits_;
-  const bool slabs_;
+  const bool may_have_slabs_;
   double area_ = 0;
   PatchForest rows_, leaves_;
   mutable LeafList row_list_, leaf_list_;

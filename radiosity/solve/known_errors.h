@@ -15,11 +15,11 @@ struct SplitError {
   Split split = Split::quarters;
 };
 
-/// By how much the irradiance at the origins of a row differs from the field that is shown.
+/// By how much the irradiance at the origins of a row differs from the field that is shown, and what they do not see.
 struct OriginMisfit {
   double square = 0;  ///< mean square difference over the strata, less their noise; may be negative; emission units squared
   double noise = 0;   ///< variance of a stratum's value, mean over them
-  SplitError unseen;  ///< of parts of the row that its origins do not see
+  SplitError unseen;  ///< of places that its origins do not see
   Split split = Split::quarters;    ///< the split that follows the difference best
   bool has_several_rounds = false;  ///< most strata have several rounds of rays, and their noise is found from how these differ
 };

@@ -116,7 +116,6 @@ class Pass {
   void find_misfits(std::span<const double> irradiance);
   void find_slivers(std::span<const double> irradiance);
   SplitError error_at_openings(NodeIndex row, std::span<const double> irradiance) const;
-  double gap_before(NodeIndex row) const;
   void note_errors();
   void estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours> neighbours);
   double estimate_leaves(ErrorEstimate& error);
@@ -179,6 +178,7 @@ class Pass {
   /// hits.
   std::vector<StrataSamples> strata_;
   std::vector<OriginMisfit> misfits_;      ///< by patch
+  std::vector<double> lacking_;            ///< by patch: squared error for want of light from slivers, integrated over it
   std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
   bool shows_irradiance_ = false;          ///< the field that is shown is still that of `irradiance_`
   ErrorEstimate told_;                     ///< what estimate() returned

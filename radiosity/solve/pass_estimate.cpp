@@ -121,23 +121,25 @@ double Pass::contact_variation(NodeIndex row, const SmoothNeighbours& neighbours
 /// Sets `misfits_`, those of rows that have not changed to what they were. `irradiance` is by row node.
 void Pass::find_misfits(std::span<const double> irradiance) {
   const auto rows = system_->rows();
+  const bool looks_for_unseen = state_.rows.carry_light() && state_.options.parts.unseen_places;
   std::vector<OriginMisfit> found(changed_rows_.size());
   if (state_.rows.carry_light())
     system_->deal().for_each(state_.ranks, std::span(found), [&](std::size_t n) {
       const NodeIndex row = rows[changed_rows_[n]];
       found[n] = misfit_at_origins(row, strata_[n]);
-      if (state_.options.parts.unseen_places) found[n].unseen = error_at_openings(row, irradiance);
+      if (looks_for_unseen) found[n].unseen = error_at_openings(row, irradiance);
     });
   strata_ = std::vector<StrataSamples>();  // frees the memory
   misfits_.resize(rows.size());
   if (knows_errors())
-    tbb::parallel_for(std::size_t{0}, rows.size(),
-                      [&](std::size_t p) { misfits_[p] = state_.known_errors.of_row(rows[p]).error; });
-  for (std::size_t n = 0; n < found.size(); ++n)
-    if (!state_.rows[rows[changed_rows_[n]]].is_hidden()) misfits_[changed_rows_[n]] = found[n];
-  const auto is_known = [&](NodeIndex row) { return state_.known_errors.of_row(row).is_known; };
-  const bool rays_are_known = knows_errors() && std::ranges::all_of(rows, is_known);
-  if (state_.rows.carry_light() && state_.options.parts.unseen_places && !rays_are_known) find_slivers(irradiance);
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t p) {
+      misfits_[p] = state_.known_errors.of_row(rows[p]).error;
+      // The face beyond the opening is another one, whose light may have changed alone.
+      if (misfits_[p].unseen.square > 0) misfits_[p].unseen = error_at_openings(rows[p], irradiance);
+    });
+  for (std::size_t n = 0; n < found.size(); ++n) misfits_[changed_rows_[n]] = found[n];
+  lacking_.assign(rows.size(), 0);
+  if (looks_for_unseen) find_slivers(irradiance);
 }
 
 /// Adds the errors of rows to `error`, squared and integrated over the area, in emission units squared times m2.
@@ -146,7 +148,7 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
   const std::vector<double> irradiance = irradiance_of_rows();
   find_misfits(irradiance);
   row_errors_.resize(patches.size());
-  row_squares_.resize(patches.size());
+  row_squares_.assign(patches.size(), 0);
   const auto squares = parallel_sum<ErrorSums>(patches.size(), [&](std::size_t p) {
     const NodeIndex node = system_->rows()[p];
     const TransportRow& row = state_.rows[node];
@@ -157,13 +159,14 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
         at_origins.has_several_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
-    const double told = std::max(0.0, misfit) + by_contact;
     const double seen =
-        area * (std::max({0.0, at_origins.square - chance_of_origins * at_origins.noise, misfit_at_centre * fit.window_misfit}) +
-                by_contact);
-    row_errors_[p] = {seen + unseen, unseen > seen ? at_origins.unseen.split : at_origins.split};
-    row_squares_[p] = told + unseen / patches[p].area;
-    return ErrorSums{area * (misfit + by_contact) + unseen, area * told + unseen, area * fit.variance};
+        std::max({0.0, at_origins.square - chance_of_origins * at_origins.noise, misfit_at_centre * fit.window_misfit}) +
+        by_contact;
+    row_errors_[p] = {area * seen + unseen, unseen > area * seen ? at_origins.unseen.split : at_origins.split};
+    if (row.is_hidden()) return ErrorSums{};  // what is seen of it lacks elsewhere
+    const double more = unseen + lacking_[p], told = area * (std::max(0.0, misfit) + by_contact) + more;
+    row_squares_[p] = told / area;
+    return ErrorSums{area * (misfit + by_contact) + more, told, area * fit.variance};
   });
   error.misfit += squares.all;
   error.sampling += squares.noise;

@@ -91,11 +91,14 @@ void Pass::refine_only_what_is_not_within(const ErrorEstimate& error) {
     return place.error > resolved * tolerance ? place.area * squared(most_counted * tolerance * place.relative_to) : 0;
   };
   const auto patches = system_->patches();
-  for (std::size_t p = 0; p < patches.size(); ++p)
+  for (std::size_t p = 0; p < patches.size(); ++p) {
     for (std::size_t n = patches[p].first_leaf; n < patches[p].first_leaf + patches[p].leaf_count; ++n) {
       by_leaf[system_->leaves()[n]] = most(places[n]);
       by_row[system_->rows()[p]] += most(places[n]);
     }
+    // What can be seen of a hidden patch lacks in other places.
+    if (patches[p].row->is_hidden()) by_row[system_->rows()[p]] = misfits_[p].unseen.square;
+  }
   for (Candidate& candidate : candidates_) {
     const bool is_leaf = candidate.refines_leaf();
     candidate.squared_error = std::min(candidate.squared_error, (is_leaf ? by_leaf : by_row)[candidate.patch]);

@@ -71,7 +71,7 @@ SolveState::SolveState(const BaseMesh& base_mesh, Plan solve_plan, SolveOptions 
       budget(ray_budget),
       ranks(solving_ranks),
       scene(mesh),
-      forests(mesh, plan, {options.max_depth, options.max_leaves, options.min_edge_m}, options.parts.slabs),
+      forests(mesh, plan, {options.max_depth, options.max_leaves, options.min_edge_m}, options.parts),
       rows(forests, plan, options, scene, budget, ranks),
       field(forests, rows.carry_light()),
       direct(forests, plan, options, scene, budget, ranks),

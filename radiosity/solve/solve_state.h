@@ -7,6 +7,7 @@
 #include "radiosity/solve/known_errors.h"
 #include "radiosity/solve/moved_roots.h"
 #include "radiosity/solve/row_field.h"
+#include "radiosity/solve/seen_slivers.h"
 #include "radiosity/solve/traced_rows.h"
 #include "solution/leaf_value.h"
 
@@ -39,6 +40,7 @@ class SolveState {
   TracedRows rows;
   RowField field;
   DirectField direct;
+  SeenSlivers slivers;              ///< found again from the rows; not in what save() writes
   KnownErrors known_errors;         ///< of the last estimate; not in what save() writes
   std::vector<RelativeLight> shot;  ///< by leaf node: radiosity that shots distributed so far; 0 if light is gathered
 

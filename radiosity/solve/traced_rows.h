@@ -68,6 +68,13 @@ class TracedRows {
   /// out.
   bool add_wanted_rays();
 
+  /// Returns a number that differs whenever rays of rows have changed in between.
+  std::uint64_t changes() const { return changes_; }
+  /// Returns the height above a row's plane, in metres, below which half of its rays end: the width of the gap that it is in, if
+  /// it is in one. Infinite where half of them leave the scene, go on through panes or meet backs, and for exact rows. Found once
+  /// for the same rays. From any thread, for different rows. Requires: the row's hits are on this rank.
+  double gap_before(NodeIndex row);
+
   /// Finds the leaves on which the hits of rows lie now, for leaves_hit(). Does nothing where no leaf was split and no row has
   /// other hits since. Requires: all leaves of the row forest, and their deal().
   void find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal);
@@ -116,8 +123,10 @@ class TracedRows {
   std::vector<TransportRow> traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
   bool may_hide_otherwise(const MovedRoots& moved, NodeIndex row) const;
   void find_hit_leaves_of(NodeIndex row);
+  double find_gap(NodeIndex row) const;
   bool is_far_from(const MovedRoots& moved, NodeIndex row) const;
   void note_hits(std::span<const NodeIndex> rows);
+  void forget_hit_leaves() { all_found_among_ = 0, ++changes_; }
   void save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const;
   RowSize size_of(PatchId patch) const;
 
@@ -134,6 +143,8 @@ class TracedRows {
   std::vector<std::size_t> found_among_;  ///< by row: the number of leaf nodes when find_hit_leaves() was called last
   /// The number of leaf nodes when the leaves of all rows' hits were found last; 0 if hits have changed since.
   std::size_t all_found_among_ = 0;
+  std::uint64_t changes_ = 0;
+  std::vector<float> gaps_;  ///< by row: see gap_before(); negative where it is not found
   std::optional<HitBoxes> hit_boxes_;
   std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
   std::uint64_t rounds_of_rays_ = 0;            ///< each adds independent rays

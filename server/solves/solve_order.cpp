@@ -24,6 +24,7 @@ void for_each_member(Options& options, Visit&& visit) {
   visit(options.seed);
   visit(options.strategy);
   visit(options.form_factors);
+  visit(options.parts);
   visit(options.forced_on);
 }
 

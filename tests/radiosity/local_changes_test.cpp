@@ -19,6 +19,15 @@ Scene two_rooms_with_box_moved(Vec3 move) {
   return edited_scene(test::two_rooms(), std::vector<SceneEdit>{ObjectEdit{.name = "box", .move = move}});
 }
 
+/// Returns two_rooms() with the box moved, and two slabs 10 mm apart on the floor beside it, between which rows see slivers of
+/// it.
+Scene with_slabs(Vec3 move) {
+  Scene scene = two_rooms_with_box_moved(move);
+  test::add_box(scene, {0.6, 0, 2}, {1.595, 0.05, 3.6}, false);
+  test::add_box(scene, {1.605, 0, 2}, {2.6, 0.05, 3.6}, false);
+  return scene;
+}
+
 /// Exchanges the light of a pass until hardly any is left, and returns the estimate.
 ErrorEstimate estimate_of(Pass& pass) {
   pass.prepare();
@@ -94,6 +103,16 @@ TEST(KnownErrors, TellWhatAnEstimateOfAllTells) {
     expect_to_tell_what_an_estimate_of_all_tells(solve.live()->state);
   }
   EXPECT_GT(refined, 0u) << "no pass refines after the edit";
+}
+
+TEST(KnownErrors, OfSliversTellWhatAnEstimateOfAllTells) {
+  EditedSolve solve(with_slabs({0, 0, 0}), {.tolerance = 0.03});
+  SolveState& state = solve.live()->state;
+  EXPECT_FALSE(state.slivers.find(state.forests, state.rows).empty()) << "no row sees a sliver";
+  for (const Vec3 move : {Vec3{1, 0.2, 1}, Vec3{0.3, -0.4, 1.2}, Vec3{0.3, -0.4, 1.25}}) {
+    solve.edit([&](Scene& scene) { scene = with_slabs(move); });
+    expect_to_tell_what_an_estimate_of_all_tells(solve.live()->state);
+  }
 }
 
 TEST(KnownErrors, AreForgottenWhereLightsOrReflectancesChange) {

@@ -1,4 +1,4 @@
-// Parts of the method that may be left out: they make a solve faster, and change nothing else.
+// Parts of the method that may be left out: faces have the same mean light without them.
 
 #include "tests/radiosity/solve_scenes.h"
 #include "tests/radiosity/solved.h"

@@ -197,12 +197,9 @@ TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {
     double squares = 0, power = 0, area = 0;
     for (std::size_t k = 0; k < leaves.size(); ++k) {
       const NodeIndex leaf = state.forests.leaves().leaf_at(leaves[k].patch);
-      const NodeIndex row = state.forests.row_of(leaf);
-      const double leaf_area = state.visible_area(leaf, row);
+      const double leaf_area = state.visible_area(leaf, state.forests.row_of(leaf));
       EXPECT_GE(errors[k], 0);
-      // Under a solid: the error of what rays see of it is told for all of it.
-      if (state.rows[row].is_hidden()) squares += state.forests.leaf_area(leaf) * errors[k] * errors[k];
-      if (leaves[k].irradiance.is_zero()) continue;
+      if (leaves[k].irradiance.is_zero()) continue;  // under a solid
       squares += leaf_area * errors[k] * errors[k];
       power += leaf_area * widen(leaves[k].irradiance).mean();
       area += leaf_area;

@@ -48,7 +48,7 @@ void make_quick(Settings& settings) {
   settings.seeds = 1, settings.time_limit_s = 3, settings.fixed_mesh_limit_s = 5;
   for (SceneSettings& scene : settings.scenes) {
     scene.truth_points = 500, scene.truth_paths /= 8, scene.time_limit_s = 0;
-    scene.parts_tolerance = std::max(scene.parts_tolerance, scene.parts_tolerance > 0 ? 0.02 : 0.0);
+    if (scene.parts_tolerance > 0) scene.parts_tolerance = 0.02;
     std::erase_if(scene.tolerances, [](double tolerance) { return tolerance < 0.015; });
     std::erase_if(scene.strategy_tolerances, [](double tolerance) { return tolerance < 0.015; });
     std::erase_if(scene.fixed_mesh_cells, [](int cells) { return cells > 16; });

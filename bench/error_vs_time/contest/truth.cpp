@@ -36,12 +36,11 @@ Truth traced(const Scene& scene, const SceneSettings& wanted, std::uint64_t seed
   Truth truth;
   for (std::size_t n = 0; n < points.size(); ++n)
     truth.points.push_back({points[n], found[n].mean().mean(), found[n].variance_of_band_mean()});
-  const double hardly_any = slipped_light * mean_of(truth.points);
+  const double mean = mean_of(truth.points);
   for (std::size_t n = 0; n < points.size(); ++n) {
     TruePoint& point = truth.points[n];
-    const double surely = point.irradiance - 2 * std::sqrt(point.variance);
-    point.is_hidden =
-        surely <= hardly_any && tracer.is_enclosed(point.at, look_around_rays, PathRandom(seed, n, look_around_stream));
+    point.is_hidden = !is_surely_lit(point.irradiance, point.variance, mean) &&
+                      tracer.is_enclosed(point.at, look_around_rays, PathRandom(seed, n, look_around_stream));
   }
   truth.paths = std::uint64_t{found.front().rounds()} * RoundPlan(wanted.truth_paths).paths_per_round;
   truth.cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;

@@ -1,6 +1,6 @@
 #include "bench/error_vs_time/contest/truth_file.h"
 
-#include "client/verify/path_tracer.h"
+#include "client/verify/irradiance_estimate.h"
 #include "import/base/whole_file.h"
 #include "solution/patch_id.h"
 

@@ -34,15 +34,13 @@ std::string parts_section(const Measurements& measured) {
   if (contests.empty()) return "";
   std::string text =
       "## What each part brings\n\n"
-      "Solves that leave parts of the method out, each alone and together: exact shadows of flat lamps, guided rays, patches "
-      "that are split into "
-      "slabs, and unseen places (slivers between solids and openings of gaps). Each cell has the true error and the CPU seconds "
-      "(medians "
-      "over seeds), and after the semicolon squared error (in %) times seconds: half of that is as good as half of the time, "
-      "where errors fall with the "
-      "root of the time.\n\n|";
+      "Solves that leave parts of the method out: exact shadows of flat lamps, guided rays, slabs, and unseen places (slivers "
+      "between solids and openings of gaps). Each cell has the true error and the CPU seconds (medians over seeds), and after "
+      "the "
+      "semicolon the squared error (in %) times the seconds: half of that is as good as half of the time, where errors fall with "
+      "the root of the time.\n\n";
   std::string line = "|---|";  // below the head
-  text += " parts |";
+  text += "| parts |";
   for (const SceneContest* held : contests) {
     text += ' ' + held->settings.name + ", asked for " + tolerance_percent(held->settings.parts_tolerance) + " |";
     line += "---|";

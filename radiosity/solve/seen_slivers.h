@@ -1,0 +1,31 @@
+#pragma once
+// What rows see of patches whose origins are all hidden.
+
+#include "radiosity/solve/traced_rows.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace alvor {
+
+/// Rays that end on patches whose origins are all hidden: a part of these can be seen, such as the floor of a slot between two
+/// cupboards. It is found again only where rays have changed. Used by one thread at a time.
+class SeenSlivers {
+ public:
+  /// A row that sees such a patch. Of its n rays, k end there.
+  struct View {
+    NodeIndex row, hidden;  ///< row nodes
+    double squared_share;   ///< estimate of (k/n)^2, see find()
+  };
+
+  /// Returns the views of this rank's rows, in the order of the rows. Requires: TracedRows::find_hit_leaves() was called since
+  /// rows were traced; both are always those of one solve.
+  std::span<const View> find(const Forests& forests, const TracedRows& rows);
+
+ private:
+  std::uint64_t changes_ = ~std::uint64_t{0};  ///< TracedRows::changes() at the last find()
+  std::vector<View> views_;
+};
+
+}  // namespace alvor
