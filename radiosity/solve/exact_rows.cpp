@@ -71,7 +71,7 @@ void TracedRows::make_exact() {
       }
     hit_leaves_[rows[n]].clear();
   });
-  forget_hit_leaves();
+  note_change(rows);
 }
 
 }  // namespace alvor

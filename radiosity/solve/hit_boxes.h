@@ -26,6 +26,11 @@ class HitBoxes {
   void note(NodeIndex row, const BoundingBox& patch, std::span<const PatchId> hits);
   /// Returns the box of a row as it was noted last, an empty one if it never was.
   const BoundingBox& of(NodeIndex row) const { return boxes_[row]; }
+  /// Returns whether the box of a row has a point in common with `box`.
+  bool touches(NodeIndex row, const BoundingBox& box) const {
+    const Vec3 low = upper(of(row).low, box.low), high = lower(of(row).high, box.high);
+    return low.x <= high.x && low.y <= high.y && low.z <= high.z;
+  }
 
  private:
   std::vector<BoundingBox> boxes_, box_of_face_;

@@ -15,9 +15,10 @@ namespace {
 // depth x of a gap as wide as g is E/2 (1 - x / sqrt(x2 + g2)) if E arrives outside of it, and its square, integrated over x, is
 // E2 g times this.
 constexpr double error_of_opening = (2 - std::numbers::pi / 2) / 4;
-// Least width of a row, in multiples of the gap before it, that may miss light at the opening. Chosen: its outermost origins lie
-// an eighth of its width from the edge, and at that depth of a gap half as wide there is three quarters of the light at the edge.
-constexpr double widths_of_gap = 2;
+// Least width of a row, in multiples of the gap before it, that may miss light at the opening. Its outermost origins lie an
+// eighth of its width from the edge, and at that depth of a gap a third as wide there is two thirds of the light at the edge.
+// Measured: with 2 the furnished room asked for 2 % takes 8 % more leaves and rays for the same error, with 4 as many.
+constexpr double widths_of_gap = 3;
 
 /// Returns whether the surface beyond an edge of a root lies below the root's plane.
 bool falls_away(const BaseMesh& mesh, std::uint32_t root, int edge) {

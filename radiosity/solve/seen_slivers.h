@@ -10,7 +10,8 @@
 namespace alvor {
 
 /// Rays that end on patches whose origins are all hidden: a part of these can be seen, such as the floor of a slot between two
-/// cupboards. It is found again only where rays have changed. Used by one thread at a time.
+/// cupboards. It is looked for again only where rays have
+/// changed, or a patch is hidden now that was not. Used by one thread at a time.
 class SeenSlivers {
  public:
   /// A row that sees such a patch. Of its n rays, k end there.
@@ -24,7 +25,18 @@ class SeenSlivers {
   std::span<const View> find(const Forests& forests, const TracedRows& rows);
 
  private:
-  std::uint64_t changes_ = ~std::uint64_t{0};  ///< TracedRows::changes() at the last find()
+  /// The weights of a row's rays that end on one patch, and of their squares.
+  struct Seen {
+    NodeIndex hidden;
+    double weight, squared_weight;
+  };
+  class HiddenLeaves;
+  static std::vector<Seen> seen_by(const TransportRow& row, std::span<const NodeIndex> leaves, const HiddenLeaves& hidden);
+  void look_again(const Forests& forests, const TracedRows& rows, const HiddenLeaves& hidden);
+
+  std::uint64_t changes_ = 0;            ///< TracedRows::changes() at the last find()
+  std::vector<std::vector<Seen>> seen_;  ///< by row node
+  std::vector<bool> is_hidden_;          ///< by row node, at the last find()
   std::vector<View> views_;
 };
 

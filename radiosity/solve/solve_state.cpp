@@ -245,6 +245,7 @@ void SolveState::scale_field_to_direct_light() {
 void SolveState::note_appended(std::size_t roots_before) {
   const AppendedRoots roots{static_cast<NodeIndex>(roots_before), static_cast<NodeIndex>(mesh.roots().size() - roots_before)};
   known_errors.clear();
+  slivers = {};
   forests.append(roots);
   rows.append(roots);
   field.append(roots);

@@ -93,6 +93,7 @@ void TracedRows::fit_to_nodes() {
   const std::size_t count = forests_.rows().node_count();
   rows_.resize(count);
   is_traced_.resize(count);
+  changed_at_.resize(count);
   if (carry_light()) hit_leaves_.resize(count), found_among_.resize(count), gaps_.resize(count, unknown);
   if (hit_boxes_) hit_boxes_->fit_to_nodes(count);
 }
@@ -104,7 +105,8 @@ void TracedRows::append(const AppendedRoots& roots) {
     for (NodeIndex& leaf : leaves) leaf = roots.moved(leaf);
   for (std::size_t& nodes : found_among_) nodes += nodes > 0 ? roots.count : 0;
   all_found_among_ += all_found_among_ > 0 ? roots.count : 0;
-  ++changes_;
+  roots.make_room(changed_at_);
+  std::ranges::fill(changed_at_, ++changes_);
   roots.make_room(hit_leaves_);
   roots.make_room(found_among_);
   roots.make_room(gaps_);
@@ -118,8 +120,8 @@ void TracedRows::append(const AppendedRoots& roots) {
 
 void TracedRows::forget(NodeIndex row) {
   rows_[row] = {};
-  forget_hit_leaves();
-  if (carry_light()) hit_leaves_[row] = {}, gaps_[row] = unknown;
+  note_change({&row, 1});
+  if (carry_light()) hit_leaves_[row] = {};
 }
 
 std::vector<NodeIndex> TracedRows::untraced() const {
@@ -143,11 +145,19 @@ bool TracedRows::trace(std::span<const NodeIndex> rows) {
   return true;
 }
 
-/// Heeds that rows have other hits than before.
-void TracedRows::note_hits(std::span<const NodeIndex> rows) {
-  if (!rows.empty()) forget_hit_leaves();
+/// Forgets what was found from the rays of rows.
+void TracedRows::note_change(std::span<const NodeIndex> rows) {
+  if (rows.empty()) return;
+  all_found_among_ = 0;
+  ++changes_;
+  for (const NodeIndex row : rows) changed_at_[row] = changes_;
   if (carry_light())
     for (const NodeIndex row : rows) gaps_[row] = unknown;
+}
+
+/// Heeds that rows have other hits than before.
+void TracedRows::note_hits(std::span<const NodeIndex> rows) {
+  note_change(rows);
   if (!hit_boxes_) return;
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t n) {
     hit_boxes_->note(rows[n], box_of(scene_.mesh(), forests_.rows().shape(rows[n])), rows_[rows[n]].hits);

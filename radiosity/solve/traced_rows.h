@@ -68,8 +68,12 @@ class TracedRows {
   /// out.
   bool add_wanted_rays();
 
-  /// Returns a number that differs whenever rays of rows have changed in between.
+  /// Returns a number that grows whenever rays of rows change.
   std::uint64_t changes() const { return changes_; }
+  /// Returns whether the rays of a row have changed since changes() was `before`.
+  bool has_changed_since(std::uint64_t before, NodeIndex row) const { return changed_at_[row] > before; }
+  /// Returns whether rays of a row may have ended in `box`. True where no boxes are kept.
+  bool may_end_in(const BoundingBox& box, NodeIndex row) const { return !hit_boxes_ || hit_boxes_->touches(row, box); }
   /// Returns the height above a row's plane, in metres, below which half of its rays end: the width of the gap that it is in, if
   /// it is in one. Infinite where half of them leave the scene, go on through panes or meet backs, and for exact rows. Found once
   /// for the same rays. From any thread, for different rows. Requires: the row's hits are on this rank.
@@ -126,7 +130,7 @@ class TracedRows {
   double find_gap(NodeIndex row) const;
   bool is_far_from(const MovedRoots& moved, NodeIndex row) const;
   void note_hits(std::span<const NodeIndex> rows);
-  void forget_hit_leaves() { all_found_among_ = 0, ++changes_; }
+  void note_change(std::span<const NodeIndex> rows);
   void save_batch(std::span<const NodeIndex> rows, PlainWriter& out) const;
   RowSize size_of(PatchId patch) const;
 
@@ -144,7 +148,8 @@ class TracedRows {
   /// The number of leaf nodes when the leaves of all rows' hits were found last; 0 if hits have changed since.
   std::size_t all_found_among_ = 0;
   std::uint64_t changes_ = 0;
-  std::vector<float> gaps_;  ///< by row: see gap_before(); negative where it is not found
+  std::vector<std::uint64_t> changed_at_;  ///< by row: `changes_` at its last change
+  std::vector<float> gaps_;                ///< by row: see gap_before(); negative where it is not found
   std::optional<HitBoxes> hit_boxes_;
   std::map<NodeIndex, DirectionGuide> guides_;  ///< of rows whose next rays are to be guided
   std::uint64_t rounds_of_rays_ = 0;            ///< each adds independent rays
