@@ -96,7 +96,7 @@ void Pass::refine_only_what_is_not_within(const ErrorEstimate& error) {
       by_leaf[system_->leaves()[n]] = most(places[n]);
       by_row[system_->rows()[p]] += most(places[n]);
     }
-    // What can be seen of a hidden patch lacks in other places.
+    // A hidden patch has no visible area of its own: its error is the light that rows lack which see a sliver of it.
     if (patches[p].row->is_hidden()) by_row[system_->rows()[p]] = misfits_[p].unseen.square;
   }
   for (Candidate& candidate : candidates_) {

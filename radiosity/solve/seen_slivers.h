@@ -1,5 +1,5 @@
 #pragma once
-// What rows see of patches whose origins are all hidden.
+// Finds slivers: visible parts of patches whose sixteen origins all lie under solids, by the rays of other rows that end there.
 
 #include "radiosity/solve/traced_rows.h"
 
@@ -9,9 +9,9 @@
 
 namespace alvor {
 
-/// Rays that end on patches whose origins are all hidden: a part of these can be seen, such as the floor of a slot between two
-/// cupboards. It is looked for again only where rays have
-/// changed, or a patch is hidden now that was not. Used by one thread at a time.
+/// The rows of which rays end on hidden patches, whose origins all lie under solids: a sliver of such a patch can be seen, such
+/// as the floor of a slot between two cupboards. Rows are looked at again only where their rays have changed, or may end on a
+/// patch that was not hidden before. Used by one thread at a time.
 class SeenSlivers {
  public:
   /// A row that sees such a patch. Of its n rays, k end there.

@@ -1,5 +1,6 @@
 #include "radiosity/solve/traced_rows.h"
 
+#include "radiosity/solve/near_surfaces.h"
 #include "radiosity/solve/saved_nodes.h"
 
 #include <tbb/parallel_for.h>
@@ -7,8 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <limits>
-#include <utility>
 
 namespace alvor {
 
@@ -249,28 +248,10 @@ bool TracedRows::add_wanted_rays() {
 }
 
 double TracedRows::gap_before(NodeIndex row) {
-  if (gaps_[row] < 0) gaps_[row] = static_cast<float>(find_gap(row));
+  if (gaps_[row] < 0)
+    gaps_[row] = static_cast<float>(
+        alvor::gap_before(forests_.mesh(), forests_.rows().id(row).root_face(), forests_.row_centres()[row], rows_[row]));
   return gaps_[row];
-}
-
-/// Returns the weighted median of the heights at which rays end.
-double TracedRows::find_gap(NodeIndex node) const {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  const TransportRow& row = rows_[node];
-  if (row.origin_hits.empty()) return infinite;
-  const BaseMesh& mesh = forests_.mesh();
-  const Vec3 normal = mesh.roots()[forests_.rows().id(node).root_face()].normal, centre = forests_.row_centres()[node];
-  std::vector<std::pair<double, double>> heights;  // with the weights of rays
-  for (std::size_t h = 0; h < row.hits.size(); ++h) {
-    if (mesh.material_of(row.hits[h].root_face()).is_pane()) continue;
-    const Vec3 there = centre_of(mesh, shape_of(mesh, row.hits[h]));
-    heights.emplace_back(dot(there - centre, normal), row.hit_weight.empty() ? 1 : row.hit_weight[h].mean());
-  }
-  std::ranges::sort(heights);
-  double left = row.ray_count() / 2.0;
-  for (const auto& [height, weight] : heights)
-    if ((left -= weight) <= 0) return std::max(0.0, height);
-  return infinite;
 }
 
 void TracedRows::find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal) {

@@ -74,9 +74,8 @@ class TracedRows {
   bool has_changed_since(std::uint64_t before, NodeIndex row) const { return changed_at_[row] > before; }
   /// Returns whether rays of a row may have ended in `box`. True where no boxes are kept.
   bool may_end_in(const BoundingBox& box, NodeIndex row) const { return !hit_boxes_ || hit_boxes_->touches(row, box); }
-  /// Returns the height above a row's plane, in metres, below which half of its rays end: the width of the gap that it is in, if
-  /// it is in one. Infinite where half of them leave the scene, go on through panes or meet backs, and for exact rows. Found once
-  /// for the same rays. From any thread, for different rows. Requires: the row's hits are on this rank.
+  /// Returns the width of the gap that a row is in, if it is in one (near_surfaces.h). Found once for the same rays. From any
+  /// thread, for different rows. Requires: the row's hits are on this rank.
   double gap_before(NodeIndex row);
 
   /// Finds the leaves on which the hits of rows lie now, for leaves_hit(). Does nothing where no leaf was split and no row has
@@ -127,7 +126,6 @@ class TracedRows {
   std::vector<TransportRow> traced_here(std::span<const NodeIndex> rows, std::span<const RowSize> sizes, std::uint64_t seed);
   bool may_hide_otherwise(const MovedRoots& moved, NodeIndex row) const;
   void find_hit_leaves_of(NodeIndex row);
-  double find_gap(NodeIndex row) const;
   bool is_far_from(const MovedRoots& moved, NodeIndex row) const;
   void note_hits(std::span<const NodeIndex> rows);
   void note_change(std::span<const NodeIndex> rows);
