@@ -53,6 +53,7 @@ class Baker {
     write_meshes();
     if (options_.form == BakeForm::lightmap && !options_.keeps_lights) drop_lights();
     describe();
+    if (options_.with_errors) write_errors();
     baked_.glb = document_.encode();
     baked_.nodes = layout_.meshes.nodes.size();
     baked_.charts = charts_.size();
@@ -68,7 +69,7 @@ class Baker {
 
   /// Fills the rectangles of charts, which do not overlap.
   void fill_pages() {
-    for (int p = 0; p < pages_.count; ++p) images_.emplace_back(pages_.size);
+    for (int p = 0; p < pages_.count; ++p) images_.emplace_back(pages_.size, options_.with_errors);
     const TexelValue value = value_of_texels();
     std::atomic<std::size_t> done = 0;
     double texels = 0;
@@ -80,6 +81,7 @@ class Baker {
       options_.on_progress(static_cast<double>(done += here) / texels);
     });
     if (options_.form == BakeForm::lightmap && options_.format == LightmapFormat::png) find_range();
+    if (options_.with_errors) find_told_error();
     for (LightPage& page : images_) spread(page, {0, 0, 0, page.size, page.size}, spread_texels);
   }
 
@@ -88,9 +90,10 @@ class Baker {
       const double exposure = automatic_exposure(solution_);
       return [exposure](const SolvedSurface::Sample& sample) { return tone_map(exposure * sample.radiosity); };
     }
-    const double factor = options_.unit == LightmapUnit::irradiance ? 1 : 1 / std::numbers::pi;
-    return [factor](const SolvedSurface::Sample& sample) { return factor * sample.irradiance; };
+    return [factor = lightmap_factor()](const SolvedSurface::Sample& sample) { return factor * sample.irradiance; };
   }
+
+  double lightmap_factor() const { return options_.unit == LightmapUnit::irradiance ? 1 : 1 / std::numbers::pi; }
 
   void find_range() {
     std::vector<float> most;
@@ -105,6 +108,27 @@ class Baker {
     const auto clipped = most.end() - std::ranges::upper_bound(most, static_cast<float>(baked_.range));
     baked_.clipped_share = most.empty() ? 0 : static_cast<double>(clipped) / static_cast<double>(most.size());
   }
+
+  void find_told_error() {
+    double light = 0, squares = 0, count = 0;
+    for (const LightPage& page : images_)
+      for (std::size_t t = 0; t < page.texels.size(); ++t) {
+        if (!page.is_set[t]) continue;
+        light += widen(page.texels[t]).mean(), squares += double(page.errors[t]) * page.errors[t], count += 1;
+      }
+    if (light > 0) baked_.told_error = lightmap_factor() * std::sqrt(squares * count) / light;
+  }
+
+  void write_errors() {
+    const auto factor = static_cast<float>(lightmap_factor());
+    for (std::size_t p = 0; p < images_.size(); ++p) {
+      std::vector<float> errors = images_[p].errors;
+      for (float& error : errors) error *= factor;
+      baked_.beside.push_back({error_file(p), encode_grey_exr(pages_.size, pages_.size, errors)});
+    }
+  }
+
+  std::string error_file(std::size_t page) const { return options_.name + "-error-" + std::to_string(page) + ".exr"; }
 
   void write_pages() {
     for (std::size_t p = 0; p < images_.size(); ++p) {
@@ -264,6 +288,10 @@ class Baker {
               {"size", pages_.size}};
     if (options_.format == LightmapFormat::png) said["encoding"] = "sRGB", said["range"] = baked_.range;
     for (const Baked::File& file : baked_.beside) said["files"].push_back(file.name);
+    if (options_.with_errors) {
+      for (std::size_t p = 0; p < images_.size(); ++p) said["error_files"].push_back(error_file(p));
+      if (baked_.told_error) said["told_error"] = *baked_.told_error;
+    }
     document_.add_extra(lightmap_key, std::move(said));
   }
 
@@ -316,6 +344,7 @@ std::shared_ptr<const ChartLayout> lay_out(const GltfDocument& document, const S
 
 Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options,
            std::shared_ptr<const ChartLayout> layout) {
+  if (options.with_errors && solution.errors.empty()) throw BakeError("solution", "tells no errors");
   if (!layout) layout = lay_out(document, scene, options);
   return baking([&] {
     for (const auto& [name, extra] : options.extras.items()) document.add_extra(name, extra);

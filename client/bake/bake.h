@@ -40,10 +40,11 @@ struct BakeOptions {
   std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
   std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
   BakedSide side = BakedSide::inner;
+  bool with_errors = false;  ///< lightmap only: told errors of the texels, half floats in files beside the GLB
   bool keeps_lights = false;           ///< a file with lightmaps keeps its lamps, whose light viewers then add once more
   std::optional<double> longest_edge;  ///< of triangles with colours at their vertices, metres; as they are if not given
   nlohmann::json extras;               ///< an object with members for the file's extras, or null
-  std::string name = "baked";          ///< of the files beside the GLB: name-0.exr, name-1.exr
+  std::string name = "baked";          ///< of the files beside the GLB: name-0.exr, name-error-0.exr
   std::function<void(double)> on_progress = [](double) {};  ///< called with the share that is done, from any thread
 };
 
@@ -56,6 +57,7 @@ struct Baked {
   std::size_t charts = 0, nodes = 0;
   int pages = 0;
   double texels_per_metre = 0, range = 0;
+  std::optional<double> told_error;   ///< RMS of the told errors of the texels, over their mean light; with_errors only
   double clipped_share = 0;           ///< of the charts' texels, that are brighter than the range
   std::size_t lit_from_both = 0;      ///< charts whose other side has more than a tenth of the shown side's light, which is lost
   std::vector<std::string> warnings;  ///< a sentence each
@@ -72,7 +74,7 @@ std::shared_ptr<const ChartLayout> lay_out(const GltfDocument& document, const S
 /// its nodes are the scene's objects, in the order in which they are visited. Everything else stays as it is; each node that
 /// shows a mesh gets a mesh of its own that shares its accessors, but for the new texture coordinates, and vertices that charts
 /// had in common are there more than once. Uses all cores; the result does not depend on their number. `layout` is what lay_out()
-/// returned for these arguments, or null. Throws BakeError.
+/// returned for these arguments, or null. Throws BakeError, also if errors are wanted that the solution does not tell.
 Baked bake(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options,
            std::shared_ptr<const ChartLayout> layout = nullptr);
 

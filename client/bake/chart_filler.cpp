@@ -149,17 +149,18 @@ class Filler {
     const std::size_t index = page_.index(place_.x + x, place_.y + y);
     const Vec3 normal = normal_of(of->triangle);
     Rgb sum, irradiance;
-    double count = 0;
+    double count = 0, squared_errors = 0;
     for (std::size_t n = 0; n < of->count; ++n) {
       const auto sample = surface_.at(chart_.object, of->points[n], normal);
       if (!sample) continue;
       if (bright && sample->irradiance.mean() <= much_darker * *bright &&
           surface_.is_covered(of->points[n], normal, darkness * *bright))
         continue;
-      sum += value_(*sample), irradiance += sample->irradiance, count += 1;
+      sum += value_(*sample), irradiance += sample->irradiance, squared_errors += sample->error * sample->error, count += 1;
     }
     page_.is_set[index] = count > 0;
     page_.texels[index] = count > 0 ? narrow(sum * (1 / count)) : RgbF{};
+    if (!page_.errors.empty()) page_.errors[index] = count > 0 ? static_cast<float>(std::sqrt(squared_errors / count)) : 0;
     light_[cell(x, y)] = count > 0 ? irradiance.mean() / count : 0;
   }
 

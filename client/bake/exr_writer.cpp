@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -33,22 +34,20 @@ class MemoryStream final : public Imf::OStream {
   std::uint64_t next_ = 0;
 };
 
-}  // namespace
-
-std::string encode_exr(int columns, int rows, std::span<const RgbF> texels) {
+/// `values` has the values of a texel's channels, then those of the next texel.
+std::string encode(int columns, int rows, std::span<const char* const> channels, std::span<const float> values) {
   constexpr float most = 65504;
-  std::vector<Imath::half> values;
-  values.reserve(3 * texels.size());
-  for (const RgbF& texel : texels)
-    for (const float band : {texel.r, texel.g, texel.b}) values.emplace_back(std::min(band, most));
+  std::vector<Imath::half> halves;
+  halves.reserve(values.size());
+  for (const float value : values) halves.emplace_back(std::min(value, most));
   Imf::Header header(columns, rows);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
-  constexpr const char* names[]{"R", "G", "B"};
-  for (std::size_t band = 0; band < 3; ++band) {
-    header.channels().insert(names[band], Imf::Channel(Imf::HALF));
-    frame.insert(names[band], Imf::Slice(Imf::HALF, reinterpret_cast<char*>(&values[band]), 3 * sizeof(Imath::half),
-                                         3 * sizeof(Imath::half) * static_cast<std::size_t>(columns)));
+  const std::size_t step = channels.size() * sizeof(Imath::half);
+  for (std::size_t channel = 0; channel < channels.size(); ++channel) {
+    header.channels().insert(channels[channel], Imf::Channel(Imf::HALF));
+    frame.insert(channels[channel], Imf::Slice(Imf::HALF, reinterpret_cast<char*>(&halves[channel]), step,
+                                               step * static_cast<std::size_t>(columns)));
   }
   MemoryStream stream;
   {
@@ -57,6 +56,19 @@ std::string encode_exr(int columns, int rows, std::span<const RgbF> texels) {
     file.writePixels(rows);
   }
   return std::move(stream.bytes);
+}
+
+}  // namespace
+
+std::string encode_exr(int columns, int rows, std::span<const RgbF> texels) {
+  std::vector<float> values;
+  values.reserve(3 * texels.size());
+  for (const RgbF& texel : texels) values.insert(values.end(), {texel.r, texel.g, texel.b});
+  return encode(columns, rows, std::array{"R", "G", "B"}, values);
+}
+
+std::string encode_grey_exr(int columns, int rows, std::span<const float> values) {
+  return encode(columns, rows, std::array{"Y"}, values);
 }
 
 }  // namespace alvor

@@ -84,7 +84,8 @@ std::optional<SolvedSurface::Sample> SolvedSurface::at(std::size_t object, Vec3 
                          hit->v * widen(solution_.irradiance[c]);
   const Rgb smooth = (1 - hit->u - hit->v) * widen(solution_.radiosity[a]) + hit->u * widen(solution_.radiosity[b]) +
                      hit->v * widen(solution_.radiosity[c]);
-  return Sample{irradiance, radiosity_.of_what_is_there(triangle, hit->u, hit->v), smooth};
+  const double error = solution_.errors.empty() ? 0 : error_at(solution_, triangle, hit->u, hit->v);
+  return Sample{irradiance, radiosity_.of_what_is_there(triangle, hit->u, hit->v), smooth, error};
 }
 
 bool SolvedSurface::is_covered(Vec3 point, Vec3 normal, double dark) const {

@@ -21,6 +21,7 @@ class SolvedSurface {
   struct Sample {
     Rgb irradiance, radiosity;  ///< W/m2
     Rgb smooth_radiosity;       ///< with the mean colour of an image instead of what it has there
+    double error = 0;           ///< told error of the irradiance (DisplayMesh::errors), W/m2; 0 if the solution tells none
   };
 
   /// Sorts the triangles of `solution` by the object that their faces belong to. Objects are numbered as in `scene`; the faces

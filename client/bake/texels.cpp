@@ -121,17 +121,19 @@ void spread(LightPage& page, const ChartPlace& within, int times) {
       for (int x = 0; x < within.wide; ++x) {
         if (was_set[cell(x, y)]) continue;
         RgbF sum;
-        float count = 0;
+        float errors = 0, count = 0;
         for (int v = std::max(0, y - 1); v <= std::min(within.high - 1, y + 1); ++v)
           for (int u = std::max(0, x - 1); u <= std::min(within.wide - 1, x + 1); ++u) {
             if (!was_set[cell(u, v)]) continue;
             const RgbF& beside = page.texels[page.index(within.x + u, within.y + v)];
             sum.r += beside.r, sum.g += beside.g, sum.b += beside.b;
+            if (!page.errors.empty()) errors += page.errors[page.index(within.x + u, within.y + v)];
             count += 1;
           }
         if (count == 0) continue;
         const std::size_t index = page.index(within.x + x, within.y + y);
         page.texels[index] = {sum.r / count, sum.g / count, sum.b / count};
+        if (!page.errors.empty()) page.errors[index] = errors / count;
         page.is_set[index] = true;
         has_changed = true;
       }

@@ -16,10 +16,14 @@ namespace alvor {
 
 /// A square image of light, rows from the top.
 struct LightPage {
-  explicit LightPage(int side)
-      : size(side), texels(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)), is_set(texels.size()) {}
+  LightPage(int side, bool with_errors)
+      : size(side),
+        texels(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)),
+        errors(with_errors ? texels.size() : 0),
+        is_set(texels.size()) {}
   int size;
   std::vector<RgbF> texels;
+  std::vector<float> errors;         ///< told error of the irradiance, W/m2, as SolvedSurface::Sample has it; none if not wanted
   std::vector<std::uint8_t> is_set;  ///< whether a chart gave the texel its value
 
   std::size_t index(int x, int y) const {

@@ -5,6 +5,7 @@
 #include "bench/error_vs_time/contest/truth.h"
 #include "bench/error_vs_time/contest/truth_file.h"
 #include "bench/error_vs_time/page/comparisons.h"
+#include "bench/error_vs_time/page/limits.h"
 #include "bench/error_vs_time/page/page_sections.h"
 #include "bench/error_vs_time/page/targets.h"
 #include "import/apart/scene_file.h"
@@ -177,6 +178,55 @@ TEST(PartsSection, ComparesSolvesAtTheToleranceAtWhichPartsAreLeftOut) {
   EXPECT_NE(section.find("| no part | - |"), std::string::npos) << section;
   measured.contests[0].settings.parts_tolerance = 0;
   EXPECT_EQ(parts_section(measured), "");
+}
+
+/// A solve by Alvor that was stopped after `limit_s` and `wall_s`.
+MeasuredRun stopped_run(double limit_s, double wall_s, double error) {
+  MeasuredRun run = run_of(Contender::until_time, limit_s, wall_s, error);
+  run.wall_s = wall_s, run.is_done = false;
+  return run;
+}
+
+SceneContest contest_of(std::vector<MeasuredRun> runs) {
+  SceneContest held;
+  held.settings.name = "room";
+  held.runs = std::move(runs);
+  held.groups = grouped(held.runs);
+  return held;
+}
+
+TEST(Limits, OvertimeIsThreeTenthsOfASecondOrTwoPercent) {
+  const std::vector kept{contest_of({stopped_run(1, 1.29, 0.1), stopped_run(100, 101.9, 0.01)})};
+  EXPECT_EQ(judge_overtime(kept).verdict, Verdict::met);
+  EXPECT_EQ(judge_overtime(kept).measured, "2 of 2, at most 1.90 s longer");
+  EXPECT_EQ(judge_overtime(std::vector{contest_of({stopped_run(1, 1.31, 0.1)})}).verdict, Verdict::missed);
+  EXPECT_EQ(judge_overtime(std::vector{contest_of({stopped_run(100, 102.1, 0.1)})}).verdict, Verdict::missed);
+  EXPECT_EQ(judge_overtime({}).verdict, Verdict::not_measured);
+}
+
+TEST(Limits, MoreTimeGivesNoWorseAnswerThanNoiseExplains) {
+  EXPECT_EQ(judge_more_time(std::vector{contest_of({stopped_run(1, 1, 0.1), stopped_run(2, 2, 0.105)})}).verdict, Verdict::met);
+  const std::vector worse{contest_of({stopped_run(1, 1, 0.1), stopped_run(2, 2, 0.05), stopped_run(4, 4, 0.06)})};
+  EXPECT_EQ(judge_more_time(worse).verdict, Verdict::missed);
+  EXPECT_EQ(judge_more_time(worse).measured, "1 of 2 steps from one time limit to the next");
+  EXPECT_EQ(judge_more_time({}).verdict, Verdict::not_measured);
+}
+
+TEST(Limits, ALimitToTheMeshIsComparedWithTheSameStrategyWithoutIt) {
+  const auto with_rays = [](Contender contender, double setting, std::uint64_t rays) {
+    MeasuredRun run = run_of(contender, setting, 1, 0.02);
+    run.rays = rays;
+    return run;
+  };
+  const MeasuredRun free = with_rays(Contender::alvor, 0.02, 1000), sorted = with_rays(Contender::sorted, 0.02, 500);
+  EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({free, with_rays(Contender::to_depth, 4, 1000)})}).verdict, Verdict::met);
+  EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({free, with_rays(Contender::to_leaves, 4, 1001)})}).verdict, Verdict::missed);
+  const auto held = contest_of({free, sorted, with_rays(Contender::sorted_to_depth, 4, 600)});
+  EXPECT_EQ(judge_mesh_limits(std::vector{held}).verdict, Verdict::missed);
+  Measurements measured;
+  measured.contests = {held};
+  EXPECT_NE(limits_section(measured).find("| room | --strategy sorted --max-depth 4 |"), std::string::npos);
+  EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({with_rays(Contender::to_depth, 4, 1)})}).verdict, Verdict::not_measured);
 }
 
 TEST(Figures, HaveThreeDigits) {

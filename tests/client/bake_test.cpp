@@ -9,6 +9,7 @@
 #include "client/verify/path_tracer.h"
 #include "import/apart/scene_file.h"
 #include "import/base/bytes.h"
+#include "import/environment/exr_file.h"
 #include "radiosity/solve/solver.h"
 #include "solution/srgb.h"
 #include "tests/scenes.h"
@@ -574,6 +575,47 @@ TEST(Bake, WritesHalfFloatsBesideTheFile) {
   EXPECT_EQ(baked.baked.beside[0].name, "room-0.exr");
   EXPECT_TRUE(baked.baked.beside[0].bytes.starts_with("\x76\x2f\x31\x01"));
   EXPECT_EQ(baked.file.root()["extras"]["alvor_lightmap"]["files"][0], "room-0.exr");
+}
+
+/// Keeps the first channel of an image.
+class FirstChannel final : public ImageRows {
+ public:
+  void begin(std::int64_t, std::int64_t) override {}
+  void add(std::span<float> rgb) override {
+    for (std::size_t n = 0; n < rgb.size(); n += 3) values.push_back(rgb[n]);
+  }
+  std::vector<float> values;
+};
+
+TEST(Bake, WritesToldErrorsBesideTheFile) {
+  const Scene scene = room_with_globe();
+  DisplayMesh solution = solved(scene);
+  solution.errors.assign(solution.positions.size(), 0.25f);
+  for (const LightmapUnit unit : {LightmapUnit::irradiance, LightmapUnit::irradiance_over_pi}) {
+    const BakedFile baked(scene, solution, {.unit = unit, .size = 128, .with_errors = true, .name = "room"});
+    ASSERT_EQ(baked.baked.beside.size(), 1u) << "light in PNG is in the file";
+    EXPECT_EQ(baked.baked.beside[0].name, "room-error-0.exr");
+    const json& said = baked.file.root()["extras"]["alvor_lightmap"];
+    EXPECT_EQ(said["error_files"], json::array({"room-error-0.exr"}));
+    EXPECT_FALSE(said.contains("files"));
+    FirstChannel errors;
+    read_exr(baked.baked.beside[0].bytes, errors);
+    ASSERT_EQ(errors.values.size(), 128u * 128u);
+    const float told = unit == LightmapUnit::irradiance ? 0.25f : static_cast<float>(0.25 / std::numbers::pi);
+    std::erase(errors.values, 0.0f);  // beside the charts
+    EXPECT_GT(errors.values.size(), 128u * 128u / 2);
+    for (const float error : errors.values) EXPECT_NEAR(error, told, 1e-3f * told);
+    ASSERT_TRUE(baked.baked.told_error);
+    double light = 0, count = 0;
+    for (const RgbF& irradiance : solution.irradiance) light += widen(irradiance).mean(), count += 1;
+    EXPECT_NEAR(*baked.baked.told_error, 0.25 / (light / count), 0.5 * 0.25 / (light / count)) << "vertices and texels differ";
+    EXPECT_EQ(said["told_error"], *baked.baked.told_error);
+  }
+}
+
+TEST(Bake, RefusesErrorsThatTheSolutionDoesNotTell) {
+  const Scene scene = room_with_globe();
+  EXPECT_THROW(BakedFile(scene, solved(scene), {.with_errors = true}), BakeError);
 }
 
 }  // namespace

@@ -142,6 +142,13 @@ def solve(desk, name):
   return json.loads(alvor(desk, "solves", "get", name, "--json")[1])
 
 
+def until_refined_is_kept(server, desk, name):
+  """Waits for a checkpoint of a solve of the Cornell box that is beyond its coarse mesh of 1040 leaves."""
+  until(lambda: solve(desk, name)["leaves"] > 1040, 30, "it has been refined")
+  earlier = server.metric("alvor_checkpoints_total")
+  until(lambda: server.metric("alvor_checkpoints_total") > earlier, 20, "there is a checkpoint of the refined mesh")
+
+
 @pytest.fixture(scope="session", autouse=True)
 def network():
   podman("network", "create", "--disable-dns", NETWORK)

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from conftest import SCENES, alvor, solves, the_solve
+from conftest import SCENES, alvor, solves, the_solve, until_refined_is_kept
 from hosts import Host, run, until
 
 JOB = ["mpirun", "--host", "server,worker", "--map-by", "ppr:1:node", "alvord", "--insecure", "--gang", "2", "--checkpoint-interval", "0.5"]
@@ -41,11 +41,10 @@ def test_two_hosts(world, ranks, observed):
 def test_cut_between_ranks(world, ranks, observed):
   """Cable of one host cut: the job ends within 15 s and says why; started again it goes on, and the watcher has the file of an undisturbed solve."""
   server, worker = ranks
-  scene = [f"{SCENES}/cornell_box.obj", "--tolerance", "0.01", "--pace", "0.5"]
+  scene = [f"{SCENES}/cornell_box.obj", "--tolerance", "0.01", "--pace", "1"]
   watcher = world.client("solve", *scene, "--server", "server:50051", "-o", "watched.glb")
   desk = world.desk()
-  the_solve(desk)
-  until(lambda: server.metric("alvor_checkpoints_total") >= 3, 20, "there are checkpoints")
+  until_refined_is_kept(server, desk, the_solve(desk))
   begin = time.monotonic()
   with worker.cable_pulled():
     server.wait(15)

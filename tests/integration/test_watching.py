@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from conftest import SCENES, World, alvor, scenes, solve, solves, the_solve
+from conftest import SCENES, World, alvor, scenes, solve, solves, the_solve, until_refined_is_kept
 from hosts import until
 
 
@@ -49,12 +49,12 @@ def test_three_watchers(world, observed):
 def test_killed_server(world, observed):
   """Server killed (-9) mid-solve and started again: the solve goes on, watchers come back by themselves, nothing acknowledged is lost."""
   server = world.server("--insecure", "--checkpoint-interval", "0.5")
-  own = start_slow_solve(world, 15)
+  own = start_slow_solve(world, 20)
   desk = world.desk()
   name = the_solve(desk)
   watcher = start_watching(world, name, "watched.glb")
   before = scenes(desk)
-  until(lambda: server.metric("alvor_checkpoints_total") >= 5, 20, "there are checkpoints")
+  until_refined_is_kept(server, desk, name)
   server.kill()
   time.sleep(8)
   server.start()

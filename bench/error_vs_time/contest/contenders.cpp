@@ -18,7 +18,8 @@ Strategy strategy_of(Contender contender) {
   switch (contender) {
     case Contender::gather: return Strategy::gather;
     case Contender::shoot: return Strategy::shoot;
-    case Contender::sorted: return Strategy::sorted;
+    case Contender::sorted:
+    case Contender::sorted_to_depth: return Strategy::sorted;
     case Contender::overshoot: return Strategy::overshoot;
     default: return Strategy::automatic;
   }
@@ -39,6 +40,27 @@ MethodParts parts_of(Contender contender) {
     default: break;
   }
   return parts;
+}
+
+SolveOptions options_of(const Arena& arena, Contender contender, double setting) {
+  constexpr double never_reached = 1e-5;
+  SolveOptions options{.tolerance = setting,
+                       .max_leaves = 1'000'000,
+                       .time_limit_s = arena.time_limit_s,
+                       .strategy = strategy_of(contender),
+                       .parts = parts_of(contender)};
+  switch (contender) {
+    case Contender::until_time: options.tolerance = never_reached, options.time_limit_s = setting; break;
+    case Contender::to_depth:
+    case Contender::sorted_to_depth:
+      options.tolerance = tolerance_of_limited_meshes, options.max_depth = static_cast<int>(setting);
+      break;
+    case Contender::to_leaves:
+      options.tolerance = tolerance_of_limited_meshes, options.max_leaves = static_cast<std::uint64_t>(setting);
+      break;
+    default: break;
+  }
+  return options;
 }
 
 /// Writes down what the solution's errors are, and whether those that it tells are true.
@@ -65,18 +87,13 @@ void count_rises(MeasuredRun& run, std::span<const Step> steps) {
 
 }  // namespace
 
-MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance, int threads, std::uint64_t seed) {
+MeasuredRun solve_with(const Arena& arena, Contender contender, double setting, int threads, std::uint64_t seed) {
   SolutionLog log;
-  const SolveOptions options{.tolerance = tolerance,
-                             .max_leaves = 1'000'000,
-                             .time_limit_s = arena.time_limit_s,
-                             .threads = threads,
-                             .seed = seed,
-                             .strategy = strategy_of(contender),
-                             .parts = parts_of(contender)};
+  SolveOptions options = options_of(arena, contender, setting);
+  options.threads = threads, options.seed = seed;
   const SolveOutcome outcome = solve(arena.mesh, options, log, {});
   const Step last = log.last_step();
-  MeasuredRun run{arena.settings.name, contender, tolerance, threads, seed, outcome.cpu_s, outcome.solve_s};
+  MeasuredRun run{arena.settings.name, contender, setting, threads, seed, outcome.cpu_s, outcome.solve_s};
   run.rays = last.rays, run.leaves = last.leaves, run.estimated = last.estimated_error;
   judge(run, arena, display_of(arena.mesh, log));
   run.is_done = outcome.reason == StopReason::tolerance;

@@ -16,8 +16,11 @@ struct Arena {
   double time_limit_s, fixed_mesh_limit_s;
 };
 
-/// Solves the scene with Alvor. Requires: contender is auto, a strategy, or one of with_parts_left_out.
-MeasuredRun solve_with(const Arena& arena, Contender contender, double tolerance, int threads, std::uint64_t seed);
+constexpr double tolerance_of_limited_meshes = 0.02;  ///< that solves by one of with_mesh_limits are asked for
+
+/// Solves the scene with Alvor. `setting` is the tolerance, or the limit of a contender that has one. Requires: contender is none
+/// of fixed_mesh and path_tracing.
+MeasuredRun solve_with(const Arena& arena, Contender contender, double setting, int threads, std::uint64_t seed);
 
 /// Solves the scene by textbook shooting, `cells` elements on the longest side.
 MeasuredRun shoot_with(const Arena& arena, int cells);

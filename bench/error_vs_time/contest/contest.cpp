@@ -7,6 +7,7 @@
 #include "client/verify/surface_points.h"
 #include "import/apart/scene_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -49,12 +50,25 @@ class Rounds {
     for (const Contender strategy : strategies) solve_by_tolerance(strategy, arena_.settings.strategy_tolerances, 1);
     if (arena_.settings.parts_tolerance > 0)
       for (const Contender without : with_parts_left_out) repeat(without, arena_.settings.parts_tolerance, 1);
+    run_with_limits();
     for (const int cells : arena_.settings.fixed_mesh_cells)
       if (!keep(shoot_with(arena_, cells)).is_done) break;
     for (const std::uint64_t paths : arena_.settings.traced_paths) keep(trace_with(arena_, paths));
   }
 
  private:
+  void run_with_limits() {
+    const auto solve_each = [&](Contender contender, const std::vector<double>& limits) {
+      for (const double limit : limits) keep(solve_with(arena_, contender, limit, 1, 1));
+    };
+    solve_each(Contender::until_time, settings_.time_limits);
+    if (arena_.settings.parts_tolerance == 0) return;
+    solve_each(Contender::to_depth, settings_.depth_limits);
+    solve_each(Contender::to_leaves, settings_.leaf_limits);
+    if (std::ranges::count(arena_.settings.strategy_tolerances, tolerance_of_limited_meshes) > 0)
+      solve_each(Contender::sorted_to_depth, settings_.depth_limits);
+  }
+
   const MeasuredRun& keep(MeasuredRun run) {
     runs_.push_back(std::move(run));
     announce_(line_of(runs_.back()));

@@ -54,6 +54,10 @@ std::string_view text(Contender contender) {
     case Contender::no_guided_rays: return "all but guided rays";
     case Contender::no_slabs: return "all but slabs";
     case Contender::no_unseen_places: return "all but unseen places";
+    case Contender::until_time: return "auto until a time";
+    case Contender::to_depth: return "auto to a depth";
+    case Contender::sorted_to_depth: return "sorted to a depth";
+    case Contender::to_leaves: return "auto to a number of leaves";
   }
   return "unknown";
 }

@@ -13,7 +13,8 @@
 
 namespace alvor::bench {
 
-/// Alvor by its own choice, or by another strategy; textbook shooting; path tracing; and Alvor with some MethodParts left out.
+/// Alvor by its own choice, or by another strategy; textbook shooting; path tracing; Alvor with some MethodParts left out; and
+/// Alvor with a limit that ends it before its tolerance.
 enum class Contender {
   alvor,
   gather,
@@ -30,7 +31,11 @@ enum class Contender {
   no_exact_shadows,
   no_guided_rays,
   no_slabs,
-  no_unseen_places
+  no_unseen_places,
+  until_time,
+  to_depth,
+  sorted_to_depth,
+  to_leaves
 };
 inline constexpr Contender strategies[]{Contender::gather, Contender::shoot, Contender::sorted, Contender::overshoot};
 inline constexpr Contender with_parts_left_out[]{Contender::no_part,
@@ -43,6 +48,9 @@ inline constexpr Contender with_parts_left_out[]{Contender::no_part,
                                                  Contender::no_slabs,
                                                  Contender::no_unseen_places};
 
+/// Limits of the mesh. MeasuredRun::setting is the limit: levels below the roots, or leaves.
+inline constexpr Contender with_mesh_limits[]{Contender::to_depth, Contender::sorted_to_depth, Contender::to_leaves};
+
 std::string_view text(Contender contender);
 /// Returns whether it is one of with_parts_left_out.
 bool lacks_parts(Contender contender);
@@ -52,7 +60,7 @@ struct MeasuredRun {
 
   std::string scene;
   Contender contender = Contender::alvor;
-  double setting = 0;  ///< tolerance; fixed mesh: cells on the longest side; path tracing: paths per point
+  double setting = 0;  ///< tolerance, or the limit; fixed mesh: cells on the longest side; path tracing: paths per point
   int threads = 1;
   std::uint64_t seed = 1;
   double cpu_s = 0, wall_s = 0;

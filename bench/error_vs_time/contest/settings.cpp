@@ -45,7 +45,7 @@ struct Wishes {
 };
 
 void make_quick(Settings& settings) {
-  settings.seeds = 1, settings.time_limit_s = 3, settings.fixed_mesh_limit_s = 5;
+  settings.seeds = 1, settings.time_limit_s = 3, settings.fixed_mesh_limit_s = 5, settings.time_limits = {0.5, 1};
   for (SceneSettings& scene : settings.scenes) {
     scene.truth_points = 500, scene.truth_paths /= 8, scene.time_limit_s = 0;
     if (scene.parts_tolerance > 0) scene.parts_tolerance = 0.02;

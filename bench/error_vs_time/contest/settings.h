@@ -28,6 +28,8 @@ struct Settings {
   int seeds = 3;
   double time_limit_s = 25;        ///< limit for one solve: more than the 30 yardsticks that a target allows
   double fixed_mesh_limit_s = 90;  ///< limit for one run of textbook shooting, which is not repeated
+  std::vector<double> time_limits{0.5, 1, 2, 4, 8};           ///< seconds, increasing, after which solves of each scene are stopped
+  std::vector<double> depth_limits{2, 4, 6}, leaf_limits{1000, 10'000};  ///< of scenes whose parts are left out in turn, too
   double long_run_s = 6;           ///< runs that take longer are not repeated with other seeds
   std::uint64_t truth_seed = 20'000;
   bool is_trial = false;  ///< only solves by auto on one thread, and no page

@@ -2,6 +2,7 @@
 
 #include "bench/error_vs_time/contest/figures.h"
 #include "bench/error_vs_time/page/comparisons.h"
+#include "bench/error_vs_time/page/limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -253,6 +254,8 @@ std::vector<Judgement> judge(std::span<const SceneContest> contests, double yard
   judgements.push_back(judge_estimates(ratios));
   judgements.push_back(judge_told_errors(within_two));
   judgements.push_back(judge_rises(rises, steps));
+  for (Judgement (*judge_limits)(std::span<const SceneContest>) : {judge_overtime, judge_more_time, judge_mesh_limits})
+    judgements.push_back(judge_limits(contests));
   const ThreadGain gain = gain_over_all(contests);
   judgements.push_back(judge_thread_gain(gain.one_s, gain.two_s, machine_gain));
   return judgements;

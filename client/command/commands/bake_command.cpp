@@ -179,6 +179,7 @@ std::string summary_of(const BakeCommand& command, const Baked& baked) {
                      compact(baked.texels_per_metre) + " texels per metre";
   if (baked.range > 0)
     text += "; brightest value " + compact(baked.range) + ", " + percent(baked.clipped_share) + " of the texels are brighter";
+  if (baked.told_error) text += "; told error of the texels " + percent(*baked.told_error) + " of their mean (RMS)";
   return text + '\n';
 }
 
@@ -194,6 +195,10 @@ void run_bake(const BakeCommand& command) {
     throw Failure(ExitStatus::usage, "--subdivide: only --as vertex has colours at vertices");
   if (command.lightmap_format == "exr" && command.form != "lightmap")
     throw Failure(ExitStatus::usage, "--lightmap-format: only --as lightmap has lightmaps");
+  if (command.bake.with_errors && command.form != "lightmap")
+    throw Failure(ExitStatus::usage, "--errors: only --as lightmap has lightmaps");
+  if (command.bake.with_errors && is_stream(command.output.path))
+    throw Failure(ExitStatus::usage, "--output: errors are files beside the scene, so it cannot go to stdout");
   if (is_stream(command.output.path) && counts)
     throw Failure(ExitStatus::usage, "--output: probes are a file beside the scene, so it cannot go to stdout");
   require_other_output(command);
@@ -249,6 +254,8 @@ void add_texture_options(CLI::App& command, BakeCommand& options) {
       ->check(CLI::IsMember(sides));
   command.add_flag("--keep-lights", options.bake.keeps_lights,
                    "Keep the file's lamps beside the lightmap, for things that move; viewers add their light once more");
+  command.add_flag("--errors", options.bake.with_errors,
+                   "Also write the told error of each texel of a lightmap, one standard deviation, in BAKED-error-0.exr and so on");
   command.add_option("--size", options.bake.size, "Columns and rows of each texture (1024)")->check(CLI::Range(16, 8192));
   command
       .add_option("--texels-per-metre", options.bake.texels_per_metre,

@@ -1,0 +1,133 @@
+#include "bench/error_vs_time/page/limits.h"
+
+#include "bench/error_vs_time/contest/contenders.h"
+#include "bench/error_vs_time/contest/figures.h"
+#include "bench/error_vs_time/page/page_sections.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+namespace alvor::bench {
+
+namespace {
+
+constexpr double overtime_share = 0.02, overtime_s = 0.3;  // the larger of both is allowed
+constexpr double noise_of_error = 1.1;                     // by which errors of equal solves with different seeds may differ
+
+double overtime(const RunGroup& group) { return group.wall_s().median - group.setting; }
+
+/// Returns the solve without a limit to its mesh that is compared with one that has it.
+std::optional<RunGroup> without_limit(const SceneContest& held, Contender limited) {
+  const auto groups = of(held.groups, limited == Contender::sorted_to_depth ? Contender::sorted : Contender::alvor);
+  const auto found = std::ranges::find(groups, tolerance_of_limited_meshes, &RunGroup::setting);
+  return found == groups.end() ? std::nullopt : std::optional(*found);
+}
+
+/// Calls body(limited, unlimited) for each solve with a limit to its mesh.
+template <class Body>
+void for_each_limited_mesh(const SceneContest& held, Body&& body) {
+  for (const Contender contender : with_mesh_limits)
+    if (const auto unlimited = without_limit(held, contender))
+      for (const RunGroup& limited : of(held.groups, contender)) body(limited, *unlimited);
+}
+
+std::string cost_of(const RunGroup& group) {
+  return percent(group.nrmse().median) + " in " + plain(group.cpu_s().median) + " s, " + compact(group.rays().median) + " rays, " +
+         compact(group.leaves().median) + " leaves";
+}
+
+std::string limit_of(const RunGroup& group) {
+  if (group.contender == Contender::to_leaves) return "--max-elements " + figure(group.setting);
+  const std::string sorted = group.contender == Contender::sorted_to_depth ? "--strategy sorted " : "";
+  return sorted + "--max-depth " + figure(group.setting);
+}
+
+std::string time_table(const Measurements& measured) {
+  std::set<double> limits;
+  for (const SceneContest& held : measured.contests)
+    for (const RunGroup& group : of(held.groups, Contender::until_time)) limits.insert(group.setting);
+  if (limits.empty()) return "";
+  std::string head = "| scene |", line = "|---|";
+  for (const double limit : limits) head += ' ' + figure(limit) + " s |", line += "---|";
+  std::string table = head + '\n' + line + '\n';
+  for (const SceneContest& held : measured.contests) {
+    table += "| " + held.settings.name + " |";
+    for (const RunGroup& group : of(held.groups, Contender::until_time))
+      table += ' ' + percent(group.nrmse().median) + " (" + percent(group.estimated().median) + "), " + plain(group.wall_s().median) +
+               " s |";
+    table += '\n';
+  }
+  return table + '\n';
+}
+
+std::string mesh_table(const Measurements& measured) {
+  std::string rows;
+  for (const SceneContest& held : measured.contests)
+    for_each_limited_mesh(held, [&](const RunGroup& limited, const RunGroup& unlimited) {
+      rows += table_row({held.settings.name, limit_of(limited), cost_of(limited), cost_of(unlimited)});
+    });
+  return rows.empty() ? "" : table_head({"scene", "limit", "with it", "without"}) + rows + '\n';
+}
+
+}  // namespace
+
+Judgement judge_overtime(std::span<const SceneContest> contests) {
+  Judgement judgement{"Time limits are kept within " + tolerance_percent(overtime_share) + " or " + figure(overtime_s) + " s"};
+  std::size_t kept = 0, all = 0;
+  double most = 0;
+  for (const SceneContest& held : contests)
+    for (const RunGroup& group : of(held.groups, Contender::until_time)) {
+      ++all;
+      kept += overtime(group) <= std::max(overtime_s, overtime_share * group.setting);
+      most = std::max(most, overtime(group));
+    }
+  if (all == 0) return judgement;
+  judgement.measured = std::to_string(kept) + " of " + std::to_string(all) + ", at most " + plain(most) + " s longer";
+  judgement.verdict = kept == all ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+Judgement judge_more_time(std::span<const SceneContest> contests) {
+  Judgement judgement{"More time never gives a worse answer by more than noise (" + figure(noise_of_error) + " times the error)"};
+  std::size_t fine = 0, all = 0;
+  for (const SceneContest& held : contests) {
+    const auto groups = of(held.groups, Contender::until_time);
+    for (std::size_t n = 1; n < groups.size(); ++n, ++all)
+      fine += groups[n].nrmse().median <= noise_of_error * groups[n - 1].nrmse().median;
+  }
+  if (all == 0) return judgement;
+  judgement.measured = std::to_string(fine) + " of " + std::to_string(all) + " steps from one time limit to the next";
+  judgement.verdict = fine == all ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+Judgement judge_mesh_limits(std::span<const SceneContest> contests) {
+  Judgement judgement{"A limit to depth or leaves never makes a solve cast more rays"};
+  std::size_t fine = 0, all = 0;
+  for (const SceneContest& held : contests)
+    for_each_limited_mesh(held, [&](const RunGroup& limited, const RunGroup& unlimited) {
+      fine += limited.rays().median <= unlimited.rays().median;
+      ++all;
+    });
+  if (all == 0) return judgement;
+  judgement.measured = std::to_string(fine) + " of " + std::to_string(all);
+  judgement.verdict = fine == all ? Verdict::met : Verdict::missed;
+  return judgement;
+}
+
+std::string limits_section(const Measurements& measured) {
+  const std::string times = time_table(measured), meshes = mesh_table(measured);
+  if (times.empty() && meshes.empty()) return "";
+  std::string text = "## Limits\n\n";
+  if (!times.empty())
+    text += "Solves that `--time-limit` stops, one thread, one seed: the true error, in brackets the estimated one, and the wall "
+            "seconds that the solve took.\n\n" +
+            times;
+  if (!meshes.empty())
+    text += "Solves that are asked for " + tolerance_percent(tolerance_of_limited_meshes) +
+            " with a limit to their mesh, and without: true error, CPU seconds, rays and leaves.\n\n" + meshes;
+  return text;
+}
+
+}  // namespace alvor::bench
