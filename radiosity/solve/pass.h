@@ -138,7 +138,7 @@ class Pass {
   void find_leaf_candidates();
   void add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error, bool may_split);
   double heed_noise(std::size_t place, bool may_split, double noise);
-  void drop_rays_that_do_not_help();
+  void drop_what_does_not_help();
   /// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations
   /// above the mean of sixteen squared normal deviations.
   static constexpr double noise_of_origins = 1.7;

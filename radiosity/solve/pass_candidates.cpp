@@ -23,9 +23,11 @@ constexpr double rays_per_leaf = 32, rays_per_leaf_split = 4 * rays_per_leaf;
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 // Rays above which a row gets no more. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-// Share of the squared error that the limits keep from being refined: rays that would remove less are not sent. Removing all of
-// it would make the error a tenth smaller. Chosen.
-constexpr double worth_rays = 0.2;
+// Shares of the squared error that the limits keep from being refined. Rays are not sent where they would remove less than the
+// first; removing all of it would make the error a tenth smaller. Nothing is refined where all candidates would remove less than
+// the second, which makes the error a two-hundredth smaller. Splits count far less because a dark room beside one that cannot be
+// refined is to be split nevertheless. Chosen.
+constexpr double worth_rays = 0.2, worth_anything = 0.01;
 
 }  // namespace
 
@@ -37,7 +39,7 @@ void Pass::find_candidates() {
   find_row_candidates();
   find_leaf_candidates();
   if (told_.sampling < 0.5 * told_.mesh() && std::ranges::none_of(candidates_, &Candidate::splits)) candidates_.clear();
-  drop_rays_that_do_not_help();
+  drop_what_does_not_help();
 }
 
 void Pass::find_row_candidates() {
@@ -107,15 +109,17 @@ double Pass::heed_noise(std::size_t place, bool may_split, double noise) {
   return missed;
 }
 
-/// Drops the candidates that add rays if the error that would need splits which the limits forbid is beyond the tolerance, and
-/// all of these rays would hardly reduce it.
-void Pass::drop_rays_that_do_not_help() {
+/// If the error that would need splits which the limits forbid is beyond the tolerance, drops the candidates that add rays where
+/// all of these would hardly reduce it, and all candidates where the others would hardly, either, or are within the tolerance by
+/// themselves: refining them further cannot make up for the error that stays.
+void Pass::drop_what_does_not_help() {
   if (state_.options.is_by_place() || !(told_scale_ > 0)) return;
   if (std::sqrt(lasting_error_ / told_scale_) <= state_.options.tolerance) return;
-  double removable = 0;
-  for (const Candidate& candidate : candidates_)
-    if (!candidate.splits()) removable += candidate.squared_error;
-  if (removable < worth_rays * lasting_error_) std::erase_if(candidates_, std::not_fn(&Candidate::splits));
+  double by_rays = 0, by_splits = 0;
+  for (const Candidate& candidate : candidates_) (candidate.splits() ? by_splits : by_rays) += candidate.squared_error;
+  const double squared_tolerance = state_.options.tolerance * state_.options.tolerance;
+  if (by_rays + by_splits <= std::max(squared_tolerance * told_scale_, worth_anything * lasting_error_)) candidates_.clear();
+  else if (by_rays < worth_rays * lasting_error_) std::erase_if(candidates_, std::not_fn(&Candidate::splits));
 }
 
 }  // namespace alvor

@@ -12,7 +12,8 @@ struct Sample {
 };
 
 constexpr Sample samples[]{
-    {"furnished_room.obj", 948, 2}, {"slats_and_boxes.obj", 1138, 2}, {"vault.obj", 2648, 1}, {"enfilade.obj", 176, 1}};
+    {"furnished_room.obj", 948, 2}, {"slats_and_boxes.obj", 1138, 2}, {"vault.obj", 2648, 1}, {"enfilade.obj", 176, 1},
+    {"louvred_room.obj", 1121, 18}, {"cabinets.obj", 1913, 1440}};
 
 SceneFile read_scene(const char* name) { return read_scene_file(std::filesystem::path(ALVOR_SCENES) / name); }
 
@@ -32,6 +33,10 @@ TEST(Scenes, AreCleanAndClosed) {
     test::expect_clean(mesh.weld_report());
     test::expect_light_stays_inside(mesh, 5000);
   }
+}
+
+TEST(Scenes, OneOfTwoPicturesInOnePlaceIsLeftOut) {
+  EXPECT_EQ(BaseMesh(read_scene("cabinets.obj").scene).weld_report().duplicates.count, 1u);
 }
 
 TEST(Scenes, EnfiladeIsLitThroughItsDoorwaysByReflectionOnly) {

@@ -134,13 +134,18 @@ TEST(Solver, LimitsAreKeptAndNamed) {
   EXPECT_EQ(solve(mesh, {.tolerance = never, .time_limit_s = 1e-9}, brief, {}).reason, StopReason::time_limit);
 }
 
-TEST(Solver, RaysAreNotAddedWhereOnlySplitsWouldHelp) {
+TEST(Solver, ALimitToTheDepthMakesASolveCheaper) {
   const BaseMesh mesh(lit_room());
   for (const Strategy strategy : {Strategy::automatic, Strategy::sorted}) {
-    SolutionLog deep, shallow;
+    SolutionLog deep;
     EXPECT_EQ(solve(mesh, {.tolerance = 0.01, .strategy = strategy}, deep, {}).reason, StopReason::tolerance);
-    EXPECT_EQ(solve(mesh, {.tolerance = 0.01, .max_depth = 3, .strategy = strategy}, shallow, {}).reason, StopReason::max_depth);
-    EXPECT_LT(shallow.last_step().rays, deep.last_step().rays);
+    for (const int depth : {2, 3, 4}) {
+      SolutionLog shallow;
+      EXPECT_EQ(solve(mesh, {.tolerance = 0.01, .max_depth = depth, .strategy = strategy}, shallow, {}).reason,
+                StopReason::max_depth);
+      EXPECT_LT(shallow.last_step().rays, deep.last_step().rays) << depth;
+      EXPECT_LT(shallow.last_step().leaves, deep.last_step().leaves) << depth;
+    }
   }
 }
 

@@ -29,6 +29,7 @@ std::vector<SceneSettings> all_scenes() {
           {"vault", more, others, {8, 16}, paths, 10'000, 3200, 0, 0.02},
           {"enfilade", more, others, {8, 16, 32, 64}, more_paths, 4000, 32'000, 0, 0.02},
           {"louvred_room", few, others, {8, 16}, paths, 10'000, 12'800},
+          {"cabinets", {0.1, 0.05, 0.02}, {}, {}, {}, 4000, 6400},
           {"office_5000", {0.1, 0.05}, {}, {}, {}, 4000, 3200},
           {"office_50000", {0.15, 0.1}, {}, {}, {}, 4000, 3200, 120},
           {"gap_panels", gaps, {}, {}, {}, 4000, 8000, 0, 0.02},
