@@ -12,8 +12,7 @@ struct Sample {
 };
 
 constexpr Sample samples[]{
-    {"furnished_room.obj", 948, 2}, {"slats_and_boxes.obj", 1138, 2}, {"vault.obj", 2648, 1}, {"enfilade.obj", 176, 1},
-    {"louvred_room.obj", 1121, 18}, {"cabinets.obj", 1913, 1440}};
+    {"furnished_room.obj", 948, 2}, {"slats_and_boxes.obj", 1138, 2}, {"vault.obj", 2648, 1}, {"enfilade.obj", 176, 1}};
 
 SceneFile read_scene(const char* name) { return read_scene_file(std::filesystem::path(ALVOR_SCENES) / name); }
 
