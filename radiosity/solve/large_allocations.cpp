@@ -1,8 +1,8 @@
 // Replaces the global operators new and delete: memory is asked for in huge pages (2 MiB on x86-64).
 //
 // A solve fills vectors of tens of megabytes, by leaf and by row, many times a second, and keeps a few kilobytes for each row. Each
-// time the kernel hands out their pages one by one, 4 KiB each, and later reads miss the TLB. With huge pages a solve takes three
-// quarters of the time (docs/design/performance.md). Nothing happens where the kernel's setting is "never".
+// time the kernel hands out their pages one by one, 4 KiB each, and later reads miss the TLB. With huge pages a solve takes about
+// three quarters of the time (docs/design/performance.md); where the kernel's setting is "never", it gives none.
 
 #include <malloc.h>
 #include <sys/mman.h>

@@ -46,7 +46,10 @@ std::string row_of(const RunGroup& group, double yardstick_s) {
 }
 
 std::string others_table(const SceneContest& held, double yardstick_s) {
-  const auto is_other = [](const RunGroup& group) { return group.contender != Contender::alvor && !lacks_parts(group.contender); };
+  // Those after path tracing have sections of their own: what parts bring, and limits.
+  const auto is_other = [](const RunGroup& group) {
+    return group.contender != Contender::alvor && group.contender <= Contender::path_tracing;
+  };
   if (std::ranges::none_of(held.groups, is_other)) return "";
   std::string table = "\nThe others. Path tracing at " + std::to_string(held.truth.drawn) + " points:\n\n" + table_head({"program", "setting", "true nRMSE", "estimated", "rays", "leaves", "CPU s", "yardsticks"});
   for (const RunGroup& group : held.groups)
