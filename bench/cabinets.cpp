@@ -1,33 +1,25 @@
-// cabinets DIR: writes cabinets.obj and .mtl, a room that is lit by three globes of 480 faces each. Its cabinets have open doors,
-// which stand 3 mm off; boards lean with gaps of 1 to 50 mm between them; one picture is there twice. The output is always the
-// same. Lengths are metres, y is up.
+// cabinets DIR: writes cabinets.obj and .mtl, a room that is lit by three globes of 480 faces each. The doors of its
+// cabinets are open and hang 3 mm before them; boards stand 1 to 50 mm apart; one picture is there twice. The output is always
+// the same. Lengths are metres, y is up.
 
 #include "bench/furniture.h"
 #include "bench/scene_program.h"
+#include "bench/walls.h"
 
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 
 namespace alvor::bench {
 
 namespace {
 
-constexpr Paint paints[]{
-    {"wall", "Kd 0.74 0.72 0.68"},  {"ceiling", "Kd 0.85 0.85 0.83"}, {"floor", "Kd 0.38 0.30 0.22"},
-    {"oak", "Kd 0.58 0.44 0.30"},   {"white", "Kd 0.82 0.82 0.80"},   {"linen", "Kd 0.70 0.66 0.58"},
-    {"book", "Kd 0.46 0.18 0.16"},  {"steel", "Kd 0.45 0.46 0.48"},   {"cloth", "Kd 0.22 0.30 0.36"},
-    {"print", "Kd 0.30 0.48 0.52"}, {"globe", "Kd 0.2 0.2 0.2\nKe 60 56 50"}};
+constexpr Paint paints[]{{"wall", "Kd 0.74 0.72 0.68"},  {"ceiling", "Kd 0.85 0.85 0.83"},        {"floor", "Kd 0.38 0.30 0.22"},
+                         {"oak", "Kd 0.58 0.44 0.30"},   {"white", "Kd 0.82 0.82 0.80"},          {"linen", "Kd 0.70 0.66 0.58"},
+                         {"book", "Kd 0.46 0.18 0.16"},  {"steel", "Kd 0.45 0.46 0.48"},          {"cloth", "Kd 0.22 0.30 0.36"},
+                         {"print", "Kd 0.30 0.48 0.52"}, {"globe", "Kd 0.2 0.2 0.2\nKe 60 56 50"}};
 
 constexpr double width = 4.6, height = 2.7, depth = 3.8;
-
-void add_room(ObjWriter& obj) {
-  obj.stand_at({});
-  obj.box("floor", {0, 0, 0}, {width, height, depth}, ~bottom, true);
-  obj.box("ceiling", {0, 0, 0}, {width, height, depth}, ~top, true);
-  obj.box("wall", {0, 0, 0}, {width, height, depth}, bottom | top, true);
-}
 
 /// Adds a ball of emitting faces, `around` times `along` of them, and the rod by which it hangs and which ends in it.
 void add_globe(ObjWriter& obj, const Place& place, double radius) {
@@ -38,8 +30,8 @@ void add_globe(ObjWriter& obj, const Place& place, double radius) {
   for (std::size_t ring = 0; ring < rings.size(); ++ring)
     for (std::size_t n = 0; n < around; ++n) {
       const double polar = std::numbers::pi * double(ring + 1) / along, angle = 2 * std::numbers::pi * double(n) / around;
-      rings[ring][n] =
-          obj.vertex({radius * std::sin(polar) * std::cos(angle), radius * std::cos(polar), -radius * std::sin(polar) * std::sin(angle)});
+      rings[ring][n] = obj.vertex(
+          {radius * std::sin(polar) * std::cos(angle), radius * std::cos(polar), -radius * std::sin(polar) * std::sin(angle)});
     }
   const int pole = obj.vertex({0, radius, 0}), other_pole = obj.vertex({0, -radius, 0});
   for (std::size_t n = 0; n < around; ++n) {
@@ -52,7 +44,7 @@ void add_globe(ObjWriter& obj, const Place& place, double radius) {
   obj.box("steel", {-0.006, 0.9 * radius, -0.006}, {0.006, height - place.y, 0.006}, top | bottom);
 }
 
-/// Adds a door hinged on the vertical edge at `place`, its inner side towards +z where it is shut; `turn_degrees` opens it.
+/// Adds a door from its hinge, the vertical edge at `place`, along x. The handle is on the side towards z.
 void add_door(ObjWriter& obj, const Place& place, double wide, double low, double high) {
   constexpr double thick = 0.018;
   obj.stand_at(place);
@@ -107,13 +99,13 @@ void add_picture_twice(ObjWriter& obj) {
 
 ObjWriter cabinets() {
   ObjWriter obj;
-  add_room(obj);
+  add_closed_room(obj, {width, height, depth});
   add_globe(obj, {.x = 1.3, .z = 1.9, .y = 2.1}, 0.14);
   add_globe(obj, {.x = 2.9, .z = 1.6, .y = 2.2}, 0.10);
   add_globe(obj, {.x = 3.9, .z = 3.1, .y = 1.7}, 0.09);
   add_cabinet(obj, {.x = 0.5, .z = 0.01}, 105, 60);
   add_cabinet(obj, {.x = 3.1, .z = 0.01}, 80, 20);
-  add_boards(obj, {.x = 0.02, .z = 3.2, .turn_degrees = 0});
+  add_boards(obj, {.x = 0.02, .z = 3.2});
   add_picture_twice(obj);
   obj.numbered_object("table");
   add_table(obj, "oak", {1.6, 2.4}, 1.2, 0.8, 0.74);

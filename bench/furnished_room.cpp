@@ -21,13 +21,6 @@ constexpr Paint paints[]{{"wall", "Kd 0.78 0.74 0.66"},    {"ceiling", "Kd 0.86 
 
 constexpr double width = 6, height = 2.7, depth = 4.6;
 
-void add_room(ObjWriter& obj) {
-  obj.stand_at({});
-  obj.box("floor", {0, 0, 0}, {width, height, depth}, ~bottom, true);
-  obj.box("ceiling", {0, 0, 0}, {width, height, depth}, ~top, true);
-  obj.box("wall", {0, 0, 0}, {width, height, depth}, bottom | top, true);
-}
-
 void add_books(ObjWriter& obj, std::minstd_rand& random, double from_x, double to_x, double shelf_y) {
   constexpr const char* colours[]{"book_1", "book_2", "book_3", "book_4", "book_5"};
   const auto between = [&](double low, double high) { return low + (high - low) * double(random() % 1000) / 1000; };
@@ -113,7 +106,7 @@ void add_chairs(ObjWriter& obj) {
 ObjWriter furnished_room() {
   ObjWriter obj;
   obj.object("room");
-  add_room(obj);
+  add_closed_room(obj, {width, height, depth});
   obj.object("lamp.001");
   add_lamp(obj, {2.5, height, 2.6}, 1.4, 0.3);
   obj.object("lamp.002");

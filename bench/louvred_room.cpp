@@ -20,13 +20,6 @@ constexpr Paint paints[]{
 
 constexpr double width = 5.2, height = 2.8, depth = 4.2;
 
-void add_room(ObjWriter& obj) {
-  obj.stand_at({});
-  obj.box("floor", {0, 0, 0}, {width, height, depth}, ~bottom, true);
-  obj.box("ceiling", {0, 0, 0}, {width, height, depth}, ~top, true);
-  obj.box("wall", {0, 0, 0}, {width, height, depth}, bottom | top, true);
-}
-
 /// Adds a luminaire along x that hangs 0.25 m below the ceiling: a housing that is open below, a tube of square section in it,
 /// and nine blades across the opening.
 void add_luminaire(ObjWriter& obj, const Place& place) {
@@ -102,7 +95,7 @@ void add_desk(ObjWriter& obj, const Place& place) {
 
 ObjWriter louvred_room() {
   ObjWriter obj;
-  add_room(obj);
+  add_closed_room(obj, {width, height, depth});
   add_luminaire(obj, {1.6, 2.1});
   add_luminaire(obj, {3.6, 2.1});
   add_desk(obj, {1.5, 1.9});

@@ -4,6 +4,13 @@
 
 namespace alvor::bench {
 
+void add_closed_room(ObjWriter& obj, Vec3 size) {
+  obj.stand_at({});
+  obj.box("floor", {}, size, ~bottom, true);
+  obj.box("ceiling", {}, size, ~top, true);
+  obj.box("wall", {}, size, bottom | top, true);
+}
+
 // Cuts the whole wall at the height of the lintel: then the pieces share whole edges, and light is interpolated across them.
 void add_doorway_wall(ObjWriter& obj, const char* material, const DoorwayWall& wall, double at_z, bool looks_to_high_z) {
   const std::array heights{0.0, wall.door_top, wall.height};

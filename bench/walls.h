@@ -1,9 +1,12 @@
 #pragma once
-// Generates walls with doorways, and lamps.
+// Generates rooms, walls with doorways, and lamps.
 
 #include "bench/obj_writer.h"
 
 namespace alvor::bench {
+
+/// Adds a room from the origin to `size`, metres, of the materials `floor`, `ceiling` and `wall`.
+void add_closed_room(ObjWriter& obj, Vec3 size);
 
 /// A vertical wall along x with a door opening down to the floor. Metres.
 struct DoorwayWall {

@@ -39,7 +39,6 @@ class Baker {
   Baker(GltfDocument document, const Scene& scene, const DisplayMesh& solution, const BakeOptions& options,
         const ChartLayout& layout)
       : document_(std::move(document)),
-        scene_(scene),
         solution_(solution),
         options_(options),
         surface_(solution, scene),
@@ -122,9 +121,8 @@ class Baker {
   void write_errors() {
     const auto factor = static_cast<float>(lightmap_factor());
     for (std::size_t p = 0; p < images_.size(); ++p) {
-      std::vector<float> errors = images_[p].errors;
-      for (float& error : errors) error *= factor;
-      baked_.beside.push_back({error_file(p), encode_grey_exr(pages_.size, pages_.size, errors)});
+      for (float& error : images_[p].errors) error *= factor;
+      baked_.beside.push_back({error_file(p), encode_grey_exr(pages_.size, pages_.size, images_[p].errors)});
     }
   }
 
@@ -296,7 +294,6 @@ class Baker {
   }
 
   GltfDocument document_;
-  const Scene& scene_;
   const DisplayMesh& solution_;
   const BakeOptions& options_;
   SolvedSurface surface_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace alvor {
@@ -34,12 +35,13 @@ class MemoryStream final : public Imf::OStream {
   std::uint64_t next_ = 0;
 };
 
-/// `values` has the values of a texel's channels, then those of the next texel.
-std::string encode(int columns, int rows, std::span<const char* const> channels, std::span<const float> values) {
+Imath::half half_of(float value) {
   constexpr float most = 65504;
-  std::vector<Imath::half> halves;
-  halves.reserve(values.size());
-  for (const float value : values) halves.emplace_back(std::min(value, most));
+  return {std::min(value, most)};
+}
+
+/// `halves` has the values of a texel's channels, then those of the next texel.
+std::string encode(int columns, int rows, std::span<const char* const> channels, std::vector<Imath::half> halves) {
   Imf::Header header(columns, rows);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
@@ -61,14 +63,17 @@ std::string encode(int columns, int rows, std::span<const char* const> channels,
 }  // namespace
 
 std::string encode_exr(int columns, int rows, std::span<const RgbF> texels) {
-  std::vector<float> values;
-  values.reserve(3 * texels.size());
-  for (const RgbF& texel : texels) values.insert(values.end(), {texel.r, texel.g, texel.b});
-  return encode(columns, rows, std::array{"R", "G", "B"}, values);
+  std::vector<Imath::half> halves;
+  halves.reserve(3 * texels.size());
+  for (const RgbF& texel : texels)
+    for (const float band : {texel.r, texel.g, texel.b}) halves.push_back(half_of(band));
+  return encode(columns, rows, std::array{"R", "G", "B"}, std::move(halves));
 }
 
 std::string encode_grey_exr(int columns, int rows, std::span<const float> values) {
-  return encode(columns, rows, std::array{"Y"}, values);
+  std::vector<Imath::half> halves(values.size());
+  std::ranges::transform(values, halves.begin(), half_of);
+  return encode(columns, rows, std::array{"Y"}, std::move(halves));
 }
 
 }  // namespace alvor

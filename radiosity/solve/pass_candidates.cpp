@@ -109,9 +109,9 @@ double Pass::heed_noise(std::size_t place, bool may_split, double noise) {
   return missed;
 }
 
-/// If the error that would need splits which the limits forbid is beyond the tolerance, drops the candidates that add rays where
-/// all of these would hardly reduce it, and all candidates where the others would hardly, either, or are within the tolerance by
-/// themselves: refining them further cannot make up for the error that stays.
+/// If the error that would need splits which the limits forbid is beyond the tolerance, drops all candidates where they would
+/// hardly reduce it together, or their error is within the tolerance by itself: refining it away does not bring the whole within
+/// it. Drops those that add rays where all of these would hardly reduce it.
 void Pass::drop_what_does_not_help() {
   if (state_.options.is_by_place() || !(told_scale_ > 0)) return;
   if (std::sqrt(lasting_error_ / told_scale_) <= state_.options.tolerance) return;

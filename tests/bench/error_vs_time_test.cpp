@@ -163,13 +163,18 @@ TEST(EstimateRatios, LeaveOutWhatRanOutOfTime) {
   EXPECT_EQ(estimate_ratios(runs), std::vector<double>{2});
 }
 
-TEST(PartsSection, ComparesSolvesAtTheToleranceAtWhichPartsAreLeftOut) {
+SceneContest contest_of(std::vector<MeasuredRun> runs) {
   SceneContest held;
   held.settings.name = "room";
-  held.settings.parts_tolerance = 0.02;
-  held.runs = {run_of(Contender::alvor, 0.05, 1, 0.04), run_of(Contender::alvor, 0.02, 4, 0.02),
-               run_of(Contender::no_slabs, 0.02, 8, 0.01)};
+  held.runs = std::move(runs);
   held.groups = grouped(held.runs);
+  return held;
+}
+
+TEST(PartsSection, ComparesSolvesAtTheToleranceAtWhichPartsAreLeftOut) {
+  SceneContest held = contest_of({run_of(Contender::alvor, 0.05, 1, 0.04), run_of(Contender::alvor, 0.02, 4, 0.02),
+                                  run_of(Contender::no_slabs, 0.02, 8, 0.01)});
+  held.settings.parts_tolerance = 0.02;
   Measurements measured;
   measured.contests = {held};
   const std::string section = parts_section(measured);
@@ -185,14 +190,6 @@ MeasuredRun stopped_run(double limit_s, double wall_s, double error) {
   MeasuredRun run = run_of(Contender::until_time, limit_s, wall_s, error);
   run.wall_s = wall_s, run.is_done = false;
   return run;
-}
-
-SceneContest contest_of(std::vector<MeasuredRun> runs) {
-  SceneContest held;
-  held.settings.name = "room";
-  held.runs = std::move(runs);
-  held.groups = grouped(held.runs);
-  return held;
 }
 
 TEST(Limits, OvertimeIsThreeTenthsOfASecondOrTwoPercent) {

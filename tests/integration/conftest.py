@@ -143,7 +143,7 @@ def solve(desk, name):
 
 
 def until_refined_is_kept(server, desk, name):
-  """Waits for a checkpoint of a solve of the Cornell box that is beyond its coarse mesh of 1040 leaves."""
+  """Waits for a checkpoint of the server's only solve, of the Cornell box, after its first split; that mesh begins with 1040 leaves."""
   until(lambda: solve(desk, name)["leaves"] > 1040, 30, "it has been refined")
   earlier = server.metric("alvor_checkpoints_total")
   until(lambda: server.metric("alvor_checkpoints_total") > earlier, 20, "there is a checkpoint of the refined mesh")

@@ -42,13 +42,13 @@ std::string percent(const Spread& spread) { return with_ends(percent(spread.medi
 
 std::string plain(const Spread& spread) { return with_ends(plain(spread.median), spread, 1); }
 
-std::string table_row(std::initializer_list<std::string> cells) {
+std::string table_row(const std::vector<std::string>& cells) {
   std::string row = "|";
   for (const std::string& cell : cells) row += ' ' + cell + " |";
   return row + '\n';
 }
 
-std::string table_head(std::initializer_list<std::string> cells) {
+std::string table_head(const std::vector<std::string>& cells) {
   std::string line = "|";
   for (std::size_t n = 0; n < cells.size(); ++n) line += "---|";
   return table_row(cells) + line + '\n';

@@ -4,6 +4,7 @@
 #include "bench/error_vs_time/contest/statistics.h"
 
 #include <string>
+#include <vector>
 
 namespace alvor::bench {
 
@@ -22,8 +23,8 @@ std::string percent(const Spread& spread);
 std::string plain(const Spread& spread);
 /// Returns a row of a Markdown table: "| a | b |
 /// ".
-std::string table_row(std::initializer_list<std::string> cells);
+std::string table_row(const std::vector<std::string>& cells);
 /// Returns the head of a Markdown table and the line below it.
-std::string table_head(std::initializer_list<std::string> cells);
+std::string table_head(const std::vector<std::string>& cells);
 
 }  // namespace alvor::bench

@@ -2,11 +2,11 @@
 
 #include "bench/error_vs_time/contest/contenders.h"
 #include "bench/error_vs_time/contest/figures.h"
-#include "bench/error_vs_time/page/page_sections.h"
 
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <vector>
 
 namespace alvor::bench {
 
@@ -24,6 +24,19 @@ std::optional<RunGroup> without_limit(const SceneContest& held, Contender limite
   return found == groups.end() ? std::nullopt : std::optional(*found);
 }
 
+/// What was counted: how many of all are as they should be.
+struct Count {
+  std::size_t fine = 0, all = 0;
+  void add(bool is_fine) { fine += is_fine, ++all; }
+};
+
+/// Returns the judgement that all should be fine; `more` is said after the count. Not measured if nothing was counted.
+Judgement judgement_of(const std::string& aim, const Count& count, const std::string& more = "") {
+  if (count.all == 0) return {aim};
+  return {aim, std::to_string(count.fine) + " of " + std::to_string(count.all) + more,
+          count.fine == count.all ? Verdict::met : Verdict::missed};
+}
+
 /// Calls body(limited, unlimited) for each solve with a limit to its mesh.
 template <class Body>
 void for_each_limited_mesh(const SceneContest& held, Body&& body) {
@@ -33,8 +46,8 @@ void for_each_limited_mesh(const SceneContest& held, Body&& body) {
 }
 
 std::string cost_of(const RunGroup& group) {
-  return percent(group.nrmse().median) + " in " + plain(group.cpu_s().median) + " s, " + compact(group.rays().median) + " rays, " +
-         compact(group.leaves().median) + " leaves";
+  return percent(group.nrmse().median) + " in " + plain(group.cpu_s().median) + " s, " + compact(group.rays().median) +
+         " rays, " + compact(group.leaves().median) + " leaves";
 }
 
 std::string limit_of(const RunGroup& group) {
@@ -48,15 +61,15 @@ std::string time_table(const Measurements& measured) {
   for (const SceneContest& held : measured.contests)
     for (const RunGroup& group : of(held.groups, Contender::until_time)) limits.insert(group.setting);
   if (limits.empty()) return "";
-  std::string head = "| scene |", line = "|---|";
-  for (const double limit : limits) head += ' ' + figure(limit) + " s |", line += "---|";
-  std::string table = head + '\n' + line + '\n';
+  std::vector<std::string> heads{"scene"};
+  for (const double limit : limits) heads.push_back(figure(limit) + " s");
+  std::string table = table_head(heads);
   for (const SceneContest& held : measured.contests) {
-    table += "| " + held.settings.name + " |";
+    std::vector<std::string> cells{held.settings.name};
     for (const RunGroup& group : of(held.groups, Contender::until_time))
-      table += ' ' + percent(group.nrmse().median) + " (" + percent(group.estimated().median) + "), " + plain(group.wall_s().median) +
-               " s |";
-    table += '\n';
+      cells.push_back(percent(group.nrmse().median) + " (" + percent(group.estimated().median) + "), " +
+                      plain(group.wall_s().median) + " s");
+    table += table_row(cells);
   }
   return table + '\n';
 }
@@ -73,47 +86,35 @@ std::string mesh_table(const Measurements& measured) {
 }  // namespace
 
 Judgement judge_overtime(std::span<const SceneContest> contests) {
-  Judgement judgement{"Time limits are kept within " + tolerance_percent(overtime_share) + " or " + figure(overtime_s) + " s"};
-  std::size_t kept = 0, all = 0;
+  Count kept;
   double most = 0;
   for (const SceneContest& held : contests)
     for (const RunGroup& group : of(held.groups, Contender::until_time)) {
-      ++all;
-      kept += overtime(group) <= std::max(overtime_s, overtime_share * group.setting);
+      kept.add(overtime(group) <= std::max(overtime_s, overtime_share * group.setting));
       most = std::max(most, overtime(group));
     }
-  if (all == 0) return judgement;
-  judgement.measured = std::to_string(kept) + " of " + std::to_string(all) + ", at most " + plain(most) + " s longer";
-  judgement.verdict = kept == all ? Verdict::met : Verdict::missed;
-  return judgement;
+  return judgement_of("Time limits are kept within " + tolerance_percent(overtime_share) + " or " + figure(overtime_s) + " s",
+                      kept, ", at most " + plain(most) + " s longer");
 }
 
 Judgement judge_more_time(std::span<const SceneContest> contests) {
-  Judgement judgement{"More time never gives a worse answer by more than noise (" + figure(noise_of_error) + " times the error)"};
-  std::size_t fine = 0, all = 0;
+  Count no_worse;
   for (const SceneContest& held : contests) {
     const auto groups = of(held.groups, Contender::until_time);
-    for (std::size_t n = 1; n < groups.size(); ++n, ++all)
-      fine += groups[n].nrmse().median <= noise_of_error * groups[n - 1].nrmse().median;
+    for (std::size_t n = 1; n < groups.size(); ++n)
+      no_worse.add(groups[n].nrmse().median <= noise_of_error * groups[n - 1].nrmse().median);
   }
-  if (all == 0) return judgement;
-  judgement.measured = std::to_string(fine) + " of " + std::to_string(all) + " steps from one time limit to the next";
-  judgement.verdict = fine == all ? Verdict::met : Verdict::missed;
-  return judgement;
+  return judgement_of("More time never gives a worse answer by more than noise (" + figure(noise_of_error) + " times the error)",
+                      no_worse, " steps from one time limit to the next");
 }
 
 Judgement judge_mesh_limits(std::span<const SceneContest> contests) {
-  Judgement judgement{"A limit to depth or leaves never makes a solve cast more rays"};
-  std::size_t fine = 0, all = 0;
+  Count no_dearer;
   for (const SceneContest& held : contests)
     for_each_limited_mesh(held, [&](const RunGroup& limited, const RunGroup& unlimited) {
-      fine += limited.rays().median <= unlimited.rays().median;
-      ++all;
+      no_dearer.add(limited.rays().median <= unlimited.rays().median);
     });
-  if (all == 0) return judgement;
-  judgement.measured = std::to_string(fine) + " of " + std::to_string(all);
-  judgement.verdict = fine == all ? Verdict::met : Verdict::missed;
-  return judgement;
+  return judgement_of("A limit to depth or leaves never makes a solve cast more rays", no_dearer);
 }
 
 std::string limits_section(const Measurements& measured) {
@@ -121,9 +122,10 @@ std::string limits_section(const Measurements& measured) {
   if (times.empty() && meshes.empty()) return "";
   std::string text = "## Limits\n\n";
   if (!times.empty())
-    text += "Solves that `--time-limit` stops, one thread, one seed: the true error, in brackets the estimated one, and the wall "
-            "seconds that the solve took.\n\n" +
-            times;
+    text +=
+        "Solves that `--time-limit` stops, one thread, one seed: the true error, in brackets the estimated one, and the wall "
+        "seconds that the solve took.\n\n" +
+        times;
   if (!meshes.empty())
     text += "Solves that are asked for " + tolerance_percent(tolerance_of_limited_meshes) +
             " with a limit to their mesh, and without: true error, CPU seconds, rays and leaves.\n\n" + meshes;

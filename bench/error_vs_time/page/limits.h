@@ -1,5 +1,5 @@
 #pragma once
-// What limits of time, depth and leaves do to solves: whether they are kept, and whether they help.
+// Judges solves that a limit of time, depth or leaves ends: whether the limit is kept, and whether the solve is cheaper for it.
 
 #include "bench/error_vs_time/page/page.h"
 #include "bench/error_vs_time/page/targets.h"

@@ -20,9 +20,9 @@ std::string cell_of(const SceneContest& held, Contender contender) {
 }
 
 std::string row_of(const std::vector<const SceneContest*>& contests, Contender contender, const std::string& name) {
-  std::string row = "| " + name + " |";
-  for (const SceneContest* held : contests) row += ' ' + cell_of(*held, contender) + " |";
-  return row + '\n';
+  std::vector<std::string> cells{name};
+  for (const SceneContest* held : contests) cells.push_back(cell_of(*held, contender));
+  return table_row(cells);
 }
 
 }  // namespace
@@ -39,13 +39,10 @@ std::string parts_section(const Measurements& measured) {
       "the "
       "semicolon the squared error (in %) times the seconds: half of that is as good as half of the time, where errors fall with "
       "the root of the time.\n\n";
-  std::string line = "|---|";  // below the head
-  text += "| parts |";
-  for (const SceneContest* held : contests) {
-    text += ' ' + held->settings.name + ", asked for " + tolerance_percent(held->settings.parts_tolerance) + " |";
-    line += "---|";
-  }
-  text += '\n' + line + '\n' + row_of(contests, Contender::alvor, "all");
+  std::vector<std::string> heads{"parts"};
+  for (const SceneContest* held : contests)
+    heads.push_back(held->settings.name + ", asked for " + tolerance_percent(held->settings.parts_tolerance));
+  text += table_head(heads) + row_of(contests, Contender::alvor, "all");
   for (const Contender contender : with_parts_left_out) text += row_of(contests, contender, std::string(bench::text(contender)));
   return text + '\n';
 }

@@ -45,25 +45,19 @@ std::string within_text(const std::vector<double>& ratios) {
   return std::to_string(std::ranges::count_if(ratios, is_within_a_factor_of_two)) + " of " + std::to_string(ratios.size());
 }
 
-std::string joined_row(const std::vector<std::string>& cells) {
-  std::string row = "|";
-  for (const std::string& cell : cells) row += ' ' + cell + " |";
-  return row + '\n';
-}
-
 std::string ratio_table(const Measurements& measured) {
   const auto tolerances = all_tolerances(measured);
   std::vector<std::string> heads{"tolerance"};
   for (const double tolerance : tolerances) heads.push_back(tolerance_percent(tolerance));
   heads.insert(heads.end(), {"least", "most", "within a factor of two"});
-  std::string table = joined_row(heads) + joined_row(std::vector<std::string>(heads.size(), "---"));
+  std::string table = table_head(heads);
   for (const SceneContest& held : measured.contests) {
     std::vector<std::string> row{held.settings.name};
     for (const double tolerance : tolerances) row.push_back(ratio_at(held, tolerance));
     const auto ratios = estimate_ratios(held.runs);
     const Spread spread = ratios.empty() ? Spread{} : spread_of(ratios);
     row.insert(row.end(), {plain(spread.low), plain(spread.high), within_text(ratios)});
-    table += joined_row(row);
+    table += table_row(row);
   }
   return table;
 }
