@@ -95,7 +95,7 @@ export type FromWorker =
   | { kind: "no images"; reason: string }
   | { kind: "steps"; steps: Step[]; isFirst: boolean }
   | { kind: "connection"; state: "connected" | "lost" | "resumed" | "begun anew" | "closing"; reason: string }
-  /** The solve has ended. It may be edited, and goes on then. */
-  | { kind: "ended" }
+  /** The solve has ended; it may be edited, and goes on then. `isShown`: no "change" is still to come of what is known. */
+  | { kind: "ended"; isShown: boolean }
   | { kind: "refused"; reason: string; needsToken: boolean }
   | { kind: "probed"; reading: Reading | null };

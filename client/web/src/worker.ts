@@ -295,7 +295,7 @@ class Watch extends Shown {
       this.take(frame);
       if (frame.ended && !this.hasEnded) {
         this.show();
-        tell({ kind: "ended" });
+        tell({ kind: "ended", isShown: !this.isChanged });
       }
       this.hasEnded = frame.ended;
       // Of a frame that is not acknowledged the server would wait for ever; a watch that broke off meanwhile needs no answer.
@@ -362,7 +362,7 @@ class Opened extends Shown {
     this.count(began);
     this.isChanged = true;
     this.show();
-    tell({ kind: "ended" });
+    tell({ kind: "ended", isShown: !this.isChanged });
   }
 
   protected async readImages(): Promise<Image[]> {

@@ -74,6 +74,8 @@ let centre: [number, number, number] = [0, 0, 0];
 let isZUp = false;
 /** When a frame that is not on the screen yet arrived. */
 let arrivedUnseen: number | undefined;
+/** The worker keeps changes until those that it sent before are on the screen. */
+let isChangeToCome = false;
 
 /** For whoever wants to know how the page does: tests, and the curious. Milliseconds. */
 const nothing = {
@@ -236,6 +238,7 @@ function beginToShow(name: string): void {
   nextWorker = makeWorker();
   beginChart();
   counters = arrivedUnseen = undefined;
+  isChangeToCome = false;
   room.begin();
   room.setAmbient(NO_AMBIENT);
   isStale = true;
@@ -409,6 +412,7 @@ function take(message: FromWorker): void {
       room.take(message.change);
       ({ brightness, counters } = message);
       arrivedUnseen = counters.arrived;
+      isChangeToCome = false;
       measured.isWaiting = true;
       allowSaving(true);
       isStale = true;
@@ -428,6 +432,8 @@ function take(message: FromWorker): void {
       return showConnection(message.state, message.reason);
     case "ended":
       measured.hasEnded = true;
+      isChangeToCome = !message.isShown;
+      measured.isWaiting ||= isChangeToCome;
       if (!solve) return say("Shown from a file");
       return void attempt(() => update(api.solves.getSolve({ name: solve!.name })));
     case "refused":
@@ -472,7 +478,7 @@ function animate(time: number): void {
   if (measured.frames++ === 0) measured.firstLit = performance.now() - openedAt;
   measured.slots = room.slotCount;
   arrivedUnseen = undefined;
-  measured.isWaiting = false;
+  measured.isWaiting = isChangeToCome;
   send({ kind: "drawn" });
 }
 
