@@ -186,6 +186,7 @@ class Baker {
         if (options_.form == BakeForm::unlit) primitive["attributes"].erase("COLOR_0");  // the image has it
       }
       if (textures_.empty()) add_extra_to(primitive, "alvor_lightmap_file", page);
+      if (options_.with_errors) add_extra_to(primitive, "alvor_lightmap_error_file", page);
       primitives.push_back(std::move(primitive));
     }
     return primitives;

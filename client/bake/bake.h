@@ -40,7 +40,7 @@ struct BakeOptions {
   std::optional<double> texels_per_metre;  ///< as many as fit one texture if not given
   std::optional<double> range;             ///< value of the brightest texel in PNG; found if not given
   BakedSide side = BakedSide::inner;
-  bool with_errors = false;  ///< lightmap only: told errors of the texels, half floats in files beside the GLB
+  bool with_errors = false;            ///< only for lightmaps: told errors of the texels, half floats in files beside the GLB
   bool keeps_lights = false;           ///< a file with lightmaps keeps its lamps, whose light viewers then add once more
   std::optional<double> longest_edge;  ///< of triangles with colours at their vertices, metres; as they are if not given
   nlohmann::json extras;               ///< an object with members for the file's extras, or null

@@ -82,6 +82,20 @@ TEST_F(Usage, SuffixesOfOtherFormatsAreRefusedBeforeAnyWork) {
   EXPECT_EQ(refusal("verify missing.obj missing.glb --picture e.jpg"), "alvor: --picture e.jpg: a picture ends in .png\n");
 }
 
+TEST_F(Usage, BakedErrorsAreFilesOfLightmapsThatAreToldErrors) {
+  const auto refusal = [&](const std::string& arguments, int status) {
+    const Ran ran = run("bake --errors --quiet --size 64 " + arguments);
+    EXPECT_EQ(ran.status, status) << arguments;
+    return ran.err;
+  };
+  EXPECT_EQ(refusal("--as vertex " + cornell_box + " -o b.glb", 2), "alvor: --errors: only --as lightmap has lightmaps\n");
+  EXPECT_EQ(refusal("--as unlit " + cornell_box + " -o b.glb", 2), "alvor: --errors: only --as lightmap has lightmaps\n");
+  EXPECT_EQ(refusal(cornell_box + " -o -", 2), "alvor: --output: errors are files beside the scene, so it cannot go to stdout\n");
+  write("dark.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  EXPECT_TRUE(refusal("dark.obj -o b.glb", 3).ends_with("alvor: dark.obj: tells no errors: no surface has any light\n"));
+  EXPECT_FALSE(fs::exists(file("b.glb")));
+}
+
 TEST_F(Usage, SuffixesMayBeInCapitals) {
   EXPECT_EQ(run("solve " + cornell_box + " --tolerance 0.3 --max-depth 2 -o ROOM.GLB").status, 0);
   EXPECT_TRUE(fs::exists(file("ROOM.GLB")));

@@ -71,10 +71,7 @@ void run_render(const RenderCommand& command) {
   options.false_colour = false_colour_of(command.false_colour, command.size);
   options.wireframe = command.wireframe;
   DisplayMesh mesh = read_from_anywhere(command);
-  if (options.false_colour && options.false_colour->shown == Shown::error && mesh.errors.empty())
-    throw Failure(ExitStatus::bad_scene, command.solution +
-                                             ": tells no errors: it was written by an older version, or its solve was "
-                                             "stopped before its first estimate");
+  if (options.false_colour && options.false_colour->shown == Shown::error) require_told_errors(mesh, command.solution);
   take_up(command.camera.up, mesh.up);
   options.camera = camera_of(command.camera, mesh, view_size(command.size, options.false_colour));
   warn_of_black_view(mesh, *options.camera);

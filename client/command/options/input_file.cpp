@@ -104,6 +104,15 @@ DisplayMesh read_solution(const std::filesystem::path& path, const std::string& 
   return mesh;
 }
 
+void require_told_errors(const DisplayMesh& solution, const std::string& name) {
+  if (!solution.errors.empty()) return;
+  const bool is_dark = std::ranges::all_of(solution.irradiance, &RgbF::is_zero);
+  throw Failure(ExitStatus::bad_scene, name + ": tells no errors: " +
+                                           (is_dark ? "no surface has any light"
+                                                    : "it was written by an older version, or its solve was stopped before its "
+                                                      "first estimate"));
+}
+
 std::vector<ProbePoint> read_asked_points(const std::filesystem::path& path) {
   try {
     return is_stream(path) ? parse_points(read_stdin(), name_of(path)) : read_points(path);

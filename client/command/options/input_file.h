@@ -47,6 +47,9 @@ RawScene scene_bytes(const std::filesystem::path& path, const std::string& forma
 /// Reads a solution. Throws Failure (bad_scene) if the file is no solution or has no surface.
 DisplayMesh read_solution(const std::filesystem::path& path, const std::string& format);
 
+/// Throws Failure (bad_scene) if a solution tells no errors; `name` is its file, solve or scene.
+void require_told_errors(const DisplayMesh& solution, const std::string& name);
+
 /// Reads the points of `alvor probe`. Throws Failure (bad_scene) that names the line.
 std::vector<ProbePoint> read_asked_points(const std::filesystem::path& path);
 
