@@ -44,7 +44,8 @@ void add_globe(ObjWriter& obj, const Place& place, double radius) {
   obj.box("steel", {-0.006, 0.9 * radius, -0.006}, {0.006, height - place.y, 0.006}, top | bottom);
 }
 
-/// Adds a door from its hinge, the vertical edge at `place`, along x. The handle is on the side towards z.
+/// Adds a door from its hinge, the vertical edge at `place`, along x. The handle is on the side towards z: inside the cabinet
+/// if the hinge is its right edge.
 void add_door(ObjWriter& obj, const Place& place, double wide, double low, double high) {
   constexpr double thick = 0.018;
   obj.stand_at(place);

@@ -182,7 +182,6 @@ class Pass {
   std::vector<RelativeLight> irradiance_;  ///< by place of the leaf, of the field that estimate() fitted; emission units
   bool shows_irradiance_ = false;          ///< the field that is shown is still that of `irradiance_`
   ErrorEstimate told_;                     ///< what estimate() returned
-  double told_scale_ = 0;                  ///< squared error, integrated over the scene, of which the relative error is 1
   std::vector<SplitError> row_errors_;     ///< by patch
   std::vector<SplitError> leaf_errors_;    ///< by place of the leaf, without noise; may be negative by chance
   std::vector<double> row_squares_;        ///< by patch: mean square error of the rows, emission units squared

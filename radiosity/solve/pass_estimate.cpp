@@ -280,7 +280,6 @@ ErrorEstimate Pass::estimate() {
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;
   error.unshot = exchange_->remaining_error();
   told_ = error;
-  told_scale_ = area * squared(mean);
   return error;
 }
 

@@ -224,6 +224,18 @@ TEST(Limits, ALimitToTheMeshIsComparedWithTheSameStrategyWithoutIt) {
   measured.contests = {held};
   EXPECT_NE(limits_section(measured).find("| room | --strategy sorted --max-depth 4 |"), std::string::npos);
   EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({with_rays(Contender::to_depth, 4, 1)})}).verdict, Verdict::not_measured);
+  MeasuredRun other_seed = with_rays(Contender::alvor, 0.02, 10), endless = free;
+  other_seed.seed = 2, endless.is_done = false;
+  const MeasuredRun limited = with_rays(Contender::to_depth, 4, 1000);
+  EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({free, other_seed, limited})}).verdict, Verdict::met);
+  EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({other_seed, limited})}).verdict, Verdict::not_measured);
+  EXPECT_EQ(judge_mesh_limits(std::vector{contest_of({endless, limited})}).verdict, Verdict::not_measured);
+}
+
+TEST(Limits, TimesThatASceneWasNotMeasuredWithStayEmpty) {
+  Measurements measured;
+  measured.contests = {contest_of({stopped_run(1, 1, 0.1), stopped_run(2, 2, 0.05)}), contest_of({stopped_run(2, 2, 0.25)})};
+  EXPECT_NE(limits_section(measured).find("| room |  | 25.0 % ("), std::string::npos) << limits_section(measured);
 }
 
 TEST(Figures, HaveThreeDigits) {

@@ -635,7 +635,7 @@ TEST(Bake, NamesTheFileOfErrorsOfEachPrimitive) {
   const Scene scene = room_with_globe();
   DisplayMesh solution = solved(scene);
   solution.errors.assign(solution.positions.size(), 1);
-  const BakedFile baked(scene, solution, {.size = 32, .texels_per_metre = 16, .with_errors = true, .name = "room"});
+  const BakedFile baked(scene, solution, {.size = 128, .texels_per_metre = 16, .with_errors = true, .name = "room"});
   const auto pages = static_cast<std::size_t>(baked.baked.pages);
   ASSERT_GT(pages, 1u);
   EXPECT_EQ(baked.baked.beside.size(), pages) << "light in PNG is in the file";

@@ -149,6 +149,23 @@ TEST(Solver, ALimitToTheDepthMakesASolveCheaper) {
   }
 }
 
+TEST(Solver, ALimitToTheDepthCostsNeitherRaysNorMuchErrorWhereverTheToleranceLies) {
+  const BaseMesh mesh(lit_room());
+  for (const int depth : {3, 4, 5}) {
+    SolutionLog best;
+    solve(mesh, {.tolerance = 0.002, .max_depth = depth}, best, {});
+    const double reachable = best.last_step().estimated_error;
+    for (const double share : {0.7, 0.9, 1.0, 1.1, 1.4}) {
+      const double tolerance = share * reachable;
+      SolutionLog shallow, deep;
+      solve(mesh, {.tolerance = tolerance, .max_depth = depth}, shallow, {});
+      solve(mesh, {.tolerance = tolerance}, deep, {});
+      EXPECT_LE(shallow.last_step().rays, deep.last_step().rays) << depth << ' ' << share;
+      EXPECT_LE(shallow.last_step().estimated_error, 1.4 * std::max(tolerance, reachable)) << depth << ' ' << share;
+    }
+  }
+}
+
 TEST(Solver, EndsWhenEnoughOfTheAreaIsWithinTheTolerance) {
   const BaseMesh mesh(lit_room());
   constexpr double tolerance = 0.05;

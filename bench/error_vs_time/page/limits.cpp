@@ -17,11 +17,17 @@ constexpr double noise_of_error = 1.1;                     // by which errors of
 
 double overtime(const RunGroup& group) { return group.wall_s().median - group.setting; }
 
-/// Returns the solve without a limit to its mesh that is compared with one that has it.
-std::optional<RunGroup> without_limit(const SceneContest& held, Contender limited) {
-  const auto groups = of(held.groups, limited == Contender::sorted_to_depth ? Contender::sorted : Contender::alvor);
+/// Returns the solves without a limit to their mesh that are compared with those that have it, with the same seeds; nothing if
+/// there are none, or the time limit ended one.
+std::optional<RunGroup> without_limit(const SceneContest& held, const RunGroup& limited) {
+  const bool is_sorted = limited.contender == Contender::sorted_to_depth;
+  auto groups = of(held.groups, is_sorted ? Contender::sorted : Contender::alvor);
   const auto found = std::ranges::find(groups, tolerance_of_limited_meshes, &RunGroup::setting);
-  return found == groups.end() ? std::nullopt : std::optional(*found);
+  if (found == groups.end()) return std::nullopt;
+  const auto has_seed = [&](std::uint64_t seed) { return std::ranges::count(limited.runs, seed, &MeasuredRun::seed) > 0; };
+  std::erase_if(found->runs, [&](const MeasuredRun& run) { return !has_seed(run.seed); });
+  if (found->runs.empty() || !found->is_done()) return std::nullopt;
+  return std::move(*found);
 }
 
 /// What was counted: how many of all are as they should be.
@@ -41,8 +47,8 @@ Judgement judgement_of(const std::string& aim, const Count& count, const std::st
 template <class Body>
 void for_each_limited_mesh(const SceneContest& held, Body&& body) {
   for (const Contender contender : with_mesh_limits)
-    if (const auto unlimited = without_limit(held, contender))
-      for (const RunGroup& limited : of(held.groups, contender)) body(limited, *unlimited);
+    for (const RunGroup& limited : of(held.groups, contender))
+      if (const auto unlimited = without_limit(held, limited)) body(limited, *unlimited);
 }
 
 std::string cost_of(const RunGroup& group) {
@@ -66,9 +72,13 @@ std::string time_table(const Measurements& measured) {
   std::string table = table_head(heads);
   for (const SceneContest& held : measured.contests) {
     std::vector<std::string> cells{held.settings.name};
-    for (const RunGroup& group : of(held.groups, Contender::until_time))
-      cells.push_back(percent(group.nrmse().median) + " (" + percent(group.estimated().median) + "), " +
-                      plain(group.wall_s().median) + " s");
+    const auto groups = of(held.groups, Contender::until_time);
+    for (const double limit : limits) {
+      const auto group = std::ranges::find(groups, limit, &RunGroup::setting);
+      cells.push_back(group == groups.end() ? ""
+                                            : percent(group->nrmse().median) + " (" + percent(group->estimated().median) + "), " +
+                                                  plain(group->wall_s().median) + " s");
+    }
     table += table_row(cells);
   }
   return table + '\n';

@@ -93,7 +93,8 @@ std::string page(const Measurements& measured, const Settings& settings, const s
   std::string text = head(measured) + targets_section(measured) + "## What the missed ones would take\n\n" + missed + '\n' +
                      method(settings) + truth_section(measured);
   for (const SceneContest& held : measured.contests) text += scene_section(held, measured.yardstick_s());
-  text += parts_section(measured) + limits_section(measured) + estimate_section(measured) + path_tracing_section(measured) + fixed_mesh_section(measured);
+  text += parts_section(measured) + limits_section(measured) + estimate_section(measured) + path_tracing_section(measured) +
+          fixed_mesh_section(measured);
   return text + "## Tried and did not pay\n\n" + tried;
 }
 
