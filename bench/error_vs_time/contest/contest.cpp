@@ -36,7 +36,7 @@ std::string line_of(const MeasuredRun& run) {
                      " CPU s, nRMSE " + percent(run.nrmse.value) + ", " + std::to_string(run.leaves) + " leaves, " +
                      std::to_string(run.rays) + " rays";
   if (run.estimated == run.estimated) line += ", estimated " + percent(run.estimated);
-  return line + (run.is_done ? "" : ", out of time");
+  return line + (run.is_done ? "" : ", stopped by a limit");
 }
 
 class Rounds {
