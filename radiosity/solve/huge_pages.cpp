@@ -5,17 +5,10 @@
 // Each time the kernel hands out their pages one by one, 4 KiB each, and later reads miss the TLB. With huge pages a solve takes
 // about three quarters of the time (docs/design/performance.md); where the kernel's setting is "never", it gives none.
 
-#include <malloc.h>
-#include <sys/mman.h>
-
-#include <array>
-#include <cerrno>
-#include <cstdint>
 #include <cstdlib>
-#include <new>
 
 #if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
 #define ALVOR_ALLOCATIONS_ARE_CHECKED  // sanitizers have operators of their own
 #endif
 #endif
@@ -23,7 +16,15 @@
 #define ALVOR_ALLOCATIONS_ARE_CHECKED
 #endif
 
-#ifndef ALVOR_ALLOCATIONS_ARE_CHECKED
+#if defined(__GLIBC__) && !defined(ALVOR_ALLOCATIONS_ARE_CHECKED)
+
+#include <malloc.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <new>
 
 namespace {
 
