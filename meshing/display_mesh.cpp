@@ -5,12 +5,13 @@
 #include "meshing/present_objects.h"
 #include "meshing/vertex_key.h"
 
+#include <absl/container/flat_hash_map.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <unordered_map>
-#include <unordered_set>
 
 namespace alvor {
 
@@ -69,6 +70,10 @@ class Triangulation {
       : mesh_(mesh), present_(mesh.objects()), forest_(mesh), keys_(mesh), errors_(errors) {
     forest_.split_down_to(values);
     leaves_.reserve(values.size());
+    // A leaf of a quadtree brings one to two vertices: its share of the corners, and of the middles of edges.
+    corners_.reserve(2 * values.size());
+    sums_.reserve(2 * values.size());
+    vertices_.reserve(2 * values.size());
     value_.resize(forest_.node_count());
     centre_.resize(forest_.node_count());
     for (const LeafValue& value : values) {
@@ -78,11 +83,16 @@ class Triangulation {
       value_[leaf] = widen(value.irradiance);
       const Uv c = shape.centre();
       centre_[leaf] = mesh.roots()[shape.root].at(c.u, c.v);
-      for (int k = 0; k < shape.corner_count; ++k) corners_.insert(keys_.position(shape.root, shape.corners()[k]));
+      for (int k = 0; k < shape.corner_count; ++k) {
+        const GridPoint p = shape.corners()[k];
+        const auto [corner, is_new] = corners_.try_emplace(keys_.position(shape.root, p));
+        if (is_new) corner->second = mesh.roots()[shape.root].at(double(p.i) / grid_size, double(p.j) / grid_size);
+      }
     }
-    slopes_.reserve(leaves_.size());
-    for (const NodeIndex leaf : leaves_)
-      slopes_.push_back(leaf_slope(forest_, leaf, SmoothNeighbours(forest_, leaf), centre_, value_));
+    slopes_.resize(leaves_.size());
+    tbb::parallel_for(std::size_t{0}, leaves_.size(), [this](std::size_t n) {
+      slopes_[n] = leaf_slope(forest_, leaves_[n], SmoothNeighbours(forest_, leaves_[n]), centre_, value_);
+    });
   }
 
   DisplayMesh build() {
@@ -116,11 +126,8 @@ class Triangulation {
     add_hanging(root, middle, b, points);
   }
 
-  Vec3 position(std::uint32_t root, GridPoint p) {
-    const auto [found, added] = positions_.try_emplace(keys_.position(root, p));
-    if (added) found->second = mesh_.roots()[root].at(double(p.i) / grid_size, double(p.j) / grid_size);
-    return found->second;
-  }
+  /// Returns the position of a leaf's corner, the same for all leaves around it.
+  Vec3 position(std::uint32_t root, GridPoint p) const { return corners_.at(keys_.position(root, p)); }
 
   double error_of(std::size_t n) const { return errors_.empty() ? 0 : errors_[n]; }
 
@@ -202,7 +209,7 @@ class Triangulation {
   bool is_two_sided(std::uint32_t root) const { return mesh_.roots()[root].twin != RootPatch::no_twin; }
 
   /// Returns the position at which a vertex is drawn. Vertices of two-sided faces are moved to the front of their side.
-  Vec3 drawn_position(std::uint32_t root, GridPoint p, Vec3 normal) {
+  Vec3 drawn_position(std::uint32_t root, GridPoint p, Vec3 normal) const {
     return is_two_sided(root) ? moved(position(root, p), normals_around(root, p, normal)) : position(root, p);
   }
 
@@ -272,10 +279,9 @@ class Triangulation {
   std::vector<Rgb> value_;    // by node
   std::vector<Vec3> centre_;  // by node
   std::vector<LeafSlope> slopes_;
-  std::unordered_set<VertexKey, KeyHash> corners_;
-  std::unordered_map<VertexKey, Vec3, KeyHash> positions_;
-  std::unordered_map<VertexKey, CornerSum, KeyHash> sums_;
-  std::unordered_map<VertexOfMaterial, std::uint32_t, Hash> vertices_;
+  absl::flat_hash_map<VertexKey, Vec3, KeyHash> corners_;  // of all leaves
+  absl::flat_hash_map<VertexKey, CornerSum, KeyHash> sums_;
+  absl::flat_hash_map<VertexOfMaterial, std::uint32_t, Hash> vertices_;
   DisplayMesh out_;
 };
 
