@@ -70,10 +70,7 @@ class Triangulation {
       : mesh_(mesh), present_(mesh.objects()), forest_(mesh), keys_(mesh), errors_(errors) {
     forest_.split_down_to(values);
     leaves_.reserve(values.size());
-    // A leaf of a quadtree brings one to two vertices: its share of the corners, and of the middles of edges.
-    corners_.reserve(2 * values.size());
-    sums_.reserve(2 * values.size());
-    vertices_.reserve(2 * values.size());
+    corners_.reserve(values.size());
     value_.resize(forest_.node_count());
     centre_.resize(forest_.node_count());
     for (const LeafValue& value : values) {
@@ -89,6 +86,8 @@ class Triangulation {
         if (is_new) corner->second = mesh.roots()[shape.root].at(double(p.i) / grid_size, double(p.j) / grid_size);
       }
     }
+    sums_.reserve(corners_.size());
+    vertices_.reserve(corners_.size());
     slopes_.resize(leaves_.size());
     tbb::parallel_for(std::size_t{0}, leaves_.size(), [this](std::size_t n) {
       slopes_[n] = leaf_slope(forest_, leaves_[n], SmoothNeighbours(forest_, leaves_[n]), centre_, value_);

@@ -5,7 +5,9 @@
 #include "import/base/whole_file.h"
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <string>
 
 namespace {
 
@@ -24,13 +26,20 @@ Measurements measure(const Settings& settings) {
   return measured;
 }
 
+/// Returns a text from a folder below the page's, with its links as the page has them.
+std::string part_of_page(const std::filesystem::path& file) {
+  std::string text = read_whole_file(file);
+  for (std::size_t link; (link = text.find("](../")) != std::string::npos;) text.erase(link + 2, 3);
+  return text;
+}
+
 void write(const Measurements& measured, const Settings& settings) {
   std::vector<MeasuredRun> runs;
   for (const SceneContest& held : measured.contests) runs.insert(runs.end(), held.runs.begin(), held.runs.end());
   write_whole_file(settings.figure_folder / "runs.csv", runs_csv(runs));
   write_curves(settings.curve_folder, measured.contests);
-  write_whole_file(settings.page, page(measured, settings, read_whole_file(settings.figure_folder / "missed.md"),
-                                       read_whole_file(settings.figure_folder / "tried.md")));
+  write_whole_file(settings.page, page(measured, settings, part_of_page(settings.figure_folder / "missed.md"),
+                                       part_of_page(settings.figure_folder / "tried.md")));
   std::cout << "wrote " << settings.page.string() << '\n';
 }
 

@@ -53,9 +53,9 @@ class Pass {
   /// error +7 %, rays -19 % (docs/design/constants.md).
   static constexpr double marked_share = 0.9;
   /// Splits patches and asks for rays where that removes most error per ray, up to a share of the candidates' squared error. This
-  /// ends the pass. Returns false if nothing was done: the limits forbid every split, and noise of rows and shadow rays is not
-  /// the largest error. If `gives_up` returns true on any rank, where it is asked between patches from any thread, it returns
-  /// early, and the state must not be used.
+  /// ends the pass. Returns false if nothing was done: limits forbid every split, and noise of rows and shadow rays is not the
+  /// largest error; or limits keep the tolerance out of reach, and what could be removed is little. If `gives_up` returns true on any
+  /// rank, where it is asked between patches from any thread, it returns early, and the state must not be used.
   bool refine(
       const std::function<bool()>& gives_up = [] { return false; }, double share = marked_share);
 
@@ -138,10 +138,14 @@ class Pass {
   void find_leaf_candidates();
   void add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error, bool may_split);
   double heed_noise(std::size_t place, bool may_split, double noise);
+  double told_square(const Candidate& candidate) const;
   void drop_what_does_not_help();
   /// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations
   /// above the mean of sixteen squared normal deviations.
   static constexpr double noise_of_origins = 1.7;
+  /// Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show.
+  /// Measured on six scenes (ARCHITECTURE.md, Estimate, mark, refine).
+  static constexpr double unseen_detail = 2.5;
   /// A contrast that is seen within a patch, and the split that follows it best.
   struct Contrast {
     double square = 0;
@@ -188,7 +192,8 @@ class Pass {
   std::vector<double> leaf_squares_;       ///< by place of the leaf, with the row's part
   bool has_candidates_ = false;            ///< find_candidates() was called
   std::vector<Candidate> candidates_;
-  double lasting_error_ = 0;  ///< squared error that limits of splits and rays let stay, as SplitError::square
+  double lasting_error_ = 0;  ///< told squared error that limits of splits and rays let stay, integrated over the scene
+  double told_scale_ = 0;     ///< the same where the relative error is 1
 };
 
 }  // namespace alvor

@@ -23,15 +23,15 @@ constexpr double rays_per_leaf = 32, rays_per_leaf_split = 4 * rays_per_leaf;
 constexpr double rays_per_row_split = 4 * (rays_per_row + 32);
 // Rays above which a row gets no more. Chosen; half and double give the same solutions (docs/design/constants.md).
 constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
-// Rays are not sent where they would remove less than this share of the squared error that the limits keep: removing all of it would
-// make the error a tenth smaller. Splits count far less because a dark room beside one that cannot be refined is to be split
-// nevertheless. Chosen.
+// Rays are not sent where they would remove less than this share of the squared error that the limits keep: removing all of it
+// would make the error a tenth smaller. Splits count far less because a dark room beside one that cannot be refined is to be
+// split nevertheless. Chosen.
 constexpr double worth_rays = 0.2;
 // The limits keep a tolerance out of reach if they keep this share of its square: the rest would be paid for dearly. Chosen.
 constexpr double out_of_reach = 0.8;
-// Where it is out of reach, refinement ends once what can be removed is within the squared tolerance, and at most this share of it
-// or of what the limits keep: so the error is at most 1.32 times as large as it has to be. 0.6 in place of it: the furnished room
-// takes more rays to 2 % with seven levels than with ten. Chosen.
+// Where it is out of reach, refinement ends once what can be removed is within the squared tolerance, and at most this share of
+// it or of what the limits keep: removing all of that would make the error a quarter smaller at most. 0.6 in place of it: the
+// furnished room takes more rays to 2 % with seven levels than with ten. Chosen.
 constexpr double hardly_more = 0.75;
 
 }  // namespace
@@ -84,11 +84,11 @@ void Pass::find_leaf_candidates() {
 /// Adds a candidate that splits a patch, where limits allow it.
 void Pass::add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error, bool may_split) {
   if (!state_.plan.needs(Feature::refinement) || error.square <= 0) return;
+  const bool is_leaf = kind == Candidate::Kind::split_leaf;
   if (!may_split) {
-    lasting_error_ += error.square;
+    lasting_error_ += (is_leaf ? unseen_detail : 1) * error.square;
     return;
   }
-  const bool is_leaf = kind == Candidate::Kind::split_leaf;
   const double rays = is_leaf ? rays_per_leaf_split * state_.direct.ray_share(patch) : rays_per_row_split;
   candidates_.push_back({kind, patch, error.square, rays, error.split});
 }
@@ -104,7 +104,7 @@ double Pass::heed_noise(std::size_t place, bool may_split, double noise) {
   const double doubtful = may_split ? 0 : system_->visible_area(place) * noise_of_origins * state_.direct[leaf].origin_variance;
   if (state_.direct.may_add_rays(leaf) && noise + doubtful > missed) {
     const double in_doubt = std::min(missed, doubtful) / 2, removed = removed_by_rays * noise + in_doubt;
-    if (!may_split) lasting_error_ += missed - in_doubt;
+    if (!may_split) lasting_error_ += unseen_detail * (missed - in_doubt);
     candidates_.push_back(
         {Candidate::Kind::add_shadow_rays, leaf, removed, times_rays_of_level * rays_per_leaf * state_.direct.ray_share(leaf)});
     return 0;
@@ -114,21 +114,28 @@ double Pass::heed_noise(std::size_t place, bool may_split, double noise) {
   return missed;
 }
 
+/// Returns the told squared error, integrated over the scene, of which refining a candidate removes a part.
+double Pass::told_square(const Candidate& candidate) const {
+  switch (candidate.kind) {
+    case Candidate::Kind::split_leaf: return unseen_detail * candidate.squared_error;
+    case Candidate::Kind::add_rays:  // further rounds remove the rest of the noise
+      return candidate.squared_error * (state_.rows[candidate.patch].ray_count() + rays_per_row) / rays_per_row;
+    default: return candidate.squared_error;
+  }
+}
+
 /// Drops candidates where limits keep the tolerance out of reach: those that add rays if all of these would hardly reduce the
 /// error, then all if what they can remove is little enough.
 void Pass::drop_what_does_not_help() {
-  if (state_.options.is_by_place() || !(lasting_error_ > 0)) return;
+  const double allowed = state_.options.tolerance * state_.options.tolerance * told_scale_;
+  if (state_.options.is_by_place() || lasting_error_ <= out_of_reach * allowed) return;
   double by_rays = 0, by_splits = 0;
-  for (const Candidate& candidate : candidates_) (candidate.splits() ? by_splits : by_rays) += candidate.squared_error;
-  // Candidates know their share of the told error. Squared tolerances from here on.
-  const double ratio = std::hypot(told_.mesh(), told_.sampling) / state_.options.tolerance;
-  const double unit = ratio * ratio / (lasting_error_ + by_rays + by_splits), lasting = unit * lasting_error_;
-  if (lasting <= out_of_reach) return;
+  for (const Candidate& candidate : candidates_) (candidate.splits() ? by_splits : by_rays) += told_square(candidate);
   if (by_rays < worth_rays * lasting_error_) {
     std::erase_if(candidates_, std::not_fn(&Candidate::splits));
     by_rays = 0;
   }
-  if (unit * (by_rays + by_splits) <= std::min(1.0, hardly_more * std::max(1.0, lasting))) candidates_.clear();
+  if (by_rays + by_splits <= std::min(allowed, hardly_more * std::max(allowed, lasting_error_))) candidates_.clear();
 }
 
 }  // namespace alvor

@@ -16,9 +16,6 @@ namespace alvor {
 
 namespace {
 
-// Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show.
-// Measured on six scenes (ARCHITECTURE.md, Estimate, mark, refine).
-constexpr double unseen_detail = 2.5;
 // Share of the variance of a leaf's direct light that is seen in the display. Bilinear interpolation between vertices that
 // average the four leaves around them leaves (5/12)^2 = 0.17; the slopes by which the display mesh extrapolates are not in it.
 // Chosen; half: error same, rays -1 %, double: error -1 %, rays +3 % (docs/design/constants.md).
@@ -280,6 +277,7 @@ ErrorEstimate Pass::estimate() {
     *part = std::sqrt(std::max(0.0, *part) / area) / mean;
   error.unshot = exchange_->remaining_error();
   told_ = error;
+  told_scale_ = area * squared(mean);
   return error;
 }
 

@@ -643,8 +643,7 @@ TEST(Bake, NamesTheFileOfErrorsOfEachPrimitive) {
   std::set<std::size_t> named;
   for (const json& mesh : baked.file.root()["meshes"])
     for (const json& primitive : mesh["primitives"]) {
-      if (!primitive.contains("extras")) continue;
-      const std::size_t page = primitive["extras"]["alvor_lightmap_error_file"];
+      const std::size_t page = primitive.at("extras").at("alvor_lightmap_error_file");
       named.insert(page);
       const json& lightmap = baked.file.element("materials", primitive["material"])["extensions"]["MOZ_lightmap"];
       EXPECT_EQ(baked.file.element("textures", lightmap["index"])["name"], "light-" + std::to_string(page));

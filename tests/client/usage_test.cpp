@@ -92,7 +92,7 @@ TEST_F(Usage, BakedErrorsAreFilesOfLightmapsThatAreToldErrors) {
   EXPECT_EQ(refusal("--as unlit " + cornell_box + " -o b.glb", 2), "alvor: --errors: only --as lightmap has lightmaps\n");
   EXPECT_EQ(refusal(cornell_box + " -o -", 2), "alvor: --output: errors are files beside the scene, so it cannot go to stdout\n");
   write("dark.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  EXPECT_TRUE(refusal("dark.obj -o b.glb", 3).ends_with("alvor: dark.obj: tells no errors: no surface has any light\n"));
+  EXPECT_NE(refusal("dark.obj -o b.glb", 3).find("alvor: dark.obj: tells no errors: no surface has any light"), std::string::npos);
   EXPECT_FALSE(fs::exists(file("b.glb")));
 }
 

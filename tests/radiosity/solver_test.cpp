@@ -158,10 +158,11 @@ TEST(Solver, ALimitToTheDepthCostsNeitherRaysNorMuchErrorWhereverTheToleranceLie
     for (const double share : {0.7, 0.9, 1.0, 1.1, 1.4}) {
       const double tolerance = share * reachable;
       SolutionLog shallow, deep;
-      solve(mesh, {.tolerance = tolerance, .max_depth = depth}, shallow, {});
+      const StopReason reason = solve(mesh, {.tolerance = tolerance, .max_depth = depth}, shallow, {}).reason;
       solve(mesh, {.tolerance = tolerance}, deep, {});
       EXPECT_LE(shallow.last_step().rays, deep.last_step().rays) << depth << ' ' << share;
       EXPECT_LE(shallow.last_step().estimated_error, 1.4 * std::max(tolerance, reachable)) << depth << ' ' << share;
+      EXPECT_TRUE(share < 1.4 || reason == StopReason::tolerance) << depth << ": it is within reach";
     }
   }
 }

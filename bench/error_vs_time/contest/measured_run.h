@@ -69,7 +69,7 @@ struct MeasuredRun {
   Confidence nrmse;                    ///< against the truth
   double relative_rms = unknown;       ///< RMS over points of error / truth
   double within_two = unknown;         ///< share of the points whose error is within two of the told errors
-  bool is_done = true;                 ///< false: the time limit ended it
+  bool is_done = true;                 ///< false: a limit ended it, of time, depth or leaves
   static constexpr double far_above = 1.5;
   /// Published steps, and those whose estimate is more than far_above times that of the step before.
   std::uint64_t steps = 0, rises = 0;

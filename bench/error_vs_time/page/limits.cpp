@@ -4,8 +4,11 @@
 #include "bench/error_vs_time/contest/figures.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace alvor::bench {
@@ -18,7 +21,7 @@ constexpr double noise_of_error = 1.1;                     // by which errors of
 double overtime(const RunGroup& group) { return group.wall_s().median - group.setting; }
 
 /// Returns the solves without a limit to their mesh that are compared with those that have it, with the same seeds; nothing if
-/// there are none, or the time limit ended one.
+/// there are none, or one was stopped by a limit.
 std::optional<RunGroup> without_limit(const SceneContest& held, const RunGroup& limited) {
   const bool is_sorted = limited.contender == Contender::sorted_to_depth;
   auto groups = of(held.groups, is_sorted ? Contender::sorted : Contender::alvor);

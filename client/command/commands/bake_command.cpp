@@ -207,7 +207,8 @@ void run_bake(const BakeCommand& command) {
   BakeOptions options = options_of(command);
   const auto layout = naming_the_scene(command, [&] { return lay_out(input.document, input.scene, options); });
   const DisplayMesh solution = input.solution ? *std::move(input.solution) : solution_for(command, input.scene);
-  if (command.bake.with_errors) require_told_errors(solution, name_of(command.solution.empty() ? command.scene : command.solution));
+  if (command.bake.with_errors)
+    require_told_errors(solution, name_of(command.solution.empty() ? command.scene : command.solution));
   if (counts) options.extras["alvor_probes"] = gathered_probes(*counts, input.scene, solution);
   Baked result =
       naming_the_scene(command, [&] { return baked(options, std::move(input.document), input.scene, solution, layout); });

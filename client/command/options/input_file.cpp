@@ -108,7 +108,7 @@ void require_told_errors(const DisplayMesh& solution, const std::string& name) {
   if (!solution.errors.empty()) return;
   const bool is_dark = std::ranges::all_of(solution.irradiance, &RgbF::is_zero);
   throw Failure(ExitStatus::bad_scene, name + ": tells no errors: " +
-                                           (is_dark ? "no surface has any light"
+                                           (is_dark ? "no surface has any light, or its solve has not found any yet"
                                                     : "it was written by an older version, or its solve was stopped before its "
                                                       "first estimate"));
 }

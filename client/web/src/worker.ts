@@ -246,6 +246,7 @@ class Watch extends Shown {
     super.forget();
     this.revision = 0n;
     this.isWhole = true;
+    this.hasEnded = false;
   }
 
   private canTryAgain(error: unknown): boolean {
@@ -314,7 +315,10 @@ class Watch extends Shown {
     }
     if (frame.fromRevision !== this.revision) throw new BadFrame("a frame does not follow the one before it");
     const isFirst = this.revision === 0n;
-    if (frame.look) this.setLook(frame.look);
+    if (frame.look) {
+      this.hasEnded = false; // the page takes a solve that was edited as going on, until it is told otherwise
+      this.setLook(frame.look);
+    }
     if (frame.leaves && frame.leaves.count > 0) {
       this.mirror.apply(decodeLeaves(frame.leaves));
       this.isChanged = true;

@@ -74,14 +74,14 @@ let centre: [number, number, number] = [0, 0, 0];
 let isZUp = false;
 /** When a frame that is not on the screen yet arrived. */
 let arrivedUnseen: number | undefined;
-/** The worker keeps changes until those that it sent before are on the screen. */
+/** The solve has ended, and the worker still holds its last change: it keeps changes until those that it sent before are drawn. */
 let isChangeToCome = false;
 
 /** For whoever wants to know how the page does: tests, and the curious. Milliseconds. */
 const nothing = {
   solve: "",
   hasEnded: false, // and its last state was told
-  isWaiting: false, // for a frame to be drawn
+  isWaiting: false, // for a frame to be drawn, or for the last one that the worker still holds
   firstLit: 0, // after a file was opened
   latency: 0, // of the newest frame, from its arrival to the screen
   latencies: [] as number[],

@@ -45,7 +45,7 @@ export async function waitForState(page: Page, words: string): Promise<void> {
 export interface Measured {
   solve: string;
   hasEnded: boolean;
-  /** A frame is here that is not on the screen yet. */
+  /** A frame is here that is not on the screen yet, or the worker still holds the last one. */
   isWaiting: boolean;
   /** From the opening of a file to the first picture. */
   firstLit: number;
