@@ -54,8 +54,8 @@ class Pass {
   static constexpr double marked_share = 0.9;
   /// Splits patches and asks for rays where that removes most error per ray, up to a share of the candidates' squared error. This
   /// ends the pass. Returns false if nothing was done: limits forbid every split, and noise of rows and shadow rays is not the
-  /// largest error; or limits keep the tolerance out of reach, and what could be removed is little. If `gives_up` returns true on any
-  /// rank, where it is asked between patches from any thread, it returns early, and the state must not be used.
+  /// largest error; or limits keep the tolerance out of reach, and what could be removed is little. If `gives_up` returns true
+  /// on any rank, where it is asked between patches from any thread, it returns early, and the state must not be used.
   bool refine(
       const std::function<bool()>& gives_up = [] { return false; }, double share = marked_share);
 

@@ -29,9 +29,9 @@ constexpr std::uint32_t most_rays_per_row = 16 * rays_per_row;
 constexpr double worth_rays = 0.2;
 // The limits keep a tolerance out of reach if they keep this share of its square: the rest would be paid for dearly. Chosen.
 constexpr double out_of_reach = 0.8;
-// Where it is out of reach, refinement ends once what can be removed is within the squared tolerance, and at most this share of
-// it or of what the limits keep: removing all of that would make the error a quarter smaller at most. 0.6 in place of it: the
-// furnished room takes more rays to 2 % with seven levels than with ten. Chosen.
+// Where limits keep the tolerance out of reach, refinement ends once the squared error that it can still remove is within the
+// squared tolerance, and at most this share of that or of what the limits keep: removing all of it would make the error a quarter
+// smaller at most. 0.6 in place of this share: the furnished room takes more rays to 2 % with seven levels than with ten. Chosen.
 constexpr double hardly_more = 0.75;
 
 }  // namespace
@@ -81,16 +81,14 @@ void Pass::find_leaf_candidates() {
   for (std::size_t n = 0; n < leaves.size(); ++n) add_split(Candidate::Kind::split_leaf, leaves[n], errors[n], may_split[n]);
 }
 
-/// Adds a candidate that splits a patch, where limits allow it.
+/// Adds a candidate that splits a patch, or its error to what lasts where limits forbid it.
 void Pass::add_split(Candidate::Kind kind, NodeIndex patch, const SplitError& error, bool may_split) {
   if (!state_.plan.needs(Feature::refinement) || error.square <= 0) return;
   const bool is_leaf = kind == Candidate::Kind::split_leaf;
-  if (!may_split) {
-    lasting_error_ += (is_leaf ? unseen_detail : 1) * error.square;
-    return;
-  }
   const double rays = is_leaf ? rays_per_leaf_split * state_.direct.ray_share(patch) : rays_per_row_split;
-  candidates_.push_back({kind, patch, error.square, rays, error.split});
+  const Candidate candidate{kind, patch, error.square, rays, error.split};
+  if (may_split) candidates_.push_back(candidate);
+  else lasting_error_ += told_square(candidate);
 }
 
 /// Returns how much of the squared error of a leaf, integrated over it, splitting the leaf would remove; `noise` is its

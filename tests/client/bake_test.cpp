@@ -640,6 +640,8 @@ TEST(Bake, NamesTheFileOfErrorsOfEachPrimitive) {
   ASSERT_GT(pages, 1u);
   EXPECT_EQ(baked.baked.beside.size(), pages) << "light in PNG is in the file";
   EXPECT_FALSE(baked.file.root()["extras"]["alvor_lightmap"].contains("files"));
+  for (const Baked::File& file : baked.baked.beside)
+    for (const float error : first_channel(file)) EXPECT_TRUE(error == 0 || error == 1) << error << ": 0 beside the charts";
   std::set<std::size_t> named;
   for (const json& mesh : baked.file.root()["meshes"])
     for (const json& primitive : mesh["primitives"]) {

@@ -33,7 +33,7 @@ std::optional<RunGroup> without_limit(const SceneContest& held, const RunGroup& 
   return std::move(*found);
 }
 
-/// What was counted: how many of all are as they should be.
+/// Counts the solves, or steps between them, that a judgement looks at, and those of them that are as they should be.
 struct Count {
   std::size_t fine = 0, all = 0;
   void add(bool is_fine) { fine += is_fine, ++all; }
