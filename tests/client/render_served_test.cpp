@@ -105,6 +105,19 @@ TEST_F(RenderServed, AmbientTermIsAddedOnlyIfAskedFor) {
   EXPECT_TRUE(same("ended.png", "ambient.png"));
 }
 
+TEST_F(RenderServed, ErrorsAreNotDrawnWithTheAmbientTermNorWhereNoneWereTold) {
+  publish({5000, 5000, 5000});
+  const Ran with_ambient = render("error.png", "--show error --ambient");
+  EXPECT_EQ(with_ambient.status, 2);
+  EXPECT_EQ(with_ambient.err, "alvor: --ambient: errors are told without the ambient term; leave it out with --show error\n");
+  const Ran untold = render("error.png", "--show error");
+  EXPECT_EQ(untold.status, 3);
+  EXPECT_EQ(untold.err, "alvor: " + solve_ +
+                            ": tells no errors: it was written by an older version, or its solve was stopped before "
+                            "its first estimate\n");
+  EXPECT_FALSE(fs::exists(file("error.png")));
+}
+
 TEST_F(RenderServed, CommandsThatGoOnFromASolveSayThatItsNewestStateDoesNotHeedAnEdit) {
   publish();
   ASSERT_EQ(run("edit " + solve_ + at_server() + " --absorption 1,1,1").status, 0);

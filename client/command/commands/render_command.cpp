@@ -70,8 +70,11 @@ void run_render(const RenderCommand& command) {
   RenderOptions options;
   options.false_colour = false_colour_of(command.false_colour, command.size);
   options.wireframe = command.wireframe;
+  const bool shows_errors = options.false_colour && options.false_colour->shown == Shown::error;
+  if (shows_errors && command.ambient)
+    throw Failure(ExitStatus::usage, "--ambient: errors are told without the ambient term; leave it out with --show error");
   DisplayMesh mesh = read_from_anywhere(command);
-  if (options.false_colour && options.false_colour->shown == Shown::error) require_told_errors(mesh, command.solution);
+  if (shows_errors) require_told_errors(mesh, command.solution);
   take_up(command.camera.up, mesh.up);
   options.camera = camera_of(command.camera, mesh, view_size(command.size, options.false_colour));
   warn_of_black_view(mesh, *options.camera);
