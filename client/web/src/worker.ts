@@ -294,7 +294,10 @@ class Watch extends Shown {
       }
       if (frame.look) await this.readAdded(frame.look, givenUp);
       this.take(frame);
-      if (frame.ended && !this.hasEnded) {
+      // Also where what is told of an ended solve is new: after an edit, frames may tell of the end before it and the end after it,
+      // and of nothing between them.
+      const isNews = frame.look !== undefined || frame.toRevision !== frame.fromRevision;
+      if (frame.ended && (isNews || !this.hasEnded)) {
         this.show();
         tell({ kind: "ended", isShown: !this.isChanged });
       }
