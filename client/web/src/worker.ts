@@ -294,10 +294,7 @@ class Watch extends Shown {
       }
       if (frame.look) await this.readAdded(frame.look, givenUp);
       this.take(frame);
-      // Also where what is told of an ended solve is new: after an edit, frames may tell of the end before it and the end after it,
-      // and of nothing between them.
-      const isNews = frame.look !== undefined || frame.toRevision !== frame.fromRevision;
-      if (frame.ended && (isNews || !this.hasEnded)) {
+      if (frame.ended && !this.hasEnded) {
         this.show();
         tell({ kind: "ended", isShown: !this.isChanged });
       }

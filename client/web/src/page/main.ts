@@ -339,7 +339,9 @@ async function update(answer: Promise<Solve>): Promise<void> {
 }
 
 function setSolve(next: Solve): void {
-  const isNews = next.state !== solve?.state || next.name !== solve.name;
+  const isEdited = next.edits.at(-1)?.revision !== solve?.edits.at(-1)?.revision;
+  const isPast = isEdited && byId("state").dataset.kind === "bad"; // what was refused before an edit that was taken
+  const isNews = next.state !== solve?.state || next.name !== solve.name || isPast;
   solve = next;
   const hasEnded = FINAL.includes(next.state);
   if (next.state !== Solve_State.RUNNING && pausing === next.name) pausing = "";
