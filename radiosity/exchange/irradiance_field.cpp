@@ -116,8 +116,8 @@ class Fitter {
   }
 
  private:
-  /// A row as fits around other rows see it: where it lies, and whether any of its rays met light. Whether these fits use the row's
-  /// samples depends on nothing else.
+  /// A row as fits around other rows see it: where it lies, and whether any of its rays met light. Whether these fits use the
+  /// row's samples depends on nothing else.
   struct Spot {
     Vec3 centre, normal;
     bool is_dark = true;
@@ -221,7 +221,7 @@ class Fitter {
     const double own_response = 1 / known_[n].whole.rays;
     const auto wide = FieldEquations<6>(window.samples, wide_window).solve();
     if (wide && wide->response < own_response && wide->misfit <= misfit_allowed * wide->noise * window.noise)
-      return take(*wide, window, field);
+      return take_smooth(*wide, window, field);
     const auto narrow = FieldEquations<3>(window.samples, narrow_window).solve();
     if (narrow && narrow->response < own_response) take(*narrow, window, field);
     else take_own_mean(n, window, field);
@@ -240,6 +240,14 @@ class Fitter {
     return squares / count;
   }
 
+  /// Takes a fit whose misfit is explained by noise. All rays of a row are spread evenly together, so the mean of a row has less
+  /// noise than its quarters tell, which each have a quarter of the rays: how much is told by the differences of the samples,
+  /// most of which are means of rows, from the fit.
+  template <class Solution>
+  static void take_smooth(const Solution& solution, const Window& window, FieldFit& field) {
+    take(solution, window, field);
+    if (solution.noise > 0) field.variance = solution.response * solution.misfit / solution.noise;
+  }
   template <class Solution>
   static void take(const Solution& solution, const Window& window, FieldFit& field) {
     field.coefficient = solution.coefficient;

@@ -109,7 +109,7 @@ class Comparer {
     do {
       pass_.emplace(state_).prepare();
       exchange_down_to(pass_unshot * options_.tolerance);
-    } while (!stop_.stop_requested() && pass_->estimate().total() > options_.tolerance && pass_->refine());
+    } while (!stop_.stop_requested() && pass_->estimate()->total() > options_.tolerance && pass_->refine());
   }
 
   /// Solves the system, sets the reference to its solution, and returns the leaves' irradiance, W/m2.

@@ -42,7 +42,17 @@ constexpr double sure_of_origins = 3.25;
 // %, rays same, double: error -4 %, rays +55 % (docs/design/constants.md).
 constexpr double contact_error = 0.1;
 
+// Share of the squared change of the field across a row that is told as the row's squared error. Where light falls off steeply,
+// as towards an edge at which two walls meet, it falls off most steeply beside the edge, within a part of the row that few rays
+// start from. Measured on eight scenes: without it the estimate is 0.74 to 1.22 times the true error, and 0.67 times in one
+// solve; with 0.005 it is 0.85 to 1.45 times, and the Cornell box takes a fifth fewer rays below 1 %; with 0.01 slats_and_boxes
+// takes a tenth more.
+constexpr double detail_of_slope = 0.005;
+
 double squared(double x) { return x * x; }
+
+/// Returns by how much a field changes across a patch, squared and summed over its two axes; emission units squared.
+double squared_change(const FieldFit& fit) { return squared(fit.coefficient[1].mean()) + squared(fit.coefficient[2].mean()); }
 
 /// Returns by what errors are multiplied that were told as at least 0 each, so that they add up to the sum of errors of either
 /// sign.
@@ -156,14 +166,14 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
         at_origins.has_several_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
+    const double unsure = by_contact + detail_of_slope * squared_change(fit);
     const double seen =
-        std::max({0.0, at_origins.square - chance_of_origins * at_origins.noise, misfit_at_centre * fit.window_misfit}) +
-        by_contact;
+        std::max({0.0, at_origins.square - chance_of_origins * at_origins.noise, misfit_at_centre * fit.window_misfit}) + unsure;
     row_errors_[p] = {area * seen + unseen, unseen > area * seen ? at_origins.unseen.split : at_origins.split};
     if (row.is_hidden()) return ErrorSums{};  // what is seen of it lacks elsewhere
-    const double more = unseen + lacking_[p], told = area * (std::max(0.0, misfit) + by_contact) + more;
+    const double more = unseen + lacking_[p], told = area * (std::max(0.0, misfit) + unsure) + more;
     row_squares_[p] = told / area;
-    return ErrorSums{area * (misfit + by_contact) + more, told, area * fit.variance};
+    return ErrorSums{area * (misfit + unsure) + more, told, area * fit.variance};
   });
   error.misfit += squares.all;
   error.sampling += squares.noise;
@@ -259,18 +269,23 @@ std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
   return errors;
 }
 
-ErrorEstimate Pass::estimate() {
+std::optional<ErrorEstimate> Pass::estimate(const std::function<bool()>& gives_up) {
   assert(stage_ == Stage::exchanging);
-  stage_ = Stage::estimated;
+  const auto has_given_up = [&] { return state_.ranks.any_of(gives_up()); };
   exchange_->forget_directions();  // memory is highest from here on, and few passes go on exchanging
   const auto neighbours = state_.forests.row_neighbours(system_->rows());
-  if (state_.rows.carry_light()) fit_field_smoothly(neighbours);
-  else find_changed_rows(neighbours);
+  if (state_.rows.carry_light()) {
+    if (!fit_field_smoothly(neighbours, gives_up) || has_given_up()) return std::nullopt;
+  } else {
+    find_changed_rows(neighbours);
+  }
   ErrorEstimate error;
   estimate_rows(error, neighbours);
+  if (has_given_up()) return std::nullopt;
   const double power = estimate_leaves(error);
   note_errors();
-  if (power <= 0) return {};
+  stage_ = Stage::estimated;
+  if (power <= 0) return ErrorEstimate{};
   const auto area = parallel_sum<double>(system_->patches().size(), [this](std::size_t p) { return visible_area(p); });
   const double mean = power / area;
   for (double* part : {&error.interpolation, &error.misfit, &error.sampling})

@@ -191,7 +191,12 @@ class Run {
     pass_->begin_exchange();
     if (!exchange_down_to(remaining_at_estimate())) return false;
     if (must_leave_pass()) return false;  // an exchange without steps has not asked
-    is_.error = pass_->estimate();
+    const auto error = pass_->estimate([this] { return requests_.made_here().break_off(); });
+    if (!error) {
+      must_leave_pass();
+      return false;
+    }
+    is_.error = *error;
     account();
     const auto error_before_edit = std::exchange(live_.error_before_edit, std::nullopt);
     const bool is_stopped = is_left_unshot() && !exchange_after_estimate(pass_remaining * options_.tolerance);

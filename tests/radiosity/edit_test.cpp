@@ -453,10 +453,11 @@ TEST(EditedSolve, HasNoRowsFinerThanLeavesWhereAHiddenObjectIsShownAtTheLimitOfL
   Scene scene = test::room_with_lamps_and_sun();
   const auto first = static_cast<std::uint32_t>(scene.faces.size());
   test::add_box(scene, {0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, false);
+  test::add_box(scene, {2.5, 0.5, 0.5}, {3, 1, 1}, false);  // its shadows make leaves finer than rows
   scene.objects = {{.name = "box", .first_face = first, .face_count = 6}};
   Scene without = scene;
   without.objects[0].is_hidden = true;
-  EditedSolve edited(scene, {.tolerance = 1e-3, .max_leaves = 500}, without);
+  EditedSolve edited(scene, {.tolerance = 1e-3, .max_leaves = 1000}, without);
   ASSERT_EQ(edited.outcome.reason, StopReason::max_leaves);
   const auto before = edited.live();
   ASSERT_LT(before->state.forests.rows().leaf_count() + 20, before->state.leaf_count()) << "rows could be split";
@@ -465,7 +466,7 @@ TEST(EditedSolve, HasNoRowsFinerThanLeavesWhereAHiddenObjectIsShownAtTheLimitOfL
   const Forests& forests = before->state.forests;
   for (const NodeIndex row : forests.rows().leaves())
     EXPECT_EQ(forests.leaves().id(forests.leaf_node_of(row)), forests.rows().id(row));
-  const SolveOptions options{.tolerance = 1e-3, .max_leaves = 500};
+  const SolveOptions options{.tolerance = 1e-3, .max_leaves = 1000};
   LiveSolve again(edited.mesh(), Plan(edited.mesh(), options), options, Ranks::alone(), true);
   again.load(plain_bytes([&](PlainWriter& out) { before->save(out); }));
   EXPECT_EQ(again.state.leaf_count(), before->state.leaf_count()) << "of a checkpoint";

@@ -32,7 +32,7 @@ Scene with_slabs(Vec3 move) {
 ErrorEstimate estimate_of(Pass& pass) {
   pass.prepare();
   settle(pass.exchange(), 1e-6, [](std::size_t) { return true; });
-  return pass.estimate();
+  return pass.estimate().value();
 }
 
 /// Fails unless an estimate that uses known errors tells the same as one that finds all: each leaf's to a twentieth, because

@@ -190,7 +190,7 @@ TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {
     pass.prepare();
     EXPECT_TRUE(pass.leaf_errors({}).empty()) << "before the estimate";
     while (pass.unshot_fraction() > 1e-6) pass.exchange().sweep();
-    const ErrorEstimate estimate = pass.estimate();
+    const ErrorEstimate estimate = pass.estimate().value();
     const auto leaves = state.leaf_values();
     const auto errors = pass.leaf_errors({.unshot = estimate.unshot});
     ASSERT_EQ(errors.size(), leaves.size());
@@ -207,6 +207,30 @@ TEST(SolveState, ErrorsOfLeavesAddUpToTheEstimate) {
     const double told = std::sqrt(squares / area) / (power / area);
     EXPECT_NEAR(told / std::hypot(estimate.mesh(), estimate.sampling), 1, 0.03) << "pass " << n;
     if (!pass.refine()) break;
+  }
+}
+
+TEST(SolveState, AnEstimateThatIsBrokenOffTellsNothingAndTheStateGoesOn) {
+  const BaseMesh mesh(test::room_with_contacts());
+  const auto never = [] { return false; };
+  const auto estimate_of = [&](SolveState& state, const std::function<bool()>& gives_up) {
+    Pass pass(state);
+    pass.prepare();
+    while (pass.unshot_fraction() > 1e-6) pass.exchange().sweep();
+    const auto estimate = pass.estimate(gives_up);
+    EXPECT_EQ(pass.leaf_errors({}).empty(), !estimate);
+    return estimate;
+  };
+  RayBudget budget(never);
+  SolveState whole(mesh, {}, budget);
+  ASSERT_TRUE(run_pass(whole));
+  const double told = estimate_of(whole, never).value().total();
+  for (int asked_before = 0; asked_before < 3; ++asked_before) {
+    SolveState state(mesh, {}, budget);
+    ASSERT_TRUE(run_pass(state));
+    EXPECT_FALSE(estimate_of(state, [n = asked_before]() mutable { return n-- <= 0; })) << asked_before;
+    for (const LeafValue& leaf : state.leaf_values()) ASSERT_TRUE(leaf.irradiance.is_finite() && leaf.irradiance.min() >= 0);
+    EXPECT_NEAR(estimate_of(state, never).value().total() / told, 1, 1e-3) << asked_before;
   }
 }
 
