@@ -240,9 +240,10 @@ class Fitter {
     return squares / count;
   }
 
-  /// Takes a fit whose misfit is explained by noise. All rays of a row are spread evenly together, so the mean of a row has less
-  /// noise than its quarters tell, which each have a quarter of the rays: how much is told by the differences of the samples,
-  /// most of which are means of rows, from the fit.
+  /// Takes a fit whose misfit is explained by noise. All rays of a row are spread evenly together, so that what its quarters have
+  /// by chance evens out: they differ from each other, by which Window::noise is found, more than each errs. So the variance is
+  /// told by how the samples differ from the fit. Measured: on the Cornell box, the enfilade and the vault that is 0.65 to 0.75
+  /// of it.
   template <class Solution>
   static void take_smooth(const Solution& solution, const Window& window, FieldFit& field) {
     take(solution, window, field);

@@ -45,8 +45,8 @@ class Pass {
   /// Returns an exchange of light that begins with what the previous pass found. The caller calls its sweep().
   Exchange& begin_exchange();
   /// Fits the smooth field that is shown and returns the estimated error. If `gives_up` returns true on any rank, where it is
-  /// asked between parts of the work, it returns nothing: then this ends the pass, and the fields that are shown are valid, but
-  /// may be old or new.
+  /// asked between parts of the work, it returns nothing: then this ends the pass, the fields that are shown are valid, but may be
+  /// old or new, and no errors are known from before.
   std::optional<ErrorEstimate> estimate(const std::function<bool()>& gives_up = [] { return false; });
   /// Keeps the errors that were found for the next pass, which is faster if little is refined or moved in between. To be called
   /// between estimate() and refine().

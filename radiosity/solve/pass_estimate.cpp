@@ -44,15 +44,19 @@ constexpr double contact_error = 0.1;
 
 // Share of the squared change of the field across a row that is told as the row's squared error. Where light falls off steeply,
 // as towards an edge at which two walls meet, it falls off most steeply beside the edge, within a part of the row that few rays
-// start from. Measured on eight scenes: without it the estimate is 0.74 to 1.22 times the true error, and 0.67 times in one
-// solve; with 0.005 it is 0.85 to 1.45 times, and the Cornell box takes a fifth fewer rays below 1 %; with 0.01 slats_and_boxes
-// takes a tenth more.
+// start from. Measured on eight scenes with 0, 0.005 and 0.01 (docs/error-vs-time/tried.md): without it 0.64 % is told where
+// 0.86 % is true; with 0.01 slats_and_boxes takes a tenth more rays for the same error.
 constexpr double detail_of_slope = 0.005;
 
 double squared(double x) { return x * x; }
 
-/// Returns by how much a field changes across a patch, squared and summed over its two axes; emission units squared.
-double squared_change(const FieldFit& fit) { return squared(fit.coefficient[1].mean()) + squared(fit.coefficient[2].mean()); }
+/// Returns by how much a field changes along u and along v of a patch, squared and summed; emission units squared.
+double squared_change(const FieldFit& fit, const BaseMesh& mesh, const PatchShape& shape) {
+  const auto corners = corners_of(mesh, shape);
+  const Vec3 along_u = corners[1] - corners[0], along_v = corners[shape.corner_count == 3 ? 2 : 3] - corners[0];
+  const Vec3 slope = fit.coefficient[1].mean() * fit.s + fit.coefficient[2].mean() * fit.t;
+  return squared(dot(slope, along_u)) + squared(dot(slope, along_v));
+}
 
 /// Returns by what errors are multiplied that were told as at least 0 each, so that they add up to the sum of errors of either
 /// sign.
@@ -166,7 +170,7 @@ void Pass::estimate_rows(ErrorEstimate& error, std::span<const SmoothNeighbours>
         at_origins.has_several_rounds || at_origins.square > std::max(fit.squared_misfit, sure_of_origins * at_origins.noise);
     const double misfit = is_seen ? at_origins.square : fit.squared_misfit;
     const double by_contact = row.crosses_contact() ? squared(contact_variation(node, neighbours[p], irradiance)) : 0;
-    const double unsure = by_contact + detail_of_slope * squared_change(fit);
+    const double unsure = by_contact + detail_of_slope * squared_change(fit, state_.mesh, state_.forests.rows().shape(node));
     const double seen =
         std::max({0.0, at_origins.square - chance_of_origins * at_origins.noise, misfit_at_centre * fit.window_misfit}) + unsure;
     row_errors_[p] = {area * seen + unseen, unseen > area * seen ? at_origins.unseen.split : at_origins.split};
@@ -271,17 +275,20 @@ std::vector<float> Pass::leaf_errors(const ErrorEstimate& error) const {
 
 std::optional<ErrorEstimate> Pass::estimate(const std::function<bool()>& gives_up) {
   assert(stage_ == Stage::exchanging);
-  const auto has_given_up = [&] { return state_.ranks.any_of(gives_up()); };
+  const auto give_up = [&] {
+    state_.known_errors.clear();  // they are of the fields of before
+    return std::nullopt;
+  };
   exchange_->forget_directions();  // memory is highest from here on, and few passes go on exchanging
   const auto neighbours = state_.forests.row_neighbours(system_->rows());
   if (state_.rows.carry_light()) {
-    if (!fit_field_smoothly(neighbours, gives_up) || has_given_up()) return std::nullopt;
+    if (!fit_field_smoothly(neighbours, gives_up) || state_.ranks.any_of(gives_up())) return give_up();
   } else {
     find_changed_rows(neighbours);
   }
   ErrorEstimate error;
   estimate_rows(error, neighbours);
-  if (has_given_up()) return std::nullopt;
+  if (state_.ranks.any_of(gives_up())) return give_up();
   const double power = estimate_leaves(error);
   note_errors();
   stage_ = Stage::estimated;

@@ -191,7 +191,11 @@ class Run {
     pass_->begin_exchange();
     if (!exchange_down_to(remaining_at_estimate())) return false;
     if (must_leave_pass()) return false;  // an exchange without steps has not asked
-    const auto error = pass_->estimate([this] { return requests_.made_here().break_off(); });
+    // The first pass tells how large the error is, even if that takes longer than the limit.
+    const auto gives_up = [this] {
+      return is_.passes == 0 ? requests_.made_here().cancelled : requests_.made_here().break_off();
+    };
+    const auto error = pass_->estimate(gives_up);
     if (!error) {
       must_leave_pass();
       return false;

@@ -23,7 +23,7 @@ struct SolveOutcome {
   double solve_s = 0;          ///< wall seconds
   double cpu_s = 0;            ///< CPU seconds of the threads that worked on it, on all ranks
   double traversal_share = 0;  ///< share of cpu_s that was spent in ray traversal, in [0, 1]
-  PowerBalance balance;        ///< balance of the last pass whose exchange was finished; all 0 if there was none
+  PowerBalance balance;        ///< balance of the last pass of which the error was estimated; all 0 if there was none
 };
 
 /// Solves on the calling thread and its worker threads; publishes every step to `log`. The first step is published before any ray
