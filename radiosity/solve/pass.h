@@ -45,8 +45,8 @@ class Pass {
   /// Returns an exchange of light that begins with what the previous pass found. The caller calls its sweep().
   Exchange& begin_exchange();
   /// Fits the smooth field that is shown and returns the estimated error. If `gives_up` returns true on any rank, where it is
-  /// asked between parts of the work, it returns nothing: then this ends the pass, the fields that are shown are valid, but may be
-  /// old or new, and no errors are known from before.
+  /// asked once the field is fitted and later between parts of the work, it returns nothing: then this ends the pass, and no errors
+  /// are known from before.
   std::optional<ErrorEstimate> estimate(const std::function<bool()>& gives_up = [] { return false; });
   /// Keeps the errors that were found for the next pass, which is faster if little is refined or moved in between. To be called
   /// between estimate() and refine().
@@ -114,7 +114,7 @@ class Pass {
   };
   ChangedLeaves changed_leaves(std::span<const SmoothNeighbours> neighbours) const;
   void move_field();
-  bool fit_field_smoothly(std::span<const SmoothNeighbours> neighbours, const std::function<bool()>& gives_up);
+  void fit_field_smoothly(std::span<const SmoothNeighbours> neighbours);
   void find_misfits(std::span<const double> irradiance);
   void find_slivers(std::span<const double> irradiance);
   SplitError error_at_openings(NodeIndex row, std::span<const double> irradiance) const;

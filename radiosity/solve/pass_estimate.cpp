@@ -281,11 +281,9 @@ std::optional<ErrorEstimate> Pass::estimate(const std::function<bool()>& gives_u
   };
   exchange_->forget_directions();  // memory is highest from here on, and few passes go on exchanging
   const auto neighbours = state_.forests.row_neighbours(system_->rows());
-  if (state_.rows.carry_light()) {
-    if (!fit_field_smoothly(neighbours, gives_up) || state_.ranks.any_of(gives_up())) return give_up();
-  } else {
-    find_changed_rows(neighbours);
-  }
+  if (state_.rows.carry_light()) fit_field_smoothly(neighbours);
+  else find_changed_rows(neighbours);
+  if (state_.ranks.any_of(gives_up())) return give_up();
   ErrorEstimate error;
   estimate_rows(error, neighbours);
   if (state_.ranks.any_of(gives_up())) return give_up();

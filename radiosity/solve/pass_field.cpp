@@ -59,12 +59,11 @@ Pass::RowView Pass::view_of(NodeIndex node, const LightByLeaf& radiosity) const 
 
 void Pass::show_smoothly() {
   if (!state_.rows.carry_light()) return;
-  fit_field_smoothly(state_.forests.row_neighbours(system_->rows()), [] { return false; });
+  fit_field_smoothly(state_.forests.row_neighbours(system_->rows()));
 }
 
-/// Fits the field of the rows that have changed; that of the others is shifted with the irradiance of the row. Returns false if
-/// it gave up: then no field was fitted anew.
-bool Pass::fit_field_smoothly(std::span<const SmoothNeighbours> neighbours, const std::function<bool()>& gives_up) {
+/// Fits the field of the rows that have changed; that of the others is shifted with the irradiance of the row.
+void Pass::fit_field_smoothly(std::span<const SmoothNeighbours> neighbours) {
   shows_irradiance_ = false;
   find_changed_rows(neighbours);
   const auto rows = system_->rows();
@@ -88,14 +87,12 @@ bool Pass::fit_field_smoothly(std::span<const SmoothNeighbours> neighbours, cons
     samples[n] = view.quarters;
     if (place_among_changed[n] != not_changed) strata_[place_among_changed[n]] = view.strata;
   });
-  if (state_.ranks.any_of(gives_up())) return false;
   const auto take = [&](std::span<const std::uint32_t> places, std::span<const FieldFit> fits) {
     std::vector<NodeIndex> of(places.size());
     std::ranges::transform(places, of.begin(), [&](std::uint32_t place) { return sampled[place]; });
     state_.field.set_fits(of, fits);
   };
   fit_field(state_.forests.rows(), sampled, beside, samples, state_.forests.row_centres(), wanted, take, state_.ranks);
-  return true;
 }
 
 }  // namespace alvor

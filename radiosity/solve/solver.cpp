@@ -197,7 +197,7 @@ class Run {
     };
     const auto error = pass_->estimate(gives_up);
     if (!error) {
-      must_leave_pass();
+      if (must_leave_pass() && requests_.reason() == StopReason::time_limit) publish();  // with the error that was told before
       return false;
     }
     is_.error = *error;
