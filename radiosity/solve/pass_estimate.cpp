@@ -53,9 +53,8 @@ double squared(double x) { return x * x; }
 /// Returns by how much a field changes along u and along v of a patch, squared and summed; emission units squared.
 double squared_change(const FieldFit& fit, const BaseMesh& mesh, const PatchShape& shape) {
   const auto corners = corners_of(mesh, shape);
-  const Vec3 along_u = corners[1] - corners[0], along_v = corners[shape.corner_count == 3 ? 2 : 3] - corners[0];
-  const Vec3 slope = fit.coefficient[1].mean() * fit.s + fit.coefficient[2].mean() * fit.t;
-  return squared(dot(slope, along_u)) + squared(dot(slope, along_v));
+  return squared(fit.change_along(corners[1] - corners[0])) +
+         squared(fit.change_along(corners[shape.corner_count == 3 ? 2 : 3] - corners[0]));
 }
 
 /// Returns by what errors are multiplied that were told as at least 0 each, so that they add up to the sum of errors of either

@@ -340,5 +340,16 @@ TEST(FieldEquations, FindAPlaneFromAnyNumberOfSamples) {
   }
 }
 
+TEST(FieldFit, ChangesAlongAWayByNoMoreThanItsRangeAllows) {
+  FieldFit fit;
+  fit.s = {1, 0, 0}, fit.t = {0, 1, 0};
+  fit.low = {1, 1, 1}, fit.high = {2, 2, 2};
+  for (const double slope : {0.5, 1e15}) {
+    fit.coefficient = {RelativeLight{1.5, 1.5, 1.5}, RelativeLight{slope, slope, slope}};
+    EXPECT_DOUBLE_EQ(fit.change_along({0.5, 0, 0}), slope < 1 ? 0.25 : 2);  // the range, half of its width wider on both sides
+    EXPECT_EQ(fit.change_along({0, 0.5, 0}), 0);
+  }
+}
+
 }  // namespace
 }  // namespace alvor
