@@ -247,7 +247,7 @@ class Fitter {
   template <class Solution>
   static void take_smooth(const Solution& solution, const Window& window, FieldFit& field) {
     take(solution, window, field);
-    if (solution.noise > 0) field.variance = solution.response * solution.misfit / solution.noise;
+    field.variance = solution.response * solution.misfit / solution.noise;
   }
   template <class Solution>
   static void take(const Solution& solution, const Window& window, FieldFit& field) {

@@ -145,8 +145,8 @@ class Pass {
   /// Multiple of the variance of origins that noise explains in their mean square: 1 + 2 sqrt(2 / 16), two standard deviations
   /// above the mean of sixteen squared normal deviations.
   static constexpr double noise_of_origins = 1.7;
-  /// Multiple of the leaves' squared errors that is added to the estimate, for shadows smaller than sixteen origins can show.
-  /// Measured on six scenes (ARCHITECTURE.md, Estimate, mark, refine).
+  /// Multiple of the leaves' squared errors that is added to the estimate: for shadows smaller than sixteen origins can show, and
+  /// for what the display errs beyond single leaves. Measured on six scenes (docs/design/estimate.md).
   static constexpr double unseen_detail = 2.5;
   /// A contrast that is seen within a patch, and the split that follows it best.
   struct Contrast {

@@ -46,13 +46,13 @@ Pass::Contrast Pass::squared_contrast(std::size_t place_of_leaf, Vec3 slope) con
   const SlopeOnRoot plane(root, slope, forests.leaf_centres()[leaf]);
   double sum = 0, squares = 0;
   AxisContrast by_axis(shape);
-  for (std::size_t o = 0; o < origins_per_patch; ++o) {
+  for (int o = 0; o < origins_per_patch; ++o) {
     if (hidden >> o & 1) continue;
-    const Uv at = shape.stratum_centre(static_cast<int>(o));
+    const Uv at = shape.stratum_centre(o);
     const double by_rows = state_.field.at(row, root.at(at.u, at.v)).mean();
     const double above_plane = direct.at_origin[o] + by_rows - plane.at(at);
     sum += above_plane, squares += squared(above_plane);
-    by_axis.add(static_cast<int>(o), above_plane);
+    by_axis.add(o, above_plane);
   }
   const int visible = origins_per_patch - std::popcount(hidden);
   if (visible == 0) return {};

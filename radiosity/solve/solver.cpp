@@ -116,8 +116,8 @@ class Run {
     if (reason == StopReason::parked || waits) save();
     // The first pass is shown as far as it came. Later ones are not: patches that were split and have no light of their own yet
     // are shown with their parent's, which was measured to be worse than the state before the split (slats_and_boxes: 2.1 %
-    // instead of 1.8 %).
-    if (reason == StopReason::time_limit && (is_.passes == 0 || live_.error_before_edit)) {
+    // instead of 1.8 %), but for one that came to its estimate: it is shown smoothly, with the error that was told before.
+    if (reason == StopReason::time_limit && (is_.passes == 0 || live_.error_before_edit || has_left_estimate_)) {
       live_.is_refreshing = false;
       publish();
     }
@@ -197,7 +197,8 @@ class Run {
     };
     const auto error = pass_->estimate(gives_up);
     if (!error) {
-      if (must_leave_pass() && requests_.reason() == StopReason::time_limit) publish();  // with the error that was told before
+      has_left_estimate_ = true;
+      must_leave_pass();  // asks, so that all ranks know the reason
       return false;
     }
     is_.error = *error;
@@ -430,7 +431,8 @@ class Run {
   Ranks& ranks_;
   StopRequests requests_{control_, clock_, options_.time_limit_s + live_.edited_at_s};
   std::optional<Pass> pass_{state_};
-  bool has_stalled_ = false;  // the last exchange ended before it converged
+  bool has_stalled_ = false;        // the last exchange ended before it converged
+  bool has_left_estimate_ = false;  // the last pass gave up its estimate, after its field was fitted
   double published_at_ = 0;
 };
 

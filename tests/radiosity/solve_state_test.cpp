@@ -27,11 +27,16 @@ void expect_tiling(const BaseMesh& mesh, std::vector<LeafValue> leaves) {
   EXPECT_NEAR(covered, roots, 1e-9 * roots);
 }
 
+/// Takes a pass up to its estimate.
+void exchange_down_to(Pass& pass, double unshot) {
+  pass.prepare();
+  while (pass.unshot_fraction() > unshot) pass.exchange().sweep();
+}
+
 /// Takes the state through one pass. Returns whether it was refined.
 bool run_pass(SolveState& state) {
   Pass pass(state);
-  pass.prepare();
-  while (pass.unshot_fraction() > 1e-3) pass.exchange().sweep();
+  exchange_down_to(pass, 1e-3);
   pass.estimate();
   return pass.refine();
 }
@@ -219,8 +224,7 @@ TEST(SolveState, ASteepFieldOfRowsIsNoEdgeOfAShadow) {
   SolveState state(mesh, {.max_leaves = 20'000}, budget);
   for (int pass = 0; pass < 3; ++pass) ASSERT_TRUE(run_pass(state));
   Pass pass(state);
-  pass.prepare();
-  while (pass.unshot_fraction() > 1e-6) pass.exchange().sweep();
+  exchange_down_to(pass, 1e-6);
   const ErrorEstimate estimate = pass.estimate().value();
   double squared_change = 0, power = 0, area = 0;  // from side to side of a row
   for (const NodeIndex row : state.forests.rows().leaves()) {
@@ -238,8 +242,7 @@ TEST(SolveState, AnEstimateThatIsBrokenOffTellsNothingAndTheStateGoesOn) {
   const auto never = [] { return false; };
   const auto estimate_of = [&](SolveState& state, const std::function<bool()>& gives_up) {
     Pass pass(state);
-    pass.prepare();
-    while (pass.unshot_fraction() > 1e-6) pass.exchange().sweep();
+    exchange_down_to(pass, 1e-6);
     const auto estimate = pass.estimate(gives_up);
     EXPECT_EQ(pass.leaf_errors({}).empty(), !estimate);
     return estimate;
