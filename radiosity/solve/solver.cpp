@@ -4,6 +4,7 @@
 #include "radiosity/solve/cpu_clock.h"
 #include "radiosity/solve/live_solve.h"
 #include "radiosity/solve/solve_clock.h"
+#include "radiosity/solve/step_publisher.h"
 #include "radiosity/solve/stop_requests.h"
 
 #include <tbb/task_arena.h>
@@ -35,9 +36,6 @@ constexpr double final_remaining = 1e-6;
 // Multiple of the tolerance: after an estimated error below it the next pass is taken to be the last. Chosen; half: the same,
 // double: the same (docs/design/constants.md).
 constexpr double near_the_end = 1.5;
-// Share of the estimated error by which a display may differ from the solution. Squares add, so a display errs by at most
-// sqrt(1 + 0.5^2) = 1.12 times the estimated error. Chosen; half and double give the same solutions (docs/design/constants.md).
-constexpr double displayed_error = 0.5;
 // Share of the lowest error so far that a pass without splits must get below to count as a gain. Chosen; half and double give the
 // same solutions (docs/design/constants.md).
 constexpr double worth_going_on = 0.98;
@@ -47,12 +45,6 @@ constexpr int most_idle_passes = 4;
 // Share of the unshot power at the last publication below which an exchange publishes again. Chosen; half and double give the
 // same solutions (docs/design/constants.md).
 constexpr double publish_when = 0.75;
-// Largest share of the time that may go into steps that only show progress. Chosen; half and double give the same solutions
-// (docs/design/constants.md).
-constexpr double publishing_share = 0.1;
-// Number of first steps that are published whatever they cost. Chosen; half and double give the same solutions
-// (docs/design/constants.md).
-constexpr std::uint64_t always_published = 12;
 
 // Share of the tolerance down to which a pass refines. Chosen: the tolerance is reached in one pass more often than with 1.
 constexpr double well_within = 0.9;
@@ -98,9 +90,9 @@ class Run {
   Run(const Run&) = delete;
 
   SolveOutcome run() {
-    if (log_.head() == 0) publish();
+    if (log_.head() == 0) publisher_.publish(*pass_);
     if (state_.has_unmended_move()) {  // objects are seen where they are, in the light of before
-      publish(has_published_leaves() ? Values::as_published : Values::of_state);
+      publisher_.publish_moved(*pass_);
       requests_.heed_edits(false);
       state_.mend_moved();
     }
@@ -119,7 +111,7 @@ class Run {
     // instead of 1.8 %), but for one that came to its estimate: it is shown smoothly, with the error that was told before.
     if (reason == StopReason::time_limit && (is_.passes == 0 || live_.error_before_edit || has_left_estimate_)) {
       live_.is_refreshing = false;
-      publish();
+      publisher_.publish(*pass_);
     }
     const double cpu = cpu_s_of_all();
     note_time();
@@ -131,7 +123,7 @@ class Run {
  private:
   /// Shows the light of a solve that had ended, which an edit has multiplied by one factor. Relative errors are what they were.
   StopReason show_scaled() {
-    publish();
+    publisher_.publish(*pass_);
     live_.is_scaled = false;
     return *live_.ended_with;
   }
@@ -185,7 +177,7 @@ class Run {
   bool pass() {
     if (!light()) return false;
     if (live_.error_before_edit) {
-      publish();  // direct light heeds the edit, and how far indirect light is off is not known yet
+      publisher_.publish(*pass_);  // direct light heeds the edit, and how far indirect light is off is not known yet
       if (live_.follows_closely && is_edited_soon()) return false;
     }
     pass_->begin_exchange();
@@ -212,7 +204,7 @@ class Run {
     expect_agreement();
     by_place_ = pass_->error_by_place(is_.error);
     live_.is_refreshing = false;
-    publish();
+    publisher_.publish(*pass_);
     ++is_.passes;
     return true;
   }
@@ -228,7 +220,7 @@ class Run {
       pass_->add_direct_light([this, began = clock_.elapsed_s()] {
         ++is_.shots;
         const bool is_slow_edit = live_.error_before_edit && clock_.elapsed_s() - began > worth_waiting * live_.publishing_s;
-        if ((is_.passes == 0 || is_slow_edit) && !requests_.made_here().any()) publish_if_due();
+        if ((is_.passes == 0 || is_slow_edit) && !requests_.made_here().any()) publisher_.publish_if_due(*pass_);
         save_if_due();
       });
     }
@@ -239,7 +231,7 @@ class Run {
   /// stopped or has stalled.
   StopReason converge(StopReason reason) {
     if (!exchange_after_estimate(remaining_at_end())) return requests_.reason();
-    publish();
+    publisher_.publish(*pass_);
     return is_stuck() ? StopReason::stalled : reason;
   }
 
@@ -261,7 +253,7 @@ class Run {
       if (exchange.unshot_power() >= publish_when * published) return true;
       published = exchange.unshot_power();
       pass_->show_what_came_since();  // also where it is not published: the sums must not depend on the time
-      publish_if_due();
+      publisher_.publish_if_due(*pass_);
       return true;
     });
     has_stalled_ = end == Settling::stalled;
@@ -275,55 +267,6 @@ class Run {
     is_.error.unshot = pass_->exchange().remaining_error();
     account();
     return true;
-  }
-
-  /// Publishes a step that only shows progress, if it is one of the first twelve or publishing takes less than a tenth of the
-  /// time.
-  void publish_if_due() {
-    if (!ranks_.is_first()) return;
-    const bool is_early = log_.head() < always_published;
-    if (is_early || clock_.elapsed_s() - published_at_ > live_.publishing_s / publishing_share) publish();
-  }
-
-  /// Returns whether the log has the leaves of this state, with the values that were published last.
-  bool has_published_leaves() const {
-    return live_.published_revision == log_.head() && live_.published_leaves == state_.leaf_count();
-  }
-
-  /// Which values of leaves a step has: those of the state, or none, where the log keeps those that it has.
-  enum class Values { of_state, as_published };
-  void publish(Values values = Values::of_state) {
-    if (!ranks_.is_first() || live_.is_refreshing) return;
-    const double before = clock_.elapsed_s();
-    Step step;
-    step.elapsed_s = before;
-    step.shots = is_.shots;
-    step.rays = budget_.rays();
-    step.leaves = state_.leaf_count();
-    if (live_.is_scaled) step.unshot_fraction = log_.last_step().unshot_fraction;
-    else if (!live_.error_before_edit || pass_->is_exchanging()) step.unshot_fraction = pass_->unshot_fraction();
-    step.estimated_error = is_.error.total();
-    step.unlit_fraction = state_.direct.unlit_fraction();
-    step.area_within = live_.error_before_edit ? 0 : by_place_.area_within;  // not known yet
-    step.edits = control_.edits;
-    step.is_provisional = live_.error_before_edit.has_value();
-    step.displayed_error = displayed_error * std::min(1.0, live_.error_before_edit.value_or(is_.error.total()));
-    if (state_.plan.needs(Feature::ambient_display)) step.ambient_irradiance = pass_->ambient_irradiance();
-    log_.publish(values == Values::of_state ? pass_->leaf_values() : std::vector<LeafValue>(), step, leaf_errors());
-    live_.published_revision = log_.head();
-    live_.published_leaves = step.leaves;
-    requests_.heed_edits(true);
-    published_at_ = clock_.elapsed_s();
-    if (values == Values::of_state) live_.publishing_s = published_at_ - before;
-    if (options_.step_pause_s > 0) clock_.pause(options_.step_pause_s, [this] { return requests_.made_here().any(); });
-  }
-
-  /// Returns the told errors of leaves; none where they are not known.
-  std::vector<float> leaf_errors() {
-    if (live_.is_scaled) return live_.told_errors;
-    std::vector<float> errors = pass_->leaf_errors(is_.error);
-    if (!errors.empty() && control_.live) live_.told_errors = errors;
-    return errors;
   }
 
   /// Collective.
@@ -430,10 +373,10 @@ class Run {
   const CpuClock& cpu_;
   Ranks& ranks_;
   StopRequests requests_{control_, clock_, options_.time_limit_s + live_.edited_at_s};
+  StepPublisher publisher_{live_, log_, control_, clock_, requests_};
   std::optional<Pass> pass_{state_};
   bool has_stalled_ = false;        // the last exchange ended before it converged
   bool has_left_estimate_ = false;  // the last pass gave up its estimate, after its field was fitted
-  double published_at_ = 0;
 };
 
 tbb::task_arena::priority priority_of(SolvePriority priority) {
