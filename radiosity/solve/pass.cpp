@@ -60,10 +60,15 @@ void Pass::add_direct_light(const std::function<void()>& after_each) {
   if (state_.direct.waiting_power() == 0) state_.scale_field_to_direct_light();
 }
 
+void Pass::find_system(const std::function<bool()>& gives_up) {
+  assert(stage_ == Stage::tracing);
+  system_.emplace(state_, gives_up);
+}
+
 Exchange& Pass::begin_exchange() {
   assert(stage_ == Stage::tracing);
+  if (!system_) find_system();
   stage_ = Stage::exchanging;
-  system_.emplace(state_);
   exchange_ = system_->begin_exchange();
   return *exchange_;
 }

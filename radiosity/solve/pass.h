@@ -42,11 +42,14 @@ class Pass {
   /// Adds direct light to the leaves whose rows are traced, or where it is known from before (DirectField::add_new), calling
   /// `after_each` as above.
   void add_direct_light(const std::function<void()>& after_each = [] {});
+  /// Finds in which leaves the rays of all rows ended, for begin_exchange(), which otherwise does it itself. If `gives_up`
+  /// returns true, it returns early: then this ends the pass. Asked from any thread.
+  void find_system(const std::function<bool()>& gives_up = [] { return false; });
   /// Returns an exchange of light that begins with what the previous pass found. The caller calls its sweep().
   Exchange& begin_exchange();
   /// Fits the smooth field that is shown and returns the estimated error. If `gives_up` returns true on any rank, where it is
-  /// asked once the field is fitted and later between parts of the work, it returns nothing: then this ends the pass, and no errors
-  /// are known from before.
+  /// asked once the field is fitted and later between parts of the work, it returns nothing: then this ends the pass, and no
+  /// errors are known from before.
   std::optional<ErrorEstimate> estimate(const std::function<bool()>& gives_up = [] { return false; });
   /// Keeps the errors that were found for the next pass, which is faster if little is refined or moved in between. To be called
   /// between estimate() and refine().

@@ -10,7 +10,7 @@
 
 namespace alvor {
 
-PassSystem::PassSystem(SolveState& state)
+PassSystem::PassSystem(SolveState& state, const std::function<bool()>& gives_up)
     : state_(state),
       rows_(state.forests.all_rows()),
       leaves_(state.forests.all_leaves()),
@@ -21,7 +21,7 @@ PassSystem::PassSystem(SolveState& state)
   tbb::parallel_for(std::size_t{0}, patches_.size(), [this](std::size_t p) { describe_patch(p); });
   find_patches_behind();
   describe_places();
-  if (state.rows.carry_light()) state.rows.find_hit_leaves(rows_, deal_);
+  if (state.rows.carry_light()) state.rows.find_hit_leaves(rows_, deal_, gives_up);
 }
 
 /// Gives each patch its leaves. Rows and leaves are both sorted by id, and each leaf lies within a row.

@@ -5,6 +5,7 @@
 #include "radiosity/exchange/shooting.h"
 #include "radiosity/solve/solve_state.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -15,7 +16,8 @@ namespace alvor {
 /// leaf's place is its index in that list. Borrows the state, which must not be refined meanwhile.
 class PassSystem {
  public:
-  explicit PassSystem(SolveState& state);
+  /// If `gives_up` returns true, the leaves of hits are not all found, and the system must not be used. Asked from any thread.
+  PassSystem(SolveState& state, const std::function<bool()>& gives_up);
   PassSystem(const PassSystem&) = delete;  // exchanges borrow its lists
 
   std::span<const ShootingPatch> patches() const { return patches_; }

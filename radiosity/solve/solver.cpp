@@ -180,7 +180,10 @@ class Run {
       publisher_.publish(*pass_);  // direct light heeds the edit, and how far indirect light is off is not known yet
       if (live_.follows_closely && is_edited_soon()) return false;
     }
+    pass_->find_system([this] { return requests_.made_here().break_off(); });
+    if (requests_.ask().break_off()) return false;
     pass_->begin_exchange();
+    if (requests_.ask().break_off()) return false;
     if (!exchange_down_to(remaining_at_estimate())) return false;
     if (must_leave_pass()) return false;  // an exchange without steps has not asked
     // The first pass tells how large the error is, even if that takes longer than the limit.

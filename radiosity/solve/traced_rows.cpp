@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 
 namespace alvor {
@@ -254,11 +255,15 @@ double TracedRows::gap_before(NodeIndex row) {
   return gaps_[row];
 }
 
-void TracedRows::find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal) {
+void TracedRows::find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal, const std::function<bool()>& gives_up) {
   const std::size_t nodes = forests_.leaves().node_count();
   if (all_found_among_ == nodes) return;
-  deal.for_each_own(ranks_, rows.size(), [&](std::size_t n) { find_hit_leaves_of(rows[n]); });
-  all_found_among_ = nodes;
+  std::atomic<bool> has_given_up = false;
+  deal.for_each_own(ranks_, rows.size(), [&](std::size_t n) {
+    if (gives_up()) has_given_up = true;
+    else find_hit_leaves_of(rows[n]);
+  });
+  if (!has_given_up) all_found_among_ = nodes;
 }
 
 // Leaves are only ever split, so the look-up of each hit starts at the leaf that it found last.

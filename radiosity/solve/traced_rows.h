@@ -8,6 +8,7 @@
 #include "radiosity/solve/hit_boxes.h"
 #include "radiosity/solve/moved_roots.h"
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -79,8 +80,9 @@ class TracedRows {
   double gap_before(NodeIndex row);
 
   /// Finds the leaves on which the hits of rows lie now, for leaves_hit(). Does nothing where no leaf was split and no row has
-  /// other hits since. Requires: all leaves of the row forest, and their deal().
-  void find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal);
+  /// other hits since. Where `gives_up` returns true, which is asked from any thread, it leaves out the rest of the rows.
+  /// Requires: all leaves of the row forest, and their deal().
+  void find_hit_leaves(std::span<const NodeIndex> rows, const Deal& deal, const std::function<bool()>& gives_up);
 
   /// Keeps a box around the hits of each row from now on, so that note_moved() passes over most rows at once. Requires: one rank;
   /// nothing is traced.

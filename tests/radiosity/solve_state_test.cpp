@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -180,7 +181,13 @@ TEST(SolveState, LeavesOfHitsAreFoundAgainWhereALeafWasSplitOrARowHasOtherHits) 
   expect_found("traced");
   expect_found("as before");
   for (const NodeIndex leaf : std::vector(state.forests.all_leaves())) ASSERT_TRUE(state.split_leaf(leaf));
-  expect_found("leaves split");
+  std::atomic<int> asked = 0;
+  Pass(state).find_system([&] { return ++asked > 3; });
+  EXPECT_TRUE(std::ranges::any_of(state.forests.all_rows(), [&](NodeIndex row) {
+    const auto leaves = state.rows.leaves_hit(row);
+    return std::ranges::any_of(leaves, [&](NodeIndex leaf) { return !state.forests.leaves().is_leaf(leaf); });
+  })) << "the look-up has not given up";
+  expect_found("leaves split, and a look-up that gave up");
   state.rows.want_rays(state.forests.all_rows());
   Pass(state).trace_rows();
   expect_found("rays added");
