@@ -1,6 +1,7 @@
 #include "radiosity/solve/step_publisher.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace alvor {
 

@@ -2,14 +2,16 @@
 // Publishes the steps of a solve in its log.
 
 #include "radiosity/solve/live_solve.h"
+#include "radiosity/solve/solve_clock.h"
 #include "radiosity/solve/stop_requests.h"
+#include "solution/solution_log.h"
 
 #include <vector>
 
 namespace alvor {
 
-/// Makes steps of the state of a solve and its progress. Only the first rank has a log; the others publish nothing. Borrows all
-/// that it is made with. Used by one thread at a time.
+/// Publishes the state of a solve and its progress, step by step. Does nothing on ranks other than the first. Borrows all that it
+/// is made with. Used by one thread at a time.
 class StepPublisher {
  public:
   StepPublisher(LiveSolve& live, SolutionLog& log, const SolveControl& control, SolveClock& clock, StopRequests& requests)
