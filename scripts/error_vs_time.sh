@@ -6,12 +6,12 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh
-scripts/build.sh error_vs_time office_block
+scripts/build.sh alvor error_vs_time office_block
 
 curves=out/error_vs_time figures=docs/error-vs-time
 rm -f "$curves"/*.dat
 mkdir -p "$curves/scenes"
-for faces in 5000 50000; do
+for faces in 422 5000 50000; do
   build/release/bin/office_block --faces "$faces" -o "$curves/scenes/office_$faces.obj"
 done
 build/release/bin/error_vs_time "$@"

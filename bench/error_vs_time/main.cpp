@@ -1,5 +1,6 @@
 // error_vs_time [--help]: measures error against run time and writes docs/error-vs-time.md, except its pictures.
 
+#include "bench/error_vs_time/contest/peak_memory.h"
 #include "bench/error_vs_time/page/curves.h"
 #include "bench/error_vs_time/page/page.h"
 #include "import/base/whole_file.h"
@@ -14,10 +15,18 @@ namespace {
 using namespace alvor;
 using namespace alvor::bench;
 
+constexpr const char* small_scene = "office_422.obj";
+
+std::uint64_t memory_of_small_solve(const Settings& settings) {
+  const auto scene = settings.made_scene_folder / small_scene;
+  return peak_memory_of(settings.alvor, {"solve", scene, "-o", settings.curve_folder / "office_422.alvor"});
+}
+
 // Measures all scenes. The yardstick is measured before each, to detect a machine that slows down meanwhile.
 Measurements measure(const Settings& settings) {
   const Announce announce = [](const std::string& line) { std::cerr << line << std::endl; };
   Measurements measured;
+  if (!settings.is_trial) measured.peak_memory = memory_of_small_solve(settings);  // first, while this process is small
   for (const SceneSettings& scene : settings.scenes) {
     measured.yardsticks.push_back(time_yardstick(settings));
     measured.contests.push_back(contest(scene, settings, announce));

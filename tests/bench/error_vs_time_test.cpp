@@ -2,6 +2,7 @@
 
 #include "bench/error_vs_time/contest/figures.h"
 #include "bench/error_vs_time/contest/fixed_mesh_shooting.h"
+#include "bench/error_vs_time/contest/peak_memory.h"
 #include "bench/error_vs_time/contest/truth.h"
 #include "bench/error_vs_time/contest/truth_file.h"
 #include "bench/error_vs_time/page/comparisons.h"
@@ -92,13 +93,26 @@ TEST(Verdict, OnTheSlopeIsOfTheFirstAndTheLastPoint) {
 TEST(Verdict, OnEstimatesNeedsNearlyAllCloseAndNoneFar) {
   std::vector<double> ratios(19, 1.2);
   ratios.push_back(0.55);
-  EXPECT_EQ(judge_estimates(ratios).verdict, Verdict::met);
+  EXPECT_EQ(judge_estimates("of a test", ratios).verdict, Verdict::met);
   ratios.push_back(1.8);  // now 2 of 21 are not close
-  EXPECT_EQ(judge_estimates(ratios).verdict, Verdict::missed);
-  EXPECT_EQ(judge_estimates(std::vector<double>(100, 1.0)).verdict, Verdict::met);
+  EXPECT_EQ(judge_estimates("of a test", ratios).verdict, Verdict::missed);
+  EXPECT_EQ(judge_estimates("of a test", std::vector<double>(100, 1.0)).verdict, Verdict::met);
   std::vector<double> with_one_far(100, 1.0);
   with_one_far.front() = 2.1;
-  EXPECT_EQ(judge_estimates(with_one_far).verdict, Verdict::missed);
+  EXPECT_EQ(judge_estimates("of a test", with_one_far).verdict, Verdict::missed);
+}
+
+TEST(Verdict, OnMemoryNeedsLessThanHalfAGigabyte) {
+  EXPECT_EQ(judge_memory(499'000'000).verdict, Verdict::met);
+  EXPECT_EQ(judge_memory(500'000'000).verdict, Verdict::missed);
+}
+
+TEST(PeakMemory, IsThatOfTheProgram) {
+  constexpr std::uint64_t held = 64 << 20;
+  const std::string command = "x=$(head -c " + std::to_string(held) + " /dev/zero | tr '\\0' a)";
+  EXPECT_GT(peak_memory_of("/bin/sh", {"-c", command}), held);
+  EXPECT_THROW(peak_memory_of("/bin/sh", {"-c", "exit 3"}), std::runtime_error);
+  EXPECT_THROW(peak_memory_of("/nowhere/at all", {}), std::runtime_error);
 }
 
 TEST(Verdict, OnToldErrorsBoundsTheShareFromBothSides) {
@@ -161,6 +175,14 @@ TEST(EstimateRatios, LeaveOutWhatRanOutOfTime) {
   std::vector<MeasuredRun> runs{run_of(Contender::alvor, 0.1, 1, 0.1), run_of(Contender::alvor, 0.01, 1, 0.1)};
   runs.back().is_done = false;
   EXPECT_EQ(estimate_ratios(runs), std::vector<double>{2});
+}
+
+TEST(EstimateRatios, OfStoppedRunsAreThoseThatATimeLimitEnded) {
+  std::vector<MeasuredRun> runs{run_of(Contender::alvor, 0.1, 1, 0.1), run_of(Contender::until_time, 1, 1, 0.1),
+                                run_of(Contender::until_time, 2, 1, 0.1), run_of(Contender::to_leaves, 1000, 1, 0.1)};
+  for (MeasuredRun& run : runs) run.is_done = false;
+  runs[2].is_done = true;
+  EXPECT_EQ(estimate_ratios_of_stopped(runs), std::vector<double>{2});
 }
 
 SceneContest contest_of(std::vector<MeasuredRun> runs) {

@@ -170,29 +170,50 @@ Scene random_blockers(test::Dice& dice) {
   return scene;
 }
 
+/// Rays from each of sixteen points to random places of root 1, a round after the other.
+struct ShadowRays {
+  ShadowRays(const LocalScene& scene, const PatchPoints& points, std::uint32_t rounds)
+      : light(scene, 1, {1, 1, 1}), weights(rounds), blocked(rounds) {
+    std::vector<RayPacket> rays(rounds);
+    RandomStream random(7, PatchId::root(0));
+    for (std::uint32_t n = 0; n < rounds; ++n) {
+      ShadowAim aim{points, scene.root(0).normal, {}, rays[n], weights[n]};
+      for (Uv& at : aim.at) at = {random.next(), random.next()};
+      light.aim(aim, 0, RayPacket::width);
+    }
+    scene.visibility().occlusions(rays, blocked);
+  }
+  bool is_blocked(std::size_t round, std::size_t origin) const { return blocked[round] >> origin & 1; }
+
+  FaceLight light;
+  std::vector<std::array<float, RayPacket::width>> weights;
+  std::vector<std::uint16_t> blocked;
+};
+
 /// Sets `mean` and `variance` to what `rounds` rays from each point find of root 1.
 void look_by_rays(const LocalScene& scene, const PatchPoints& points, std::uint32_t rounds, std::array<double, 16>& mean,
                   std::array<double, 16>& variance) {
-  const FaceLight light(scene, 1, {1, 1, 1});
-  std::vector<RayPacket> rays(rounds);
-  std::vector<std::array<float, RayPacket::width>> weights(rounds);
-  std::vector<std::uint16_t> blocked(rounds);
-  RandomStream random(7, PatchId::root(0));
-  for (std::uint32_t n = 0; n < rounds; ++n) {
-    ShadowAim aim{points, scene.root(0).normal, {}, rays[n], weights[n]};
-    for (Uv& at : aim.at) at = {random.next(), random.next()};
-    light.aim(aim, 0, RayPacket::width);
-  }
-  scene.visibility().occlusions(rays, blocked);
+  const ShadowRays rays(scene, points, rounds);
   for (std::size_t o = 0; o < mean.size(); ++o) {
     double sum = 0, squares = 0;
     for (std::uint32_t n = 0; n < rounds; ++n) {
-      const double found = (blocked[n] >> o & 1) ? 0 : light.sample_scale(1) * weights[n][o];
+      const double found = rays.is_blocked(n, o) ? 0 : rays.light.sample_scale(1) * rays.weights[n][o];
       sum += found, squares += found * found;
     }
     mean[o] = sum / rounds;
     variance[o] = (squares / rounds - mean[o] * mean[o]) / (rounds - 1);
   }
+}
+
+/// Returns the light that rays from the points to root 1 would bring if nothing stood between, less what they bring, mean over
+/// the points, as a form factor.
+double lost_by_rays(const LocalScene& scene, const PatchPoints& points, std::uint32_t rounds) {
+  const ShadowRays rays(scene, points, rounds);
+  double lost = 0;
+  for (std::uint32_t n = 0; n < rounds; ++n)
+    for (std::size_t o = 0; o < RayPacket::width; ++o)
+      if (rays.is_blocked(n, o)) lost += rays.light.sample_scale(1) * rays.weights[n][o];
+  return lost / (rounds * RayPacket::width);
 }
 
 /// Returns the middles of the strata of root 0, above it as origins of rays are.
@@ -221,22 +242,28 @@ int disagreements(const LocalScene& scene, const PatchPoints& points, const Exac
 }
 
 // Close before a light few rays bring most of the irradiance, so that their variance is found too small: many more rays decide.
-TEST(ExactShadow, AgreesWithRaysOnRandomPairs) {
+TEST(ExactShadow, AgreesWithRaysOnTenThousandRandomPairs) {
   test::Dice dice(3);
-  int shadowed = 0;
-  for (int n = 0; n < 5000; ++n) {
+  int clear = 0, shadowed = 0;
+  for (int n = 0; clear + shadowed < 10'000; ++n) {
+    ASSERT_LT(n, 100'000);
     View view(random_blockers(dice));
     if (view.mesh().roots().size() < 3 || view.mesh().roots()[1].material != 1) continue;
     const PatchPoints points = middles_of_strata(view.local());
     const ExactView seen = view.shadow().view(view.local(), shape_of(view.mesh(), PatchId::root(0)), 0, points,
                                               FaceLight(view.local(), 1, {1, 1, 1}));
+    if (seen.kind == ExactView::Kind::clear) {
+      ++clear;
+      EXPECT_LT(lost_by_rays(view.local(), points, 16), 1e-5) << "scene " << n;
+    }
     if (seen.kind != ExactView::Kind::shadowed) continue;
     ++shadowed;
     for (const float at_origin : seen.at_origin) ASSERT_TRUE(at_origin >= 0 && at_origin <= 1) << "scene " << n;
     if (disagreements(view.local(), points, seen, 256) == 0) continue;
     EXPECT_EQ(disagreements(view.local(), points, seen, 1 << 16), 0) << "scene " << n;
   }
-  EXPECT_GT(shadowed, 700);
+  EXPECT_GT(clear, 1000);
+  EXPECT_GT(shadowed, 1000);
 }
 
 /// Returns a black room with a deep window under a clear sky, with boxes and quads in it and before the window. Face 0 is the

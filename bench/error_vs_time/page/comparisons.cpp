@@ -46,4 +46,11 @@ std::vector<double> estimate_ratios(std::span<const MeasuredRun> runs) {
   return ratios;
 }
 
+std::vector<double> estimate_ratios_of_stopped(std::span<const MeasuredRun> runs) {
+  std::vector<double> ratios;
+  for (const MeasuredRun& run : runs)
+    if (run.contender == Contender::until_time && !run.is_done) ratios.push_back(run.estimated / run.nrmse.value);
+  return ratios;
+}
+
 }  // namespace alvor::bench

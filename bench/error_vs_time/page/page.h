@@ -10,6 +10,7 @@ namespace alvor::bench {
 struct Measurements {
   std::vector<SceneContest> contests;
   std::vector<Yardstick> yardsticks;  ///< all measurements of it; not empty
+  std::uint64_t peak_memory = 0;      ///< see judge_memory(), bytes; 0 if it was not measured
 
   Spread yardstick_spread_s() const;
   double yardstick_s() const { return yardstick_spread_s().median; }

@@ -37,6 +37,7 @@ constexpr TimeTarget time_targets[]{
 constexpr const char* tolerance_scenes[]{"slats_and_boxes", "vault", "enfilade"};
 constexpr const char* slope_scene = "furnished_room";
 constexpr double slope_from = 0.05;         // the largest error of the curve's part that is judged
+constexpr double most_memory_mb = 500;
 constexpr double most_rises = 0.05;         // of the published steps
 constexpr double most_leaves_at = 0.02, most_leaves = 80'000;  // at this tolerance, in slope_scene
 
@@ -143,9 +144,9 @@ Judgement judge_slope(std::span<const CurvePoint> curve) {
   return judgement;
 }
 
-Judgement judge_estimates(std::span<const double> ratios) {
+Judgement judge_estimates(std::string_view solves, std::span<const double> ratios) {
   Judgement judgement{"Estimate over truth within " + figure(estimate_close) + " times in " + tolerance_percent(most_close) +
-                      " of the solves, and never beyond " + figure(estimate_limit) + " times"};
+                      " of the solves " + std::string(solves) + ", and never beyond " + figure(estimate_limit) + " times"};
   if (ratios.empty()) return judgement;
   const auto within = [&](double factor) {
     return std::ranges::count_if(ratios, [&](double ratio) { return ratio >= 1 / factor && ratio <= factor; });
@@ -158,6 +159,12 @@ Judgement judge_estimates(std::span<const double> ratios) {
   const bool is_met = static_cast<double>(close) >= most_close * count && static_cast<std::size_t>(allowed) == ratios.size();
   judgement.verdict = is_met ? Verdict::met : Verdict::missed;
   return judgement;
+}
+
+Judgement judge_memory(std::uint64_t bytes) {
+  const double megabytes = static_cast<double>(bytes) / 1e6;
+  return {"A room of about 420 faces is solved in less than " + figure(most_memory_mb) + " MB, with no option but the scene",
+          plain(megabytes) + " MB", megabytes < most_memory_mb ? Verdict::met : Verdict::missed};
 }
 
 Judgement judge_rises(std::uint64_t rises, std::uint64_t steps) {
@@ -241,17 +248,19 @@ std::vector<Judgement> judge(std::span<const SceneContest> contests, double yard
   judgements.push_back(
       judge_slope(sloped ? part_for_slope(error_by_cpu(of(sloped->groups, Contender::alvor))) : std::vector<CurvePoint>{}));
   judgements.push_back(judge_leaves(sloped));
-  std::vector<double> ratios, within_two;
+  std::vector<double> ratios, of_stopped, within_two;
   std::uint64_t rises = 0, steps = 0;
   for (const SceneContest& held : contests) {
     std::ranges::copy(estimate_ratios(held.runs), std::back_inserter(ratios));
+    std::ranges::copy(estimate_ratios_of_stopped(held.runs), std::back_inserter(of_stopped));
     for (const MeasuredRun& run : held.runs) {
       if (run.contender != Contender::alvor) continue;
       rises += run.rises, steps += run.steps;
       if (run.threads == 1 && run.within_two == run.within_two) within_two.push_back(run.within_two);
     }
   }
-  judgements.push_back(judge_estimates(ratios));
+  judgements.push_back(judge_estimates("that reached their tolerance", ratios));
+  judgements.push_back(judge_estimates("that a time limit ended", of_stopped));
   judgements.push_back(judge_told_errors(within_two));
   judgements.push_back(judge_rises(rises, steps));
   for (Judgement (*judge_limits)(std::span<const SceneContest>) : {judge_overtime, judge_more_time, judge_mesh_limits})

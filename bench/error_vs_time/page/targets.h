@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace alvor::bench {
@@ -29,14 +30,17 @@ Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance);
 
 /// Judges the slope of an error against time from the first to the last point, in log-log.
 Judgement judge_slope(std::span<const CurvePoint> curve);
-/// Judges ratios of estimated over true error, by solve.
-Judgement judge_estimates(std::span<const double> ratios);
+/// Judges ratios of estimated over true error, by solve. `solves` says of which solves, in the plural.
+Judgement judge_estimates(std::string_view solves, std::span<const double> ratios);
+/// Judges the most memory, in bytes, that a solve of a room of about 420 faces held, with no option but the scene.
+Judgement judge_memory(std::uint64_t bytes);
 /// Judges which share of the points had errors within two of the told ones, by solve.
 Judgement judge_told_errors(std::span<const double> within_two);
 /// Judges how often the estimate of a published step is far above that of the step before.
 Judgement judge_rises(std::uint64_t rises, std::uint64_t steps);
 
-/// Returns the judgements of all targets, in order. `machine_gain` is the median of Measurements::two_threads_faster.
+/// Returns the judgements of all targets on the scenes, in order. `machine_gain` is the median of
+/// Measurements::two_threads_faster.
 std::vector<Judgement> judge(std::span<const SceneContest> contests, double yardstick_s, double machine_gain);
 /// Compares solves with two threads and with one. If even fully parallel work gained too little, a miss is blamed on the machine.
 Judgement judge_thread_gain(double one_s, double two_s, double machine_gain);
