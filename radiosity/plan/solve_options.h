@@ -37,7 +37,7 @@ struct SolveOptions {
   /// Names of objects of the mesh, or none. If any, the solve stops when that share of the visible area of these objects, and of
   /// those that hang from them, is within the tolerance, and it refines nothing else. Names that no object has count for nothing.
   std::vector<std::string> objects;
-  int max_depth = 10;  ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
+  int max_depth = 12;  ///< quadtree levels below the roots; 0 does not refine; <= PatchId::max_level
   std::uint64_t max_leaves = 200'000;
   double min_edge_m = 0;  ///< no split makes an edge shorter than this
   double time_limit_s = std::numeric_limits<double>::infinity();

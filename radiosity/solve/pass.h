@@ -171,6 +171,7 @@ class Pass {
     StrataSamples strata;
   };
   RowView view_of(NodeIndex row, const LightByLeaf& radiosity) const;
+  bool has_only_guided_weights(const TransportRow& row) const;
   OriginMisfit misfit_at_origins(NodeIndex row, const StrataSamples& strata) const;
   std::array<Vec3, origins_per_patch> places_of_origins(NodeIndex row, bool has_more_rounds) const;
   bool rows_tell_what_is_lost() const;

@@ -1,5 +1,6 @@
 // Fits the smooth field of indirect irradiance that is shown.
 
+#include "radiosity/estimate/origin_sample.h"
 #include "radiosity/rays/ray_source.h"
 #include "radiosity/solve/pass.h"
 
@@ -14,7 +15,38 @@ namespace {
 constexpr double stratified_noise = 0.4;
 constexpr std::uint32_t not_changed = ~0u;  // the place of a row among others that have changed
 
+/// Returns the sample of an origin whose rays were guided and all hit. `found` are the leaves that they hit.
+OriginSample guided_sample(const LightByLeaf& radiosity, std::span<const NodeIndex> found, std::span<const RgbF> weight) {
+  std::array<double, rays_per_origin> light, weights;
+  for (std::size_t h = 0; h < found.size(); ++h) {
+    light[h] = radiosity.sums(found.subspan(h, 1), {}).light.mean();
+    weights[h] = weight[h].mean();
+  }
+  return sample_of_guided(std::span(light).first(found.size()), std::span(weights).first(found.size()));
+}
+
+/// The rounds of rays that a stratum of a row has.
+struct StratumRounds {
+  double sum = 0, squares = 0, count = 0, noise_of_rays = 0;
+
+  void add(const OriginSample& round) {
+    sum += round.irradiance, squares += round.irradiance * round.irradiance, count += 1;
+    noise_of_rays += round.noise;
+  }
+  double mean() const { return sum / count; }
+  /// Returns the variance of the mean.
+  double noise() const {
+    return count > 1 ? std::max(0.0, squares / count - mean() * mean()) / (count - 1) : stratified_noise * noise_of_rays;
+  }
+};
+
 }  // namespace
+
+/// Returns whether the weights of a row's hits are those of guided rays alone, and all of its rays hit.
+bool Pass::has_only_guided_weights(const TransportRow& row) const {
+  return row.is_closed && !row.hit_weight.empty() && state_.rows.may_be_guided() && !state_.plan.needs(Feature::medium) &&
+         !state_.plan.needs(Feature::panes);
+}
 
 // In rows of several rounds of rays each stratum has the mean over its rounds, and its noise is found from how these differ. With
 // one round the noise is found from how the rays of the origin differ.
@@ -25,35 +57,25 @@ Pass::RowView Pass::view_of(NodeIndex node, const LightByLeaf& radiosity) const 
     view.quarters.fill({state_.field.irradiance(node), double(row.rays)});
     return view;
   }
-  struct Stratum {
-    double sum = 0, squares = 0, rounds = 0, noise_of_rays = 0;
-  };
-  std::array<Stratum, origins_per_patch> strata;
+  const bool is_guided = has_only_guided_weights(row);
+  std::array<StratumRounds, origins_per_patch> strata;
   std::size_t hit = 0;
   for (std::size_t o = 0; o < row.origin_hits.size(); ++o) {
     if (row.origin_hits[o] == TransportRow::not_sampled) continue;
     const std::span found = state_.rows.leaves_hit(node).subspan(hit, row.origin_hits[o]);
-    const auto [light, squares] =
-        radiosity.sums(found, row.hit_weight.empty() ? std::span<const RgbF>() : std::span(row.hit_weight).subspan(hit));
+    const auto weight = row.hit_weight.empty() ? std::span<const RgbF>() : std::span(row.hit_weight).subspan(hit);
+    const auto [light, squares] = radiosity.sums(found, weight);
     hit += found.size();
     QuarterSample& quarter = view.quarters[o % origins_per_patch / 4];
     quarter.rays += rays_per_origin;
     quarter.irradiance += light;
-    const double mean = light.mean() / rays_per_origin;
-    Stratum& stratum = strata[o % origins_per_patch];
-    stratum.sum += mean, stratum.squares += mean * mean, stratum.rounds += 1;
-    stratum.noise_of_rays += std::max(0.0, squares / rays_per_origin - mean * mean) / (rays_per_origin - 1);
+    strata[o % origins_per_patch].add(is_guided ? guided_sample(radiosity, found, weight)
+                                                : sample_of(light.mean(), squares, rays_per_origin));
   }
   for (QuarterSample& quarter : view.quarters)
     if (quarter.rays > 0) quarter.irradiance *= 1 / quarter.rays;
-  for (std::size_t k = 0; k < strata.size(); ++k) {
-    const Stratum& of = strata[k];
-    if (of.rounds == 0) continue;
-    const double mean = of.sum / of.rounds;
-    const double noise = of.rounds > 1 ? std::max(0.0, of.squares / of.rounds - mean * mean) / (of.rounds - 1)
-                                       : stratified_noise * of.noise_of_rays;
-    view.strata[k] = {static_cast<float>(mean), static_cast<float>(noise)};
-  }
+  for (std::size_t k = 0; k < strata.size(); ++k)
+    if (strata[k].count > 0) view.strata[k] = {static_cast<float>(strata[k].mean()), static_cast<float>(strata[k].noise())};
   return view;
 }
 

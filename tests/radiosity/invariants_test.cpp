@@ -98,16 +98,22 @@ TEST_P(Invariant, RowSumsAreAtMostOne) {
   }
 }
 
+// Shadow rays are sampled, so the power of one solve is off by about 5e-4 of what is emitted: the mean over solves is exact.
 TEST_P(Invariant, PowerIsNeitherMadeNorLost) {
   SolveOptions fine = options;
   fine.tolerance = 0.01;
   fine.max_leaves = 50'000;
-  const PowerBalance balance = solution_of(scene(), fine).balance;
   double emitted = 0;
   for (const BaseMesh mesh(scene()); const RootPatch& root : mesh.roots())
     emitted += root.area * mesh.materials()[root.material].emission.sum();
-  EXPECT_NEAR(balance.emitted, emitted, 1e-12 * emitted);
-  EXPECT_NEAR(balance.absorbed + balance.lost + balance.unshot, emitted, 1e-3 * emitted);
+  constexpr int solves = 8;
+  double found = 0;
+  for (fine.seed = 1; fine.seed <= solves; ++fine.seed) {
+    const PowerBalance balance = solution_of(scene(), fine).balance;
+    EXPECT_NEAR(balance.emitted, emitted, 1e-12 * emitted);
+    found += (balance.absorbed + balance.lost + balance.unshot) / solves;
+  }
+  EXPECT_NEAR(found, emitted, 5e-4 * emitted);
 }
 
 TEST_P(Invariant, EmissionTimesAPowerOfTwoGivesThatMultipleToTheByte) {

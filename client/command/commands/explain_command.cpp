@@ -77,7 +77,7 @@ void add_explain_command(CLI::App& app) {
   command.add_option("scene", options->scene, "A scene file; - is stdin")->required()->type_name("SCENE");
   add_format_option(command, options->format);
   command.add_flag("--json", options->json, "Print the plan as a JSON array");
-  command.add_option("--max-depth", options->max_depth, "Most levels of subdivision of the solve (10)")
+  command.add_option("--max-depth", options->max_depth, "Most levels of subdivision of the solve (12)")
       ->check(CLI::Range(0, PatchId::max_level));
   add_absorption_option(command, options->absorption);
   add_light_options(command, options->light);

@@ -146,7 +146,7 @@ void add_limits(CLI::App& command, SolveCommand& options) {
                   "nothing else; repeatable")
       ->type_name("OBJECT")
       ->allow_extra_args(false);
-  command.add_option("--max-depth", options.max_depth, "Most levels of subdivision; 0 means no refinement (10)")
+  command.add_option("--max-depth", options.max_depth, "Most levels of subdivision; 0 means no refinement (12)")
       ->check(CLI::Range(0, 15));
   command.add_option("--max-elements", options.max_elements, "Stop refining at this many leaves (200000)")->check(whole_from(1));
   command.add_option("--time-limit", options.time_limit_s, "Stop after this many seconds")->check(above_up_to(0, 1e9));
