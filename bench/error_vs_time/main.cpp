@@ -17,8 +17,10 @@ using namespace alvor::bench;
 
 constexpr const char* small_scene = "office_422.obj";
 
+/// Returns 0 if the scene was not made.
 std::uint64_t memory_of_small_solve(const Settings& settings) {
   const auto scene = settings.made_scene_folder / small_scene;
+  if (!std::filesystem::exists(scene)) return 0;
   return peak_memory_of(settings.alvor, {"solve", scene, "-o", settings.curve_folder / "office_422.alvor"});
 }
 

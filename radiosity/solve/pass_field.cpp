@@ -15,14 +15,13 @@ namespace {
 constexpr double stratified_noise = 0.4;
 constexpr std::uint32_t not_changed = ~0u;  // the place of a row among others that have changed
 
-/// Returns the sample of an origin whose rays were guided and all hit. `found` are the leaves that they hit.
-OriginSample guided_sample(const LightByLeaf& radiosity, std::span<const NodeIndex> found, std::span<const RgbF> weight) {
-  std::array<double, rays_per_origin> light, weights;
-  for (std::size_t h = 0; h < found.size(); ++h) {
-    light[h] = radiosity.sums(found.subspan(h, 1), {}).light.mean();
-    weights[h] = weight[h].mean();
-  }
-  return sample_of_guided(std::span(light).first(found.size()), std::span(weights).first(found.size()));
+/// Returns the sample of an origin of which all rays hit `found` with these weights, in a row whose irradiance is `around`.
+OriginSample guided_sample(const LightByLeaf& radiosity, std::span<const NodeIndex> found, std::span<const RgbF> weight,
+                           double around) {
+  GuidedOrigin origin(around);
+  for (std::size_t h = 0; h < found.size(); ++h)
+    origin.add(radiosity.sums(found.subspan(h, 1), {}).light.mean(), weight[h].mean());
+  return origin.sample();
 }
 
 /// The rounds of rays that a stratum of a row has.
@@ -42,7 +41,8 @@ struct StratumRounds {
 
 }  // namespace
 
-/// Returns whether the weights of a row's hits are those of guided rays alone, and all of its rays hit.
+/// Returns whether all rays of a row hit, and its weights come from no medium, pane or hemicube: each is 1, or that of a guided
+/// ray.
 bool Pass::has_only_guided_weights(const TransportRow& row) const {
   return row.is_closed && !row.hit_weight.empty() && state_.rows.may_be_guided() && !state_.plan.needs(Feature::medium) &&
          !state_.plan.needs(Feature::panes);
@@ -58,6 +58,7 @@ Pass::RowView Pass::view_of(NodeIndex node, const LightByLeaf& radiosity) const 
     return view;
   }
   const bool is_guided = has_only_guided_weights(row);
+  const double around = state_.field.irradiance(node).mean();
   std::array<StratumRounds, origins_per_patch> strata;
   std::size_t hit = 0;
   for (std::size_t o = 0; o < row.origin_hits.size(); ++o) {
@@ -69,7 +70,7 @@ Pass::RowView Pass::view_of(NodeIndex node, const LightByLeaf& radiosity) const 
     QuarterSample& quarter = view.quarters[o % origins_per_patch / 4];
     quarter.rays += rays_per_origin;
     quarter.irradiance += light;
-    strata[o % origins_per_patch].add(is_guided ? guided_sample(radiosity, found, weight)
+    strata[o % origins_per_patch].add(is_guided ? guided_sample(radiosity, found, weight, around)
                                                 : sample_of(light.mean(), squares, rays_per_origin));
   }
   for (QuarterSample& quarter : view.quarters)

@@ -98,7 +98,8 @@ TEST_P(Invariant, RowSumsAreAtMostOne) {
   }
 }
 
-// Shadow rays are sampled, so the power of one solve is off by about 5e-4 of what is emitted: the mean over solves is exact.
+// Shadow rays are sampled: the power of one solve is off by about 5e-4 (one standard deviation) of what is emitted, the mean of
+// eight by 1.8e-4, so that 5e-4 is nearly three of these.
 TEST_P(Invariant, PowerIsNeitherMadeNorLost) {
   SolveOptions fine = options;
   fine.tolerance = 0.01;
@@ -111,6 +112,7 @@ TEST_P(Invariant, PowerIsNeitherMadeNorLost) {
   for (fine.seed = 1; fine.seed <= solves; ++fine.seed) {
     const PowerBalance balance = solution_of(scene(), fine).balance;
     EXPECT_NEAR(balance.emitted, emitted, 1e-12 * emitted);
+    EXPECT_NEAR(balance.absorbed + balance.lost + balance.unshot, emitted, 2e-3 * emitted);
     found += (balance.absorbed + balance.lost + balance.unshot) / solves;
   }
   EXPECT_NEAR(found, emitted, 5e-4 * emitted);

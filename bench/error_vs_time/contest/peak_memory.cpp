@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <stdexcept>
 
 namespace alvor::bench {
@@ -26,8 +27,10 @@ std::uint64_t peak_memory_of(const std::filesystem::path& program, const std::ve
   if (failure != 0) throw std::runtime_error(words.front() + ": cannot be run");
   int status = 0;
   rusage used{};
-  if (wait4(child, &status, 0, &used) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw std::runtime_error(words.front() + ": failed");
+  pid_t ended;
+  do ended = wait4(child, &status, 0, &used);
+  while (ended < 0 && errno == EINTR);
+  if (ended != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error(words.front() + ": failed");
   return static_cast<std::uint64_t>(used.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 

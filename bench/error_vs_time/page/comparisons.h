@@ -38,7 +38,7 @@ ThreadGain gain_of_two_threads(std::span<const RunGroup> groups);
 
 /// Returns estimated over true error of the default strategy's runs on one thread that the time limit did not end.
 std::vector<double> estimate_ratios(std::span<const MeasuredRun> runs);
-/// Returns the same of the runs that a time limit ended.
+/// Returns estimated over true error of the `until_time` runs that did not reach their tolerance.
 std::vector<double> estimate_ratios_of_stopped(std::span<const MeasuredRun> runs);
 
 }  // namespace alvor::bench
