@@ -21,4 +21,4 @@ mapfile -t scenes < <(sed -n 's/^# //p' "$curves/estimates.dat")
 for scene in "${scenes[@]}"; do
   gnuplot -c bench/error_vs_time/scene.gnuplot "$curves/$scene.dat" "$figures/$scene.png" "$scene"
 done
-gnuplot -c bench/error_vs_time/estimates.gnuplot "$curves/estimates.dat" "$figures/estimates.png" "${scenes[@]}"
+gnuplot -c bench/error_vs_time/estimates.gnuplot "$curves/estimates.dat" "$figures/estimates.png" "${scenes[*]}"
