@@ -15,13 +15,14 @@ namespace {
 using namespace alvor;
 using namespace alvor::bench;
 
-constexpr const char* small_scene = "office_422.obj";
+constexpr const char* small_scene = "office_422";
 
 /// Returns 0 if the scene was not made.
 std::uint64_t memory_of_small_solve(const Settings& settings) {
-  const auto scene = settings.made_scene_folder / small_scene;
+  const std::string name = small_scene;
+  const auto scene = settings.made_scene_folder / (name + ".obj");
   if (!std::filesystem::exists(scene)) return 0;
-  return peak_memory_of(settings.alvor, {"solve", scene, "-o", settings.curve_folder / "office_422.alvor"});
+  return peak_memory_of(settings.alvor, {"solve", scene, "-o", settings.curve_folder / (name + ".alvor")});
 }
 
 // Measures all scenes. The yardstick is measured before each, to detect a machine that slows down meanwhile.

@@ -1,9 +1,9 @@
 #pragma once
-// What the rays of one origin of a row tell of the irradiance there.
+// The irradiance at an origin of a transport row, one of sixteen points of its patch, as the rays that start there tell it.
 
 namespace alvor {
 
-/// The irradiance that the rays of an origin found, and the variance of that value if its rays were independent.
+/// The irradiance that the rays of an origin found, mean over bands, and the variance of that value if the rays were independent.
 struct OriginSample {
   double irradiance = 0, noise = 0;
 };

@@ -105,6 +105,7 @@ TEST(Verdict, OnEstimatesNeedsNearlyAllCloseAndNoneFar) {
 TEST(Verdict, OnMemoryNeedsLessThanHalfAGigabyte) {
   EXPECT_EQ(judge_memory(499'000'000).verdict, Verdict::met);
   EXPECT_EQ(judge_memory(500'000'000).verdict, Verdict::missed);
+  EXPECT_EQ(judge_memory(0).verdict, Verdict::not_measured);
 }
 
 TEST(PeakMemory, IsThatOfTheProgram) {

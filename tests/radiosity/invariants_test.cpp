@@ -98,11 +98,11 @@ TEST_P(Invariant, RowSumsAreAtMostOne) {
   }
 }
 
-// Shadow rays are sampled: the power of one solve is off by about 5e-4 (one standard deviation) of what is emitted, the mean of
-// eight by 1.8e-4, so that 5e-4 is nearly three of these.
+// Shadow rays are sampled: the power of one of these solves is off by about 2.4e-4 (one standard deviation) of what is emitted, the
+// mean of eight by 8.5e-5. The bounds are four and three and a half of these.
 TEST_P(Invariant, PowerIsNeitherMadeNorLost) {
   SolveOptions fine = options;
-  fine.tolerance = 0.01;
+  fine.tolerance = 0.005;
   fine.max_leaves = 50'000;
   double emitted = 0;
   for (const BaseMesh mesh(scene()); const RootPatch& root : mesh.roots())
@@ -112,10 +112,10 @@ TEST_P(Invariant, PowerIsNeitherMadeNorLost) {
   for (fine.seed = 1; fine.seed <= solves; ++fine.seed) {
     const PowerBalance balance = solution_of(scene(), fine).balance;
     EXPECT_NEAR(balance.emitted, emitted, 1e-12 * emitted);
-    EXPECT_NEAR(balance.absorbed + balance.lost + balance.unshot, emitted, 2e-3 * emitted);
+    EXPECT_NEAR(balance.absorbed + balance.lost + balance.unshot, emitted, 1e-3 * emitted);
     found += (balance.absorbed + balance.lost + balance.unshot) / solves;
   }
-  EXPECT_NEAR(found, emitted, 5e-4 * emitted);
+  EXPECT_NEAR(found, emitted, 3e-4 * emitted);
 }
 
 TEST_P(Invariant, EmissionTimesAPowerOfTwoGivesThatMultipleToTheByte) {

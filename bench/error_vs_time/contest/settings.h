@@ -23,7 +23,7 @@ struct SceneSettings {
 struct Settings {
   std::vector<SceneSettings> scenes;
   std::filesystem::path scene_folder = "scenes", made_scene_folder = "out/error_vs_time/scenes";  ///< made by the script
-  std::filesystem::path alvor = "build/release/bin/alvor";
+  std::filesystem::path alvor = "build/release/bin/alvor";  ///< the command line, whose memory is measured
   std::filesystem::path truth_folder = "out/error_vs_time/truth", curve_folder = "out/error_vs_time";
   std::filesystem::path page = "docs/error-vs-time.md", figure_folder = "docs/error-vs-time";
   int seeds = 3;

@@ -8,6 +8,15 @@ namespace {
 
 std::vector<CurvePoint> our_curve(std::span<const RunGroup> groups) { return error_by_cpu(of(groups, Contender::alvor)); }
 
+/// Returns estimated over true error of the runs that a condition holds for.
+template <class Condition>
+std::vector<double> ratios_of(std::span<const MeasuredRun> runs, Condition&& is_wanted) {
+  std::vector<double> ratios;
+  for (const MeasuredRun& run : runs)
+    if (is_wanted(run)) ratios.push_back(run.estimated / run.nrmse.value);
+  return ratios;
+}
+
 }  // namespace
 
 std::optional<Comparison> with_fixed_mesh(std::span<const RunGroup> groups) {
@@ -40,17 +49,12 @@ ThreadGain gain_of_two_threads(std::span<const RunGroup> groups) {
 }
 
 std::vector<double> estimate_ratios(std::span<const MeasuredRun> runs) {
-  std::vector<double> ratios;
-  for (const MeasuredRun& run : runs)
-    if (run.contender == Contender::alvor && run.threads == 1 && run.is_done) ratios.push_back(run.estimated / run.nrmse.value);
-  return ratios;
+  return ratios_of(runs,
+                   [](const MeasuredRun& run) { return run.contender == Contender::alvor && run.threads == 1 && run.is_done; });
 }
 
 std::vector<double> estimate_ratios_of_stopped(std::span<const MeasuredRun> runs) {
-  std::vector<double> ratios;
-  for (const MeasuredRun& run : runs)
-    if (run.contender == Contender::until_time && !run.is_done) ratios.push_back(run.estimated / run.nrmse.value);
-  return ratios;
+  return ratios_of(runs, [](const MeasuredRun& run) { return run.contender == Contender::until_time && !run.is_done; });
 }
 
 }  // namespace alvor::bench

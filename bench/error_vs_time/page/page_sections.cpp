@@ -67,7 +67,7 @@ std::string ratio_table(const Measurements& measured) {
 std::string targets_section(const Measurements& measured) {
   std::string text = "## Targets\n\n" + table_head({"aim", "measured", "verdict"});
   auto judgements = judge(measured.contests, measured.yardstick_s(), measured.two_threads_faster().median);
-  if (measured.peak_memory > 0) judgements.push_back(judge_memory(measured.peak_memory));
+  judgements.push_back(judge_memory(measured.peak_memory));
   for (const Judgement& judgement : judgements)
     text +=
         table_row({judgement.aim, judgement.measured.empty() ? "-" : judgement.measured,

@@ -162,9 +162,13 @@ Judgement judge_estimates(std::string_view solves, std::span<const double> ratio
 }
 
 Judgement judge_memory(std::uint64_t bytes) {
+  Judgement judgement{"A room of about 420 faces is solved in less than " + figure(most_memory_mb) +
+                      " MB, with no option but the scene"};
+  if (bytes == 0) return judgement;
   const double megabytes = static_cast<double>(bytes) / 1e6;
-  return {"A room of about 420 faces is solved in less than " + figure(most_memory_mb) + " MB, with no option but the scene",
-          plain(megabytes) + " MB", megabytes < most_memory_mb ? Verdict::met : Verdict::missed};
+  judgement.measured = plain(megabytes) + " MB";
+  judgement.verdict = megabytes < most_memory_mb ? Verdict::met : Verdict::missed;
+  return judgement;
 }
 
 Judgement judge_rises(std::uint64_t rises, std::uint64_t steps) {

@@ -32,7 +32,8 @@ Judgement keeps_tolerance(std::span<const RunGroup> groups, double tolerance);
 Judgement judge_slope(std::span<const CurvePoint> curve);
 /// Judges ratios of estimated over true error, by solve. `solves` says of which solves, in the plural.
 Judgement judge_estimates(std::string_view solves, std::span<const double> ratios);
-/// Judges the most memory, in bytes, that a solve of a room of about 420 faces held, with no option but the scene.
+/// Judges the most memory, in bytes, that a solve of a room of about 420 faces held, with no option but the scene; 0 if it was not
+/// measured.
 Judgement judge_memory(std::uint64_t bytes);
 /// Judges which share of the points had errors within two of the told ones, by solve.
 Judgement judge_told_errors(std::span<const double> within_two);
